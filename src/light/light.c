@@ -15,7 +15,6 @@
 #include "math/frame.h"
 #include "math/range.h"
 
-static const double pi = 3.14159265358979323846;
 /* A disc whose square fills more than this solid angle is sampled by that of the square, though a fifth of the square
  * is not of the disc: bench/lamps.c. */
 static const double disc_by_angle = 1.5;
@@ -534,7 +533,7 @@ double light_emitter_unit(const struct light_emitter *emitter) {
     case LIGHT_PARALLELOGRAM:
         return intensity_of(vec3_length(vec3_cross(light->edge1, light->edge2))) * part;
     case LIGHT_DISC:
-        return intensity_of(pi * light->radius * light->radius) * part;
+        return intensity_of(PI * light->radius * light->radius) * part;
     case LIGHT_SPHERE:
         return light->radius * light->radius; /* of the area pi r^2 across every direction */
     case LIGHT_POINT:

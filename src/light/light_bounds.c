@@ -5,8 +5,6 @@
 #include "math/elementary.h"
 #include "math/range.h"
 
-static const double pi = 3.14159265358979323846;
-
 /* Sums over many lights and products with distances stay finite. */
 static const double max = 1e200;
 
@@ -52,15 +50,15 @@ static struct vec3 turned(struct vec3 v, struct vec3 to, double angle) {
 static struct vec3 join_cones(struct vec3 axis_a, double cos_a, struct vec3 axis_b, double cos_b, double *cos_half) {
     double a = angle_of(cos_a), b = angle_of(cos_b), apart = angle_of(vec3_dot(axis_a, axis_b));
     *cos_half = cos_a;
-    if (fmin(apart + b, pi) <= a)
+    if (fmin(apart + b, PI) <= a)
         return axis_a;
     *cos_half = cos_b;
-    if (fmin(apart + a, pi) <= b)
+    if (fmin(apart + a, PI) <= b)
         return axis_b;
     double half = (a + apart + b) / 2;
     struct vec3 across = vec3_sub(axis_b, vec3_scale(axis_a, vec3_dot(axis_a, axis_b)));
     *cos_half = -1;
-    if (half >= pi || !(vec3_length(across) > 0))
+    if (half >= PI || !(vec3_length(across) > 0))
         return axis_a;
     *cos_half = fmax(-1, el_cos(half) - 0x1p-40);
     return turned(axis_a, vec3_normalize(across), half - a);

@@ -6,7 +6,6 @@
 
 #include "math/elementary.h"
 
-static const double pi = 3.14159265358979323846;
 /* Below this solid angle the excess has lost half of its digits, and samples by area are as good. */
 static const double min_angle = 0x1p-12;
 
@@ -47,7 +46,7 @@ bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3
     double g0 = corner_angle(n0, n1), g1 = corner_angle(n1, n2), g2 = corner_angle(n2, n3), g3 = corner_angle(n3, n0);
     out->b0 = n0.z;
     out->b1 = n2.z;
-    out->k = 2 * pi - g2 - g3;
+    out->k = 2 * PI - g2 - g3;
     out->angle = g0 + g1 - out->k;
     return out->angle > min_angle;
 }

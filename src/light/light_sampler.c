@@ -11,7 +11,6 @@
 #include "base/mem.h"
 #include "math/elementary.h"
 
-static const double pi = 3.14159265358979323846;
 static const double below_one = 1 - 0x1p-53;
 
 enum { BINS = 12, DEPTH_LIMIT = 64 };
@@ -32,11 +31,11 @@ struct building {
 
 /* The solid angle of the directions in which a cone of normals shines, those near its rim by their cosine. */
 static double cone_measure(const struct light_bounds *b) {
-    double theta_o = el_acos(b->cos_theta_o), theta_e = el_acos(b->cos_theta_e), all = fmin(theta_o + theta_e, pi);
+    double theta_o = el_acos(b->cos_theta_o), theta_e = el_acos(b->cos_theta_e), all = fmin(theta_o + theta_e, PI);
     double sin_o, cos_o;
     el_sincos(theta_o, &sin_o, &cos_o);
-    double inside = 2 * pi * (1 - cos_o);
-    double rim = pi / 2 * (2 * all * sin_o - el_cos(theta_o - 2 * all) - 2 * theta_o * sin_o + cos_o);
+    double inside = 2 * PI * (1 - cos_o);
+    double rim = PI / 2 * (2 * all * sin_o - el_cos(theta_o - 2 * all) - 2 * theta_o * sin_o + cos_o);
     return (inside + rim) * (b->two_sided ? 2 : 1);
 }
 

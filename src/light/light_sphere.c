@@ -41,7 +41,7 @@ bool light_sphere_context(const struct light *light, struct light_context *out) 
 /* Uniform over all directions; where the ray comes out. */
 static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 place) {
     double y = 1 - 2 * place.y, level = 2 * sqrt(place.y * (1 - place.y)), sine, cosine;
-    el_sincos(2 * 3.14159265358979323846 * place.x, &sine, &cosine);
+    el_sincos(2 * PI * place.x, &sine, &cosine);
     struct vec3 direction = {level * cosine, y, level * sine}, off = vec3_sub(context->from, light->position);
     double along = vec3_dot(off, direction), room = light->radius * light->radius - vec3_length_squared(off);
     return vec3_add_scaled(context->from, direction, sqrt(along * along + (room > 0 ? room : 0)) - along);

@@ -5,8 +5,6 @@
 #include "light/sky_parts.h"
 #include "math/elementary.h"
 
-static const double pi = 3.14159265358979323846;
-
 static double perez(const double c[5], double cos_zenith, double cos_sun) {
     double cosine = cos_zenith > 1e-3 ? cos_zenith : 1e-3; /* the function falls apart at the horizon itself */
     cos_sun = cos_sun > 1 ? 1 : cos_sun < -1 ? -1 : cos_sun;
@@ -39,7 +37,7 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
     clear->sun = sun;
     clear->ground = ground;
     double cos_sun = sun.y < 0 ? 0 : sun.y > 1 ? 1 : sun.y, theta = el_acos(cos_sun);
-    double chi = (4.0 / 9 - turbidity / 120) * (pi - 2 * theta);
+    double chi = (4.0 / 9 - turbidity / 120) * (PI - 2 * theta);
     double luminance = (4.0453 * turbidity - 4.9710) * el_tan(chi) - 0.2155 * turbidity + 2.4192;
     double zenith[3] = {(luminance > 0 ? luminance : 0) / 20, zenith_chromaticity(zenith_x, turbidity, theta),
                         zenith_chromaticity(zenith_y, turbidity, theta)};
@@ -64,11 +62,11 @@ struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 d) {
 }
 
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone) {
-    double time = hour + 0.170 * el_sin(4 * pi * (day - 80) / 373) - 0.129 * el_sin(2 * pi * (day - 8) / 355);
+    double time = hour + 0.170 * el_sin(4 * PI * (day - 80) / 373) - 0.129 * el_sin(2 * PI * (day - 8) / 355);
     time += (longitude - 15 * zone) / 15;
-    double declination = 0.4093 * el_sin(2 * pi * (day - 81) / 368), turn = pi * (time - 12) / 12;
+    double declination = 0.4093 * el_sin(2 * PI * (day - 81) / 368), turn = PI * (time - 12) / 12;
     double s_lat, c_lat, s_dec, c_dec, s_turn, c_turn;
-    el_sincos(latitude * (pi / 180), &s_lat, &c_lat);
+    el_sincos(latitude * (PI / 180), &s_lat, &c_lat);
     el_sincos(declination, &s_dec, &c_dec);
     el_sincos(turn, &s_turn, &c_turn);
     double north = c_lat * s_dec - s_lat * c_dec * c_turn;

@@ -9,8 +9,6 @@
 #include "light/light_internal.h"
 #include "math/elementary.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { MIN_COLUMNS = 128, MAX_COLUMNS = 512, PROBES = 2 };
 static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
 
@@ -39,7 +37,7 @@ static uint32_t columns_for(const struct sky *sky) {
 /* Row 0 is at the top; a place's y and x run from 0 to 1 down and round. */
 static struct vec3 direction_at(double x, double y) {
     double height = 1 - 2 * y, sine, cosine, level = sqrt(4 * y * (1 - y));
-    el_sincos(2 * pi * x, &sine, &cosine);
+    el_sincos(2 * PI * x, &sine, &cosine);
     return vec3_make(level * cosine, height, level * sine);
 }
 
@@ -123,7 +121,7 @@ static uint32_t find_share(const double *until, uint32_t count, double share, do
 
 /* Of directions by solid angle, from the shares of a row and of a cell in it. */
 static double density_of(const struct sky_table *table, double row_share, double cell_share) {
-    return row_share * cell_share * ((double)table->rows * table->columns / (4 * pi));
+    return row_share * cell_share * ((double)table->rows * table->columns / (4 * PI));
 }
 
 struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place) {
@@ -146,7 +144,7 @@ static uint32_t cell_index(double x, uint32_t count) {
 }
 
 double sky_table_pdf(const struct sky_table *table, struct vec3 direction) {
-    double turn = el_atan2(direction.z, direction.x) / (2 * pi);
+    double turn = el_atan2(direction.z, direction.x) / (2 * PI);
     uint32_t row = cell_index((1 - direction.y) / 2, table->rows);
     uint32_t column = cell_index(turn < 0 ? turn + 1 : turn, table->columns);
     const double *cells = &table->until[(size_t)row * table->columns];

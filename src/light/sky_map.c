@@ -26,12 +26,11 @@ static struct rgba bilinear(const struct image *image, int level, double u, doub
 }
 
 struct vec3 sky_map_colour(const struct image *image, struct vec3 d, double spread) {
-    const double pi = 3.14159265358979323846;
     if (!vec3_finite(d))
         return vec3_all(0);
-    double u = 0.5 + el_atan2(d.x, -d.z) / (2 * pi);
-    double v = el_atan2(sqrt(d.x * d.x + d.z * d.z), d.y) / pi;
-    double texels = spread / pi * image->levels[0].height;
+    double u = 0.5 + el_atan2(d.x, -d.z) / (2 * PI);
+    double v = el_atan2(sqrt(d.x * d.x + d.z * d.z), d.y) / PI;
+    double texels = spread / PI * image->levels[0].height;
     double level = texels > 1 ? image_level_for(texels, image->level_count - 1) : 0;
     int lower = (int)level;
     struct rgba c = bilinear(image, lower, u, v);

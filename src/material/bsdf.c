@@ -14,8 +14,6 @@
 #include "math/elementary.h"
 #include "math/frame.h"
 
-static const double pi = 3.14159265358979323846;
-
 const char *lobe_name(enum lobe_kind kind) {
 #define LOBE_NAME(kind, name, flags) [kind] = (name),
     static const char *const names[] = {LOBES(LOBE_NAME)};
@@ -89,7 +87,7 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
 static struct vec3 around(struct vec3 axis, double cosine, double turn) {
     struct vec3 a, b;
     frame_tangents(axis, &a, &b);
-    double sine = sqrt(cosine < 1 ? 1 - cosine * cosine : 0), angle = 2 * pi * turn;
+    double sine = sqrt(cosine < 1 ? 1 - cosine * cosine : 0), angle = 2 * PI * turn;
     struct vec3 out = vec3_add_scaled(vec3_scale(axis, cosine), a, sine * el_cos(angle));
     return vec3_add_scaled(out, b, sine * el_sin(angle));
 }
@@ -103,7 +101,7 @@ static struct vec3 power_sample(struct vec3 axis, double exponent, struct sample
 }
 static double power_pdf(double cosine, double exponent) {
     double e = power_exponent(exponent);
-    return cosine > 0 ? (e + 1) / (2 * pi) * lobe_power(cosine, e) : 0;
+    return cosine > 0 ? (e + 1) / (2 * PI) * lobe_power(cosine, e) : 0;
 }
 
 static struct vec3 diffuse_sample(struct vec3 normal, struct sample2 u) {
@@ -212,7 +210,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     double n_l = classic_cosine(bsdf, wi);
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
-        return n_l > 0 ? n_l / pi : 0;
+        return n_l > 0 ? n_l / PI : 0;
     case LOBE_PHONG:
         return n_l > 0 ? power_pdf(vec3_dot(dielectric_mirror(bsdf->lit, wo), wi), lobe->exponent) : 0;
     case LOBE_BLINN:

@@ -6,14 +6,16 @@
 #ifndef GRAY_MATERIAL_CLASSIC_H
 #define GRAY_MATERIAL_CLASSIC_H
 
+#include "math/elementary.h"
+
 /* Of radiance times solid angle; of a classic formula f |cos|. Where a solid angle or an area is pi x by its formula,
  * its intensity x is written down at once. */
 static inline double intensity_of(double radiance) {
-    return radiance / 3.14159265358979323846;
+    return radiance / PI;
 }
 /* The radiance that has that intensity from the unit solid angle. */
 static inline double radiance_of(double intensity) {
-    return intensity * 3.14159265358979323846;
+    return intensity * PI;
 }
 
 #endif

@@ -3,10 +3,9 @@
  * Visible Normals", JCGT 2018): no sample is wasted on facets that face away. Seen head on, the share of facets steeper
  * than theta is alpha^2 / (alpha^2 + tan^2 theta). */
 #include "material/microfacet.h"
+#include "math/elementary.h"
 
 #include "math/frame.h"
-
-static const double pi = 3.14159265358979323846;
 
 struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place) {
     struct vec3 a, b;
@@ -36,7 +35,7 @@ double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct
     if (!(n_h > 0 && v_h > 0))
         return 0;
     double a2 = alpha * alpha, c2 = n_h * n_h, slope = c2 * a2 + (c2 < 1 ? 1 - c2 : 0);
-    double facets = a2 / (pi * slope * slope);
+    double facets = a2 / (PI * slope * slope);
     double masking = 2 / (n_v + sqrt(n_v * n_v + a2 * (n_v < 1 ? 1 - n_v * n_v : 0))); /* G1 / n.v */
     return masking * facets * v_h;
 }

@@ -4,8 +4,6 @@
 
 #include "math/elementary.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum texture_mapping texture_mapping_on(enum texture_mapping mapping, enum surface_layout layout) {
     static const enum texture_mapping on[][SURFACE_LAYOUTS] = {
         [MAPPING_SPHERE] = {MAPPING_SPHERE, MAPPING_SPHERE, MAPPING_BALL},
@@ -24,17 +22,17 @@ static void by_direction(const struct hit *hit, struct vec3 direction, bool clas
     double y = p.y < -1 ? -1 : p.y > 1 ? 1 : p.y;
     *at = (struct texcoord){.wrap_u = IMAGE_REPEAT, .wrap_v = IMAGE_CLAMP};
     if (classic) {
-        at->u = 0.5 + el_atan2(p.z, p.x) / (2 * pi);
-        at->v = 0.5 - el_asin(y) / pi;
+        at->u = 0.5 + el_atan2(p.z, p.x) / (2 * PI);
+        at->v = 0.5 - el_asin(y) / PI;
     } else {
-        at->u = (el_atan2(-p.z, -p.x) + pi) / (2 * pi);
-        at->v = el_acos(y) / pi;
+        at->u = (el_atan2(-p.z, -p.x) + PI) / (2 * PI);
+        at->v = el_acos(y) / PI;
     }
     double radius = vec3_length(direction);
     double width = radius > 0 ? hit->footprint * hit->pattern_scale / radius : 0;
     double ring = sqrt(1 - y * y);
-    at->width_v = width / pi;
-    at->width_u = width < 2 * pi * ring ? width / (2 * pi * ring) : width > 0 ? 1 : 0;
+    at->width_v = width / PI;
+    at->width_u = width < 2 * PI * ring ? width / (2 * PI * ring) : width > 0 ? 1 : 0;
 }
 
 /* The pattern_normal of a ball points from its centre. */

@@ -69,7 +69,7 @@ static void sine_cosine(double degrees, double *sine, double *cosine) {
         *cosine = table[(k + 1) & 3];
         return;
     }
-    el_sincos(turned * (3.14159265358979323846 / 180), sine, cosine);
+    el_sincos(turned * (PI / 180), sine, cosine);
 }
 
 struct transform transform_rotate(int axis, double degrees) {

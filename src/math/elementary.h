@@ -10,6 +10,9 @@
 #ifndef GRAY_MATH_ELEMENTARY_H
 #define GRAY_MATH_ELEMENTARY_H
 
+/* The double nearest to pi. */
+#define PI 3.14159265358979323846
+
 double el_sin(double x);
 double el_cos(double x);
 void el_sincos(double x, double *sine, double *cosine);

@@ -13,7 +13,7 @@
 
 enum { POLAR_STEPS = 40 };
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = PI / 180;
 static const double bounds_step = 5; /* degrees between the moments that bounds look at */
 
 /* --- the two parts of a linear map --- */

@@ -53,7 +53,7 @@ struct sample2 sample_multi(uint64_t set, uint64_t key, uint32_t i, uint32_t j, 
 
 struct sample2 sample_disc(struct sample2 square) {
     double x = 2 * square.x - 1, y = 2 * square.y - 1, radius, angle, sine, cosine;
-    const double quarter = 3.14159265358979323846 / 4;
+    const double quarter = PI / 4;
     if (x == 0 && y == 0)
         return (struct sample2){0, 0};
     if (fabs(x) > fabs(y)) {

@@ -216,7 +216,7 @@ static void unite_across(struct smoothing *s, uint32_t c, uint32_t d, double min
 
 static void unite_smooth_edges(struct smoothing *s, double degrees) {
     /* A little more than the angle, so that rounding splits no edge that has it exactly; 180 takes everything. */
-    double min = degrees >= 180 ? -2 : el_cos(degrees * (3.14159265358979323846 / 180)) - 0x1p-40;
+    double min = degrees >= 180 ? -2 : el_cos(degrees * (PI / 180)) - 0x1p-40;
     for (uint32_t v = 0; v < s->input->vertex_count; v++) {
         uint64_t *uses = s->uses + s->start[v];
         size_t count = s->start[v + 1] - s->start[v], end;

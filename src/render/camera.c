@@ -48,11 +48,11 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
         out->spread = pixel;
     }
     if (lens->projection == PROJECTION_FISHEYE) {
-        out->radian = lens->angle * (3.14159265358979323846 / 360);
+        out->radian = lens->angle * (PI / 360);
         out->spread = 2 * out->radian / out->height;
     }
     if (lens->projection == PROJECTION_PANORAMA)
-        out->spread = 3.14159265358979323846 / out->height;
+        out->spread = PI / out->height;
     return true;
 }
 
@@ -77,7 +77,7 @@ bool camera_prepare(const struct camera *camera, const struct settings *settings
     }
     right = vec3_normalize(right);
     struct vec3 down = vec3_cross(out->forward, right);
-    double half = el_tan(camera->fov * (3.14159265358979323846 / 360)); /* of the window's height, at distance 1 */
+    double half = el_tan(camera->fov * (PI / 360)); /* of the window's height, at distance 1 */
     double pixel = 2 * half / height;
     out->right = vec3_scale(right, pixel);
     out->down = vec3_scale(vec3_normalize(down), pixel);
@@ -120,9 +120,9 @@ struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
 static struct sample2 place_on_lens(const struct lens *lens, struct sample2 place) {
     if (lens->blades < 3)
         return sample_disc(place);
-    double turn = 2 * 3.14159265358979323846 / lens->blades, sector = floor(place.x * lens->blades);
+    double turn = 2 * PI / lens->blades, sector = floor(place.x * lens->blades);
     double along = place.x * lens->blades - sector, out = sqrt(place.y), s0, c0, s1, c1;
-    double start = lens->blade_angle * (3.14159265358979323846 / 180) + sector * turn;
+    double start = lens->blade_angle * (PI / 180) + sector * turn;
     el_sincos(start, &s0, &c0);
     el_sincos(start + turn, &s1, &c1);
     return (struct sample2){out * (c0 + along * (c1 - c0)), out * (s0 + along * (s1 - s0))};
@@ -145,10 +145,9 @@ static bool fisheye_direction(const struct camera_frame *frame, double x, double
 
 /* Longitude along the rows, the view in the middle; latitude down the columns. */
 static struct vec3 panorama_direction(const struct camera_frame *frame, double x, double y) {
-    const double pi = 3.14159265358979323846;
     double s_lon, c_lon, s_lat, c_lat;
-    el_sincos((x / frame->width - 0.5) * 2 * pi, &s_lon, &c_lon);
-    el_sincos((y / frame->height - 0.5) * pi, &s_lat, &c_lat);
+    el_sincos((x / frame->width - 0.5) * 2 * PI, &s_lon, &c_lon);
+    el_sincos((y / frame->height - 0.5) * PI, &s_lat, &c_lat);
     struct vec3 level = vec3_add_scaled(vec3_scale(frame->forward, c_lon), frame->unit_right, s_lon);
     return vec3_add_scaled(vec3_scale(level, c_lat), frame->unit_down, s_lat);
 }
@@ -197,7 +196,6 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
 
 bool camera_project(const struct camera_frame *frame, struct vec3 point, double *x, double *y) {
     const struct lens *lens = &frame->lens;
-    const double pi = 3.14159265358979323846;
     struct vec3 to = vec3_sub(point, frame->eye);
     double ahead = vec3_dot(to, frame->forward), right = vec3_dot(to, frame->unit_right),
            down = vec3_dot(to, frame->unit_down), pixel = vec3_length(frame->right);
@@ -224,8 +222,8 @@ bool camera_project(const struct camera_frame *frame, struct vec3 point, double 
     case PROJECTION_PANORAMA:
         if (!(distance > 0))
             return false;
-        *x = (el_atan2(right, ahead) / (2 * pi) + 0.5) * frame->width;
-        *y = (el_atan2(down, sqrt(right * right + ahead * ahead)) / pi + 0.5) * frame->height;
+        *x = (el_atan2(right, ahead) / (2 * PI) + 0.5) * frame->width;
+        *y = (el_atan2(down, sqrt(right * right + ahead * ahead)) / PI + 0.5) * frame->height;
         break;
     }
     *x -= lens->shift_x * frame->width;

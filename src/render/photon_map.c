@@ -9,6 +9,7 @@
  * node alone. Invariant: the photons under node k of level l are those from n k / 2^l to n (k + 1) / 2^l. Every
  * comparison falls back on the photon's number, so the tree is a function of the photons. */
 #include "render/photon_map.h"
+#include "math/elementary.h"
 
 #include "base/mem.h"
 #include "base/random.h"
@@ -18,7 +19,6 @@
 
 enum { LEAF = 8, PILOT = 32, SUBTREE_LEVEL = 8, CHUNK = 1 << 14, LEVEL_LIMIT = 30 };
 
-static const double pi = 3.14159265358979323846;
 static const float stretch = 1.75F;
 
 /* --- directions --- */
@@ -589,5 +589,5 @@ struct vec3 photon_map_light(const struct photon_map *map, const struct world *w
     gather(&g);
     if (g.plain)
         g.sum = vec3_mul(g.sum, albedo);
-    return vec3_scale(g.sum, 2 * map->power_unit / (pi * map->unit * map->unit));
+    return vec3_scale(g.sum, 2 * map->power_unit / (PI * map->unit * map->unit));
 }

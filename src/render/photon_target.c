@@ -32,8 +32,6 @@ enum {
     CANCEL_EVERY = 256
 };
 
-static const double pi = 3.14159265358979323846;
-
 /* --- what is specular --- */
 
 struct specular_object {
@@ -151,7 +149,7 @@ static bool is_distant(const struct photon_target *target) {
 
 /* The coordinate on a face of the cube from one that runs evenly over the angle. */
 static double on_face(double a) {
-    return el_tan(a * (pi / 4));
+    return el_tan(a * (PI / 4));
 }
 
 static void face_axes(uint32_t face, struct vec3 *major, struct vec3 *a, struct vec3 *b) {
@@ -166,7 +164,7 @@ static struct vec3 face_direction(uint32_t face, double a, double b, double *den
     struct vec3 major, right, up;
     face_axes(face, &major, &right, &up);
     double u = on_face(a), v = on_face(b), squared = 1 + u * u + v * v;
-    *density = (pi / 4) * (pi / 4) * (1 + u * u) * (1 + v * v) / (squared * sqrt(squared));
+    *density = (PI / 4) * (PI / 4) * (1 + u * u) * (1 + v * v) / (squared * sqrt(squared));
     return vec3_add_scaled(vec3_add_scaled(major, right, u), up, v);
 }
 

@@ -213,7 +213,7 @@ static bool gr_spot_light(struct script_context *context, const struct script_va
     double inner_angle = inner->given ? inner->number : 0.75 * outer_angle;
     if (inner_angle > outer_angle)
         return error_set(error, ERROR_SCENE, "inner must be at most outer, the angle where the light ends");
-    const double degree = 3.14159265358979323846 / 180;
+    const double degree = PI / 180;
     light.cos_inner = el_cos(inner_angle * degree);
     light.cos_outer = el_cos(outer_angle * degree);
     struct vec3 axis = args[SPOT_TARGET].given      ? vec3_sub(args[SPOT_TARGET].vector, light.position)

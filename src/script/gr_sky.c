@@ -10,7 +10,7 @@ static bool give_sky(struct script_context *context, struct sky *sky, const stru
         return error_no_memory(error, "a sky");
     sky->adjusted = args[SKY_INTENSITY].given || args[SKY_ROTATION].given;
     sky->intensity = args[SKY_INTENSITY].given ? args[SKY_INTENSITY].number : 1;
-    el_sincos(args[SKY_ROTATION].number * (3.14159265358979323846 / 180), &sky->turn_sine, &sky->turn_cosine);
+    el_sincos(args[SKY_ROTATION].number * (PI / 180), &sky->turn_sine, &sky->turn_cosine);
     *kept = *sky;
     result->pointer = kept;
     return true;

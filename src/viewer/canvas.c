@@ -189,7 +189,7 @@ void canvas_ring(const struct canvas *canvas, double x, double y, double radius,
     double from_x = x + radius, from_y = y;
     for (int i = 1; i <= SIDES; i++) {
         double sine, cosine;
-        el_sincos(2 * 3.14159265358979323846 * i / SIDES, &sine, &cosine);
+        el_sincos(2 * PI * i / SIDES, &sine, &cosine);
         canvas_line(canvas, from_x, from_y, x + radius * cosine, y + radius * sine, colour);
         from_x = x + radius * cosine;
         from_y = y + radius * sine;

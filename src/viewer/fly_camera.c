@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double degree = 3.14159265358979323846 / 180;
+static const double degree = PI / 180;
 
 static struct quaternion multiply(struct quaternion a, struct quaternion b) {
     struct quaternion q = {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,

@@ -2,6 +2,7 @@
  * sampled by the solid angle of its bound, a ball or a box, and the ray decides whether it meets what sends light. So
  * is what moves: its bound holds every place of the shutter's time. What has no end cannot be sampled; rays meet it. */
 #include "world/world_lights.h"
+#include "math/elementary.h"
 
 #include "base/mem.h"
 #include "light/light_mesh.h"
@@ -10,8 +11,6 @@
 #include "world/light_lamps.h"
 
 #include <string.h>
-
-static const double pi = 3.14159265358979323846;
 
 /* --- what emits --- */
 
@@ -114,7 +113,7 @@ static bool derive_bound(struct derived *d, bool moves, bool *ok) {
     d->emitter.decided = true;
     if (!vec3_finite(d->light.position) || !(radius > 0) || !isfinite(radius))
         return false;
-    if (of_box >= pi * radius * radius)
+    if (of_box >= PI * radius * radius)
         return true;
     struct light_box *kept = arena_alloc(d->arena, sizeof *kept);
     *ok = kept || error_no_memory(d->error, "the bound of a light");
