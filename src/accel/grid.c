@@ -9,7 +9,7 @@
  * Per axis the traversal's index at t is the start index plus the number of boundaries whose t_next is <= t. It is
  * wrong only while q is within d of a boundary, d being the error of t_next times the speed: at most (steps + 8) 2^-53
  * (|origin| + |q|) on that axis, the steps because t_next is a running sum. With at most 2^12 steps and a slack of
- * 2^-12 of a voxel, d < slack as long as |origin| < 2^26 voxels. Rays from farther away do not traversal: they are
+ * 2^-12 of a voxel, d < slack as long as |origin| < 2^26 voxels. Rays from farther away do not traverse it: they are
  * given all items at once. Worlds far from the origin get voxels so large that the same holds for their coordinates.
  *
  * Everything is relative to the boxes, so scaling by a power of two changes no index and no step. */

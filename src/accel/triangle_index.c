@@ -6,7 +6,7 @@
  * children to a node the levels spared are log8 of the number of occupied voxels, at best, that is, if all are filled
  * alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of that many meets 2 to 4 occupied ones before it is
  * done. That much is about even for compact bodies. But with one voxel a ray need not be brought to the frame, and rays
- * of one origin traversal the hierarchy together, which is worth four visits of a node to a ray; so one voxel is what
+ * of one origin traverse the hierarchy together, which is worth four visits of a node to a ray; so one voxel is what
  * the model answers for every mesh that was measured, and each was fastest so (docs/performance-notebook.md has what
  * the model says, and the times of 8 to 4,096 voxels). The frame is then only the box every ray is cut to. */
 #include "accel/triangle_index.h"

@@ -1,6 +1,6 @@
 /* The packet search, compiled once per instruction set: a file defines PACKET(name) and includes this one.
  *
- * Up to 64 rays of one origin traversal one hierarchy together. A node is first tried against the beam that holds all
+ * Up to 64 rays of one origin traverse one hierarchy together. A node is first tried against the beam that holds all
  * of them, eight children at once: the slopes of the rays over their longest axis bound it by four planes through the
  * origin (as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005). A child that the beam
  * meets waits on the stack with its box and the set of rays that met its parent; when it is its turn the box is tried
