@@ -230,7 +230,3 @@ bool display_end(struct display *display, struct error *error) {
     display_forget(display);
     return ok;
 }
-
-void display_disturb(struct display *display) {
-    display->terminal.rows = 0;
-}

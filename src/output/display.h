@@ -41,8 +41,6 @@ bool display_step(struct display *display, double now, struct error *error);
 /* Shows the rest, waiting a little. */
 bool display_end(struct display *display, struct error *error);
 void display_forget(struct display *display); /* the picture will not be finished */
-/* Something else was written on the terminal. */
-void display_disturb(struct display *display);
 
 /* The packets, for tests: each returns its size. name is cut at 4096 bytes. */
 size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uint32_t height);

@@ -205,10 +205,6 @@ void film_row_toned(const struct film *film, enum film_view view, const struct t
     }
 }
 
-void film_row(const struct film *film, enum film_view view, uint32_t y, uint8_t *line) {
-    film_row_toned(film, view, &(struct tone){0}, y, line);
-}
-
 void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line) {
     for (uint32_t x = 0; x < film->width; x++) {
         size_t at = (size_t)y * film->width + x;

@@ -108,9 +108,7 @@ enum film_view {
     FILM_TARGETS
 }; /* TARGETS: first pass with marked pixels in pure red. Without a first pass
     * (no marks) it is the picture. */
-/* 3 * width bytes of row y. */
-void film_row(const struct film *film, enum film_view view, uint32_t y, uint8_t *line);
-/* The same through a tone, with 8 or 16 bits; and as the film has it. */
+/* 3 * width numbers of row y: through a tone with 8 or 16 bits, and as the film has it. */
 void film_row_toned(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint8_t *line);
 void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line);
 void film_row_linear(const struct film *film, enum film_view view, uint32_t y, float *line);

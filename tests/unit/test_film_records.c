@@ -90,7 +90,7 @@ TEST(a_film_without_marks_shows_its_colours_as_first_pass_and_no_red) {
     struct film film = painted(plain);
     uint8_t lines[3][3 * SIDE];
     for (int view = FILM_FINAL; view <= FILM_TARGETS; view++)
-        film_row(&film, (enum film_view)view, 3, lines[view]);
+        film_row_toned(&film, (enum film_view)view, &(struct tone){0}, 3, lines[view]);
     CHECK(memcmp(lines[0], lines[1], sizeof lines[0]) == 0 && memcmp(lines[0], lines[2], sizeof lines[0]) == 0);
     atomic_store(&film.tiles[0], FILM_TILE_WANTED);
     film_clear_unfinished(&film);
@@ -192,7 +192,7 @@ TEST(merge_refuses_parts_of_another_record_and_takes_those_of_one) {
     struct film film = painted(plain);
     uint8_t line[3 * SIDE];
     for (uint32_t y = 0; y < SIDE; y++) {
-        film_row(&film, FILM_FINAL, y, line);
+        film_row_toned(&film, FILM_FINAL, &(struct tone){0}, y, line);
         CHECK(memcmp(line, picture.rgb + (size_t)3 * SIDE * y, sizeof line) == 0);
     }
     free(film.pixels);
