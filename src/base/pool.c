@@ -1,6 +1,7 @@
 /* The pool: threads sleep on a condition until a run begins; then everybody, the caller too, claims items from one
  * atomic counter until none is left. The run is over when the last worker that joined it has left. */
 #include "base/pool.h"
+#include "base/clock.h"
 
 #include "base/fault.h"
 #include "base/mem.h"
@@ -40,17 +41,11 @@ struct pool {
     struct pool_thread *threads; /* workers - 1 of them */
 };
 
-static double seconds_now(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static void work(struct pool *pool, int worker) {
     double polled = 0;
     for (;;) {
         if (worker == 0 && pool->poll) {
-            double now = seconds_now();
+            double now = clock_seconds(CLOCK_MONOTONIC);
             if (now - polled >= 0.005) {
                 pool->poll(pool->poll_context);
                 polled = now;

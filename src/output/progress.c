@@ -2,6 +2,7 @@
  * bar is erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "output/progress.h"
+#include "base/clock.h"
 
 #include "base/terminal_text.h"
 #include "session/text.h"
@@ -19,15 +20,11 @@ enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 static const double usual_writing = 5e-8;
 
 double progress_clock(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return clock_seconds(CLOCK_MONOTONIC);
 }
 
 double progress_processor_clock(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+    return clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads) {

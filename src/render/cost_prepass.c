@@ -1,20 +1,14 @@
 /* The cost pre-pass, if a time estimate is requested: SIDE x SIDE rays through each tile before the first
  * one, about 1 % of the work, and from then on the time estimate (render/time_estimate.h) a hundred times a second,
  * reported by the next free worker. Processor time, so that what else the machine does counts for nothing. */
+#include "base/clock.h"
 #include "render/integrator.h"
 
 #include <string.h>
-#include <time.h>
 
 enum { SIDE = 4, RAYS = SIDE * SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
 /* Nanoseconds between two forecasts. */
 static const uint64_t pause = 10000000;
-
-static uint64_t nanoseconds_of(clockid_t clock) {
-    struct timespec now;
-    (void)clock_gettime(clock, &now);
-    return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
-}
 
 /* Between how many neighbours on the lattice the picture changes as much as makes pixels be sampled again. */
 static uint32_t count_edges(const struct renderer *renderer, const struct vec3 *colours) {
@@ -36,7 +30,7 @@ static void probe_tile(void *context, uint32_t tile, int index) {
     uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
     if (state == FILM_TILE_DONE || state == FILM_TILE_ELSEWHERE)
         return;
-    uint64_t begun = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    uint64_t begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     for (uint32_t i = 0; i < RAYS; i++) {
         struct pixel_sample place =
             renderer_first_sample(renderer, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
@@ -45,7 +39,7 @@ static void probe_tile(void *context, uint32_t tile, int index) {
             return;
         colours[i] = renderer_sample(renderer, worker, &place);
     }
-    uint64_t took = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID) - begun;
+    uint64_t took = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun;
     time_estimate_probe(&renderer->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
                         (double)count_edges(renderer, colours) / PAIRS);
 }
@@ -70,40 +64,40 @@ bool renderer_cost_prepass(struct renderer *renderer) {
     if (!progress_estimate)
         return true;
     /* Others of a farm have begun already. */
-    uint64_t begun = nanoseconds_of(CLOCK_MONOTONIC);
+    uint64_t begun = clock_nanoseconds(CLOCK_MONOTONIC);
     if (!pool_run(renderer->pool, film_tile_count(film), probe_tile, renderer))
         return false;
     forget_counts(renderer);
     time_estimate_begin_tiles(&renderer->time_estimate);
     renderer->estimated = true;
-    atomic_store(&progress_estimate->begun, renderer->job->handout ? begun : nanoseconds_of(CLOCK_MONOTONIC));
+    atomic_store(&progress_estimate->begun, renderer->job->handout ? begun : clock_nanoseconds(CLOCK_MONOTONIC));
     progress_estimate_report(progress_estimate, 0, 1, 0);
-    renderer->worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    renderer->worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID);
     return true;
 }
 
 void renderer_report_estimate(struct renderer *renderer) {
-    uint64_t now = nanoseconds_of(CLOCK_MONOTONIC),
+    uint64_t now = clock_nanoseconds(CLOCK_MONOTONIC),
              reported = atomic_load_explicit(&renderer->reported, memory_order_relaxed);
     if (now - reported < pause || !atomic_compare_exchange_strong(&renderer->reported, &reported, now))
         return;
     struct progress_estimate *progress_estimate = renderer->job->progress_estimate;
     struct time_estimate_work work =
         time_estimate_work(&renderer->time_estimate, renderer->job->handout ? renderer->job->film : NULL);
-    uint64_t worked = nanoseconds_of(CLOCK_PROCESS_CPUTIME_ID) - renderer->worked + 1;
+    uint64_t worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID) - renderer->worked + 1;
     double passed = (double)(now - atomic_load(&progress_estimate->begun)) * pool_workers(renderer->pool);
     atomic_store_explicit(&progress_estimate->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);
     progress_estimate_report(progress_estimate, work.done, work.left, now);
 }
 
 void renderer_report_end(struct renderer *renderer) {
-    progress_estimate_report(renderer->job->progress_estimate, 1, 0, nanoseconds_of(CLOCK_MONOTONIC));
+    progress_estimate_report(renderer->job->progress_estimate, 1, 0, clock_nanoseconds(CLOCK_MONOTONIC));
 }
 
 void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, double share) {
     if (!renderer->estimated)
         return;
-    worker->tile_begun = worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    worker->tile_begun = worker->first_ended = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     time_estimate_begin(&renderer->time_estimate, worker->index, tile, share);
 }
 
@@ -111,7 +105,7 @@ void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int
     if (!renderer->estimated)
         return;
     if (pass == 0 && part >= 1)
-        worker->first_ended = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+        worker->first_ended = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     time_estimate_part(&renderer->time_estimate, worker->index, pass, part);
     renderer_report_estimate(renderer);
 }
@@ -119,7 +113,7 @@ void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker) {
     if (!renderer->estimated)
         return;
-    uint64_t now = nanoseconds_of(CLOCK_THREAD_CPUTIME_ID);
+    uint64_t now = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     time_estimate_done(&renderer->time_estimate, worker->index, (double)(now - worker->tile_begun),
                        (double)(worker->first_ended - worker->tile_begun));
     renderer_report_estimate(renderer);

@@ -7,14 +7,13 @@
  * A photon is a function of its number, and its place in the array is that number: threads cannot change the map. It
  * lands at most once, so memory is known before. */
 #include "render/photon_trace.h"
+#include "base/clock.h"
 
 #include "base/mem.h"
 #include "base/random.h"
 #include "material/material_eval.h"
 #include "material/medium.h"
 #include "render/photon_target.h"
-
-#include <time.h>
 
 enum { BATCH = 1024 };
 
@@ -194,12 +193,6 @@ static bool trace_photons(struct photon_job *s, struct photon_statistics *statis
     return whole || error_set(error, ERROR_CANCELLED, "stopped while sending photons");
 }
 
-static double seconds_now(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static bool find_targets(struct photon_job *s, struct photon_targets *targets, struct arena *arena,
                          struct error *error) {
     struct world_scratch scratch;
@@ -216,7 +209,7 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
                   struct photon_statistics *statistics, struct error *error) {
     struct arena arena = {0};
     struct photon_targets targets = {0};
-    double begin = seconds_now();
+    double begin = clock_seconds(CLOCK_MONOTONIC);
     const struct settings *settings = &job->settings;
     struct photon_job s = {.world = job->world,
                            .fog = job->fog,
@@ -233,13 +226,13 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
             ok = error_no_memory(error, "the photons of the caustics");
         else
             ok = trace_photons(&s, statistics, error);
-        double sent = seconds_now();
+        double sent = clock_seconds(CLOCK_MONOTONIC);
         ok = ok && photon_map_build(map, job->world, s.photons, s.count, settings->caustics.radius, pool, error);
-        statistics->map_seconds += seconds_now() - sent;
+        statistics->map_seconds += clock_seconds(CLOCK_MONOTONIC) - sent;
     }
     statistics->sent += s.count;
     statistics->landed += map->count;
-    statistics->seconds += seconds_now() - begin;
+    statistics->seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
     mem_free(s.photons);
     mem_free(s.scratches);
     arena_destroy(&arena);

@@ -1,5 +1,6 @@
 /* Tiles, handed out to the workers; within one works the integrator. A tile is self-contained and final when it is
  * done. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
+#include "base/clock.h"
 #include "render/integrator.h"
 
 #include "base/mem.h"
@@ -11,12 +12,6 @@
 #include <stdatomic.h>
 #include <string.h>
 #include <time.h>
-
-static double seconds_now(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* What a tile costs, from few rays: surfaces met and rays sent on, which no way of searching and no instruction set
  * changes. */
@@ -71,7 +66,7 @@ static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t
         atomic_store(&renderer->failed, true);
         pool_cancel(renderer->pool);
     }
-    worker->tile_ended = seconds_now();
+    worker->tile_ended = clock_seconds(CLOCK_MONOTONIC);
     if (whole)
         renderer_tile_ends(renderer, worker);
     return whole;
@@ -156,14 +151,14 @@ static void handout_item(void *context, uint32_t item, int index) {
 
 static bool render_tiles(struct renderer *renderer, struct render_statistics *statistics) {
     int workers = pool_workers(renderer->pool);
-    double begun = seconds_now();
+    double begun = clock_seconds(CLOCK_MONOTONIC);
     for (int i = 0; i < workers; i++)
         renderer->workers[i].tile_ended = begun;
     uint32_t tail = film_tile_count(renderer->job->film) - renderer->whole_tiles;
     bool whole = renderer->job->handout
                      ? pool_run(renderer->pool, (uint32_t)workers, handout_item, renderer)
                      : pool_run(renderer->pool, renderer->whole_tiles + QUARTERS * tail, tile_item, renderer);
-    double ended = seconds_now();
+    double ended = clock_seconds(CLOCK_MONOTONIC);
     for (uint32_t i = 0; i < tail && !whole; i++) { /* those of which quarters are missing */
         uint8_t taken = FILM_TILE_TAKEN;
         (void)atomic_compare_exchange_strong(&renderer->job->film->tiles[renderer->order[renderer->whole_tiles + i]],
@@ -375,7 +370,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
                 struct error *error) {
     struct renderer renderer = {.job = job, .pool = pool};
     int workers = pool_workers(pool);
-    double begin = seconds_now();
+    double begin = clock_seconds(CLOCK_MONOTONIC);
     bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
               make_tiles(&renderer, statistics, error);
     if (renderer.integrator)
@@ -385,6 +380,6 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     for (int i = 0; renderer.workers && i < workers; i++)
         statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
     end_rendering(&renderer, workers);
-    statistics->render_seconds += seconds_now() - begin;
+    statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
     return ok;
 }

@@ -6,6 +6,7 @@
  *
  * A used-up limit is a fatal error of the context, which no script can catch. Once there is one the hook raises it
  * again at every step: handlers of to-be-closed variables get no further. */
+#include "base/clock.h"
 #include "script/context.h"
 
 #include "base/mem.h"
@@ -13,19 +14,12 @@
 
 #include <lauxlib.h>
 #include <stdio.h>
-#include <time.h>
 
 enum {
     HOOK_STEPS = 10000, /* some tenths of a millisecond */
     STANDARD_TIME = 60,
 };
 static const uint64_t standard_memory = 4 * GIBIBYTE, standard_output = 64 * MEBIBYTE;
-
-static double processor_time(void) {
-    struct timespec now;
-    (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 double script_time_limit(const struct script_options *options) {
     return options->time_limit > 0 || options->no_sandbox ? options->time_limit : STANDARD_TIME;
@@ -52,7 +46,7 @@ void limits_begin(struct script_context *context) {
         .account = {.limit = memory_limit(options), .option = "--script-memory", .words = limits->memory_words},
         .output_limit = limit_of(options->output_limit, standard_output, options->no_sandbox),
         .time_limit = script_time_limit(options),
-        .time_begun = processor_time(),
+        .time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
     };
     char size[SIZE_WORDS];
     (void)snprintf(limits->memory_words, sizeof limits->memory_words,
@@ -118,7 +112,7 @@ void limits_check(lua_State *L) {
         limits_end_for_memory(L);
     if (limits->output_limit > 0 && limits->output > limits->output_limit)
         limits_output(L, 0);
-    if (limits->time_limit > 0 && processor_time() - limits->time_begun > limits->time_limit) {
+    if (limits->time_limit > 0 && clock_seconds(CLOCK_THREAD_CPUTIME_ID) - limits->time_begun > limits->time_limit) {
         char what[128];
         snprintf(what, sizeof what, "the script used up its %g s of processor time (--script-time allows more)",
                  limits->time_limit);
@@ -154,9 +148,9 @@ void limits_output(lua_State *L, size_t size) {
 }
 
 void limits_pause(struct script_context *context) {
-    context->limits.time_begun -= processor_time();
+    context->limits.time_begun -= clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 void limits_resume(struct script_context *context) {
-    context->limits.time_begun += processor_time();
+    context->limits.time_begun += clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
