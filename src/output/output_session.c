@@ -223,7 +223,7 @@ static void start_picture(struct output_session *output) {
     atomic_store(&output->control->tiles, 0);
     atomic_store(&output->control->tiles_done, 0);
     progress_estimate_reset(&output->control->progress_estimate,
-                            progress_wants_outlook(&output->progress) && !request->in_window && !helps);
+                            progress_wants_estimate(&output->progress) && !request->in_window && !helps);
     (void)wait_for_text(output);
     progress_begin(&output->progress, picture->name, request->width, request->height);
     if (!request->in_window)

@@ -178,7 +178,7 @@ void progress_note_packing_time(struct progress *progress, double seconds, uint3
         progress->writing = seconds / pixels;
 }
 
-bool progress_wants_outlook(const struct progress *progress) {
+bool progress_wants_estimate(const struct progress *progress) {
     return progress->mode != PROGRESS_NONE;
 }
 

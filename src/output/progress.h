@@ -41,7 +41,7 @@ bool progress_wants_packing_time(const struct progress *progress);
 /* Processor seconds for so many pixels; negative: it could not be measured. */
 void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels);
 /* Whether an estimate is shown. */
-bool progress_wants_outlook(const struct progress *progress);
+bool progress_wants_estimate(const struct progress *progress);
 /* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);

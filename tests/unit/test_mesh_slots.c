@@ -193,7 +193,7 @@ TEST(script_reads_models_of_every_format_with_its_options) {
 }
 
 /* The red of the slots of the root, then of the slot of each face. */
-static void tell_slots(struct listener *listener, const struct render_request *request) {
+static void print_slots(struct listener *listener, const struct render_request *request) {
     const struct node *node = request->root;
     char *out = listener->said;
     size_t size = sizeof listener->said;
@@ -237,7 +237,7 @@ TEST(script_gives_parts_of_files_and_faces_of_tables_their_materials) {
                           "usemtl blue paint\nf 3 2 1\n");
     (void)snprintf(path, sizeof path, "%s/groups.obj", test_folder());
     test_write_text(path, "v 0 0 0\nv 1 0 0\nv 0 1 0\ng one\nf 1 2 3\ng two\nf 3 2 1\n");
-    struct listener listener = {.seen = tell_slots};
+    struct listener listener = {.seen = print_slots};
     struct error error = {0};
     CHECK(listen_to_text(&listener, text, NULL, &error));
     CHECK_TEXT(error.text, "");

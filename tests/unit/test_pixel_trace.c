@@ -94,7 +94,7 @@ static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, st
 }
 
 /* Tells every seventh pixel of the picture and holds it against the film. */
-static struct check tell_picture(struct stage *s, uint32_t width, uint32_t height) {
+static struct check print_picture(struct stage *s, uint32_t width, uint32_t height) {
     enum { MAX = 2000 };
     static uint32_t pixels[MAX][2];
     uint32_t count = 0;
@@ -159,7 +159,7 @@ TEST(the_parts_of_every_told_ray_are_what_it_brings) {
     struct stage s;
     stage_begin(&s, 2);
     fill_stage(&s);
-    struct tally t = tell_picture(&s, 60, 44).tally;
+    struct tally t = print_picture(&s, 60, 44).tally;
     CHECK(t.rays > 2000 && t.kinds[RAY_REFLECTED] > 100 && t.kinds[RAY_REFRACTED] > 100);
     CHECK(t.excluded > 0 && t.limits > 0 && t.blocked > 0 && t.reached > 0 && t.absorbed > 0);
     stage_end(&s);
@@ -173,18 +173,18 @@ TEST(the_story_of_fog_lamps_and_blurred_lenses_is_the_picture) {
     s.fog = &fog;
     s.lights[2].emits = true;
     s.settings.cutoff = 0.01;
-    CHECK(tell_picture(&s, 40, 30).tally.fogged > 100);
+    CHECK(print_picture(&s, 40, 30).tally.fogged > 100);
     s.settings.lens.aperture = 0.2;
     s.settings.samples = 2;
     s.settings.tone = (struct tone){.exposure = 1, .curve = TONE_FILMIC, .srgb = true};
-    CHECK(tell_picture(&s, 30, 22).tally.fogged > 100);
+    CHECK(print_picture(&s, 30, 22).tally.fogged > 100);
     s.settings.lens.aperture = 0;
     s.settings.lens.stereo = STEREO_SIDE;
     s.settings.lens.eye_distance = 0.3;
     s.settings.lens.screen = 10;
     s.settings.pixel_corner = true;
     s.settings.caustics = (struct caustics){2000, 0};
-    CHECK(tell_picture(&s, 30, 22).tally.fogged > 100);
+    CHECK(print_picture(&s, 30, 22).tally.fogged > 100);
     stage_end(&s);
 }
 
@@ -290,7 +290,7 @@ static int compare_lines(const char *scene, const char *lines, const struct test
 }
 
 /* The first picture of a scene, and the stories of `count` random pixels of it. */
-static void tell_scene(const char *path, uint32_t width, uint32_t height, int count, const char *options) {
+static void print_scene(const char *path, uint32_t width, uint32_t height, int count, const char *options) {
     char root[2048], file[4096];
     struct test_random random = {7};
     size_t room = 8192 + (size_t)count * 24, used = 0;
@@ -363,7 +363,7 @@ static bool is_heavy(const char *name) {
 }
 
 /* The scenes of data/; some take seconds for the smallest picture. */
-static void tell_demos(uint32_t width, uint32_t height, int count, const char *options, bool heavy) {
+static void print_demos(uint32_t width, uint32_t height, int count, const char *options, bool heavy) {
     char *names[100];
     int found = 0;
     DIR *folder = opendir("data");
@@ -381,22 +381,22 @@ static void tell_demos(uint32_t width, uint32_t height, int count, const char *o
         char path[300];
         (void)snprintf(path, sizeof path, "data/%s", names[i]);
         if (heavy || !is_heavy(names[i]))
-            tell_scene(path, width, height, count, options);
+            print_scene(path, width, height, count, options);
         free(names[i]);
     }
 }
 
 TEST(told_pixels_have_the_bytes_of_the_picture_on_the_demos) {
-    tell_demos(32, 24, 8, "-D quick=true", false);
+    print_demos(32, 24, 8, "-D quick=true", false);
 }
 
 TEST_LONG(a_thousand_told_pixels_have_the_bytes_of_the_picture_on_every_demo) {
-    tell_demos(160, 120, 1000, "", true);
+    print_demos(160, 120, 1000, "", true);
 }
 
 TEST(told_pixels_have_the_bytes_of_pictures_with_tone_depth_of_field_and_caustics) {
-    tell_scene("data/06demo.lua", 40, 30, 20, "--srgb --tone filmic --exposure 1 -full -ss 2");
-    tell_scene("data/06demo.lua", 40, 30, 20, "--caustics 3000 --pixel-sample corner --specular blinn -use-tir");
+    print_scene("data/06demo.lua", 40, 30, 20, "--srgb --tone filmic --exposure 1 -full -ss 2");
+    print_scene("data/06demo.lua", 40, 30, 20, "--caustics 3000 --pixel-sample corner --specular blinn -use-tir");
 }
 
 static const char scene[] =

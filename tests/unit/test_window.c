@@ -163,7 +163,7 @@ static enum viewer_action step(struct table *t) {
     return viewer_step(&t->viewer, t->now);
 }
 
-static void tell_news(struct table *t, const struct preview_reply *reply) {
+static void print_news(struct table *t, const struct preview_reply *reply) {
     viewer_take_reply(&t->viewer, reply, t->now);
 }
 
@@ -174,7 +174,7 @@ static void build(struct table *t) {
     reply.lights[0] = (struct light_info){
         .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
     memcpy(reply.root_name, "root", 5);
-    tell_news(t, &reply);
+    print_news(t, &reply);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
     CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PASS);
     CHECK(t->viewer.pass.view.divide == 16 && t->viewer.pass.view.plain && t->viewer.pass.view.own);
@@ -211,7 +211,7 @@ static void finish_pass(struct table *t, double seconds, bool stopped) {
     t->now += seconds;
     for (uint32_t tile = 0; !stopped && tile < film_tile_count(&t->viewer.pass.film); tile++)
         atomic_store(&t->viewer.pass.film.tiles[tile], FILM_TILE_DONE);
-    tell_news(t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
+    print_news(t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
 }
 
 /* To the script's picture, whole. */
@@ -594,7 +594,7 @@ static void pick_ball(struct table *t) {
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
     CHECK_EQ_INT(t->viewer.command.kind, COMMAND_PICK);
     CHECK(t->viewer.command.x == 50.5 && t->viewer.command.y == 35.5 && t->viewer.command.up == 0);
-    tell_news(t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    print_news(t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
     CHECK_EQ_INT(step(t), VIEWER_NOTHING); /* the finished picture stays */
     CHECK(t->viewer.edit.selection.kind == SELECTED_NODE && t->viewer.pass.result == RESULT_COMPLETE);
 }
@@ -616,7 +616,7 @@ static void take_change(struct table *t) {
     struct preview_reply reply = {.kind = REPLY_CHANGED, .light_count = 1};
     reply.lights[0] = (struct light_info){
         .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
-    tell_news(t, &reply);
+    print_news(t, &reply);
 }
 
 /* The passes after a change, to the finest. */
@@ -660,7 +660,7 @@ TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
     finish_pass(&t, 0.001, true);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK_EQ_INT(t.viewer.command.kind, COMMAND_PICK);
-    tell_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PICKED, .picked = a_ball});
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_PASS && !t.viewer.command.view.plain);
     CHECK_EQ_INT(atomic_load(&t.viewer.pass.film.tiles[1]), FILM_TILE_DONE);
@@ -736,7 +736,7 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     CHECK(t.viewer.command.kind == COMMAND_CHANGE && t.viewer.command.change.kind == CHANGE_ADD &&
           t.viewer.command.more);
     CHECK(t.viewer.command.change.added == ADDED_SPHERE && t.viewer.command.change.serial == 0);
-    tell_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
+    print_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t); /* and its place */
     CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.change.serial == UINT32_MAX &&
           !t.viewer.command.more);
@@ -775,7 +775,7 @@ TEST(window_changes_parts_of_a_material_and_copies_them_to_one_of_its_own) {
     viewer_make_own_material(&t.viewer);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(change->kind == CHANGE_OWN && change->serial == 2 && change->source == 1 && t.viewer.command.more);
-    tell_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
+    print_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t);
     CHECK(change->kind == CHANGE_MATERIAL && change->serial == OWN_SERIAL && change->numbers[0] == 0.5);
     CHECK(t.viewer.edit.selection.picked.material_serial == OWN_SERIAL && !t.viewer.edit.selection.picked.can_own);
@@ -799,7 +799,7 @@ TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up < -1000);
     reply.picked.up = -1;
     reply.picked.levels = 2;
-    tell_news(&t, &reply);
+    print_news(&t, &reply);
     key(&t.fake, WINDOW_PAGE_DOWN, true); /* there is nothing below */
     key(&t.fake, WINDOW_PAGE_UP, true);
     do
@@ -809,7 +809,7 @@ TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     reply.picked.up = 0;
     reply.picked.levels = 1;
     reply.picked.below = 1;
-    tell_news(&t, &reply);
+    print_news(&t, &reply);
     key(&t.fake, WINDOW_PAGE_DOWN, true);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up == -1);
@@ -823,7 +823,7 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     struct preview_reply reply = {.kind = REPLY_BUILT, .light_count = 70, .world_from_root = affine_identity()};
     for (int i = 0; i < LIGHTS_PER_MESSAGE; i++)
         reply.lights[i] = (struct light_info){.kind = LIGHT_DIRECTIONAL, .turns = true, .direction = {0, 0, -1}};
-    tell_news(&t, &reply);
+    print_news(&t, &reply);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     for (uint32_t first = LIGHTS_PER_MESSAGE; first < 70; first += LIGHTS_PER_MESSAGE) {
         finish_pass(&t, 0.02, false);
@@ -831,7 +831,7 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
         CHECK(t.viewer.command.kind == COMMAND_LIGHTS && t.viewer.command.first_light == first);
         reply.kind = REPLY_LIGHTS;
         reply.first_light = first;
-        tell_news(&t, &reply);
+        print_news(&t, &reply);
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
     while (t.viewer.command.kind == COMMAND_PASS && t.viewer.pass.view.plain) {
@@ -878,7 +878,7 @@ TEST(window_shows_the_trace_of_the_pixel_under_the_mouse) {
     CHECK(t.viewer.command.x == 12 && t.viewer.command.y == 60 && t.viewer.command.view.own);
     viewer_add_pixel_trace(&t.viewer, "one line\n");
     viewer_add_pixel_trace(&t.viewer, "another\n");
-    tell_news(&t, &(struct preview_reply){.kind = REPLY_PIXEL_TRACE});
+    print_news(&t, &(struct preview_reply){.kind = REPLY_PIXEL_TRACE});
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_TEXT(t.viewer.trace.text, "one line\nanother\n");
     key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: from the beginning */
@@ -931,7 +931,7 @@ TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     CHECK(viewer_begin(&t.viewer, &t.driver, &(struct viewer_picture){&t.request, t.block, "x.png"}, t.now, &error));
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     struct preview_reply reply = {.kind = REPLY_BUILT};
-    tell_news(&t, &reply);
+    print_news(&t, &reply);
     take_change(&t);
     CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.present);
     refine(&t);

@@ -25,7 +25,7 @@ struct deed {
 struct person {
     const struct deed *deeds;
     int at, waited;
-    bool open, size_told;
+    bool open, size_sent;
     char title[1024];
     uint8_t *over; /* what lay over the picture last: of the whole window */
 };
@@ -50,8 +50,8 @@ static bool says(const char *title, const char *words) {
 static bool person_poll(void *context, struct window_event *event) {
     struct person *person = context;
     const struct deed *deed = &person->deeds[person->at];
-    if (!person->size_told) {
-        person->size_told = true;
+    if (!person->size_sent) {
+        person->size_sent = true;
         *event = (struct window_event){.kind = WINDOW_SIZE, .x = WIDE, .y = HIGH, .density = 1};
         return true;
     }

@@ -88,7 +88,7 @@ static void says(const char *told, const char *const *words, size_t count) {
 #define SAYS(told, words) says(told, words, sizeof(words) / sizeof((words)[0]))
 
 /* The stories of two rows of pixels, and that each ends with the bytes of the picture. Free it. */
-static char *tell(const char *options) {
+static char *print_trace(const char *options) {
     enum { WIDTH = 64 };
     char line[4096], path[600];
     (void)snprintf(line, sizeof line, "-q %s scene.lua", options);
@@ -156,7 +156,8 @@ TEST(a_told_scene_with_one_of_everything_has_words_for_all_of_it) {
                                          "exposure 1, tone reinhard, sRGB: (",
                                          "samples, as all pixels have"};
     write_files();
-    char *told = tell("-ss 1 --cutoff 0 --caustics 3000 --tone reinhard --exposure 1 --srgb -use-tir -reflect-limit 1");
+    char *told =
+        print_trace("-ss 1 --cutoff 0 --caustics 3000 --tone reinhard --exposure 1 --srgb -use-tir -reflect-limit 1");
     SAYS(told, always);
     free(told);
 }
@@ -165,7 +166,7 @@ TEST(a_told_draft_says_what_was_not_worth_following) {
     static const char *const words[] = {"it could not change the pixel any more (--cutoff)", ", blinn (",
                                         "what it meets at distance ", "one sample: no neighbour"};
     write_files();
-    char *told = tell("--quick --specular blinn --cutoff 0.2");
+    char *told = print_trace("--quick --specular blinn --cutoff 0.2");
     SAYS(told, words);
     free(told);
 }
