@@ -48,39 +48,25 @@ static struct ray shadow_ray(const struct path_vertex *vertex, const struct worl
     return shadow;
 }
 
-/* The radiance of what a ray meets where only that decides. */
-static struct vec3 radiance_met(const struct path_tracer *tracer, struct integrator_state *state,
-                                const struct path_vertex *vertex, const struct world_light_sample *sample,
-                                const struct ray *shadow, double *distance) {
-    const struct world_lights *lights = &tracer->lights;
-    const struct world *world = state->job->world;
-    struct ray ray = *shadow;
-    struct hit hit;
-    struct bsdf bsdf;
-    ray.t_max = INFINITY;
-    if (!world_nearest(world, &ray, state->scratch, &hit) || !world_lights_shows(lights, sample, &hit))
-        return vec3_all(0);
-    *distance = hit.t * vec3_length(ray.direction);
-    material_eval(&world->materials[hit.material], &hit, ray.media, NULL, &bsdf);
-    struct vec3 radiance = world_lights_radiance(lights, vertex->receiver.primitive, &hit, bsdf.emission);
-    return bsdf.opacity < 1 ? vec3_scale(radiance, bsdf.opacity) : radiance;
-}
-
-/* What arrives of a sample: its radiance, dimmed by the medium on the way; black where something is in the way. */
+/* What arrives of a sample, dimmed by the medium on the way; black where something is in the way. */
 static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_state *state,
                             const struct path_vertex *vertex, const struct world_light_sample *sample) {
+    const struct world_lights *lights = &tracer->lights;
     struct medium_stack crossed;
     struct ray shadow = shadow_ray(vertex, sample, &crossed);
-    double distance = sample->target.distant ? INFINITY : vec3_length(shadow.direction);
+    double end = shadow.t_max;
     struct vec3 radiance = sample->radiance;
     state->scratch->light = sample->light % WORLD_SHADOW_CACHE;
     state->shadow_rays++;
-    if (sample->decided)
-        radiance = radiance_met(tracer, state, vertex, sample, &shadow, &distance);
-    else if (world_any(state->job->world, &shadow, state->scratch))
-        return vec3_all(0);
+    if (sample->decided) {
+        shadow.t_max = INFINITY;
+        radiance = world_lights_seen_by(lights, &vertex->receiver, sample, &shadow, state->scratch, &end);
+    } else {
+        radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow, state->scratch));
+    }
     struct medium_effect effect;
-    if (shadow.media->count == 0 || !medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &shadow, distance, &effect))
+    if (is_black(radiance) || shadow.media->count == 0 ||
+        !medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &shadow, end * vec3_length(shadow.direction), &effect))
         return radiance;
     return vec3_mul(radiance, effect.transmittance);
 }
