@@ -12,11 +12,16 @@ local function wall(material, corner, along, up)
     room:add_child(gr.rectangle { material = material, corner = corner, along = along, up = up })
 end
 wall(white, { 0, 0, 0 }, { 5.528, 0, 0 }, { 0, 0, -5.592 })
-wall(white, { 0, 5.488, 0 }, { 5.528, 0, 0 }, { 0, 0, -5.592 })
 wall(white, { 0, 0, -5.592 }, { 5.528, 0, 0 }, { 0, 5.488, 0 })
 wall(red, { 0, 0, 0 }, { 0, 0, -5.592 }, { 0, 5.488, 0 })
 wall(green, { 5.528, 0, 0 }, { 0, 0, -5.592 }, { 0, 5.488, 0 })
-wall(lamp, { 2.13, 5.487, -2.27 }, { 1.3, 0, 0 }, { 0, 0, -1.05 })
+
+-- The lamp fills a hole of the ceiling.
+wall(white, { 0, 5.488, 0 }, { 5.528, 0, 0 }, { 0, 0, -2.27 })
+wall(white, { 0, 5.488, -3.32 }, { 5.528, 0, 0 }, { 0, 0, -2.272 })
+wall(white, { 0, 5.488, -2.27 }, { 2.13, 0, 0 }, { 0, 0, -1.05 })
+wall(white, { 3.43, 5.488, -2.27 }, { 2.098, 0, 0 }, { 0, 0, -1.05 })
+wall(lamp, { 2.13, 5.488, -2.27 }, { 1.3, 0, 0 }, { 0, 0, -1.05 })
 
 local function block(width, height, x, z, degrees)
     local box = gr.box { material = white, min = { -width / 2, 0, -width / 2 }, max = { width / 2, height, width / 2 } }
