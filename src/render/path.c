@@ -103,7 +103,7 @@ void path_tracer_warn(const struct render_job *job, world_warning *warn, void *c
     const struct world *world = job->world;
     char text[256];
     if (vec3_max_abs(job->ambient) > 0)
-        warn(context, "notice: --integrator path ignores ambient: light goes from wall to wall instead");
+        warn(context, "--integrator path ignores ambient: light goes from wall to wall instead");
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct material *material = &world->materials[i];
         double albedo = material_albedo_bound(material);
