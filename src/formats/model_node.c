@@ -118,8 +118,8 @@ static bool add_bump_map(struct scene *scene, const struct model_texture *map, e
     if (!find_map(scene, map, &image, &there, error) || !there)
         return !there;
     struct material *m = scene_material(scene, kind, *top, error);
-    bump.texture = texture_keep(&scene->arena, texture_image(&image, NULL), error);
-    if (!m || !bump.texture || !material_add_bump(m, &bump, &scene->arena, error))
+    bump.texture.authored = texture_keep(&scene->arena, texture_image(&image, NULL), error);
+    if (!m || !bump.texture.authored || !material_add_bump(m, &bump, &scene->arena, error))
         return false;
     *top = m;
     return true;

@@ -75,7 +75,8 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
 
 /* The same formula with the tangents of the object's space. The differences are as wide as the footprint, at least
  * 2^-17 of the coordinates (the cube root of the rounding error, where central differences are best). */
-static void turn_by_texture(const struct bump *bump, const struct hit *hit, struct vec3 *normal) {
+static void turn_by_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
+                            struct vec3 *normal) {
     struct vec3 n = vec3_cross(hit->along_a, hit->along_b), a, b;
     double area = vec3_length(n);
     double step = fmax(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
@@ -84,9 +85,14 @@ static void turn_by_texture(const struct bump *bump, const struct hit *hit, stru
     frame_tangents(vec3_normalize(hit->pattern_normal), &a, &b);
     const struct hit at[4] = {moved(hit, a, b, step, 0), moved(hit, a, b, -step, 0), moved(hit, a, b, 0, step),
                               moved(hit, a, b, 0, -step)};
-    double scale = bump->height / (2 * step);
-    double f_a = scale * (texture_scalar(bump->texture, &at[0]) - texture_scalar(bump->texture, &at[1]));
-    double f_b = scale * (texture_scalar(bump->texture, &at[2]) - texture_scalar(bump->texture, &at[3]));
+    double height[4], scale = bump->height / (2 * step);
+    for (int i = 0; i < 4; i++) {
+        struct texture_reader reader;
+        texture_reader_init(&reader, &at[i], textures, NULL);
+        height[i] = texture_read_scalar(texture_at(textures, bump->texture), &reader);
+    }
+    double f_a = scale * (height[0] - height[1]);
+    double f_b = scale * (height[2] - height[3]);
     if (f_a == 0 && f_b == 0)
         return;
     struct vec3 up = hit->raise;
@@ -127,20 +133,30 @@ static void turn_to_colours(const struct bump *bump, const struct texture_image 
 }
 
 /* The same with the coordinates that the shape supplies; no slope is 0.5, since no file has rounded it. */
-static void turn_to_texture(const struct bump *bump, const struct hit *hit, struct vec3 *normal) {
-    struct vec3 colour = texture_colour(bump->texture, hit);
+static void turn_to_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
+                            struct vec3 *normal) {
+    struct texture_reader reader;
+    texture_reader_init(&reader, hit, textures, NULL);
+    struct vec3 colour = texture_read_colour(texture_at(textures, bump->texture), &reader);
     double x = 2 * bump->height * (colour.x - 0.5), y = 2 * bump->height * (colour.y - 0.5);
     struct vec3 down = bump->from_above ? hit->dpdv : vec3_negate(hit->dpdv);
     turn_along(x, y, 2 * colour.z - 1, hit->dpdu, down, normal);
 }
 
-void bump_turn_normal(const struct bump *bump, const struct hit *hit, struct vec3 *normal) {
-    if (bump->below)
-        bump_turn_normal(bump->below, hit, normal);
-    const struct texture_image *image = texture_as_image(bump->texture);
+static void turn(const struct bump *bump, const struct material *material, const struct hit *hit, struct vec3 *normal) {
+    const struct bump *below = bump_at(material->bumps, bump->below);
+    if (below)
+        turn(below, material, hit, normal);
+    const struct texture_image *image = texture_as_image(texture_at(material->textures, bump->texture));
     bool by_colours = bump->kind == MATERIAL_NORMAL;
     if (image)
         (by_colours ? turn_to_colours : turn_by_heights)(bump, image, hit, normal);
     else
-        (by_colours ? turn_to_texture : turn_by_texture)(bump, hit, normal);
+        (by_colours ? turn_to_texture : turn_by_texture)(bump, material->textures, hit, normal);
+}
+
+void bump_turn_normal(const struct material *material, const struct hit *hit, struct vec3 *normal) {
+    const struct bump *bump = bump_at(material->bumps, material->bump);
+    if (bump)
+        turn(bump, material, hit, normal);
 }

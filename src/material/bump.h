@@ -4,8 +4,9 @@
 
 #include "material/material.h"
 
-/* Turns *normal, a unit vector, by this and before it by all below; leaves it bit by bit where the texture is flat.
- * Needs hit->raise and the tangents of the mapping (material_has_bump); does nothing where a shape has none. */
-void bump_turn_normal(const struct bump *bump, const struct hit *hit, struct vec3 *normal);
+/* Turns *normal, a unit vector, by the bumps of the material, from the lowest on; leaves it bit by bit where there are
+ * none or their textures are flat. Needs hit->raise and the tangents of the mapping (material_has_bump); does nothing
+ * where a shape has none. */
+void bump_turn_normal(const struct material *material, const struct hit *hit, struct vec3 *normal);
 
 #endif

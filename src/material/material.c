@@ -42,23 +42,25 @@ static void copy_numbers(const struct phong *numbers, struct surface_inputs *out
     out->glossy_samples = numbers->glossy_samples;
 }
 
-static void read_colour(const struct texture *texture, struct texture_reader *reader, struct vec3 *out) {
+static void read_colour(union texture_ref input, struct texture_reader *reader, struct vec3 *out) {
+    const struct texture *texture = texture_at(reader->textures, input);
     if (texture)
         *out = texture_read_colour(texture, reader);
 }
 
-static void read_number(const struct texture *texture, struct texture_reader *reader, double *out) {
+static void read_number(union texture_ref input, struct texture_reader *reader, double *out) {
+    const struct texture *texture = texture_at(reader->textures, input);
     if (texture)
         *out = texture_read_scalar(texture, reader);
 }
 
 void material_inputs_at(const struct material *material, const struct hit *hit, struct surface_inputs *out) {
-    const struct texture *const *inputs = material->inputs;
+    const union texture_ref *inputs = material->inputs;
     struct texture_reader reader;
     copy_numbers(numbers_of(material), out);
     out->normal = hit->normal;
     out->fresnel = material->fresnel;
-    texture_reader_init(&reader, hit, numbers_of(material));
+    texture_reader_init(&reader, hit, material->textures, numbers_of(material));
     read_colour(inputs[INPUT_KD], &reader, &out->kd);
     read_colour(inputs[INPUT_KS], &reader, &out->ks);
     read_number(inputs[INPUT_SHININESS], &reader, &out->shininess);
@@ -67,8 +69,7 @@ void material_inputs_at(const struct material *material, const struct hit *hit, 
     read_number(inputs[INPUT_ROUGHNESS], &reader, &out->roughness);
     read_colour(inputs[INPUT_EMISSION], &reader, &out->emission);
     read_number(inputs[INPUT_OPACITY], &reader, &out->opacity);
-    if (material->bump)
-        bump_turn_normal(material->bump, hit, &out->normal);
+    bump_turn_normal(material, hit, &out->normal);
 }
 
 void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
@@ -86,17 +87,19 @@ void material_inputs_observe(const struct material *material, const struct hit *
 }
 
 bool material_has_bump(const struct material *material) {
-    return material->bump != NULL;
+    return bump_at(material->bumps, material->bump) != NULL;
 }
 
 bool material_has_holes(const struct material *material) {
-    return material->inputs[INPUT_OPACITY] != NULL;
+    return material_texture(material, INPUT_OPACITY) != NULL;
 }
 
 bool material_has_image(const struct material *material) {
-    for (int i = 0; i < INPUT_COUNT; i++)
-        if (material->inputs[i] && material->inputs[i]->has_image)
+    for (int i = 0; i < INPUT_COUNT; i++) {
+        const struct texture *texture = material_texture(material, (enum material_input)i);
+        if (texture && texture->has_image)
             return true;
+    }
     return material_has_bump(material);
 }
 
@@ -114,8 +117,8 @@ struct vec3 material_absorption(const struct material *material) {
 
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
     const struct material *base = material_origin(material);
-    const struct texture *texture = base->inputs[INPUT_EMISSION];
-    return texture ? texture_estimate(texture, &base->phong, which) : base->phong.emission;
+    const struct texture *texture = material_texture(base, INPUT_EMISSION);
+    return texture ? texture_estimate(texture, base->textures, &base->phong, which) : base->phong.emission;
 }
 
 struct vec3 material_emission(const struct material *material) {
@@ -128,7 +131,7 @@ struct vec3 material_emission_bound(const struct material *material) {
 
 /* What is unlit shows its colour as emission, too (material_eval). */
 bool material_emission_varies(const struct material *material) {
-    return material->inputs[INPUT_EMISSION] || numbers_of(material)->unlit;
+    return material_texture(material, INPUT_EMISSION) || numbers_of(material)->unlit;
 }
 
 bool material_has_ior(const struct material *material) {
@@ -138,7 +141,7 @@ bool material_has_ior(const struct material *material) {
 /* What textures make of the highlight's colour is not known here; it may be white. */
 double material_specular(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
-    bool filtered = material->inputs[INPUT_KS] && !material->is_metal;
+    bool filtered = material_texture(material, INPUT_KS) && !material->is_metal;
     double amount = material->fresnel ? 1 : numbers->reflect + numbers->refract;
     double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
     return own > material->metal ? own : material->metal;
@@ -147,8 +150,9 @@ double material_specular(const struct material *material) {
 /* A highlight that is seen head on sends back 2 ks / (e + 1) of uniform light; beside a mirror it is left out. */
 double material_albedo_bound(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
-    const struct texture *texture = material->inputs[INPUT_KD];
-    double diffuse = vec3_max_abs(texture ? texture_estimate(texture, numbers, TEXTURE_LARGEST) : numbers->kd);
+    const struct texture *texture = material_texture(material, INPUT_KD);
+    double diffuse =
+        vec3_max_abs(texture ? texture_estimate(texture, material->textures, numbers, TEXTURE_LARGEST) : numbers->kd);
     double specular = material_specular(material), exponent = numbers->shininess > 0 ? numbers->shininess : 0;
     if (numbers->unlit)
         return 0;

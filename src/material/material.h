@@ -39,6 +39,13 @@ enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 /* The default height: white is this fraction of the size of the image on the surface above black. */
 #define BUMP_HEIGHT 0.02
 
+/* A bump or NULL; in a table, its index or BUMP_NONE. */
+union bump_ref {
+    const struct bump *authored;
+    uint32_t index;
+};
+#define BUMP_NONE UINT32_MAX
+
 /* A texture that turns the normal, over those below it. */
 struct bump {
     enum material_kind kind; /* MATERIAL_BUMP or MATERIAL_NORMAL */
@@ -48,23 +55,33 @@ struct bump {
     bool relative;
     /* Its number is the height, or its colour the normal along the coordinates that the shape supplies; of one image
      * alone, along those of the image. */
-    const struct texture *texture;
+    union texture_ref texture;
     bool from_above; /* the shape's v counts from the top (material_mapping.h) */
-    const struct bump *below;
+    union bump_ref below;
 };
+
+/* The bump that is meant, or NULL. bumps: the table that holds it; NULL: it is authored. */
+static inline const struct bump *bump_at(const struct bump *bumps, union bump_ref ref) {
+    if (!bumps)
+        return ref.authored;
+    return ref.index != BUMP_NONE ? &bumps[ref.index] : NULL;
+}
 
 struct material {
     enum material_kind kind;
-    const struct material *base;               /* what it was derived from; NULL for a base */
-    const struct material *origin;             /* the base at the end of that chain; NULL for itself */
-    int depth;                                 /* 1 for a base */
-    uint32_t serial;                           /* order of creation in a scene, from 1; 0: of no scene */
-    struct material *older;                    /* the one created before it, or NULL */
-    const char *name;                          /* for messages; may be NULL */
-    const struct texture *inputs[INPUT_COUNT]; /* NULL: the number of the origin */
-    const struct bump *bump;                   /* or NULL */
-    double metal;                              /* of MATERIAL_METAL: what it mirrors at most */
-    enum material_input changed;               /* of MATERIAL_IMAGE */
+    const struct material *base;           /* what it was derived from; NULL for a base */
+    const struct material *origin;         /* the base at the end of that chain; NULL for itself */
+    int depth;                             /* 1 for a base */
+    uint32_t serial;                       /* order of creation in a scene, from 1; 0: of no scene */
+    struct material *older;                /* the one created before it, or NULL */
+    const char *name;                      /* for messages; may be NULL */
+    union texture_ref inputs[INPUT_COUNT]; /* none: the number of the origin */
+    union bump_ref bump;                   /* or none */
+    /* The tables that `inputs` and `bump` are indices of, those of a world; NULL: the material is authored. */
+    const struct texture *textures;
+    const struct bump *bumps;
+    double metal;                /* of MATERIAL_METAL: what it mirrors at most */
+    enum material_input changed; /* of MATERIAL_IMAGE */
     bool is_metal, fresnel;
     struct phong phong; /* of a base */
 };
@@ -86,8 +103,12 @@ struct surface_inputs {
 };
 
 /* A copy that refers to no other material: the numbers of the base at the end of its chain are its own. Tables of
- * worlds hold such copies; material_emission and material_emission_bound ask for the authored one. */
+ * worlds hold such copies, with indices in the place of pointers (flatten_textures). */
 struct material material_flat(const struct material *material);
+/* The texture of an input, NULL where it is a number. */
+static inline const struct texture *material_texture(const struct material *material, enum material_input input) {
+    return texture_at(material->textures, material->inputs[input]);
+}
 void material_inputs_at(const struct material *material, const struct hit *hit, struct surface_inputs *out);
 /* The same; `observer` (or NULL) is called for every material of the chain, from the base on, with its inputs. */
 typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);

@@ -18,7 +18,7 @@ void material_derive(struct material *material, enum material_kind kind, const s
 }
 
 const struct texture *material_input(const struct material *material, enum material_input input) {
-    return material->inputs[input] ? material->inputs[input] : texture_parameter(input);
+    return material->inputs[input].authored ? material->inputs[input].authored : texture_parameter(input);
 }
 
 static bool put(struct material *material, enum material_input input, struct texture texture, struct arena *arena,
@@ -26,7 +26,7 @@ static bool put(struct material *material, enum material_input input, struct tex
     const struct texture *kept = texture_keep(arena, texture, error);
     if (!kept)
         return false;
-    material->inputs[input] = kept;
+    material->inputs[input].authored = kept;
     return true;
 }
 
@@ -70,7 +70,7 @@ bool material_add_bump(struct material *material, const struct bump *bump, struc
         return error_no_memory(error, "a bump map");
     *own = *bump;
     own->below = material->bump;
-    material->bump = own;
+    material->bump.authored = own;
     return true;
 }
 

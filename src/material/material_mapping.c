@@ -51,7 +51,8 @@ static const void *remember(struct material_mapping *mapping, const void *of, en
 
 static const struct texture *texture_on(struct material_mapping *mapping, const struct texture *texture,
                                         enum surface_layout layout) {
-    const struct texture *on = known(mapping, texture, layout), **parts[TEXTURE_PARTS];
+    const struct texture *on = known(mapping, texture, layout);
+    union texture_ref *parts[TEXTURE_PARTS];
     if (on || !texture->has_image)
         return on ? on : texture;
     struct texture own = *texture, *kept = NULL;
@@ -61,11 +62,13 @@ static const struct texture *texture_on(struct material_mapping *mapping, const 
         changed = own.image.lookup.mapping != texture->image.lookup.mapping;
     }
     for (int i = texture_parts(&own, parts); i-- > 0;) {
-        const struct texture *part = texture_on(mapping, *parts[i], layout);
+        if (!parts[i]->authored)
+            continue;
+        const struct texture *part = texture_on(mapping, parts[i]->authored, layout);
         if (!part)
             return NULL;
-        changed = changed || part != *parts[i];
-        *parts[i] = part;
+        changed = changed || part != parts[i]->authored;
+        parts[i]->authored = part;
     }
     if (changed && !(kept = arena_alloc(mapping->arena, sizeof *kept)))
         return NULL;
@@ -85,10 +88,10 @@ static const struct bump *bump_has_mapping(struct material_mapping *mapping, con
         return NULL;
     *own = *bump;
     own->from_above = layout != LAYOUT_UV;
-    own->texture = texture_on(mapping, bump->texture, layout);
-    if (bump->below)
-        own->below = bump_has_mapping(mapping, bump->below, layout);
-    bool whole = own->texture && (own->below || !bump->below);
+    own->texture.authored = texture_on(mapping, bump->texture.authored, layout);
+    if (bump->below.authored)
+        own->below.authored = bump_has_mapping(mapping, bump->below.authored, layout);
+    bool whole = own->texture.authored && (own->below.authored || !bump->below.authored);
     return remember(mapping, bump, layout, whole ? own : NULL);
 }
 
@@ -106,15 +109,16 @@ static const struct material *material_on(struct material_mapping *mapping, cons
             return NULL;
     }
     for (int i = 0; i < INPUT_COUNT; i++) {
-        own.inputs[i] = material->inputs[i] ? texture_on(mapping, material->inputs[i], layout) : NULL;
-        changed = changed || own.inputs[i] != material->inputs[i];
-        if (material->inputs[i] && !own.inputs[i])
+        const struct texture *texture = material->inputs[i].authored;
+        own.inputs[i].authored = texture ? texture_on(mapping, texture, layout) : NULL;
+        changed = changed || own.inputs[i].authored != texture;
+        if (texture && !own.inputs[i].authored)
             return NULL;
     }
-    if (material->bump) {
-        own.bump = bump_has_mapping(mapping, material->bump, layout);
+    if (material->bump.authored) {
+        own.bump.authored = bump_has_mapping(mapping, material->bump.authored, layout);
         changed = true;
-        if (!own.bump)
+        if (!own.bump.authored)
             return NULL;
     }
     own.origin = material_origin(material);

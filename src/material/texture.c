@@ -48,28 +48,28 @@ struct texture texture_image(const struct texture_image *image, const struct tex
     struct texture out = over(TEXTURE_IMAGE, below, NULL, NULL);
     out.has_image = true;
     out.image.lookup = *image;
-    out.image.below = below;
+    out.image.below.authored = below;
     return out;
 }
 
 struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio) {
     struct texture out = over(TEXTURE_MIX, a, b, ratio);
-    out.mix.a = a;
-    out.mix.b = b;
-    out.mix.ratio = ratio;
+    out.mix.a.authored = a;
+    out.mix.b.authored = b;
+    out.mix.ratio.authored = ratio;
     return out;
 }
 
 struct texture texture_multiply(const struct texture *a, const struct texture *b) {
     struct texture out = over(TEXTURE_MULTIPLY, a, b, NULL);
-    out.multiply.a = a;
-    out.multiply.b = b;
+    out.multiply.a.authored = a;
+    out.multiply.b.authored = b;
     return out;
 }
 
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount) {
     struct texture out = over(TEXTURE_MAP, of, NULL, NULL);
-    out.map.of = of;
+    out.map.of.authored = of;
     out.map.function = function;
     out.map.amount = amount;
     return out;
@@ -96,36 +96,31 @@ const struct texture *texture_keep(struct arena *arena, struct texture value, st
     return out;
 }
 
-int texture_parts(struct texture *texture, const struct texture **parts[TEXTURE_PARTS]) {
-    const struct texture **all[TEXTURE_PARTS] = {NULL};
-    int count = 0;
+int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PARTS]) {
     switch (texture->kind) {
     case TEXTURE_CONSTANT:
     case TEXTURE_PARAMETER:
     case TEXTURE_VERTEX_COLOUR:
     case TEXTURE_MARBLE:
     case TEXTURE_WOOD:
-        break;
+        return 0;
     case TEXTURE_IMAGE:
-        all[0] = &texture->image.below;
-        break;
+        parts[0] = &texture->image.below;
+        return 1;
     case TEXTURE_MIX:
-        all[0] = &texture->mix.a;
-        all[1] = &texture->mix.b;
-        all[2] = &texture->mix.ratio;
-        break;
+        parts[0] = &texture->mix.a;
+        parts[1] = &texture->mix.b;
+        parts[2] = &texture->mix.ratio;
+        return 3;
     case TEXTURE_MULTIPLY:
-        all[0] = &texture->multiply.a;
-        all[1] = &texture->multiply.b;
-        break;
+        parts[0] = &texture->multiply.a;
+        parts[1] = &texture->multiply.b;
+        return 2;
     case TEXTURE_MAP:
-        all[0] = &texture->map.of;
-        break;
+        parts[0] = &texture->map.of;
+        return 1;
     }
-    for (int i = 0; i < TEXTURE_PARTS; i++)
-        if (all[i] && *all[i])
-            parts[count++] = all[i];
-    return count;
+    return 0;
 }
 
 /* --- leaves --- */
@@ -231,6 +226,14 @@ static bool takes_component(enum texture_function function, struct vec3 colour, 
 
 /* --- trees --- */
 
+static struct vec3 part_colour(union texture_ref part, struct texture_reader *reader) {
+    return texture_read_colour(texture_at(reader->textures, part), reader);
+}
+
+static double part_scalar(union texture_ref part, struct texture_reader *reader) {
+    return texture_read_scalar(texture_at(reader->textures, part), reader);
+}
+
 static struct vec3 evaluate_colour(const struct texture *texture, struct texture_reader *reader) {
     switch (texture->kind) {
     case TEXTURE_CONSTANT:
@@ -240,7 +243,7 @@ static struct vec3 evaluate_colour(const struct texture *texture, struct texture
     case TEXTURE_VERTEX_COLOUR:
         return reader->hit->has_colour ? reader->hit->colour : vec3_all(1);
     case TEXTURE_IMAGE: {
-        const struct texture *below = texture->image.below;
+        const struct texture *below = texture_at(reader->textures, texture->image.below);
         struct vec3 colour, under = below ? texture_read_colour(below, reader) : vec3_all(0);
         double rest;
         if (!texture_image_colour(&texture->image.lookup, reader->hit, &colour, &rest))
@@ -252,17 +255,17 @@ static struct vec3 evaluate_colour(const struct texture *texture, struct texture
     case TEXTURE_WOOD:
         return vec3_all(wood_at(texture, reader->hit->pattern_point));
     case TEXTURE_MIX: {
-        struct vec3 a = texture_read_colour(texture->mix.a, reader);
-        double ratio = texture_read_scalar(texture->mix.ratio, reader);
-        struct vec3 b = texture_read_colour(texture->mix.b, reader);
+        struct vec3 a = part_colour(texture->mix.a, reader);
+        double ratio = part_scalar(texture->mix.ratio, reader);
+        struct vec3 b = part_colour(texture->mix.b, reader);
         return vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
     }
     case TEXTURE_MULTIPLY: {
-        struct vec3 a = texture_read_colour(texture->multiply.a, reader);
-        return vec3_mul(a, texture_read_colour(texture->multiply.b, reader));
+        struct vec3 a = part_colour(texture->multiply.a, reader);
+        return vec3_mul(a, part_colour(texture->multiply.b, reader));
     }
     case TEXTURE_MAP: {
-        struct vec3 of = texture_read_colour(texture->map.of, reader);
+        struct vec3 of = part_colour(texture->map.of, reader);
         enum texture_function function = texture->map.function;
         double component, amount = texture->map.amount;
         if (takes_component(function, of, &component))
@@ -283,7 +286,7 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
     case TEXTURE_VERTEX_COLOUR:
         return reader->hit->has_colour ? mean(reader->hit->colour) : 1;
     case TEXTURE_IMAGE: {
-        const struct texture *below = texture->image.below;
+        const struct texture *below = texture_at(reader->textures, texture->image.below);
         struct vec3 colour;
         double rest, under = below ? texture_read_scalar(below, reader) : 0;
         if (!texture_image_colour(&texture->image.lookup, reader->hit, &colour, &rest))
@@ -295,21 +298,21 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
     case TEXTURE_WOOD:
         return wood_at(texture, reader->hit->pattern_point);
     case TEXTURE_MIX: {
-        double a = texture_read_scalar(texture->mix.a, reader), ratio = texture_read_scalar(texture->mix.ratio, reader);
-        return a * ratio + texture_read_scalar(texture->mix.b, reader) * (1 - ratio);
+        double a = part_scalar(texture->mix.a, reader), ratio = part_scalar(texture->mix.ratio, reader);
+        return a * ratio + part_scalar(texture->mix.b, reader) * (1 - ratio);
     }
     case TEXTURE_MULTIPLY: {
-        double a = texture_read_scalar(texture->multiply.a, reader);
-        return a * texture_read_scalar(texture->multiply.b, reader);
+        double a = part_scalar(texture->multiply.a, reader);
+        return a * part_scalar(texture->multiply.b, reader);
     }
     case TEXTURE_MAP: {
         enum texture_function function = texture->map.function;
         double component;
         if (function == FUNCTION_RED || function == FUNCTION_GREEN || function == FUNCTION_BLUE) {
-            (void)takes_component(function, texture_read_colour(texture->map.of, reader), &component);
+            (void)takes_component(function, part_colour(texture->map.of, reader), &component);
             return component;
         }
-        return function_of(function, texture->map.amount, texture_read_scalar(texture->map.of, reader));
+        return function_of(function, texture->map.amount, part_scalar(texture->map.of, reader));
     }
     }
     return 0;
@@ -355,13 +358,13 @@ double texture_read_scalar(const struct texture *texture, struct texture_reader 
 
 struct vec3 texture_colour(const struct texture *texture, const struct hit *hit) {
     struct texture_reader reader;
-    texture_reader_init(&reader, hit, NULL);
+    texture_reader_init(&reader, hit, NULL, NULL);
     return texture_read_colour(texture, &reader);
 }
 
 double texture_scalar(const struct texture *texture, const struct hit *hit) {
     struct texture_reader reader;
-    texture_reader_init(&reader, hit, NULL);
+    texture_reader_init(&reader, hit, NULL, NULL);
     return texture_read_scalar(texture, &reader);
 }
 
@@ -371,12 +374,12 @@ static struct vec3 larger(struct vec3 a, struct vec3 b) {
     return vec3_make(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
 }
 
-static struct vec3 estimate_image(const struct texture *texture, const struct phong *numbers,
-                                  enum texture_estimate which) {
+static struct vec3 estimate_image(const struct texture *texture, const struct texture *textures,
+                                  const struct phong *numbers, enum texture_estimate which) {
     const struct texture_image *image = &texture->image.lookup;
-    const struct texture *below = texture->image.below;
+    const struct texture *below = texture_at(textures, texture->image.below);
     struct vec3 tint = image->apart ? image->tint : vec3_all(1);
-    struct vec3 under = below ? texture_estimate(below, numbers, which) : vec3_all(0);
+    struct vec3 under = below ? texture_estimate(below, textures, numbers, which) : vec3_all(0);
     if (which == TEXTURE_LARGEST)
         return larger(tint, under);
     struct rgba mean_texel = image_lookup(image->image, 0.5, 0.5, 1, 1, IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP);
@@ -384,7 +387,8 @@ static struct vec3 estimate_image(const struct texture *texture, const struct ph
     return vec3_add(colour, vec3_scale(under, image->alpha == ALPHA_COVERS ? 1 - mean_texel.a : 0));
 }
 
-struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which) {
+struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
+                             enum texture_estimate which) {
     bool largest = which == TEXTURE_LARGEST;
     switch (texture->kind) {
     case TEXTURE_CONSTANT:
@@ -394,21 +398,21 @@ struct vec3 texture_estimate(const struct texture *texture, const struct phong *
     case TEXTURE_VERTEX_COLOUR:
         return vec3_all(1);
     case TEXTURE_IMAGE:
-        return estimate_image(texture, numbers, which);
+        return estimate_image(texture, textures, numbers, which);
     case TEXTURE_MARBLE:
     case TEXTURE_WOOD:
         return vec3_all(largest ? 1 : 0.5);
     case TEXTURE_MIX: {
-        struct vec3 a = texture_estimate(texture->mix.a, numbers, which);
-        struct vec3 b = texture_estimate(texture->mix.b, numbers, which);
-        double ratio = mean(texture_estimate(texture->mix.ratio, numbers, which));
+        struct vec3 a = texture_estimate(texture_at(textures, texture->mix.a), textures, numbers, which);
+        struct vec3 b = texture_estimate(texture_at(textures, texture->mix.b), textures, numbers, which);
+        double ratio = mean(texture_estimate(texture_at(textures, texture->mix.ratio), textures, numbers, which));
         return largest ? larger(a, b) : vec3_add(vec3_scale(a, ratio), vec3_scale(b, 1 - ratio));
     }
     case TEXTURE_MULTIPLY:
-        return vec3_mul(texture_estimate(texture->multiply.a, numbers, which),
-                        texture_estimate(texture->multiply.b, numbers, which));
+        return vec3_mul(texture_estimate(texture_at(textures, texture->multiply.a), textures, numbers, which),
+                        texture_estimate(texture_at(textures, texture->multiply.b), textures, numbers, which));
     case TEXTURE_MAP: {
-        struct vec3 of = texture_estimate(texture->map.of, numbers, which);
+        struct vec3 of = texture_estimate(texture_at(textures, texture->map.of), textures, numbers, which);
         enum texture_function function = texture->map.function;
         double component, amount = texture->map.amount;
         if (takes_component(function, of, &component))

@@ -1,6 +1,7 @@
 /* Textures: a colour or a number as a function of the hit. A texture is a value: a constant, a picture with its
- * mapping, filter and wrap, a pattern, or an operation on other textures, which are read through pointers and never
- * change. So marble over wood over a picture is one tree. Source of the word and of the split into mappings and
+ * mapping, filter and wrap, a pattern, or an operation on other textures, which never change. So marble over wood over
+ * a picture is one tree. Authored trees hold pointers; a world holds its textures in one table, where the parts of a
+ * texture are indices into that table (union texture_ref). Source of the word and of the split into mappings and
  * textures: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, chapter 10.
  *
  * Every texture can be read as a colour and as a number. The number of a colour is the mean of its three components;
@@ -115,6 +116,14 @@ struct phong {
 enum material_input { MATERIAL_INPUTS(LIST_MEMBER) };
 enum { INPUT_COUNT = LIST_COUNT(MATERIAL_INPUTS) };
 
+/* A texture that another one or a material reads: authored, a pointer, or NULL for none; in a table, an index or
+ * TEXTURE_NONE. texture_at finds it. */
+union texture_ref {
+    const struct texture *authored;
+    uint32_t index;
+};
+#define TEXTURE_NONE UINT32_MAX
+
 struct texture {
     enum texture_kind kind;
     bool shared;    /* several inputs of a material read it: once per hit is enough */
@@ -128,7 +137,7 @@ struct texture {
         enum material_input parameter;
         struct {
             struct texture_image lookup;
-            const struct texture *below; /* also where the surface has no coordinates; NULL: black */
+            union texture_ref below; /* also where the surface has no coordinates; none: black */
         } image;
         struct {
             double f, multiplier, vein_frequency;
@@ -139,18 +148,25 @@ struct texture {
             int interpolation;
         } wood;
         struct {
-            const struct texture *a, *b, *ratio;
+            union texture_ref a, b, ratio;
         } mix;
         struct {
-            const struct texture *a, *b;
+            union texture_ref a, b;
         } multiply;
         struct {
-            const struct texture *of;
+            union texture_ref of;
             enum texture_function function;
             double amount;
         } map;
     };
 };
+
+/* The texture that is meant, or NULL. textures: the table that holds it; NULL: it is authored. */
+static inline const struct texture *texture_at(const struct texture *textures, union texture_ref ref) {
+    if (!textures)
+        return ref.authored;
+    return ref.index != TEXTURE_NONE ? &textures[ref.index] : NULL;
+}
 
 struct texture texture_constant(struct vec3 colour);
 struct texture texture_number(double number);
@@ -166,23 +182,25 @@ struct texture texture_map(const struct texture *of, enum texture_function funct
 const struct texture *texture_parameter(enum material_input input);
 /* The image, where the texture is that over nothing and no more; else NULL. */
 static inline const struct texture_image *texture_as_image(const struct texture *texture) {
-    return texture->kind == TEXTURE_IMAGE && !texture->image.below ? &texture->image.lookup : NULL;
+    return texture->kind == TEXTURE_IMAGE && texture->size == 1 ? &texture->image.lookup : NULL;
 }
 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
 
-/* Where a texture holds those below it that are not NULL; returns how many. */
+/* Where a texture holds the references to those below it; returns how many. That of an image may be to none. */
 enum { TEXTURE_PARTS = 3 };
-int texture_parts(struct texture *texture, const struct texture **parts[TEXTURE_PARTS]);
+int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PARTS]);
 
-/* What is known of a texture without a hit, of a material with these numbers. */
+/* What is known of a texture without a hit, of a material with these numbers. textures: as in texture_at. */
 enum texture_estimate {
     TEXTURE_AVERAGE, /* of images: of all texels; of patterns: one half */
     TEXTURE_LARGEST  /* a bound of each component as long as none is negative and no texel above 1 */
 };
-struct vec3 texture_estimate(const struct texture *texture, const struct phong *numbers, enum texture_estimate which);
+struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
+                             enum texture_estimate which);
 
+/* Of an authored texture outside of materials. */
 struct vec3 texture_colour(const struct texture *texture, const struct hit *hit);
 double texture_scalar(const struct texture *texture, const struct hit *hit);
 
@@ -190,8 +208,9 @@ double texture_scalar(const struct texture *texture, const struct hit *hit);
 enum { TEXTURE_SHARED = 4 };
 struct texture_reader {
     const struct hit *hit;
-    const struct phong *numbers; /* of the material, for TEXTURE_PARAMETER; NULL: white */
-    int count;                   /* of values that are known */
+    const struct texture *textures; /* the table, as in texture_at */
+    const struct phong *numbers;    /* of the material, for TEXTURE_PARAMETER; NULL: white */
+    int count;                      /* of values that are known */
     struct {
         const struct texture *of;
         bool is_number;
@@ -200,8 +219,9 @@ struct texture_reader {
 };
 
 static inline void texture_reader_init(struct texture_reader *reader, const struct hit *hit,
-                                       const struct phong *numbers) {
+                                       const struct texture *textures, const struct phong *numbers) {
     reader->hit = hit;
+    reader->textures = textures;
     reader->numbers = numbers;
     reader->count = 0;
 }

@@ -451,7 +451,7 @@ static void read_caustics(struct script_context *c, int index, const struct argu
 
 /* The image of a texture that is nothing else, or NULL. */
 static struct image *image_of(const struct bump *texture) {
-    const struct texture_image *image = texture_as_image(texture->texture);
+    const struct texture_image *image = texture_as_image(texture->texture.authored);
     return image ? image->image : NULL;
 }
 

@@ -148,7 +148,7 @@ struct image *gr_find_image(struct script_context *context, const struct script_
 }
 
 static void image_defaults(struct texture_image *out, const struct script_value *value, struct image *image) {
-    const struct texture_image *from = value->texture ? texture_as_image(value->texture->texture) : NULL;
+    const struct texture_image *from = value->texture ? texture_as_image(value->texture->texture.authored) : NULL;
     *out = from ? *from : (struct texture_image){.filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT};
     out->image = image;
 }
@@ -239,12 +239,13 @@ static bool read_bump(struct script_context *context, const struct script_value 
                       struct error *error) {
     const struct bump *from = value->texture;
     bool known = from && from->kind != MATERIAL_IMAGE;
-    bool is_image = !from || texture_as_image(from->texture);
-    *out = (struct bump){.kind = known ? from->kind : MATERIAL_BUMP, .texture = from ? from->texture : NULL};
+    bool is_image = !from || texture_as_image(from->texture.authored);
+    *out = (struct bump){.kind = known ? from->kind : MATERIAL_BUMP,
+                         .texture.authored = from ? from->texture.authored : NULL};
     static const enum material_kind kinds[] = {BUMP_KINDS(LIST_MEMBER)};
     if (args[1].given)
         out->kind = kinds[args[1].choice];
-    if (is_image && !(out->texture = read_texture(context, value, lookup, error)))
+    if (is_image && !(out->texture.authored = read_texture(context, value, lookup, error)))
         return false;
     if (args[0].given) {
         out->height = args[0].number;
@@ -261,8 +262,8 @@ static bool read_bump(struct script_context *context, const struct script_value 
 bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
                 struct error *error) {
     struct bump texture = {.kind = MATERIAL_IMAGE};
-    texture.texture = read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error);
-    result->pointer = texture.texture ? gr_keep_texture(context, &texture, error) : NULL;
+    texture.texture.authored = read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error);
+    result->pointer = texture.texture.authored ? gr_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
 }
 

@@ -21,20 +21,20 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
     struct arena *arena = &context->scene.arena;
     const struct bump *given = value->texture;
     struct vec3 v = value->vector;
-    const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
+    const struct texture_image *image = given ? texture_as_image(given->texture.authored) : NULL;
     if (image) { /* what is transparent is white */
         const struct texture *white = texture_keep(arena, texture_number(1), error);
         return white ? texture_keep(arena, texture_image(image, white), error) : NULL;
     }
     if (given)
-        return given->texture;
+        return given->texture.authored;
     return texture_keep(arena, v.x == v.y && v.y == v.z ? texture_number(v.x) : texture_constant(v), error);
 }
 
 static bool give(struct script_context *context, struct texture texture, struct script_result *result,
                  struct error *error) {
-    struct bump out = {.kind = MATERIAL_IMAGE, .texture = texture_keep(&context->scene.arena, texture, error)};
-    result->pointer = out.texture ? gr_keep_texture(context, &out, error) : NULL;
+    struct bump out = {.kind = MATERIAL_IMAGE, .texture.authored = texture_keep(&context->scene.arena, texture, error)};
+    result->pointer = out.texture.authored ? gr_keep_texture(context, &out, error) : NULL;
     return result->pointer != NULL;
 }
 

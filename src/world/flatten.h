@@ -62,6 +62,9 @@ bool flatten_limit(struct flattening *f, const struct node *solid, const struct 
  * *out on; everything else has 1. */
 bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
+/* The tables of textures and bumps that the authored materials read; the world's materials, flat copies of these, refer
+ * to them by index from now on. Errors: no memory. */
+bool flatten_textures(struct world *world, struct arena *arena, struct error *error);
 /* False: the map of a node into the world, or into its solid, has left the range of numbers. */
 bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape);

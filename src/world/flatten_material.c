@@ -109,12 +109,13 @@ static const struct material *raised(struct flattening *f, const struct bump *bu
         return base;
     struct material *material = derived(f, bump->kind, base);
     struct bump mapped = *bump;
-    if (texture_as_image(bump->texture)) {
-        struct texture own = *bump->texture;
+    if (texture_as_image(bump->texture.authored)) {
+        struct texture own = *bump->texture.authored;
         own.image.lookup.mapping = MAPPING_UV;
-        mapped.texture = texture_keep(f->arena, own, f->error);
+        mapped.texture.authored = texture_keep(f->arena, own, f->error);
     }
-    return material && mapped.texture && material_add_bump(material, &mapped, f->arena, f->error) ? material : NULL;
+    return material && mapped.texture.authored && material_add_bump(material, &mapped, f->arena, f->error) ? material
+                                                                                                           : NULL;
 }
 
 /* Room for `count` more at the end of the list. */

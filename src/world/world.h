@@ -74,11 +74,13 @@ struct world {
      * times, with the same number. */
     struct material *materials;
     const uint32_t *material_numbers;
+    const struct texture *textures; /* what materials and bumps read; parts come before what reads them */
+    const struct bump *bumps;
     bool *material_has_image;  /* such materials need to know the footprint on the surface */
     bool *material_has_bump;   /* and such ones where it rises */
     uint32_t *material_medium; /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
     struct medium *media;      /* one for each transparent material; their `primitive` is anything */
-    uint32_t material_count, material_number_count, medium_count;
+    uint32_t material_count, material_number_count, texture_count, bump_count, medium_count;
     double emission_bound; /* at least the largest component that a material emits */
     const struct light *lights;
     uint32_t light_count;

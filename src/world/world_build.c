@@ -14,7 +14,7 @@ static void add_up_meshes(struct world *world, const struct assets *assets) {
 
 void world_update_materials(struct world *world) {
     for (uint32_t i = 0; i < world->material_count; i++)
-        world->materials[i] = material_flat(world->authored.materials[i]);
+        world->materials[i].phong = material_origin(world->authored.materials[i])->phong;
 }
 
 /* The tables of materials and of the media inside. */
@@ -28,7 +28,10 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
     if (!world->materials || !world->material_has_image || !world->material_has_bump || !world->material_medium ||
         !world->media)
         return error_no_memory(error, "the materials of the scene");
-    world_update_materials(world);
+    for (uint32_t i = 0; i < count; i++)
+        world->materials[i] = material_flat(world->authored.materials[i]);
+    if (!flatten_textures(world, arena, error))
+        return false;
     for (uint32_t i = 0; i < count; i++) {
         const struct material *material = &world->materials[i];
         struct medium medium = {.absorption = material_absorption(material)};

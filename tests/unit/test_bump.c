@@ -80,7 +80,7 @@ static struct bump bump_of(struct stage *s, enum material_kind kind, struct imag
         .image = image, .mapping = MAPPING_BY_SHAPE, .filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT, .flip_u = flip_u};
     const struct texture *texture = texture_keep(&s->scene.arena, texture_image(&lookup, NULL), &s->error);
     CHECK(texture != NULL);
-    return (struct bump){.kind = kind, .height = height, .texture = texture};
+    return (struct bump){.kind = kind, .height = height, .texture.authored = texture};
 }
 
 static struct material *raised_white(struct stage *s, const struct bump *bump) {

@@ -168,7 +168,7 @@ TEST(a_shared_texture_is_what_it_is_alone) {
         struct texture shared = *make(&p, (enum texture_kind)kind, &hit, &ignored);
         shared.shared = true;
         struct texture_reader reader;
-        texture_reader_init(&reader, &hit, NULL);
+        texture_reader_init(&reader, &hit, NULL, NULL);
         for (int i = 0; i < 2; i++) {
             CHECK(same(texture_read_colour(&shared, &reader), texture_colour(&shared, &hit)));
             CHECK(texture_read_scalar(&shared, &reader) == texture_scalar(&shared, &hit));
@@ -188,8 +188,8 @@ TEST(every_kind_stays_below_its_bound_and_constants_are_their_average) {
             struct vec3 ignored;
             const struct texture *texture = make(&p, (enum texture_kind)kind, &hit, &ignored);
             struct vec3 value = texture_colour(texture, &hit);
-            struct vec3 bound = texture_estimate(texture, NULL, TEXTURE_LARGEST);
-            struct vec3 average = texture_estimate(texture, NULL, TEXTURE_AVERAGE);
+            struct vec3 bound = texture_estimate(texture, NULL, NULL, TEXTURE_LARGEST);
+            struct vec3 average = texture_estimate(texture, NULL, NULL, TEXTURE_AVERAGE);
             CHECK(value.x <= bound.x + 1e-15 && value.y <= bound.y + 1e-15 && value.z <= bound.z + 1e-15);
             CHECK(average.x <= bound.x + 1e-15 && average.y <= bound.y + 1e-15 && average.z <= bound.z + 1e-15);
             if (texture->kind == TEXTURE_CONSTANT || texture->kind == TEXTURE_IMAGE) /* the image is even */
@@ -444,7 +444,7 @@ TEST(bumps_of_any_texture_tilt_the_normal_by_the_slope_of_their_height) {
         hit.dpdu.x = hit.dpdv.y = size;
         frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
         struct material base = base_material(), bumped;
-        struct bump bump = {.kind = MATERIAL_BUMP, .height = factor * size, .texture = height};
+        struct bump bump = {.kind = MATERIAL_BUMP, .height = factor * size, .texture.authored = height};
         struct surface_inputs flat;
         material_derive(&bumped, MATERIAL_BUMP, &base);
         CHECK(material_add_bump(&bumped, &bump, &p.arena, &p.error));
@@ -467,7 +467,7 @@ TEST(normals_of_any_texture_point_where_its_colour_says) {
         struct material base = base_material(), turned;
         struct surface_inputs look;
         struct vec3 c = vec3_scale(vec3_add(wanted[i], vec3_all(1)), 0.5);
-        struct bump map = {.kind = MATERIAL_NORMAL, .height = 1, .texture = colour(&p, c.x, c.y, c.z)};
+        struct bump map = {.kind = MATERIAL_NORMAL, .height = 1, .texture.authored = colour(&p, c.x, c.y, c.z)};
         material_derive(&turned, MATERIAL_NORMAL, &base);
         CHECK(material_add_bump(&turned, &map, &p.arena, &p.error));
         material_inputs_at(&turned, &hit, &look);
@@ -483,8 +483,8 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
     struct material base = base_material(), flat, bumped;
     struct surface_inputs look, scaled;
-    struct bump even = {.kind = MATERIAL_BUMP, .height = 3, .texture = number(&p, 0.7)};
-    struct bump wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture = keep(&p, texture_wood(3, 5, 1))};
+    struct bump even = {.kind = MATERIAL_BUMP, .height = 3, .texture.authored = number(&p, 0.7)};
+    struct bump wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture.authored = keep(&p, texture_wood(3, 5, 1))};
     material_derive(&flat, MATERIAL_BUMP, &base);
     CHECK(material_add_bump(&flat, &even, &p.arena, &p.error));
     material_inputs_at(&flat, &hit, &look);
@@ -560,7 +560,7 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     const struct texture *image = keep(&p, shared), *red = keep(&p, texture_map(image, FUNCTION_RED, 0));
     const struct texture *tree = keep(&p, texture_mix(keep(&p, texture_multiply(image, red)), red, image));
     struct material base = base_material(), covered, raised;
-    struct bump bump = {.kind = MATERIAL_BUMP, .height = 1, .texture = tree};
+    struct bump bump = {.kind = MATERIAL_BUMP, .height = 1, .texture.authored = tree};
     struct material_mapping mapping = {.arena = &p.arena};
     material_derive(&covered, MATERIAL_IMAGE, &base);
     CHECK(material_multiply(&covered, INPUT_KD, tree, &p.arena, &p.error));
@@ -572,9 +572,10 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     const struct material *on = material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error);
     CHECK(on && on != &raised && on == material_on_layout(&mapping, &raised, LAYOUT_SPHERE, &p.error));
     CHECK(on->base == material_on_layout(&mapping, &covered, LAYOUT_SPHERE, &p.error) && on->base->base == &base);
-    const struct texture *copy = on->inputs[INPUT_KD]->multiply.b;
-    CHECK(copy == on->bump->texture && copy->mix.ratio == copy->mix.a->multiply.a && copy->mix.ratio->shared);
-    CHECK(copy->mix.ratio->image.lookup.mapping == MAPPING_BALL && image->image.lookup.mapping == MAPPING_BY_SHAPE);
+    const struct texture *copy = on->inputs[INPUT_KD].authored->multiply.b.authored;
+    const struct texture *ratio = copy->mix.ratio.authored, *product = copy->mix.a.authored;
+    CHECK(copy == on->bump.authored->texture.authored && ratio == product->multiply.a.authored && ratio->shared);
+    CHECK(ratio->image.lookup.mapping == MAPPING_BALL && image->image.lookup.mapping == MAPPING_BY_SHAPE);
     /* Without coordinates the original shows what is below its image; the copy shows the image, which is even. */
     struct surface_inputs bare, shown, flat;
     material_inputs_at(&covered, &ball, &bare);

@@ -348,7 +348,8 @@ TEST(holes_let_through_what_their_opacity_leaves) {
         }
         if (i % 5 < 4) {
             struct material *sheet = stage_phong(s, vec3_all(0), vec3_all(0), 1);
-            sheet->inputs[INPUT_OPACITY] = texture_keep(&s->scene.arena, texture_number(opacities[i % 5]), &s->error);
+            sheet->inputs[INPUT_OPACITY].authored =
+                texture_keep(&s->scene.arena, texture_number(opacities[i % 5]), &s->error);
             struct node *node = stage_cube(s, s->root, sheet); /* seen through twice */
             stage_scale(s, node, 20, 0.1, 20);
             stage_move(s, node, -10, 1, -10);

@@ -1,0 +1,144 @@
+/* Tables of textures and bumps. What the materials of a world read is reached through pointers while it is authored;
+ * here each distinct texture and each distinct bump gets an index, in order of first use, parts before what reads them,
+ * and the world's materials refer to them by it. The numbering that finds them again is hashed by address, which
+ * decides the position of an entry and never its index. */
+#include "base/mem.h"
+#include "base/random.h"
+#include "world/flatten.h"
+
+struct numbered {
+    const void *authored; /* NULL: free */
+    uint32_t index;
+};
+
+/* Indices of authored things. */
+struct numbering {
+    struct numbered *entries; /* capacity a power of two, at most half full */
+    uint32_t capacity, count;
+};
+
+static struct numbered *find(const struct numbering *numbering, const void *authored) {
+    for (uint32_t at = (uint32_t)random_combine((uint64_t)(uintptr_t)authored, 0);; at++) {
+        struct numbered *entry = &numbering->entries[at & (numbering->capacity - 1)];
+        if (!entry->authored || entry->authored == authored)
+            return entry;
+    }
+}
+
+static bool is_numbered(const struct numbering *numbering, const void *authored) {
+    return numbering->capacity > 0 && find(numbering, authored)->authored;
+}
+
+/* The next index. False: no memory. */
+static bool number(struct numbering *numbering, const void *authored) {
+    if (numbering->count * 2 >= numbering->capacity) {
+        struct numbering old = *numbering;
+        numbering->capacity = old.capacity ? old.capacity * 2 : 64;
+        numbering->entries = mem_alloc_zero(numbering->capacity, sizeof *numbering->entries);
+        if (!numbering->entries) {
+            *numbering = old;
+            return false;
+        }
+        for (uint32_t i = 0; i < old.capacity; i++)
+            if (old.entries[i].authored)
+                *find(numbering, old.entries[i].authored) = old.entries[i];
+        mem_free(old.entries);
+    }
+    *find(numbering, authored) = (struct numbered){authored, numbering->count++};
+    return true;
+}
+
+/* The texture, after all below it. */
+static bool number_texture(struct numbering *textures, const struct texture *texture) {
+    if (!texture || is_numbered(textures, texture))
+        return true;
+    struct texture own = *texture;
+    union texture_ref *parts[TEXTURE_PARTS];
+    int count = texture_parts(&own, parts);
+    for (int i = 0; i < count; i++)
+        if (!number_texture(textures, parts[i]->authored))
+            return false;
+    return number(textures, texture);
+}
+
+static bool number_bump(struct numbering *bumps, struct numbering *textures, const struct bump *bump) {
+    if (!bump || is_numbered(bumps, bump))
+        return true;
+    return number_bump(bumps, textures, bump->below.authored) && number_texture(textures, bump->texture.authored) &&
+           number(bumps, bump);
+}
+
+static union texture_ref texture_index(const struct numbering *textures, union texture_ref ref) {
+    return (union texture_ref){.index = ref.authored ? find(textures, ref.authored)->index : TEXTURE_NONE};
+}
+
+static union bump_ref bump_index(const struct numbering *bumps, union bump_ref ref) {
+    return (union bump_ref){.index = ref.authored ? find(bumps, ref.authored)->index : BUMP_NONE};
+}
+
+static void fill_textures(const struct numbering *textures, struct texture *out) {
+    for (uint32_t i = 0; i < textures->capacity; i++) {
+        if (!textures->entries[i].authored)
+            continue;
+        struct texture *texture = &out[textures->entries[i].index];
+        union texture_ref *parts[TEXTURE_PARTS];
+        *texture = *(const struct texture *)textures->entries[i].authored;
+        for (int k = texture_parts(texture, parts); k-- > 0;)
+            *parts[k] = texture_index(textures, *parts[k]);
+    }
+}
+
+static void fill_bumps(const struct numbering *bumps, const struct numbering *textures, struct bump *out) {
+    for (uint32_t i = 0; i < bumps->capacity; i++) {
+        if (!bumps->entries[i].authored)
+            continue;
+        struct bump *bump = &out[bumps->entries[i].index];
+        *bump = *(const struct bump *)bumps->entries[i].authored;
+        bump->below = bump_index(bumps, bump->below);
+        bump->texture = texture_index(textures, bump->texture);
+    }
+}
+
+static bool number_all(const struct world *world, struct numbering *textures, struct numbering *bumps) {
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        const struct material *material = world->authored.materials[i];
+        for (int k = 0; k < INPUT_COUNT; k++)
+            if (!number_texture(textures, material->inputs[k].authored))
+                return false;
+        if (!number_bump(bumps, textures, material->bump.authored))
+            return false;
+    }
+    return true;
+}
+
+static void refer(struct world *world, const struct numbering *textures, const struct numbering *bumps) {
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        struct material *material = &world->materials[i];
+        for (int k = 0; k < INPUT_COUNT; k++)
+            material->inputs[k] = texture_index(textures, material->inputs[k]);
+        material->bump = bump_index(bumps, material->bump);
+        material->textures = world->textures;
+        material->bumps = world->bumps;
+    }
+}
+
+bool flatten_textures(struct world *world, struct arena *arena, struct error *error) {
+    struct numbering textures = {.count = 0}, bumps = {.count = 0};
+    bool ok = number_all(world, &textures, &bumps);
+    struct texture *texture_table =
+        ok ? arena_alloc_array(arena, (size_t)textures.count + 1, sizeof *texture_table) : NULL;
+    struct bump *bump_table = ok ? arena_alloc_array(arena, (size_t)bumps.count + 1, sizeof *bump_table) : NULL;
+    ok = texture_table && bump_table;
+    if (ok) {
+        fill_textures(&textures, texture_table);
+        fill_bumps(&bumps, &textures, bump_table);
+        world->textures = texture_table;
+        world->bumps = bump_table;
+        world->texture_count = textures.count;
+        world->bump_count = bumps.count;
+        refer(world, &textures, &bumps);
+    }
+    mem_free(textures.entries);
+    mem_free(bumps.entries);
+    return ok || error_no_memory(error, "the textures of the scene");
+}
