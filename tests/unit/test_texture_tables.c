@@ -5,12 +5,12 @@
 
 #include <string.h>
 
-enum { MATERIALS = 24 };
+enum { MATERIALS = 24, TEXTURES = 40 };
 
 struct authored_materials {
     struct stage stage;
     struct image *image;
-    const struct texture *textures[64]; /* all but the last few that materials make of them */
+    const struct texture *textures[TEXTURES]; /* all but what materials make of them */
     uint32_t texture_count;
     struct material *materials[MATERIALS];
     struct node *nodes[MATERIALS];
@@ -26,33 +26,23 @@ static const struct texture *any_texture(struct authored_materials *a, struct te
     return a->textures[(uint32_t)test_uniform(random, 0, a->texture_count)];
 }
 
-/* One of the kind over parts that are there already, so that trees share parts. */
-static struct texture over_any(struct authored_materials *a, enum texture_kind kind, struct test_random *random) {
+/* One of several, over parts that are there already, so that trees share parts. */
+static struct texture any_over_any(struct authored_materials *a, struct test_random *random) {
     struct texture_image image = {.image = a->image, .mapping = MAPPING_UV};
-    const struct texture *first = a->texture_count ? any_texture(a, random) : NULL;
-    const struct texture *second = a->texture_count ? any_texture(a, random) : NULL;
+    const struct texture *first = any_texture(a, random), *second = any_texture(a, random);
     double x = test_uniform(random, 0.1, 1);
-    switch (kind) {
-    case TEXTURE_CONSTANT:
-        return texture_constant(vec3_make(x, 0.5, 1 - x));
-    case TEXTURE_PARAMETER:
-        return *texture_parameter(INPUT_KS);
-    case TEXTURE_VERTEX_COLOUR:
-        return texture_vertex_colour();
-    case TEXTURE_IMAGE:
-        return texture_image(&image, x < 0.5 ? first : NULL);
-    case TEXTURE_MARBLE:
-        return texture_marble(x, 3, 4, 0);
-    case TEXTURE_WOOD:
-        return texture_wood(x, 5, 1);
-    case TEXTURE_MIX:
-        return texture_mix(first, second, any_texture(a, random));
-    case TEXTURE_MULTIPLY:
-        return texture_multiply(first, second);
-    case TEXTURE_MAP:
-        return texture_map(first, x < 0.5 ? FUNCTION_GREEN : FUNCTION_COMPLEMENT, 0);
-    }
-    return texture_number(0);
+    const struct texture some[] = {texture_constant(vec3_make(x, 0.5, 1 - x)),
+                                   *texture_parameter(INPUT_KS),
+                                   texture_vertex_colour(),
+                                   texture_image(&image, NULL),
+                                   texture_image(&image, first),
+                                   texture_marble(x, 3, 4, 0),
+                                   texture_wood(x, 5, 1),
+                                   texture_mix(first, second, any_texture(a, random)),
+                                   texture_multiply(first, second),
+                                   texture_map(first, FUNCTION_GREEN, 0),
+                                   texture_map(first, FUNCTION_COMPLEMENT, 0)};
+    return some[(uint32_t)test_uniform(random, 0, sizeof some / sizeof some[0])];
 }
 
 static void make_materials(struct authored_materials *a, struct test_random *random) {
@@ -60,10 +50,12 @@ static void make_materials(struct authored_materials *a, struct test_random *ran
     struct stage *s = &a->stage;
     struct arena *arena = &s->scene.arena;
     a->image = image_create("four", 2, 2, 8, texels, &s->error);
-    for (int i = 0; i < 4 * TEXTURE_KIND_COUNT; i++) {
-        struct texture texture = over_any(a, (enum texture_kind)(i % TEXTURE_KIND_COUNT), random);
-        texture.shared = i % 3 == 0;
-        a->textures[a->texture_count++] = keep(a, texture);
+    a->textures[a->texture_count++] = keep(a, texture_number(0.5));
+    while (a->texture_count < TEXTURES) {
+        struct texture texture = any_over_any(a, random);
+        texture.shared = a->texture_count % 3 == 0;
+        const struct texture *kept = keep(a, texture);
+        a->textures[a->texture_count++] = kept;
     }
     for (int i = 0; i < MATERIALS; i++) {
         bool derived = i > 0 && i % 2;
