@@ -5,7 +5,6 @@
 
 #include "base/mem.h"
 #include "base/random.h"
-#include "math/elementary.h"
 #include "render/camera.h"
 
 #include <math.h>
@@ -253,91 +252,14 @@ static void share_colour(struct overlay_drawing *drawing, double share) {
     drawing->colour = vec3_make(share, 1 - fabs(2 * share - 1), 1 - share);
 }
 
-/* Voxels that hold something. */
-static void draw_voxels(struct overlay_drawing *drawing) {
-    const struct grid *grid = &drawing->job->world->accel.grid;
-    uint64_t count = (uint64_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    uint32_t step = step_for(drawing, count);
-    drawing->colour = vec3_all(1);
-    draw_box(drawing, &grid->bounds);
-    for (uint64_t i = 0; i < count && !stopped(drawing); i += step) {
-        uint32_t items = grid->cell_start[i + 1] - grid->cell_start[i];
-        struct vec3 at = {(double)(i % grid->cells[0]), (double)(i / grid->cells[0] % grid->cells[1]),
-                          (double)(i / grid->cells[0] / grid->cells[1])};
-        struct box cell = {vec3_add(grid->bounds.min, vec3_mul(at, grid->cell_size)), {0, 0, 0}};
-        cell.max = vec3_add(cell.min, grid->cell_size);
-        share_colour(drawing, items / 8.0);
-        if (items > 0)
-            draw_box(drawing, &cell);
-    }
-}
-
-/* Inner nodes of the hierarchy: those near the root are red. */
-static void draw_tree(struct overlay_drawing *drawing) {
-    const struct box_tree *tree = &drawing->job->world->accel.tree;
-    uint32_t step = step_for(drawing, (uint64_t)tree->node_count * BOX_TREE_WIDTH);
-    drawing->colour = vec3_all(1);
-    draw_box(drawing, &tree->bounds);
-    for (uint32_t i = 0; i < tree->node_count && !stopped(drawing); i += step) {
-        const struct box_tree_node *node = &tree->nodes[i];
-        for (int k = 0; k < BOX_TREE_WIDTH; k++) {
-            if (node->child[k] == BOX_TREE_NONE || (node->child[k] & BOX_TREE_ITEM))
-                continue;
-            struct box box = {{node->planes[0][0][k], node->planes[1][0][k], node->planes[2][0][k]},
-                              {node->planes[0][1][k], node->planes[1][1][k], node->planes[2][1][k]}};
-            share_colour(drawing, 1 - el_log2(1 + (double)node->child[k]) / 16);
-            draw_box(drawing, &box);
-        }
-    }
-}
-
-/* Leaves that hold something; the cell of a node is that of its parent, cut. */
-static void draw_halves(struct overlay_drawing *drawing) {
-    const struct kd_tree *tree = &drawing->job->world->accel.kd_tree;
-    struct {
-        struct box cell;
-        uint32_t node;
-    } stack[KD_DEPTH + 2];
-    int depth = 0;
-    if (tree->node_count == 0)
-        return;
-    stack[depth].cell = tree->bounds;
-    stack[depth++].node = 0;
-    while (depth > 0 && !stopped(drawing) && drawing->drawn < drawing->request->limit) {
-        struct box cell = stack[--depth].cell, lower = cell, upper = cell;
-        uint32_t number = stack[depth].node;
-        const struct kd_node *node = &tree->nodes[number];
-        if (node->axis == KD_LEAF) {
-            share_colour(drawing, (double)node->count / 8);
-            if (node->count > 0)
-                draw_box(drawing, &cell);
-            continue;
-        }
-        double *high = node->axis == 0 ? &lower.max.x : node->axis == 1 ? &lower.max.y : &lower.max.z;
-        double *low = node->axis == 0 ? &upper.min.x : node->axis == 1 ? &upper.min.y : &upper.min.z;
-        *high = *low = node->split;
-        stack[depth].cell = upper;
-        stack[depth++].node = node->place;
-        stack[depth].cell = lower;
-        stack[depth++].node = number + 1;
-    }
-}
-
-static void draw_cells(struct overlay_drawing *drawing) {
-    switch (drawing->job->world->accel.kind) {
-    case ACCEL_GRID:
-        draw_voxels(drawing);
-        return;
-    case ACCEL_AUTO:
-    case ACCEL_BVH:
-        draw_tree(drawing);
-        return;
-    case ACCEL_KDTREE:
-        draw_halves(drawing);
-        return;
-    case ACCEL_NONE:
-        return;
-    }
+static bool draw_cell(void *context, const struct box *cell, bool whole, double share) {
+    struct overlay_drawing *drawing = context;
+    if (whole)
+        drawing->colour = vec3_all(1);
+    else
+        share_colour(drawing, share);
+    draw_box(drawing, cell);
+    return !stopped(drawing);
 }
 
 static void draw(struct overlay_drawing *drawing) {
@@ -348,7 +270,7 @@ static void draw(struct overlay_drawing *drawing) {
         draw_boxes(drawing);
         return;
     case OVERLAY_OF_GRID:
-        draw_cells(drawing);
+        scene_accel_cells(&drawing->job->world->accel, drawing->request->limit, draw_cell, drawing);
         return;
     }
 }

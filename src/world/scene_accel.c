@@ -9,6 +9,7 @@
 #include "world/scene_accel.h"
 
 #include "accel/accel_cost.h"
+#include "math/elementary.h"
 
 static struct box box_of(const void *context, uint32_t i) {
     return ((const struct box *)context)[i];
@@ -70,4 +71,91 @@ size_t scene_accel_memory(const struct scene_accel *accel) {
         return 0;
     }
     return 0;
+}
+
+/* --- cells --- */
+
+static uint32_t step_for(uint64_t count, uint32_t limit) {
+    return (uint32_t)((count + limit - 1) / limit);
+}
+
+/* Voxels that hold something. */
+static void visit_voxels(const struct grid *grid, uint32_t limit, scene_accel_visit *visit, void *context) {
+    uint64_t count = (uint64_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    uint32_t step = step_for(count, limit);
+    bool go_on = visit(context, &grid->bounds, true, 0);
+    for (uint64_t i = 0; i < count && go_on; i += step) {
+        uint32_t items = grid->cell_start[i + 1] - grid->cell_start[i];
+        struct vec3 at = {(double)(i % grid->cells[0]), (double)(i / grid->cells[0] % grid->cells[1]),
+                          (double)(i / grid->cells[0] / grid->cells[1])};
+        struct box cell = {vec3_add(grid->bounds.min, vec3_mul(at, grid->cell_size)), {0, 0, 0}};
+        cell.max = vec3_add(cell.min, grid->cell_size);
+        if (items > 0)
+            go_on = visit(context, &cell, false, items / 8.0);
+    }
+}
+
+/* Inner nodes of the hierarchy, from the root on. */
+static void visit_tree(const struct box_tree *tree, uint32_t limit, scene_accel_visit *visit, void *context) {
+    uint32_t step = step_for((uint64_t)tree->node_count * BOX_TREE_WIDTH, limit);
+    bool go_on = visit(context, &tree->bounds, true, 0);
+    for (uint32_t i = 0; i < tree->node_count && go_on; i += step) {
+        const struct box_tree_node *node = &tree->nodes[i];
+        for (int k = 0; k < BOX_TREE_WIDTH && go_on; k++) {
+            if (node->child[k] == BOX_TREE_NONE || (node->child[k] & BOX_TREE_ITEM))
+                continue;
+            struct box box = {{node->planes[0][0][k], node->planes[1][0][k], node->planes[2][0][k]},
+                              {node->planes[0][1][k], node->planes[1][1][k], node->planes[2][1][k]}};
+            go_on = visit(context, &box, false, 1 - el_log2(1 + (double)node->child[k]) / 16);
+        }
+    }
+}
+
+/* Leaves that hold something; the cell of a node is that of its parent, cut. */
+static void visit_halves(const struct kd_tree *tree, uint32_t limit, scene_accel_visit *visit, void *context) {
+    struct {
+        struct box cell;
+        uint32_t node;
+    } stack[KD_DEPTH + 2];
+    int depth = 0;
+    uint32_t visited = 0;
+    if (tree->node_count == 0)
+        return;
+    stack[depth].cell = tree->bounds;
+    stack[depth++].node = 0;
+    while (depth > 0 && visited < limit) {
+        struct box cell = stack[--depth].cell, lower = cell, upper = cell;
+        uint32_t number = stack[depth].node;
+        const struct kd_node *node = &tree->nodes[number];
+        if (node->axis == KD_LEAF) {
+            visited += node->count > 0;
+            if (node->count > 0 && !visit(context, &cell, false, (double)node->count / 8))
+                return;
+            continue;
+        }
+        double *high = node->axis == 0 ? &lower.max.x : node->axis == 1 ? &lower.max.y : &lower.max.z;
+        double *low = node->axis == 0 ? &upper.min.x : node->axis == 1 ? &upper.min.y : &upper.min.z;
+        *high = *low = node->split;
+        stack[depth].cell = upper;
+        stack[depth++].node = node->place;
+        stack[depth].cell = lower;
+        stack[depth++].node = number + 1;
+    }
+}
+
+void scene_accel_cells(const struct scene_accel *accel, uint32_t limit, scene_accel_visit *visit, void *context) {
+    switch (accel->kind) {
+    case ACCEL_GRID:
+        visit_voxels(&accel->grid, limit, visit, context);
+        return;
+    case ACCEL_AUTO:
+    case ACCEL_BVH:
+        visit_tree(&accel->tree, limit, visit, context);
+        return;
+    case ACCEL_KDTREE:
+        visit_halves(&accel->kd_tree, limit, visit, context);
+        return;
+    case ACCEL_NONE:
+        return;
+    }
 }

@@ -23,6 +23,13 @@ bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const 
 void scene_accel_destroy(struct scene_accel *accel);
 size_t scene_accel_memory(const struct scene_accel *accel); /* bytes */
 
+/* Called with a cell and how full, or how near to the root, it is: 1 and more is very. `whole`: the box of everything,
+ * which comes first. Returns whether to go on. */
+typedef bool scene_accel_visit(void *context, const struct box *cell, bool whole, double share);
+/* Cells for pictures of the accelerator, about `limit` of them, spread evenly: the voxels and leaves that hold
+ * something, or the inner nodes of the hierarchy; none of ACCEL_NONE. */
+void scene_accel_cells(const struct scene_accel *accel, uint32_t limit, scene_accel_visit *visit, void *context);
+
 /* The hierarchy that beams and shafts go through; NULL: there is none. */
 static inline const struct box_tree *scene_accel_hierarchy(const struct scene_accel *accel) {
     return accel->kind == ACCEL_BVH ? &accel->tree : NULL;
