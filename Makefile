@@ -75,6 +75,11 @@ OPTIONAL_CFLAGS := $(if $(JPEG_LIBS),-DHAVE_JPEG $(shell $(PKG_CONFIG) --cflags 
     $(if $(SDL_LIBS),-DHAVE_SDL) $(if $(MPI_LIBS),-DHAVE_MPI) \
     $(if $(EXR_LIBS),-DHAVE_EXR $(patsubst -I%,-isystem %,$(filter -I%,$(shell $(PKG_CONFIG) --cflags OpenEXR))))
 
+# PLAIN=1: as if no optional library were there.
+ifneq ($(PLAIN),)
+override OPTIONAL_CFLAGS :=
+endif
+
 override CFLAGS += -std=gnu11 $(WARNINGS) $(EXACT) $(CFLAGS.$(config)) -pthread
 override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -DGRAY_CONFIG='"$(config)"' -DGRAY_PREFIX='"$(PREFIX)"'
 override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) -lm
@@ -183,8 +188,13 @@ ifeq ($(config),clang)
 read-sources: $(ALL_OBJECTS)
 	@echo "clang: $(words $(ALL_OBJECTS)) files"
 endif
+# Files whose text depends on the optional libraries.
+PLAIN_SOURCES := $(if $(PLAIN),$(shell grep -l 'HAVE_' $(filter-out $(MPI_MAIN) $(GUI_MAIN),$(SOURCES))))
+read-sources-plain: $(patsubst %.c,$(BUILD)/%.o,$(PLAIN_SOURCES))
+	@echo "clang: $(words $^) files without the optional libraries"
 check-clang:
 	@$(MAKE) -s $(JOBS) config=clang WERROR=1 read-sources
+	@$(MAKE) -s $(JOBS) config=clang PLAIN=1 BUILD=build/clang-plain WERROR=1 read-sources-plain
 
 help:
 	@sed -n 's/^# \{0,1\}//p; /^$$/q; /^config/q' Makefile
@@ -245,5 +255,5 @@ clean:
 	rm -rf build gray rt
 
 force:
-.PHONY: all help check-libraries build-tests check-clang read-sources test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
+.PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d)

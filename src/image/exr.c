@@ -34,13 +34,13 @@ static bool no_library(const char *path, struct error *error) {
 bool exr_write(const struct file_target *target, uint32_t width, uint32_t height, float_rows *rows, void *context,
                struct error *error) {
     (void)width, (void)height, (void)rows, (void)context;
-    return no_library(path, error);
+    return no_library(target->path, error);
 }
 
 bool exr_write_channels(const struct file_target *target, uint32_t width, uint32_t height,
                         const struct exr_channel *channels, uint32_t count, struct error *error) {
     (void)width, (void)height, (void)channels, (void)count;
-    return no_library(path, error);
+    return no_library(target->path, error);
 }
 
 struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error) {

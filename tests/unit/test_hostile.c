@@ -95,7 +95,12 @@ static void check_script(const char *folder, const char *name) {
     (void)snprintf(pattern, sizeof pattern, "%s%s", expect ? expect : "?", length > 0 && expect[0] == '*' ? "*" : "");
     if (length > 0 && strchr(expect, '*') && pattern[strlen(pattern) - 1] != '*')
         (void)strcat(pattern, "*");
-    if (!matches(pattern, name, first))
+    /* With sanitizers a limit of time may be met before the script has reached its line. */
+    const char *claim = strstr(pattern, "the script used up");
+    char anywhere[1024 + 8];
+    (void)snprintf(anywhere, sizeof anywhere, "SCRIPT:*%s", claim ? claim : "");
+    bool as_well = claim && test_has_sanitizer() && matches(anywhere, name, first);
+    if (!as_well && !matches(pattern, name, first))
         test_fail(__FILE__, __LINE__, "%s says \"%s\", not \"%s\"", name, first, pattern);
     if (result.status != (status ? atoi(status) : 1))
         test_fail(__FILE__, __LINE__, "%s ends with %d", name, result.status);
