@@ -4,7 +4,7 @@
 #include "base/mem.h"
 #include "base/size.h"
 #include "formats/font.h"
-#include "formats/gltf.h"
+#include "formats/model.h"
 #include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "render/render.h"
