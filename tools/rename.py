@@ -35,7 +35,7 @@ def git(*arguments):
 
 class Map:
     def __init__(self):
-        self.files, self.rules, self.keep, self.texts = [], [], [], []
+        self.files, self.folds, self.rules, self.keep, self.texts = [], [], [], [], []
 
     def read(self, name):
         for number, line in enumerate(open(name, encoding='utf-8'), 1):
@@ -46,6 +46,8 @@ class Map:
             scope = scope.split(',') if scope else []
             if verb == 'file' and len(fields) == 2:
                 self.files.append((fields[0].rstrip('/'), fields[1].rstrip('/')))
+            elif verb == 'fold' and (len(fields) == 2 or fields[2:] == ['first']):
+                self.folds.append((fields[0], fields[1], len(fields) == 3))
             elif verb in ('word', 'part', 'tag') and (len(fields) == 2 or fields[2:] == ['merge']):
                 if verb == 'part' and re.search(r'(^|_)%s(_|$)' % re.escape(fields[0]), fields[1]):
                     fail('%s:%d: the new name has the old one as a part' % (name, number))
@@ -151,8 +153,13 @@ def moves_of(maps, tracked):
             moves[path] = new + path[len(old):]
         if not below:
             moves[old] = new
+    for old, new, _ in maps.folds:
+        if old in tracked and new not in tracked:
+            fail('%s: there is no such file' % new)
+        moves[old] = moves.get(new, new)
+    folded = {old for old, _, _ in maps.folds}
     for old, new in moves.items():
-        if old in tracked and (new in tracked and new not in moves or os.path.exists(new) and new not in tracked):
+        if old not in folded and old in tracked and (new in tracked and new not in moves or os.path.exists(new) and new not in tracked):
             fail('%s: there is such a file already' % new)
     return moves
 
@@ -224,6 +231,79 @@ def needles_of(maps, moves):
 def guard_of(path):
     path = path[4:] if path.startswith('src/') else path
     return 'GRAY_' + re.sub(r'[^A-Za-z0-9]', '_', path).upper()
+
+
+PREAMBLE = re.compile(r'(?P<comment>/\*.*?\*/\n+)?(?P<defines>(?:#define [^\n]*\n+)*)'
+                      r'(?P<includes>(?:(?:#[ \t]*include[^\n]*)?\n)*)', re.S)
+GUARD = re.compile(r'(\A(?:/\*.*?\*/\n+)?)#ifndef (\w+)\n#define \2\n(.*)\n#endif[^\n]*\n*\Z', re.S)
+
+
+class Parts:
+    """A C file as its opening comment, blocks of includes, and the rest."""
+    def __init__(self, text):
+        guard = GUARD.match(text)
+        self.guard = guard and guard.group(2)
+        match = PREAMBLE.match(guard.group(1) + guard.group(3) if guard else text)
+        self.comment, self.defines = (match.group('comment') or '').rstrip('\n'), match.group('defines')
+        self.comment += '\n' if self.comment else ''
+        self.blocks = [block.split('\n') for block in re.split(r'\n{2,}', match.group('includes').strip('\n')) if block]
+        self.body = match.string[match.end():].strip('\n')
+
+    def text(self):
+        pieces = ['\n'.join(block) for block in self.blocks] + [self.body]
+        text = self.defines + '\n\n'.join(pieces) + '\n'
+        if self.guard:
+            text = '#ifndef %s\n#define %s\n\n%s\n#endif\n' % (self.guard, self.guard, text)
+        return self.comment + text
+
+    def include(self, line, own):
+        """Adds an include to the block of its kind, which stands behind that of the file's own header."""
+        if any(line in block for block in self.blocks):
+            return
+        mine = [block for block in self.blocks if block[0][-1] == line[-1] and own not in block]
+        if mine:
+            mine[-1].append(line)
+        elif line[-1] == '>':
+            self.blocks.append([line])
+        else:
+            at = next((i + 1 for i, block in enumerate(self.blocks) if own in block), 0)
+            self.blocks.insert(at, [line])
+
+
+def fold(path, into, what, first):
+    """The text of a file with another one's at its end; a header that it included goes first. What the other file opened
+    with heads its part, unless it only names its header."""
+    to, part = Parts(into), Parts(what)
+    own = '#include "%s"' % re.sub(r'^src/|\.c$', '', path)
+    own = own if path.endswith('.h') else own[:-1] + '.h"'
+    if path.endswith('.h'):
+        first = first or any(own in block for block in to.blocks)
+        for side in (to, part):
+            side.blocks = [[line for line in block if line != own] for block in side.blocks]
+            side.blocks = [block for block in side.blocks if block]
+    for block in part.blocks:
+        for line in block:
+            to.include(line, own)
+    body = part.body
+    if part.comment and not re.match(r'/\* See [\w/]+\.h\. \*/', part.comment):
+        body = part.comment + '\n' + body
+    to.body = body + '\n\n' + to.body if first else to.body + '\n\n' + body
+    to.defines += ''.join(line + '\n' for line in part.defines.split('\n') if line and line not in to.defines)
+    return to.text()
+
+
+def without_repeats(text):
+    """Every include once, the first time; a block that is empty then goes."""
+    parts, seen = Parts(text), set()
+    blocks = []
+    for block in parts.blocks:
+        block = [line for line in block if not (line in seen or seen.add(line))]
+        if block:
+            blocks.append(block)
+    if blocks == parts.blocks:
+        return text
+    parts.blocks = blocks
+    return parts.text()
 
 
 def is_text(path):
@@ -305,6 +385,14 @@ def main():
         if made != text:
             results[path] = made
 
+    for old, new, first in maps.folds:
+        if old in texts:
+            results[new] = fold(moves.get(new, new), results.get(new, texts[new]), results.pop(old, texts[old]), first)
+    if maps.folds:
+        for path in results:
+            if path.endswith(C_ENDINGS):
+                results[path] = without_repeats(results[path])
+
     # A new name that exists would make two things one.
     identifiers = {}
     wanted = {new for _, new, merge, _ in renamer.changed if not merge and not force}
@@ -335,8 +423,11 @@ def main():
             file.write(made)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(finish, results))
+    folded = {old for old, _, _ in maps.folds}
     for old, new in moves.items():
-        if old in tracked:
+        if old in folded and old in tracked:
+            os.remove(old)
+        elif old in tracked:
             os.makedirs(os.path.dirname(new) or '.', exist_ok=True)
             os.rename(old, new)
             folder = os.path.dirname(old)

@@ -8,6 +8,8 @@
 #
 # Lines of a map (tools/renames/NN-subject.map); @GLOB,GLOB behind the first word limits a line to these paths:
 #   file OLD NEW          moves a file or a folder; includes, guards and mentions of it follow
+#   fold OLD NEW [first]  puts a C file at the end of another (first: at its beginning), its includes among the others; the
+#                         comment that it opened with heads its part
 #   word OLD NEW [merge]  an identifier; one * stands for the rest of it: word reach_* path_policy_*
 #   tag OLD NEW [merge]   the same, only behind struct, enum or union
 #   part OLD NEW [merge]  a component of identifiers between underscores, names of tests aside; capitals stay capitals
