@@ -9,7 +9,7 @@
 #define GRAY_MATERIAL_BSDF_H
 
 #include "base/list.h"
-#include "material/medium_stack.h"
+#include "material/medium.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
 

@@ -6,9 +6,80 @@
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
-#include "material/fog.h"
-#include "material/medium_stack.h"
 #include "math/ray.h"
+#include "math/vec3.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* The stack of media a ray is inside of. Leaving a solid removes that solid wherever it is in the stack; the current
+ * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and
+ * changes it. */
+
+enum { MEDIUM_STACK_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/limits.md) */
+
+/* The inside of one solid. */
+struct medium {
+    uint32_t primitive; /* the solid: number of its primitive */
+    double ior;
+    struct vec3 absorption; /* the logarithm of light falls by this per unit */
+};
+
+struct medium_stack {
+    uint32_t count;
+    struct medium entries[MEDIUM_STACK_LIMIT];
+};
+
+/* A surface between two media, as a ray meets it. */
+struct medium_boundary {
+    struct medium medium; /* on the inner side of the surface */
+    bool entering;        /* the ray comes from the outer side */
+};
+
+static inline double medium_stack_ior(const struct medium_stack *stack) {
+    return stack->count ? stack->entries[stack->count - 1].ior : 1;
+}
+
+/* Only the entries in use. */
+void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from);
+void medium_stack_enter(struct medium_stack *stack, const struct medium *medium);
+/* The latest entry of the solid goes; nothing happens when it is not there (an open surface, a camera on it). */
+void medium_stack_leave(struct medium_stack *stack, uint32_t primitive);
+
+/* The stack behind the surface. */
+void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary);
+/* The index of refraction on the ray's side over the index behind the surface. */
+double medium_stack_eta(const struct medium_stack *stack, const struct medium_boundary *boundary);
+
+/* Fog: what a ray sees is attenuated along the ray, and the colour of the fog is added. It fills the open air, not the
+ * inside of transparent solids, and dims sight only, not the light of lamps. */
+
+enum fog_kind {
+    FOG_EXPONENTIAL, /* exp(-density d) */
+    FOG_SQUARED,     /* exp(-(density d)^2) */
+    FOG_LINEAR,      /* 1 before near, 0 beyond far, linear between */
+    FOG_HEIGHT,      /* density exp(-(y - base) / scale), integrated along the ray */
+    FOG_PROFILE,     /* a density for every height, linear between, constant beyond; integrated */
+    FOG_GRID,        /* a density for every cell of a box, none outside; integrated */
+};
+
+/* Arrays belong to the script's arena. */
+struct fog {
+    enum fog_kind kind;
+    struct vec3 colour;
+    double density;
+    double near, far;
+    double base, scale;
+    uint32_t count; /* of the profile: heights never fall */
+    const double *heights, *densities;
+    const double *sums; /* of the profile: integral of the density from heights[0] to heights[i] */
+    struct vec3 corner, size;
+    uint32_t cells[3]; /* densities[x + cells[0] (y + cells[1] z)] */
+    bool clear_sky;    /* the sky is seen without fog */
+};
+
+/* The share of what is `distance` away (INFINITY too) along the unit direction that is still seen; 0..1. */
+double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
 
 enum medium_ray {
     MEDIUM_RAY_SIGHT = 1,  /* from the camera, with all that is reflected, refracted and seen through holes after it */

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-struct medium_stack; /* of the solids the ray is inside of; material/medium_stack.h */
+struct medium_stack; /* of the solids the ray is inside of; material/medium.h */
 
 /* A cone round the ray: its diameter at t is width + spread * t * |direction| (world units). */
 struct footprint {

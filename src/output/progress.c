@@ -1,4 +1,4 @@
-/* The time left is that until the end that the render foretells (render/progress_estimate.h), and that of writing. The
+/* The time left is that until the end that the render foretells (render/time_estimate.h), and that of writing. The
  * bar is erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "output/progress.h"

@@ -3,7 +3,7 @@
 #ifndef GRAY_OUTPUT_PROGRESS_H
 #define GRAY_OUTPUT_PROGRESS_H
 
-#include "render/progress_estimate.h"
+#include "render/time_estimate.h"
 #include "session/options.h"
 #include "session/standard_streams.h"
 

@@ -2,11 +2,15 @@
 #include "render/film.h"
 
 #include "base/checked.h"
+#include "base/mem.h"
+#include "base/random.h"
+#include "base/sort.h"
 #include "image/png_write.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* However the part lies on the grid of tiles. */
@@ -223,4 +227,80 @@ void film_row_linear(const struct film *film, enum film_view view, uint32_t y, f
         for (int c = 0; c < 3; c++)
             line[3 * x + (uint32_t)c] = red ? (float)(c == 0) : rgb[c];
     }
+}
+
+/* Dealing in turns that go forwards and backwards ("snake draft"): whoever gets the dearest tile of one turn gets the
+ * cheapest of the next. The order of equal costs is the tiles' own scrambled number, so that neighbours, which cost
+ * alike, go to different shards. */
+
+struct tile_cost {
+    uint64_t cost, scrambled;
+    uint32_t tile;
+};
+
+static int dearest_first(const void *a, const void *b) {
+    const struct tile_cost *x = a, *y = b;
+    if (x->cost != y->cost)
+        return x->cost < y->cost ? 1 : -1;
+    return x->scrambled < y->scrambled ? -1 : x->scrambled > y->scrambled;
+}
+
+bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint32_t shards) {
+    uint32_t count = film_tile_count(film);
+    struct tile_cost *order = mem_alloc_zero(count, sizeof *order);
+    if (!order)
+        return false;
+    for (uint32_t tile = 0; tile < count; tile++)
+        order[tile] = (struct tile_cost){cost[tile], random_mix(tile), tile};
+    qsort(order, count, sizeof *order, dearest_first);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t turn = i / shards, place = i % shards;
+        uint32_t owner = turn % 2 ? shards - 1 - place : place;
+        if (owner != shard - 1 && atomic_load(&film->tiles[order[i].tile]) == FILM_TILE_WANTED)
+            atomic_store(&film->tiles[order[i].tile], FILM_TILE_ELSEWHERE);
+    }
+    mem_free(order);
+    return true;
+}
+
+/* ORDER_SPREAD: tile i comes at the place of i times the golden ratio, modulo 1. However many are done, they lie evenly
+ * over the rows of the picture and within them (Weyl's sequence; no irrational number is further from all fractions),
+ * so that their cost represents that of the others. ORDER_CENTRE: by the distance of their middles from that of
+ * the rendered part, in units of its half sides. */
+
+static uint32_t spread_key(uint32_t tile) {
+    return tile * UINT32_C(2654435769); /* 2^32 over the golden ratio */
+}
+
+static uint32_t centre_key(const struct film *film, uint32_t tile) {
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    double dx = ((double)r.x0 + (double)r.x1 - 2.0 * film->x0 - film->width) / film->width;
+    double dy = ((double)r.y0 + (double)r.y1 - 2.0 * film->y0 - film->height) / film->height;
+    return (uint32_t)((dx * dx + dy * dy) * 0x1p30);
+}
+
+bool tile_order(const struct film *film, enum order order, uint32_t *out) {
+    uint32_t count = film_tile_count(film);
+    uint64_t *keys = mem_alloc_zero((size_t)count + 1, sizeof *keys);
+    if (!keys)
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        uint64_t key = 0;
+        switch (order) {
+        case ORDER_ROWS:
+            break;
+        case ORDER_SPREAD:
+            key = spread_key(i);
+            break;
+        case ORDER_CENTRE:
+            key = centre_key(film, i);
+            break;
+        }
+        keys[i] = key << 32 | i;
+    }
+    sort_words(keys, count);
+    for (uint32_t i = 0; i < count; i++)
+        out[i] = (uint32_t)keys[i];
+    mem_free(keys);
+    return true;
 }

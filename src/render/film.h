@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "image/tone.h"
+#include "render/settings.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -112,5 +113,18 @@ enum film_view {
 void film_row_toned(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint8_t *line);
 void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line);
 void film_row_linear(const struct film *film, enum film_view view, uint32_t y, float *line);
+
+/* Which tiles of a picture belong to which of several machines, decided by each of them alone and the same on all. */
+
+/* cost: of every tile of the film, in any unit. Marks the tiles that belong to other shards (1 <= shard <= shards).
+ * False: no memory. The tiles are dealt out from the dearest to the cheapest, forwards and backwards in turn, so every
+ * shard gets as many tiles as any other, or one more, and nearly the same cost. Reserves nothing that outlives it. */
+bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint32_t shards);
+
+/* In which order tiles are made: the picture does not depend on it, but the view during rendering and the time estimate
+ * do. */
+
+/* out[k] is the k-th tile to be made; room for film_tile_count(film). False: no memory. */
+bool tile_order(const struct film *film, enum order order, uint32_t *out);
 
 #endif

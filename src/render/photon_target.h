@@ -6,7 +6,7 @@
 #include "base/arena.h"
 #include "base/pool.h"
 #include "light/light.h"
-#include "render/medium_stack_at.h"
+#include "world/world.h"
 
 struct photon_cell {
     double until;          /* sum of the importance of all cells up to this one */

@@ -2,7 +2,7 @@
  * or the limit is reached, rays go on untold: `mute` counts the levels below the last recorded ray. */
 #include "render/pixel_trace.h"
 
-#include "material/medium_stack.h"
+#include "material/medium.h"
 
 static void *take(struct pixel_trace *pixel_trace, size_t size) {
     void *block = arena_alloc(&pixel_trace->arena, size);

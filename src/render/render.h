@@ -5,10 +5,10 @@
 #define GRAY_RENDER_RENDER_H
 
 #include "base/pool.h"
-#include "material/fog.h"
+#include "material/medium.h"
 #include "render/film.h"
-#include "render/progress_estimate.h"
 #include "render/settings.h"
+#include "render/time_estimate.h"
 #include "world/world.h"
 
 struct pixel_trace;

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/list.h"
-#include "material/fog.h"
+#include "material/medium.h"
 #include "render/settings.h"
 #include "scene/node.h"
 

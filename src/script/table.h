@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "light/light.h"
 #include "light/sky.h"
-#include "material/fog.h"
 #include "material/material.h"
+#include "material/medium.h"
 #include "mesh/mesh.h"
 #include "scene/node.h"
 

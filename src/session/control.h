@@ -3,7 +3,7 @@
 #ifndef GRAY_SESSION_CONTROL_H
 #define GRAY_SESSION_CONTROL_H
 
-#include "render/progress_estimate.h"
+#include "render/time_estimate.h"
 #include "session/standard_streams.h"
 
 #include <stdatomic.h>

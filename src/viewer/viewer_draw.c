@@ -131,7 +131,7 @@ static uint32_t building_step(const struct viewer *viewer) {
     return viewer->control ? atomic_load_explicit(&viewer->control->build_step, memory_order_relaxed) : 0;
 }
 
-/* The picture itself by its work, with the time left once it is known (render/progress_estimate.h); coarse ones by
+/* The picture itself by its work, with the time left once it is known (render/time_estimate.h); coarse ones by
  * their tiles.
  */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {

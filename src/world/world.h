@@ -7,7 +7,7 @@
 #include "base/pool.h"
 #include "csg/geometry.h"
 #include "geometry/hit.h"
-#include "material/medium_stack.h"
+#include "material/medium.h"
 #include "math/motion.h"
 #include "scene/node.h"
 #include "world/scene_accel.h"
@@ -205,5 +205,12 @@ uint32_t world_closed_in(const struct world *world, const struct box *region, ui
 enum { WORLD_NESTING = 64 };
 uint32_t world_containing(const struct world *world, struct vec3 point, double ray_time, const uint32_t *candidates,
                           uint32_t count, struct world_scratch *scratch, uint32_t *primitive, uint32_t limit);
+
+/* The media around a point of the world. */
+
+/* The transparent solids that hold the point at a ray's time, found by counting crossings; closed[0 .. closed_count-1]
+ * are the solids in question (world_closed_in). */
+void medium_stack_at(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
+                     uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* Fog against its integrals, and the cut-off of rays that no longer count. */
-#include "material/fog.h"
+#include "material/medium.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

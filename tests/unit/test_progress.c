@@ -2,8 +2,7 @@
 #include "tests/harness.h"
 
 #include "base/random.h"
-#include "render/order.h"
-#include "render/progress_estimate.h"
+#include "render/film.h"
 #include "render/time_estimate.h"
 #include "tests/stage.h"
 

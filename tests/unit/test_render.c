@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "material/dielectric.h"
 #include "material/material_inputs.h"
-#include "material/medium_stack.h"
+#include "material/medium.h"
 #include "render/camera.h"
 
 #include <stdlib.h>
