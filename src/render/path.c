@@ -2,20 +2,24 @@
 #include "render/path.h"
 
 #include "render/integrator.h"
+#include "render/path_film.h"
 
 #include <stdio.h>
 
 struct film_record path_tracer_record(void) {
-    return (struct film_record){.floats = 0, .marks = 0};
+    return path_film_record();
 }
+
+/* Of the pixel's width, what a sample stands for: that of 64 samples, for any number of them, so that a picture does
+ * not depend on how many samples it will have. The rest of the filtering is the mean over the samples. */
+static const double footprint_share = 0.125;
 
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
     const struct settings *settings = &renderer->job->settings;
     tracer->samples = settings->path_samples > 0 ? (uint32_t)settings->path_samples : PATH_SAMPLES_DEFAULT;
     tracer->max_depth = settings->max_depth;
     renderer->sampler = SAMPLER_SOBOL;
-    /* Of the pixel's width, what a sample stands for. */
-    renderer->sample_share = 1 / sqrt((double)tracer->samples);
+    renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
     bool background = renderer->job->background_lights && sky_brightest(&world->sky) > 0;
@@ -39,15 +43,14 @@ static struct pixel_sample sample_place(const struct renderer *renderer, int64_t
     return (struct pixel_sample){x, y, at.x, at.y, number};
 }
 
-static void finish_pixel(const struct path_tracer *tracer, const struct renderer *renderer, const struct worker *worker,
-                         int64_t x, int64_t y, struct vec3 sum) {
-    struct film *film = renderer->job->film;
-    float *rgb = film->pixels[(size_t)(y - film->y0) * film->width + (size_t)(x - film->x0)].rgb;
-    struct vec3 colour = vec3_scale(sum, 1 / (double)tracer->samples);
-    rgb[0] = (float)colour.x;
-    rgb[1] = (float)colour.y;
-    rgb[2] = (float)colour.z;
-    observe_pixel(worker->state.observer, &(struct observed_pixel){.colour = colour, .full = true});
+static size_t pixel_index(const struct film *film, int64_t x, int64_t y) {
+    return (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+}
+
+static void finish_pixel(struct film *film, const struct worker *worker, int64_t x, int64_t y,
+                         const struct path_pixel *pixel) {
+    path_film_store(film, pixel_index(film, x, y), pixel);
+    observe_pixel(worker->state.observer, &(struct observed_pixel){.colour = path_pixel_mean(pixel), .full = true});
 }
 
 /* The samples of a row, pixel by pixel, batch by batch: a batch may hold samples of several pixels. */
@@ -56,9 +59,8 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
     struct batch *batch = &worker->batch;
     for (int64_t y = part->y0; y < part->y1; y++) {
         uint64_t all = (uint64_t)(part->x1 - part->x0) * tracer->samples, next = 0;
-        struct vec3 sum = {0, 0, 0};
+        struct path_pixel pixel = {0};
         while (next < all) {
-            uint64_t begin = next;
             for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
                 batch->places[batch->count++] = sample_place(renderer, part->x0 + (int64_t)(next / tracer->samples), y,
                                                              (uint32_t)(next % tracer->samples));
@@ -66,11 +68,11 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
             if (renderer_stopped(renderer, worker))
                 return false;
             for (uint32_t i = 0; i < batch->count; i++) {
-                sum = vec3_add(sum, batch->colours[i]);
-                if ((begin + i + 1) % tracer->samples != 0)
+                path_pixel_add(&pixel, batch->colours[i], 1);
+                if (pixel.samples < tracer->samples)
                     continue;
-                finish_pixel(tracer, renderer, worker, batch->places[i].x, y, sum);
-                sum = vec3_all(0);
+                finish_pixel(renderer->job->film, worker, batch->places[i].x, y, &pixel);
+                pixel = (struct path_pixel){0};
             }
         }
         renderer_tile_goes_on(renderer, worker, 1, (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0));

@@ -74,8 +74,8 @@ enum sampler_kind { SAMPLER_STRATA, SAMPLER_SOBOL };
 struct sampler {
     enum sampler_kind kind;
     uint64_t key;       /* of the sample: the root of the keys of its rays */
-    uint64_t pixel_key; /* of the strata; of the sequences */
-    uint32_t cell;      /* of `side` x `side` samples of the pixel; SOBOL: number of the sample */
+    uint64_t pixel_key; /* of the strata; of the sequences of the sample's half */
+    uint32_t cell;      /* of `side` x `side` samples of the pixel; SOBOL: number of the sample in its half */
     uint32_t side;      /* 1: the sample is alone */
 };
 
@@ -93,13 +93,14 @@ static inline struct sampler sampler_make(uint64_t seed, uint64_t pixel, uint64_
                             .side = number > 0 ? side : 1};
 }
 
-/* Sample `number` of a pixel for paths. */
+/* Sample `number` of a pixel for paths. Even and odd samples are two halves with sequences of their own: each half is
+ * an estimate of the pixel that does not depend on the other one. */
 static inline struct sampler sampler_make_sobol(uint64_t seed, uint64_t pixel, uint64_t number) {
     uint64_t key = random_combine(random_combine(seed, 2), pixel);
     return (struct sampler){.kind = SAMPLER_SOBOL,
                             .key = random_combine(key, number),
-                            .pixel_key = key,
-                            .cell = (uint32_t)number,
+                            .pixel_key = random_combine(key, UINT64_MAX - number % 2),
+                            .cell = (uint32_t)(number / 2),
                             .side = 1};
 }
 /* Its point in a dimension. */

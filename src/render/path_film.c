@@ -1,0 +1,116 @@
+/* The record of a path-traced pixel. A sum is two floats, the nearest one and what it leaves: 48 bits, so 2^24 samples
+ * add up without a visible loss. See path_film.h. */
+#include "render/path_film.h"
+
+#include <float.h>
+#include <math.h>
+
+enum {
+    RECORD_SUMS,                         /* of each half three channels */
+    RECORD_RESTS = RECORD_SUMS + 6,      /* what the floats of RECORD_SUMS leave */
+    RECORD_WEIGHTS = RECORD_RESTS + 6,   /* of each half */
+    RECORD_SAMPLES = RECORD_WEIGHTS + 2, /* at most PATH_SAMPLES_MAX = 2^24: a float holds it */
+    RECORD_SQUARES = RECORD_SAMPLES + 1, /* three channels */
+    RECORD_FLOATS = RECORD_SQUARES + 3
+};
+_Static_assert((int)RECORD_FLOATS <= (int)FILM_RECORD_FLOATS, "a tile cannot carry the record of a path-traced pixel");
+
+struct film_record path_film_record(void) {
+    return (struct film_record){.floats = RECORD_FLOATS, .marks = 0};
+}
+
+/* --- in the film --- */
+
+static struct vec3 load_sum(const float *sum, const float *rest) {
+    return vec3_make((double)sum[0] + (double)rest[0], (double)sum[1] + (double)rest[1],
+                     (double)sum[2] + (double)rest[2]);
+}
+
+struct path_pixel path_film_load(const struct film *film, size_t at) {
+    const float *record = &film->floats[at * film->record.floats], *squares = record + RECORD_SQUARES;
+    struct path_pixel pixel = {.samples = (uint32_t)record[RECORD_SAMPLES]};
+    for (int half = 0; half < 2; half++) {
+        pixel.sums[half] = load_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half);
+        pixel.weights[half] = (double)record[RECORD_WEIGHTS + half];
+    }
+    pixel.squares = vec3_make((double)squares[0], (double)squares[1], (double)squares[2]);
+    return pixel;
+}
+
+static void store_colour(float out[3], struct vec3 colour) {
+    out[0] = (float)colour.x;
+    out[1] = (float)colour.y;
+    out[2] = (float)colour.z;
+}
+
+void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel) {
+    float *record = &film->floats[at * film->record.floats];
+    for (int half = 0; half < 2; half++) {
+        float *sum = record + RECORD_SUMS + 3 * half;
+        store_colour(sum, pixel->sums[half]);
+        struct vec3 stored = vec3_make((double)sum[0], (double)sum[1], (double)sum[2]);
+        store_colour(record + RECORD_RESTS + 3 * half, vec3_sub(pixel->sums[half], stored));
+        record[RECORD_WEIGHTS + half] = (float)pixel->weights[half];
+    }
+    record[RECORD_SAMPLES] = (float)pixel->samples;
+    store_colour(record + RECORD_SQUARES, pixel->squares);
+    store_colour(film->pixels[at].rgb, path_pixel_mean(pixel));
+}
+
+/* --- sums --- */
+
+static double in_range(double x) {
+    return x > (double)FLT_MAX ? (double)FLT_MAX : x < -(double)FLT_MAX ? -(double)FLT_MAX : x;
+}
+
+/* To the nearest number that two floats hold as path_film_store does. */
+static double rounded_sum(double x) {
+    double near = (double)(float)in_range(x);
+    return near + (double)(float)(in_range(x) - near);
+}
+
+static double rounded_float(double x) {
+    return (double)(float)in_range(x);
+}
+
+void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight) {
+    unsigned half = pixel->samples % 2;
+    struct vec3 value = vec3_scale(radiance, weight), sum = vec3_add(pixel->sums[half], value);
+    pixel->sums[half] = vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
+    struct vec3 squares = vec3_add(pixel->squares, vec3_mul(value, value));
+    pixel->squares = vec3_make(rounded_float(squares.x), rounded_float(squares.y), rounded_float(squares.z));
+    pixel->weights[half] += weight;
+    pixel->samples++;
+}
+
+/* --- means and variances --- */
+
+static struct vec3 over(struct vec3 sum, double weight) {
+    return weight == 0 ? vec3_all(0) : vec3_scale(sum, 1 / weight);
+}
+
+struct vec3 path_pixel_mean(const struct path_pixel *pixel) {
+    struct vec3 mean = over(vec3_add(pixel->sums[0], pixel->sums[1]), pixel->weights[0] + pixel->weights[1]);
+    return vec3_make(in_range(mean.x), in_range(mean.y), in_range(mean.z));
+}
+
+struct vec3 path_pixel_half(const struct path_pixel *pixel, int half) {
+    return over(pixel->sums[half], pixel->weights[half]);
+}
+
+/* The mean of both halves has half the variance of one of them, and their difference twice that. */
+struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel) {
+    if (pixel->samples < 2)
+        return vec3_all(0);
+    struct vec3 difference = vec3_sub(path_pixel_half(pixel, 0), path_pixel_half(pixel, 1));
+    return vec3_scale(vec3_mul(difference, difference), 0.25);
+}
+
+struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
+    if (pixel->samples < 2)
+        return vec3_all(0);
+    double count = (double)pixel->samples;
+    struct vec3 mean = path_pixel_mean(pixel);
+    struct vec3 variance = vec3_sub(vec3_scale(pixel->squares, 1 / count), vec3_mul(mean, mean));
+    return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
+}
