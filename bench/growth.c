@@ -3,7 +3,7 @@
  * rounds; building uses all threads that are asked for.
  *
  *   growth [--most N] [--threads N] [--models FOLDER] [--svg FILE] [triangles] [instances] [stadium] */
-#include "accel/isa.h"
+#include "base/isa.h"
 #include "bench/rays_scenes.h"
 #include "mesh/mesh.h"
 #include "scene/node.h"

@@ -14,7 +14,7 @@
  * be. A disagreement is a ray where one kernel hits and the other does not, or the t differ by more than 1e-4 of their
  * size; both test in different precision, so rays past edges may differ: --explain lists the first few with the
  * distance to the nearest edge of the triangle in barycentric units. */
-#include "accel/isa.h"
+#include "base/isa.h"
 #include "bench/rays_scenes.h"
 #include "mesh/mesh.h"
 #include "world/world.h"
@@ -795,7 +795,7 @@ int main(int argc, char **argv) {
             bench.options.threads = atoi(value), i++;
         else if (strcmp(word, "--size") == 0)
             bench.options.size = (uint32_t)atoi(value) / 8 * 8, i++;
-        else if (strcmp(word, "--isa") == 0 && accel_select_isa(value))
+        else if (strcmp(word, "--isa") == 0 && cpu_select_isa(value))
             i++;
         else if (word[0] != '-' && bench.options.wanted_count < 64)
             names[bench.options.wanted_count++] = word;

@@ -447,7 +447,7 @@ void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct
     for (int i = 0; i < 3; i++)
         traversal->near_side[i] = traversal->inverse[i] < 0;
     traversal->t_min = ray->t_min;
-    traversal->isa = accel_isa();
+    traversal->isa = cpu_isa();
     traversal->steps = 0;
     traversal->top = 0;
     if (tree->item_count > 0) {
@@ -458,7 +458,7 @@ void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct
 
 bool box_tree_traversal_down(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
 #if defined(__x86_64__)
-    if (traversal->isa != ACCEL_ISA_BASE)
+    if (traversal->isa != CPU_ISA_BASE)
         return box_tree_traversal_down_avx2(traversal, t_max, item);
 #endif
     return box_tree_traversal_down_base(traversal, t_max, item);
@@ -466,7 +466,7 @@ bool box_tree_traversal_down(struct box_tree_traversal *traversal, double t_max,
 
 bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, uint32_t *item) {
 #if defined(__x86_64__)
-    if (traversal->isa != ACCEL_ISA_BASE)
+    if (traversal->isa != CPU_ISA_BASE)
         return box_tree_traversal_any_avx2(traversal, t_max, item);
 #endif
     return box_tree_traversal_any_base(traversal, t_max, item);

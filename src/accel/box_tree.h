@@ -6,8 +6,8 @@
 #ifndef GRAY_ACCEL_BOX_TREE_H
 #define GRAY_ACCEL_BOX_TREE_H
 
-#include "accel/isa.h"
 #include "base/error.h"
+#include "base/isa.h"
 #include "base/pool.h"
 #include "math/box.h"
 #include "math/ray.h"
@@ -49,7 +49,7 @@ struct box_tree_traversal {
     int near_side[3];
     double t_min;
     uint32_t steps; /* inner nodes looked at */
-    enum accel_isa isa;
+    enum cpu_isa isa;
     int top;
     uint32_t child[BOX_TREE_STACK];
     double enter[BOX_TREE_STACK];

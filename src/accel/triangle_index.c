@@ -12,10 +12,10 @@
 #include "accel/triangle_index.h"
 
 #include "accel/accel_cost.h"
-#include "accel/isa.h"
 #include "accel/triangle_build.h"
 #include "accel/triangle_kernels.h"
 #include "accel/triangle_layout.h"
+#include "base/isa.h"
 #include "base/mem.h"
 #include "math/elementary.h"
 
@@ -304,19 +304,19 @@ bool triangle_index_nearest(const struct triangle_index *index, const struct tri
                             struct triangle_hit *hit, struct triangle_cost *cost) {
     static bool (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
                                   struct triangle_hit *, struct triangle_cost *) = OF_EVERY_ISA(triangle_nearest);
-    return search[accel_isa()](index, set, ray, hit, cost);
+    return search[cpu_isa()](index, set, ray, hit, cost);
 }
 
 bool triangle_index_any(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         struct triangle_cost *cost) {
     static bool (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
                                   struct triangle_cost *) = OF_EVERY_ISA(triangle_any);
-    return search[accel_isa()](index, set, ray, cost);
+    return search[cpu_isa()](index, set, ray, cost);
 }
 
 void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         triangle_visit *visit, void *context, struct triangle_cost *cost) {
     static void (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
                                   triangle_visit *, void *, struct triangle_cost *) = OF_EVERY_ISA(triangle_all);
-    search[accel_isa()](index, set, ray, visit, context, cost);
+    search[cpu_isa()](index, set, ray, visit, context, cost);
 }

@@ -1,7 +1,7 @@
 /* Chooses the packet search for the processor; single rays where a packet does not pay or does not fit. */
 #include "accel/triangle_packet.h"
 
-#include "accel/isa.h"
+#include "base/isa.h"
 
 /* Below this the common work of a packet costs more than it saves. */
 enum { FEWEST = 4 };
@@ -14,10 +14,10 @@ uint64_t triangle_packet_nearest(const struct triangle_index *index, const struc
         return 0;
     if (__builtin_popcountll(active) >= FEWEST) {
 #if defined(__x86_64__)
-        if (accel_isa() == ACCEL_ISA_AVX512) {
+        if (cpu_isa() == CPU_ISA_AVX512) {
             if (triangle_packet_nearest_avx512(index, set, rays, active, hits, &answer, cost))
                 return answer;
-        } else if (accel_isa() == ACCEL_ISA_AVX2) {
+        } else if (cpu_isa() == CPU_ISA_AVX2) {
             if (triangle_packet_nearest_avx2(index, set, rays, active, hits, &answer, cost))
                 return answer;
         } else
@@ -44,10 +44,10 @@ uint64_t triangle_packet_any(const struct triangle_index *index, const struct tr
         return 0;
     if (__builtin_popcountll(active) >= FEWEST) {
 #if defined(__x86_64__)
-        if (accel_isa() == ACCEL_ISA_AVX512) {
+        if (cpu_isa() == CPU_ISA_AVX512) {
             if (triangle_packet_any_avx512(index, set, rays, active, &answer, cost))
                 return answer;
-        } else if (accel_isa() == ACCEL_ISA_AVX2) {
+        } else if (cpu_isa() == CPU_ISA_AVX2) {
             if (triangle_packet_any_avx2(index, set, rays, active, &answer, cost))
                 return answer;
         } else

@@ -2,9 +2,9 @@
 #define _GNU_SOURCE
 #include "host/program.h"
 
-#include "accel/isa.h"
 #include "base/arena.h"
 #include "base/file.h"
+#include "base/isa.h"
 #include "base/version.h"
 #include "formats/font.h"
 #include "formats/model.h"
@@ -114,7 +114,7 @@ static int act(struct options *options, const struct program_parts *parts, struc
     case ACTION_RENDER:
         break;
     }
-    if (!accel_select_isa(options_isa_name(options))) {
+    if (!cpu_select_isa(options_isa_name(options))) {
         (void)fprintf(stderr, "gray: --isa %s: this processor does not have it\n", options_isa_name(options));
         return ERROR_USAGE;
     }

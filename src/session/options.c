@@ -3,7 +3,7 @@
  * are no options are scripts; after "--" everything is. */
 #include "session/options_internal.h"
 
-#include "accel/isa.h"
+#include "base/isa.h"
 #include "base/size.h"
 #include "render/aov.h"
 
@@ -568,6 +568,6 @@ bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
 #define WORD_AFTER_AUTO(member, word) [(member) + 1] = (word),
 
 const char *options_isa_name(const struct options *options) {
-    static const char *const names[] = {"auto", ACCEL_ISAS(WORD_AFTER_AUTO)};
+    static const char *const names[] = {"auto", CPU_ISAS(WORD_AFTER_AUTO)};
     return names[options->isa];
 }

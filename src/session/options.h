@@ -91,7 +91,7 @@ struct digest options_digest(const struct options *options);
 bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);
 /* How many bytes may be written into files of pictures; UINT64_MAX: any number. */
 uint64_t options_picture_bytes(const struct options *options);
-/* What accel_select_isa understands. */
+/* What cpu_select_isa understands. */
 const char *options_isa_name(const struct options *options);
 /* --display: tev, tev:host, tev:host:port, term, term:kitty, term:sixel, term:blocks. False: none of these. */
 bool display_parse(const char *text, struct display_choice *out);

@@ -1,7 +1,7 @@
 /* The table of options, and --help, which prints it in this order. options_digest uses its groups. */
 #include "session/options_internal.h"
 
-#include "accel/isa.h"
+#include "base/isa.h"
 #include "render/aov.h"
 
 #include <limits.h>
@@ -13,7 +13,7 @@
 #define NO_FIELD 0, 0
 #define NO_RANGE 0, 0
 /* The first choice is the best set that the processor has. */
-#define ISA_CHOICES "auto" ACCEL_ISAS(LIST_BAR_WORD)
+#define ISA_CHOICES "auto" CPU_ISAS(LIST_BAR_WORD)
 #define LAYER_NAME(aov, name, channels) " " name ","
 #define SIZES 0x1p10, 0x1p50 /* 1 KiB to 1 PiB */
 

@@ -1,6 +1,6 @@
 /* Packets of rays against the same rays one by one, to the bit, for every instruction set. */
-#include "accel/isa.h"
 #include "accel/triangle_packet.h"
+#include "base/isa.h"
 #include "mesh_makers.h"
 
 static struct triangle_index *build(const struct triangle_set *set) {
@@ -81,8 +81,8 @@ static uint64_t check_packet(const struct triangle_index *index, const struct tr
             same = memcmp(&hits.t[i], &hit.t, 8) == 0 && memcmp(&hits.u[i], &hit.u, 8) == 0 &&
                    memcmp(&hits.v[i], &hit.v, 8) == 0 && hits.triangle[i] == hit.triangle && hits.enter[i] == hit.enter;
         if (!same)
-            test_fail(__FILE__, __LINE__, "%s, %s: ray %u of %u differs from the same ray alone", what,
-                      accel_isa_name(), i, packet->count);
+            test_fail(__FILE__, __LINE__, "%s, %s: ray %u of %u differs from the same ray alone", what, cpu_isa_name(),
+                      i, packet->count);
     }
     CHECK((found & ~active) == 0 && (any & ~active) == 0);
     return found;
@@ -109,7 +109,7 @@ static const char *const sets[] = {"base", "avx2", "avx512"};
 
 TEST(packets_answer_as_single_rays_for_every_instruction_set) {
     for (int isa = 0; isa < 3; isa++) {
-        if (!accel_select_isa(sets[isa]))
+        if (!cpu_select_isa(sets[isa]))
             continue;
         struct test_random random = {21};
         for (int kind = 0; kind < SOUP_KINDS; kind++) {
@@ -127,14 +127,14 @@ TEST(packets_answer_as_single_rays_for_every_instruction_set) {
         check_many(&m, &random, 300, "sphere");
         maker_free(&m);
     }
-    CHECK(accel_select_isa("auto"));
+    CHECK(cpu_select_isa("auto"));
 }
 
 /* Single precision knows places hardly better than the ball's triangles are large. */
 TEST(packets_from_near_a_tiny_dense_ball_in_a_wide_scene_answer_as_single_rays) {
     uint64_t hits = 0;
     for (int isa = 0; isa < 3; isa++) {
-        if (!accel_select_isa(sets[isa]))
+        if (!cpu_select_isa(sets[isa]))
             continue;
         struct test_random random = {22};
         for (int size = 1; size <= 6; size++) {
@@ -159,14 +159,14 @@ TEST(packets_from_near_a_tiny_dense_ball_in_a_wide_scene_answer_as_single_rays) 
             maker_free(&m);
         }
     }
-    CHECK(accel_select_isa("auto"));
+    CHECK(cpu_select_isa("auto"));
     CHECK(hits > 10000);
 }
 
 /* The rays of pixels: edges that run through every pixel, straight on and askew, and rays exactly through vertices. */
 TEST(the_camera_rays_of_a_tile_answer_as_single_rays) {
     for (int isa = 0; isa < 3; isa++) {
-        if (!accel_select_isa(sets[isa]))
+        if (!cpu_select_isa(sets[isa]))
             continue;
         struct maker m = {0};
         enum { SIDE = 33 };
@@ -193,5 +193,5 @@ TEST(the_camera_rays_of_a_tile_answer_as_single_rays) {
         triangle_index_destroy(index);
         maker_free(&m);
     }
-    CHECK(accel_select_isa("auto"));
+    CHECK(cpu_select_isa("auto"));
 }

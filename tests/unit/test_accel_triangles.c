@@ -1,6 +1,6 @@
 /* The index of triangles by itself: every instruction set, one voxel and many, any number of threads. */
-#include "accel/isa.h"
 #include "accel/triangle_layout.h"
+#include "base/isa.h"
 #include "mesh_makers.h"
 
 static struct triangle_index *build(const struct triangle_set *set, uint32_t voxels, struct pool *pool) {
@@ -58,7 +58,7 @@ static void check_searches(const struct maker *m, uint32_t voxels, int rays, str
         same = same && memcmp(all.once, every.once, sizeof all.once) == 0;
         if (!same)
             test_fail(__FILE__, __LINE__, "%s, %u voxels, %s: ray %d differs from trying every triangle", what, voxels,
-                      accel_isa_name(), i);
+                      cpu_isa_name(), i);
     }
     mesh_release(mesh);
     triangle_index_destroy(index);
@@ -68,7 +68,7 @@ TEST(every_instruction_set_and_number_of_voxels_answers_as_trying_every_triangle
     static const char *const sets[] = {"base", "avx2", "avx512"};
     int tried = 0;
     for (int isa = 0; isa < 3; isa++) {
-        if (!accel_select_isa(sets[isa]))
+        if (!cpu_select_isa(sets[isa]))
             continue;
         tried++;
         struct test_random random = {11}; /* the same rays for each */
@@ -86,8 +86,8 @@ TEST(every_instruction_set_and_number_of_voxels_answers_as_trying_every_triangle
         check_searches(&m, 500, 1000, &random, "torus");
         maker_free(&m);
     }
-    CHECK(accel_select_isa("auto"));
-    CHECK(!accel_select_isa("avx3"));
+    CHECK(cpu_select_isa("auto"));
+    CHECK(!cpu_select_isa("avx3"));
     CHECK(tried >= 1);
 }
 
@@ -149,7 +149,7 @@ TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_m
     static const char *const sets[] = {"base", "avx2", "avx512"};
     int hits = 0;
     for (int isa = 0; isa < 3; isa++) {
-        if (!accel_select_isa(sets[isa]))
+        if (!cpu_select_isa(sets[isa]))
             continue;
         struct test_random random = {77};
         for (int size = 1; size <= 6; size++) {
@@ -175,7 +175,7 @@ TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_m
             maker_free(&m);
         }
     }
-    CHECK(accel_select_isa("auto"));
+    CHECK(cpu_select_isa("auto"));
     CHECK(hits > 3000);
 }
 
@@ -184,7 +184,7 @@ TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_m
 TEST(rays_that_start_close_above_or_below_a_huge_floor_meet_what_trying_every_triangle_meets) {
     static const char *const sets[] = {"base", "avx2", "avx512"};
     for (int isa = 0; isa < 3; isa++) {
-        if (!accel_select_isa(sets[isa]))
+        if (!cpu_select_isa(sets[isa]))
             continue;
         struct test_random random = {15};
         int hits = 0, rays = 0;
@@ -219,7 +219,7 @@ TEST(rays_that_start_close_above_or_below_a_huge_floor_meet_what_trying_every_tr
         }
         CHECK(hits > rays / 6 && hits < rays * 5 / 6);
     }
-    CHECK(accel_select_isa("auto"));
+    CHECK(cpu_select_isa("auto"));
 }
 
 TEST(rays_that_are_not_finite_or_have_no_direction_meet_nothing) {

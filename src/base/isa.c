@@ -1,9 +1,9 @@
 /* The instruction set is asked of the processor once, when the program starts. */
-#include "accel/isa.h"
+#include "base/isa.h"
 
 #include <string.h>
 
-enum accel_isa accel_isa_chosen;
+enum cpu_isa cpu_isa_chosen;
 
 static bool has_avx2(void) {
 #if defined(__x86_64__)
@@ -24,24 +24,24 @@ static bool has_avx512(void) {
 }
 
 static __attribute__((constructor)) void choose_at_start(void) {
-    accel_isa_chosen = has_avx512() ? ACCEL_ISA_AVX512 : has_avx2() ? ACCEL_ISA_AVX2 : ACCEL_ISA_BASE;
+    cpu_isa_chosen = has_avx512() ? CPU_ISA_AVX512 : has_avx2() ? CPU_ISA_AVX2 : CPU_ISA_BASE;
 }
 
-bool accel_select_isa(const char *name) {
+bool cpu_select_isa(const char *name) {
     if (strcmp(name, "auto") == 0)
         choose_at_start();
     else if (strcmp(name, "base") == 0)
-        accel_isa_chosen = ACCEL_ISA_BASE;
+        cpu_isa_chosen = CPU_ISA_BASE;
     else if (strcmp(name, "avx2") == 0 && has_avx2())
-        accel_isa_chosen = ACCEL_ISA_AVX2;
+        cpu_isa_chosen = CPU_ISA_AVX2;
     else if (strcmp(name, "avx512") == 0 && has_avx512())
-        accel_isa_chosen = ACCEL_ISA_AVX512;
+        cpu_isa_chosen = CPU_ISA_AVX512;
     else
         return false;
     return true;
 }
 
-const char *accel_isa_name(void) {
-    static const char *const names[] = {ACCEL_ISAS(LIST_WORD)};
-    return names[accel_isa_chosen];
+const char *cpu_isa_name(void) {
+    static const char *const names[] = {CPU_ISAS(LIST_WORD)};
+    return names[cpu_isa_chosen];
 }

@@ -1,0 +1,25 @@
+/* Which instruction set the kernels use: the best the processor has, unless pinned. The answers do not depend on it. */
+#ifndef GRAY_BASE_ISA_H
+#define GRAY_BASE_ISA_H
+
+#include "base/list.h"
+
+#include <stdbool.h>
+
+#define CPU_ISAS(X)                                                                                                    \
+    X(CPU_ISA_BASE, "base")                                                                                            \
+    X(CPU_ISA_AVX2, "avx2")                                                                                            \
+    X(CPU_ISA_AVX512, "avx512")
+enum cpu_isa { CPU_ISAS(LIST_MEMBER) };
+
+/* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then).
+ * Call before the first search and from one thread. */
+bool cpu_select_isa(const char *name);
+const char *cpu_isa_name(void);
+/* Written by cpu_select_isa alone. */
+extern enum cpu_isa cpu_isa_chosen;
+static inline enum cpu_isa cpu_isa(void) {
+    return cpu_isa_chosen;
+}
+
+#endif
