@@ -19,6 +19,26 @@ struct film_record path_film_record(void) {
     return (struct film_record){.floats = RECORD_FLOATS, .marks = 0};
 }
 
+/* --- what a record can hold --- */
+
+static double in_range(double x) {
+    return x > (double)FLT_MAX ? (double)FLT_MAX : x < -(double)FLT_MAX ? -(double)FLT_MAX : x;
+}
+
+/* To the nearest number that two floats hold as path_film_store does. */
+static double rounded_sum(double x) {
+    double near = (double)(float)in_range(x), rest = in_range(x) - near;
+    return near + (double)(float)rest;
+}
+
+static double rounded_float(double x) {
+    return (double)(float)in_range(x);
+}
+
+static struct vec3 nearest_floats(struct vec3 c) {
+    return vec3_make(rounded_float(c.x), rounded_float(c.y), rounded_float(c.z));
+}
+
 /* --- in the film --- */
 
 static struct vec3 load_sum(const float *sum, const float *rest) {
@@ -46,10 +66,9 @@ static void store_colour(float out[3], struct vec3 colour) {
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel) {
     float *record = &film->floats[at * film->record.floats];
     for (int half = 0; half < 2; half++) {
-        float *sum = record + RECORD_SUMS + 3 * half;
-        store_colour(sum, pixel->sums[half]);
-        struct vec3 stored = vec3_make((double)sum[0], (double)sum[1], (double)sum[2]);
-        store_colour(record + RECORD_RESTS + 3 * half, vec3_sub(pixel->sums[half], stored));
+        struct vec3 near = nearest_floats(pixel->sums[half]);
+        store_colour(record + RECORD_SUMS + 3 * half, near);
+        store_colour(record + RECORD_RESTS + 3 * half, vec3_sub(pixel->sums[half], near));
         record[RECORD_WEIGHTS + half] = (float)pixel->weights[half];
     }
     record[RECORD_SAMPLES] = (float)pixel->samples;
@@ -59,26 +78,11 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
 
 /* --- sums --- */
 
-static double in_range(double x) {
-    return x > (double)FLT_MAX ? (double)FLT_MAX : x < -(double)FLT_MAX ? -(double)FLT_MAX : x;
-}
-
-/* To the nearest number that two floats hold as path_film_store does. */
-static double rounded_sum(double x) {
-    double near = (double)(float)in_range(x);
-    return near + (double)(float)(in_range(x) - near);
-}
-
-static double rounded_float(double x) {
-    return (double)(float)in_range(x);
-}
-
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight) {
     unsigned half = pixel->samples % 2;
     struct vec3 value = vec3_scale(radiance, weight), sum = vec3_add(pixel->sums[half], value);
     pixel->sums[half] = vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
-    struct vec3 squares = vec3_add(pixel->squares, vec3_mul(value, value));
-    pixel->squares = vec3_make(rounded_float(squares.x), rounded_float(squares.y), rounded_float(squares.z));
+    pixel->squares = nearest_floats(vec3_add(pixel->squares, vec3_mul(value, value)));
     pixel->weights[half] += weight;
     pixel->samples++;
 }
