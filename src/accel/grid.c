@@ -227,7 +227,7 @@ void grid_destroy(struct grid *grid) {
 
 size_t grid_memory(const struct grid *grid) {
     size_t cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    size_t bytes = sizeof *grid + grid->unbounded_count * sizeof *grid->unbounded;
+    size_t bytes = grid->unbounded_count * sizeof *grid->unbounded;
     if (grid->cell_start)
         bytes += (cells + 2 + grid->cell_start[cells]) * sizeof(uint32_t);
     return bytes;

@@ -59,18 +59,7 @@ void scene_accel_destroy(struct scene_accel *accel) {
 }
 
 size_t scene_accel_memory(const struct scene_accel *accel) {
-    switch (accel->kind) {
-    case ACCEL_GRID:
-        return grid_memory(&accel->grid);
-    case ACCEL_AUTO:
-    case ACCEL_BVH:
-        return box_tree_memory(&accel->tree);
-    case ACCEL_KDTREE:
-        return kd_tree_memory(&accel->kd_tree);
-    case ACCEL_NONE:
-        return 0;
-    }
-    return 0;
+    return grid_memory(&accel->grid) + box_tree_memory(&accel->tree) + kd_tree_memory(&accel->kd_tree);
 }
 
 /* --- cells --- */

@@ -8,7 +8,8 @@
 #include "accel/kd_tree.h"
 #include "mesh/mesh.h"
 
-/* Zero-initialised: nothing to destroy. Owns what it holds; the structures of other kinds stay zero. */
+/* Zero-initialised: nothing to destroy. Owns what it holds; the structures of other kinds stay zero.
+ * What differs between the kinds is a switch of each operation: build, cells, and the search (world_search.c). */
 struct scene_accel {
     enum accel_kind kind; /* once built never ACCEL_AUTO */
     struct grid grid;
@@ -32,7 +33,7 @@ void scene_accel_cells(const struct scene_accel *accel, uint32_t limit, scene_ac
 
 /* The hierarchy that beams and shafts go through; NULL: there is none. */
 static inline const struct box_tree *scene_accel_hierarchy(const struct scene_accel *accel) {
-    return accel->kind == ACCEL_BVH ? &accel->tree : NULL;
+    return accel->tree.nodes ? &accel->tree : NULL;
 }
 
 #endif

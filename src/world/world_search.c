@@ -1,5 +1,6 @@
-/* What a ray meets first, and whether it meets anything. Every traversal of the accelerator ends in the same tests of
- * one primitive. A primitive in several cells is tested once per ray: a small mailbox remembers it. */
+/* What a ray meets first, and whether it meets anything: one traversal of the accelerator, compiled for both searches,
+ * which ends in the same tests of one primitive. A primitive in several cells is tested once per ray: a small mailbox
+ * remembers it. */
 #include "world/world_internal.h"
 
 #include "material/material_eval.h"
@@ -21,19 +22,7 @@ void world_scratch_destroy(struct world_scratch *scratch) {
     geom_scratch_destroy(&scratch->geom);
 }
 
-/* --- nearest --- */
-
-struct search {
-    const struct world *world;
-    const struct ray *ray;
-    struct world_scratch *scratch;
-    struct box_probe probe; /* not for the hierarchy, which has one of its own */
-    struct ray limited;     /* the ray with t_max just behind the best answer, so that an equal t is still found */
-    /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
-    struct crossing *best, *next;
-    uint32_t primitive;
-    bool found;
-};
+/* --- one primitive --- */
 
 /* Faces that are not seen are passed: the search goes on behind them. */
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
@@ -67,139 +56,6 @@ bool world_ask_nearest(const struct world *world, uint32_t index, const struct r
         }
     }
 }
-
-static void try_primitive(struct search *s, uint32_t index) {
-    if (index + 1 == s->ray->skip_primitive)
-        return;
-    bool as_it_is = s->world->primitives[index].linear == LINEAR_NONE;
-    struct ray ray_object;
-    struct crossing *crossing = s->next;
-    if (!as_it_is)
-        ray_object = primitive_ray(s->world, index, &s->limited);
-    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, crossing))
-        return;
-    if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->primitive)))
-        return;
-    s->next = s->best;
-    s->best = crossing;
-    s->primitive = index;
-    s->found = true;
-    double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
-    s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
-}
-
-static void try_boxed(struct search *s, uint32_t index) {
-    s->scratch->geom.box_tests++;
-    if (box_probe_meets(&s->probe, &s->world->boxes[index], s->limited.t_min, s->limited.t_max))
-        try_primitive(s, index);
-}
-
-struct mailbox {
-    uint32_t seen[MAILBOX];
-};
-
-static bool mailbox_first(struct mailbox *box, uint32_t index) {
-    uint32_t *slot = &box->seen[index % MAILBOX];
-    if (*slot == index)
-        return false;
-    *slot = index;
-    return true;
-}
-
-static void search_grid(struct search *s) {
-    struct mailbox mailbox;
-    memset(&mailbox, 0xff, sizeof mailbox);
-    s->probe = box_probe_make(s->ray);
-    struct grid_traversal traversal = {0};
-    for (bool go_on = grid_traversal_begin(&traversal, &s->world->accel.grid, s->ray); go_on;
-         go_on = grid_traversal_next(&traversal)) {
-        for (uint32_t i = 0; i < traversal.count; i++) {
-            if (mailbox_first(&mailbox, traversal.items[i]))
-                try_boxed(s, traversal.items[i]);
-        }
-        /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
-        if (s->found && s->best->t < traversal.t_exit)
-            break;
-    }
-    s->scratch->geom.cost.voxels += traversal.voxels;
-}
-
-static void search_tree(struct search *s) {
-    struct box_tree_traversal traversal;
-    uint32_t index;
-    box_tree_traversal_begin(&traversal, &s->world->accel.tree, s->ray);
-    while (box_tree_traversal_next(&traversal, s->limited.t_max, &index))
-        try_primitive(s, index);
-    s->scratch->geom.cost.hierarchy_steps += traversal.steps;
-}
-
-/* Boxes are padded, so that the points of their primitives as they are computed lie inside: no slack is needed. */
-static void search_kd_tree(struct search *s) {
-    struct mailbox mailbox;
-    memset(&mailbox, 0xff, sizeof mailbox);
-    s->probe = box_probe_make(s->ray);
-    struct kd_traversal traversal;
-    kd_traversal_begin(&traversal, &s->world->accel.kd_tree, s->ray, 0);
-    while (kd_traversal_next(&traversal, s->limited.t_max)) {
-        for (uint32_t i = 0; i < traversal.count; i++) {
-            if (mailbox_first(&mailbox, traversal.items[i]))
-                try_boxed(s, traversal.items[i]);
-        }
-    }
-    s->scratch->geom.cost.hierarchy_steps += traversal.steps;
-    s->scratch->geom.cost.voxels += traversal.leaves;
-}
-
-static void search_all(struct search *s) {
-    s->probe = box_probe_make(s->ray);
-    for (uint32_t i = 0; i < s->world->primitive_count; i++)
-        try_boxed(s, i);
-}
-
-bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
-                            uint32_t *primitive, struct crossing *crossing) {
-    struct search s;
-    struct crossing other;
-    s.world = world;
-    s.ray = ray;
-    s.scratch = scratch;
-    s.limited = *ray;
-    s.found = false;
-    s.primitive = 0;
-    s.next = crossing;
-    s.best = &other;
-    scratch->rays++;
-    switch (world->accel.kind) {
-    case ACCEL_AUTO:
-    case ACCEL_BVH:
-        search_tree(&s);
-        break;
-    case ACCEL_GRID:
-        search_grid(&s);
-        break;
-    case ACCEL_KDTREE:
-        search_kd_tree(&s);
-        break;
-    case ACCEL_NONE:
-        search_all(&s);
-        break;
-    }
-    *primitive = s.primitive;
-    if (s.found && s.best != crossing)
-        *crossing = *s.best;
-    return s.found;
-}
-
-bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
-    uint32_t primitive;
-    struct crossing crossing;
-    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
-        return false;
-    world_describe(world, ray, primitive, &crossing, hit);
-    return true;
-}
-
-/* --- anything in the way --- */
 
 /* A surface with holes occludes where its opacity is at least one half: shadows have two values. */
 static bool any_with_holes(const struct world *world, uint32_t index, const struct ray *ray,
@@ -243,105 +99,216 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
     }
 }
 
-static bool any_boxed(const struct world *world, uint32_t index, const struct ray *ray, const struct box_probe *probe,
-                      struct world_scratch *scratch) {
-    scratch->geom.box_tests++;
-    return box_probe_meets(probe, &world->boxes[index], ray->t_min, ray->t_max) &&
-           world_ask_any(world, index, ray, scratch);
+/* --- the accelerator --- */
+
+/* Always a constant where it is passed, so that each search is compiled without the other. */
+enum search_mode { SEARCH_NEAREST, SEARCH_ANY };
+#define FOR_EACH_MODE static inline __attribute__((always_inline))
+
+struct search {
+    const struct world *world;
+    const struct ray *ray;
+    struct world_scratch *scratch;
+    struct box_probe probe; /* SEARCH_NEAREST: not for the hierarchy, which has one of its own */
+    bool found;
+    uint32_t primitive; /* that was found; of SEARCH_ANY before that: one that was tested already, or WORLD_NOTHING */
+    /* SEARCH_NEAREST: */
+    struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
+    /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
+    struct crossing *best, *next;
+};
+
+static void try_nearest(struct search *s, uint32_t index) {
+    if (index + 1 == s->ray->skip_primitive)
+        return;
+    bool as_it_is = s->world->primitives[index].linear == LINEAR_NONE;
+    struct ray ray_object;
+    struct crossing *crossing = s->next;
+    if (!as_it_is)
+        ray_object = primitive_ray(s->world, index, &s->limited);
+    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, crossing))
+        return;
+    if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->primitive)))
+        return;
+    s->next = s->best;
+    s->best = crossing;
+    s->primitive = index;
+    s->found = true;
+    double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
+    s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
 }
 
-static bool any_in_grid(const struct world *world, const struct ray *ray, const struct box_probe *probe,
-                        struct world_scratch *scratch) {
-    struct mailbox mailbox;
-    memset(&mailbox, 0xff, sizeof mailbox);
-    (void)mailbox_first(&mailbox, scratch->shadow_cache[scratch->light]);
-    struct grid_traversal traversal = {0};
-    bool found = false;
-    for (bool go_on = grid_traversal_begin(&traversal, &world->accel.grid, ray); go_on && !found;
-         go_on = grid_traversal_next(&traversal)) {
-        for (uint32_t i = 0; i < traversal.count && !found; i++) {
-            uint32_t index = traversal.items[i];
-            found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
-            if (found)
-                scratch->shadow_cache[scratch->light] = index;
-        }
-        if (found)
-            break;
+/* Tests one primitive. True: the search is over. */
+FOR_EACH_MODE bool try_primitive(struct search *s, uint32_t index, enum search_mode mode) {
+    if (mode == SEARCH_NEAREST) {
+        try_nearest(s, index);
+        return false;
     }
-    scratch->geom.cost.voxels += traversal.voxels;
-    return found;
+    if (!world_ask_any(s->world, index, s->ray, s->scratch))
+        return false;
+    s->primitive = index;
+    return s->found = true;
 }
 
-static bool any_in_tree(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
-    struct box_tree_traversal traversal;
-    uint32_t index, asked = scratch->shadow_cache[scratch->light];
-    bool found = false;
-    box_tree_traversal_begin(&traversal, &world->accel.tree, ray);
-    while (!found && box_tree_traversal_any(&traversal, ray->t_max, &index)) {
-        found = index != asked && world_ask_any(world, index, ray, scratch);
-        if (found)
-            scratch->shadow_cache[scratch->light] = index;
-    }
-    scratch->geom.cost.hierarchy_steps += traversal.steps;
-    return found;
+/* Where the ray ends for now. */
+FOR_EACH_MODE double search_end(const struct search *s, enum search_mode mode) {
+    return mode == SEARCH_NEAREST ? s->limited.t_max : s->ray->t_max;
 }
 
-static bool any_in_kd_tree(const struct world *world, const struct ray *ray, const struct box_probe *probe,
-                           struct world_scratch *scratch) {
-    struct mailbox mailbox;
-    memset(&mailbox, 0xff, sizeof mailbox);
-    (void)mailbox_first(&mailbox, scratch->shadow_cache[scratch->light]);
-    struct kd_traversal traversal;
-    bool found = false;
-    kd_traversal_begin(&traversal, &world->accel.kd_tree, ray, 0);
-    while (!found && kd_traversal_next(&traversal, ray->t_max)) {
-        for (uint32_t i = 0; i < traversal.count && !found; i++) {
-            uint32_t index = traversal.items[i];
-            found = mailbox_first(&mailbox, index) && any_boxed(world, index, ray, probe, scratch);
-            if (found)
-                scratch->shadow_cache[scratch->light] = index;
-        }
-    }
-    scratch->geom.cost.hierarchy_steps += traversal.steps;
-    scratch->geom.cost.voxels += traversal.leaves;
-    return found;
+FOR_EACH_MODE bool try_boxed(struct search *s, uint32_t index, enum search_mode mode) {
+    s->scratch->geom.box_tests++;
+    return box_probe_meets(&s->probe, &s->world->boxes[index], s->ray->t_min, search_end(s, mode)) &&
+           try_primitive(s, index, mode);
 }
 
-static bool any_of_all(const struct world *world, const struct ray *ray, const struct box_probe *probe,
-                       struct world_scratch *scratch) {
-    for (uint32_t i = 0; i < world->primitive_count; i++) {
-        if (any_boxed(world, i, ray, probe, scratch))
+struct mailbox {
+    uint32_t seen[MAILBOX];
+};
+
+static bool mailbox_first(struct mailbox *box, uint32_t index) {
+    uint32_t *slot = &box->seen[index % MAILBOX];
+    if (*slot == index)
+        return false;
+    *slot = index;
+    return true;
+}
+
+FOR_EACH_MODE void probe_begin(struct search *s, enum search_mode mode) {
+    if (mode == SEARCH_NEAREST)
+        s->probe = box_probe_make(s->ray);
+}
+
+FOR_EACH_MODE void mailbox_begin(struct mailbox *box, const struct search *s, enum search_mode mode) {
+    memset(box, 0xff, sizeof *box);
+    if (mode == SEARCH_ANY)
+        (void)mailbox_first(box, s->primitive);
+}
+
+FOR_EACH_MODE bool try_list(struct search *s, const uint32_t *items, uint32_t count, struct mailbox *mailbox,
+                            enum search_mode mode) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (mailbox_first(mailbox, items[i]) && try_boxed(s, items[i], mode))
             return true;
     }
     return false;
 }
 
-static bool any_in_accel(const struct world *world, const struct ray *ray, const struct box_probe *probe,
-                         struct world_scratch *scratch) {
-    switch (world->accel.kind) {
-    case ACCEL_GRID:
-        return any_in_grid(world, ray, probe, scratch);
+FOR_EACH_MODE void search_grid(struct search *s, enum search_mode mode) {
+    struct mailbox mailbox;
+    probe_begin(s, mode);
+    mailbox_begin(&mailbox, s, mode);
+    struct grid_traversal traversal = {0};
+    for (bool go_on = grid_traversal_begin(&traversal, &s->world->accel.grid, s->ray); go_on;
+         go_on = grid_traversal_next(&traversal)) {
+        if (try_list(s, traversal.items, traversal.count, &mailbox, mode))
+            break;
+        /* Strictly before the end of the voxel: an equal t may still wait in the next one. */
+        if (mode == SEARCH_NEAREST && s->found && s->best->t < traversal.t_exit)
+            break;
+    }
+    s->scratch->geom.cost.voxels += traversal.voxels;
+}
+
+FOR_EACH_MODE void search_tree(struct search *s, enum search_mode mode) {
+    struct box_tree_traversal traversal;
+    uint32_t index, tested = s->primitive;
+    box_tree_traversal_begin(&traversal, &s->world->accel.tree, s->ray);
+    while (mode == SEARCH_NEAREST ? box_tree_traversal_next(&traversal, search_end(s, mode), &index)
+                                  : box_tree_traversal_any(&traversal, search_end(s, mode), &index)) {
+        if ((mode == SEARCH_NEAREST || index != tested) && try_primitive(s, index, mode))
+            break;
+    }
+    s->scratch->geom.cost.hierarchy_steps += traversal.steps;
+}
+
+/* Boxes are padded, so that the points of their primitives as they are computed lie inside: no slack is needed. */
+FOR_EACH_MODE void search_kd_tree(struct search *s, enum search_mode mode) {
+    struct mailbox mailbox;
+    probe_begin(s, mode);
+    mailbox_begin(&mailbox, s, mode);
+    struct kd_traversal traversal;
+    kd_traversal_begin(&traversal, &s->world->accel.kd_tree, s->ray, 0);
+    while (kd_traversal_next(&traversal, search_end(s, mode))) {
+        if (try_list(s, traversal.items, traversal.count, &mailbox, mode))
+            break;
+    }
+    s->scratch->geom.cost.hierarchy_steps += traversal.steps;
+    s->scratch->geom.cost.voxels += traversal.leaves;
+}
+
+/* What the others are compared with: it depends on nothing, so it leaves no blocker behind to be tested first. */
+FOR_EACH_MODE void search_all(struct search *s, enum search_mode mode) {
+    probe_begin(s, mode);
+    for (uint32_t i = 0; i < s->world->primitive_count; i++) {
+        if (try_boxed(s, i, mode)) {
+            s->primitive = WORLD_NOTHING;
+            return;
+        }
+    }
+}
+
+FOR_EACH_MODE void search_accel(struct search *s, enum search_mode mode) {
+    switch (s->world->accel.kind) {
     case ACCEL_AUTO:
     case ACCEL_BVH:
-        return any_in_tree(world, ray, scratch);
+        search_tree(s, mode);
+        return;
+    case ACCEL_GRID:
+        search_grid(s, mode);
+        return;
     case ACCEL_KDTREE:
-        return any_in_kd_tree(world, ray, probe, scratch);
+        search_kd_tree(s, mode);
+        return;
     case ACCEL_NONE:
-        return any_of_all(world, ray, probe, scratch);
+        search_all(s, mode);
+        return;
     }
-    return false;
+}
+
+bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
+                            uint32_t *primitive, struct crossing *crossing) {
+    struct search s;
+    struct crossing other;
+    s.world = world;
+    s.ray = ray;
+    s.scratch = scratch;
+    s.limited = *ray;
+    s.found = false;
+    s.primitive = 0;
+    s.next = crossing;
+    s.best = &other;
+    scratch->rays++;
+    search_accel(&s, SEARCH_NEAREST);
+    *primitive = s.primitive;
+    if (s.found && s.best != crossing)
+        *crossing = *s.best;
+    return s.found;
+}
+
+bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit) {
+    uint32_t primitive;
+    struct crossing crossing;
+    if (!world_nearest_crossing(world, ray, scratch, &primitive, &crossing))
+        return false;
+    world_describe(world, ray, primitive, &crossing, hit);
+    return true;
 }
 
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
-    scratch->any_rays++;
-    struct box_probe probe = box_probe_make(ray);
     /* Neighbouring shadow rays mostly end at the same primitive: it is tested first. The answer cannot depend on it. */
     uint32_t *blocker = &scratch->shadow_cache[scratch->light];
-    if (*blocker < world->primitive_count && any_boxed(world, *blocker, ray, &probe, scratch))
-        return true;
-    bool found = any_in_accel(world, ray, &probe, scratch);
-    *blocker = found ? *blocker : WORLD_NOTHING;
-    return found;
+    struct search s;
+    s.world = world;
+    s.ray = ray;
+    s.scratch = scratch;
+    s.found = false;
+    s.primitive = *blocker;
+    s.probe = box_probe_make(ray);
+    scratch->any_rays++;
+    if (!(*blocker < world->primitive_count && try_boxed(&s, *blocker, SEARCH_ANY)))
+        search_accel(&s, SEARCH_ANY);
+    *blocker = s.found ? s.primitive : WORLD_NOTHING;
+    return s.found;
 }
 
 void medium_stack_at(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
