@@ -11,6 +11,7 @@
 #define GRAY_LIGHT_LIGHT_H
 
 #include "base/list.h"
+#include "light/light_box.h"
 #include "math/box.h"
 #include "math/ray.h"
 #include "math/sampling.h"
@@ -107,12 +108,6 @@ struct light_arrival {
 };
 /* False: the point is the light's own. */
 bool light_arrive(const struct light *light, struct vec3 point, struct light_arrival *out);
-
-/* A rectangle as a point sees it (light_rectangle.c). */
-struct spherical_rectangle {
-    struct vec3 from, x, y, z;
-    double x0, x1, y0, y1, z0, b0, b1, k, angle; /* angle: the solid angle */
-};
 
 /* What samples of a light need to know about the point that they are for. */
 struct light_context {
@@ -226,10 +221,5 @@ enum light_property {
 unsigned light_properties(const struct light *light);
 /* The middle of one that stands somewhere, and of a mesh once the world is built. False: there is none. */
 bool light_centre(const struct light *light, struct vec3 *out);
-
-/* light_rectangle.c. False: its edges are not at right angles, or it is seen too small for it to matter. */
-bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
-                              struct spherical_rectangle *out);
-struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place);
 
 #endif

@@ -1,10 +1,24 @@
-/* The solid angle of a box with right angles, for what has no sampler of its own: at most three of its faces are seen
- * from outside, each a rectangle (light_rectangle.c). Directions are uniform in the solid angle of all of them. */
+/* Rectangles and boxes sampled by the solid angle that they fill. */
 #ifndef GRAY_LIGHT_LIGHT_BOX_H
 #define GRAY_LIGHT_LIGHT_BOX_H
 
-#include "light/light.h"
+#include "math/sampling.h"
+#include "math/vec3.h"
 
+#include <stdbool.h>
+
+/* A rectangle as a point sees it. */
+struct spherical_rectangle {
+    struct vec3 from, x, y, z;
+    double x0, x1, y0, y1, z0, b0, b1, k, angle; /* angle: the solid angle */
+};
+/* False: its edges are not at right angles, or it is seen too small for it to matter. */
+bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+                              struct spherical_rectangle *out);
+struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place);
+
+/* A box with right angles: at most three of its faces are seen from outside, each a rectangle. Directions are uniform
+ * in the solid angle of all of them. */
 struct light_box {
     struct vec3 corner, edges[3]; /* edges: at right angles */
 };

@@ -1,10 +1,71 @@
-/* Changes of lights go by what they have (light_properties), whatever their kind. Plain arithmetic on the numbers that
- * scripts give, so that a change of the window and the same change by a script are the same bits. */
+/* What a light has, for listings and editors. Changes go by that (light_properties), whatever the kind: plain
+ * arithmetic on the numbers that scripts give, so that a change of the window and the same change by a script are the
+ * same bits. */
 #include "light/light_edit.h"
 
+#include "light/light_mesh.h"
 #include "math/elementary.h"
 
 #include <math.h>
+
+#define KIND_NAME(kind, name)                                                                                          \
+    case kind:                                                                                                         \
+        return name;
+
+const char *light_kind_name(enum light_kind kind) {
+    switch (kind) { LIGHT_KINDS(KIND_NAME) }
+    return "?";
+}
+
+bool light_is_seen(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_SKY:
+        return true;
+    case LIGHT_MESH: /* the mesh shows the emission of its material */
+        return !light->has_emission && light->mesh->shown;
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+        break;
+    }
+    return light->visible;
+}
+
+unsigned light_properties(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_POINT:
+        return LIGHT_HAS_POSITION | (light->attenuation == ATTENUATION_RANGE ? LIGHT_HAS_RANGE : 0U);
+    case LIGHT_PARALLELOGRAM:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_EDGES;
+    case LIGHT_DIRECTIONAL:
+        return LIGHT_HAS_DIRECTION;
+    case LIGHT_SPOT:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_DIRECTION | LIGHT_HAS_CONE;
+    case LIGHT_DISC:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_DIRECTION | LIGHT_HAS_RADIUS;
+    case LIGHT_SPHERE:
+        return LIGHT_HAS_POSITION | LIGHT_HAS_RADIUS;
+    case LIGHT_SKY:
+        return LIGHT_IS_ENVIRONMENT;
+    case LIGHT_MESH:
+        break;
+    }
+    return 0;
+}
+
+bool light_centre(const struct light *light, struct vec3 *out) {
+    struct light_target middle;
+    if (light->mesh)
+        *out = light->mesh->centre;
+    else if (light_middle(light, &middle) && !middle.distant)
+        *out = middle.at;
+    else
+        return false;
+    return true;
+}
 
 static bool has(const struct light *light, unsigned properties) {
     return (light_properties(light) & properties) != 0;

@@ -2,7 +2,7 @@
  * Spherical Rectangles", EGSR 2013. The rectangle lies at z = z0 < 0 of a frame whose origin is the point that looks;
  * the four planes through the point and an edge meet at the corners of a spherical polygon, whose area is the excess of
  * its angles. The first number of a sample picks how much of that area lies to the left, the second how far up. */
-#include "light/light.h"
+#include "light/light_box.h"
 
 #include "math/elementary.h"
 
