@@ -273,7 +273,7 @@ class Parts:
 def fold(path, into, what, first):
     """The text of a file with another one's at its end; a header that it included goes first. What the other file opened
     with heads its part, unless it only names its header."""
-    to, part = Parts(into), Parts(what)
+    to, part = Parts(without_repeats(into)), Parts(what)
     own = '#include "%s"' % re.sub(r'^src/|\.c$', '', path)
     own = own if path.endswith('.h') else own[:-1] + '.h"'
     if path.endswith('.h'):
