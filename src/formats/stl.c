@@ -6,7 +6,7 @@
 #include "formats/model.h"
 #include "formats/scan.h"
 
-#include "mesh/mesh_weld.h"
+#include "mesh/mesh_topology.h"
 
 #include <assert.h>
 #include <math.h>

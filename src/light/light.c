@@ -1,7 +1,7 @@
 /* The switches over the kinds of lights. Sampling: a disc is the square mapped concentrically (Shirley and Chiu, "A Low
  * Distortion Map Between Disk and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone
  * (Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample
- * counts the same and the emitter's cosine is in it already; so is a rectangle (light_rectangle.c), and a disc seen
+ * counts the same and the emitter's cosine is in it already; so is a rectangle (sampling.c), and a disc seen
  * large by way of its square. Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2)
  * each, triangles of a mesh in proportion to the light they send. */
 #include "light/light.h"
@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "light/light_internal.h"
 #include "light/light_mesh.h"
-#include "light/light_sphere.h"
 #include "light/sky_light.h"
 #include "math/elementary.h"
 #include "math/frame.h"

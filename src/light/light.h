@@ -11,7 +11,6 @@
 #define GRAY_LIGHT_LIGHT_H
 
 #include "base/list.h"
-#include "light/light_box.h"
 #include "math/box.h"
 #include "math/ray.h"
 #include "math/sampling.h"

@@ -2,6 +2,7 @@
 #ifndef GRAY_LIGHT_LIGHT_INTERNAL_H
 #define GRAY_LIGHT_LIGHT_INTERNAL_H
 
+#include "light/light.h"
 #include "light/light_sampler.h"
 #include "material/classic.h"
 
@@ -25,13 +26,13 @@ static inline void light_context_square(struct light_context *out, struct vec3 c
     out->corner = vec3_add_scaled(vec3_add_scaled(centre, out->right, -half), out->up, -half);
 }
 
-/* light_falloff.c: the share of a delta light that is left at a distance. */
+/* light_bounds.c: the share of a delta light that is left at a distance. */
 double light_attenuation(const struct light *light, double distance);
 /* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
  * them the cubic 3 s^2 - 2 s^3 of the cosine. */
 double light_cone(const struct light *light, struct vec3 from_light);
 
-/* light_flat.c: parallelograms and discs. False: a lamp that shines to one side is seen from the other. */
+/* light_shapes.c: parallelograms and discs. False: a lamp that shines to one side is seen from the other. */
 bool light_flat_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
 struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 place);
 bool light_is_beside_disc(const struct light *light, struct vec3 place);
@@ -51,16 +52,25 @@ static inline double light_magnitude(struct vec3 c) {
 static inline struct box light_box_around(struct vec3 centre, struct vec3 half) {
     return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
 }
-/* A delta light: as its attenuation says (light_falloff.c). */
+/* A delta light: as its attenuation says (light_bounds.c). */
 void light_bounds_fade(const struct light *light, struct light_bounds *out);
 /* A light of that classic intensity at distance 1, which falls with the square of the distance. */
 static inline void light_bounds_emit(double intensity, struct light_bounds *out) {
     out->attenuation = intensity;
     out->falloff[2] = 1;
 }
-/* A flat lamp of an area over pi, by the cosine (light_flat.c). */
+/* A flat lamp of an area over pi, by the cosine (light_shapes.c). */
 void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out);
 /* Works out the rest of what stands in the bounds; false: nothing is sent (light_bounds.c). */
 bool light_bounds_finish(struct light_bounds *bounds);
+
+/* The mathematics of LIGHT_SPHERE, for light.c. */
+
+/* False: the point is on the sphere, or so near that the cone is a half-space, or inside and the light no lamp. */
+bool light_sphere_context(const struct light *light, struct light_context *out);
+/* Equal areas of the unit square are equal solid angles. */
+struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 place);
+/* The nearest crossing in the ray's interval. */
+bool light_sphere_meets_ray(const struct light *light, const struct ray *ray, double *t);
 
 #endif

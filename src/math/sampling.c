@@ -66,3 +66,123 @@ struct sample2 sample_disc(struct sample2 square) {
     el_sincos(angle, &sine, &cosine);
     return (struct sample2){radius * cosine, radius * sine};
 }
+
+/* A rectangle sampled by the solid angle that it fills: Urena, Fajardo, King, "An Area-Preserving Parametrization for
+ * Spherical Rectangles", EGSR 2013. The rectangle lies at z = z0 < 0 of a frame whose origin is the point that looks;
+ * the four planes through the point and an edge meet at the corners of a spherical polygon, whose area is the excess of
+ * its angles. The first number of a sample picks how much of that area lies to the left, the second how far up. */
+
+/* Below this solid angle the excess has lost half of its digits, and samples by area are as good. */
+static const double min_angle = 0x1p-12;
+
+static double limited(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+}
+
+/* The angle between two neighbouring planes through the point, from their normals. */
+static double corner_angle(struct vec3 a, struct vec3 b) {
+    return el_acos(limited(-vec3_dot(a, b), -1, 1));
+}
+
+bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+                              struct spherical_rectangle *out) {
+    double length1 = vec3_length(edge1), length2 = vec3_length(edge2);
+    if (!(length1 > 0 && length2 > 0) || fabs(vec3_dot(edge1, edge2)) > 0x1p-40 * length1 * length2)
+        return false;
+    out->from = from;
+    out->x = vec3_scale(edge1, 1 / length1);
+    out->y = vec3_scale(edge2, 1 / length2);
+    out->z = vec3_cross(out->x, out->y);
+    struct vec3 d = vec3_sub(corner, from);
+    out->z0 = vec3_dot(d, out->z);
+    if (out->z0 > 0) {
+        out->z = vec3_negate(out->z);
+        out->z0 = -out->z0;
+    }
+    out->x0 = vec3_dot(d, out->x);
+    out->y0 = vec3_dot(d, out->y);
+    out->x1 = out->x0 + length1;
+    out->y1 = out->y0 + length2;
+    if (!(out->z0 < 0))
+        return false;
+    struct vec3 v00 = {out->x0, out->y0, out->z0}, v01 = {out->x0, out->y1, out->z0};
+    struct vec3 v10 = {out->x1, out->y0, out->z0}, v11 = {out->x1, out->y1, out->z0};
+    struct vec3 n0 = vec3_normalize(vec3_cross(v00, v10)), n1 = vec3_normalize(vec3_cross(v10, v11));
+    struct vec3 n2 = vec3_normalize(vec3_cross(v11, v01)), n3 = vec3_normalize(vec3_cross(v01, v00));
+    double g0 = corner_angle(n0, n1), g1 = corner_angle(n1, n2), g2 = corner_angle(n2, n3), g3 = corner_angle(n3, n0);
+    out->b0 = n0.z;
+    out->b1 = n2.z;
+    out->k = 2 * PI - g2 - g3;
+    out->angle = g0 + g1 - out->k;
+    return out->angle > min_angle;
+}
+
+struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place) {
+    double sine, cosine;
+    el_sincos(place.x * seen->angle + seen->k, &sine, &cosine);
+    double f = (cosine * seen->b0 - seen->b1) / sine;
+    double c = (f > 0 ? 1 : -1) / sqrt(f * f + seen->b0 * seen->b0);
+    c = limited(c, -1, 1);
+    double x = limited(-(c * seen->z0) / sqrt(1 - c * c), seen->x0, seen->x1);
+    double d = sqrt(x * x + seen->z0 * seen->z0);
+    double h0 = seen->y0 / sqrt(d * d + seen->y0 * seen->y0), h1 = seen->y1 / sqrt(d * d + seen->y1 * seen->y1);
+    double h = h0 + place.y * (h1 - h0);
+    double y = h * h < 1 ? limited(h * d / sqrt(1 - h * h), seen->y0, seen->y1) : h > 0 ? seen->y1 : seen->y0;
+    struct vec3 point = vec3_add_scaled(seen->from, seen->x, x);
+    return vec3_add_scaled(vec3_add_scaled(point, seen->y, y), seen->z, seen->z0);
+}
+
+/* See sampling.h. The line from the point enters the box through the face whose plane it crosses last (Kay and Kajiya,
+ * "Ray Tracing Complex Scenes", SIGGRAPH 1986). */
+
+/* How far the point is along an edge, in lengths of it: below 0 or above 1 it is on the outer side of a face. */
+static double along_edge(const struct light_box *box, int axis, struct vec3 point) {
+    const struct vec3 *edge = &box->edges[axis];
+    return vec3_dot(vec3_sub(point, box->corner), *edge) / vec3_length_squared(*edge);
+}
+
+bool spherical_box_make(const struct light_box *box, struct vec3 from, struct spherical_box *out) {
+    out->count = 0;
+    out->angle = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double along = along_edge(box, axis, from);
+        if (!(along < 0) && !(along > 1))
+            continue;
+        struct vec3 corner = along > 1 ? vec3_add(box->corner, box->edges[axis]) : box->corner;
+        struct spherical_rectangle *face = &out->faces[out->count];
+        if (!spherical_rectangle_make(corner, box->edges[(axis + 1) % 3], box->edges[(axis + 2) % 3], from, face))
+            continue;
+        out->angle += face->angle;
+        out->axes[out->count++] = axis;
+    }
+    return out->count > 0;
+}
+
+struct vec3 spherical_box_point(const struct spherical_box *seen, struct sample2 place) {
+    double angle = place.x * seen->angle;
+    uint32_t face = 0;
+    while (face + 1 < seen->count && angle >= seen->faces[face].angle)
+        angle -= seen->faces[face++].angle;
+    double x = angle / seen->faces[face].angle;
+    return spherical_rectangle_point(&seen->faces[face], (struct sample2){x < 1 ? x : 1, place.y});
+}
+
+double spherical_box_pdf(const struct light_box *box, const struct spherical_box *seen, struct vec3 from,
+                         struct vec3 direction) {
+    double last = -INFINITY;
+    int entered = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double along = along_edge(box, axis, from), step = vec3_dot(direction, box->edges[axis]);
+        if (!(along < 0) && !(along > 1))
+            continue;
+        double t = ((along > 1 ? 1 : 0) - along) * vec3_length_squared(box->edges[axis]) / step;
+        if (t > last) {
+            last = t;
+            entered = axis;
+        }
+    }
+    for (uint32_t i = 0; i < seen->count; i++)
+        if (seen->axes[i] == entered)
+            return 1 / seen->angle;
+    return 0;
+}

@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "base/sort.h"
 #include "math/elementary.h"
-#include "mesh/mesh_weld.h"
+#include "mesh/mesh_topology.h"
 
 #include <string.h>
 

@@ -1,11 +1,14 @@
 /* Whether a mesh is closed: every edge is used by exactly two triangles, in opposite directions. Vertices count as the
  * same when their positions are equal, whatever their indices. Edges are gathered at their lower vertex: count, prefix
  * sum, fill; then each vertex sorts its own few. */
+#include "base/random.h"
 #include "mesh/mesh_internal.h"
 
 #include "base/mem.h"
 #include "base/sort.h"
-#include "mesh/mesh_weld.h"
+#include "mesh/mesh_topology.h"
+
+#include <string.h>
 
 /* Sorted uses of the edges at one vertex: (other vertex) * 2 + direction. The first edge not used once each way, or the
  * count when all are. */
@@ -77,4 +80,45 @@ bool mesh_find_topology(struct mesh *mesh) {
     mem_free(start);
     mem_free(uses);
     return enough;
+}
+
+/* A hash table with open addressing, at most half full; it never leaves this function, so the order of its places shows
+ * nowhere: the lowest vertex is the one met first. */
+
+#define NONE UINT32_MAX
+
+static uint64_t position_hash(const double p[3]) {
+    uint64_t key = 0;
+    for (int k = 0; k < 3; k++) {
+        double x = p[k] + 0.0; /* -0 becomes 0 */
+        uint64_t bits;
+        memcpy(&bits, &x, sizeof bits);
+        key = (key ^ bits) * UINT64_C(0x9e3779b97f4a7c15);
+        key ^= key >> 29;
+    }
+    return random_mix(key);
+}
+
+static bool same_position(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+bool mesh_weld(const double (*vertices)[3], uint32_t count, uint32_t *same) {
+    size_t slots = 16;
+    while (slots < 2 * (size_t)count)
+        slots *= 2;
+    uint32_t *table = mem_alloc(slots * sizeof *table);
+    if (!table)
+        return false;
+    memset(table, 0xff, slots * sizeof *table);
+    for (uint32_t v = 0; v < count; v++) {
+        size_t at = (size_t)position_hash(vertices[v]) & (slots - 1);
+        while (table[at] != NONE && !same_position(vertices[table[at]], vertices[v]))
+            at = (at + 1) & (slots - 1);
+        if (table[at] == NONE)
+            table[at] = v;
+        same[v] = table[at];
+    }
+    mem_free(table);
+    return true;
 }

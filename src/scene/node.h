@@ -11,8 +11,24 @@
 #include "material/material.h"
 #include "math/affine.h"
 #include "mesh/mesh.h"
-#include "scene/placements.h"
 #include "shape/shape.h"
+
+#include <stdint.h>
+
+/* The many placements of the children of one node: what a node for each would say in ten times the memory. */
+
+/* Placement i scales by size, turns about the axis, then moves to its place; or it is matrix i. Everything lives in the
+ * arena of the scene. */
+struct placements {
+    uint32_t count;
+    const double (*at)[3];         /* count places; NULL with matrices */
+    const double *turn, *size;     /* degrees; factors, not 0; NULL: none */
+    bool one_turn, one_size;       /* the first is everybody's */
+    int axis;                      /* of turn */
+    const struct affine *matrices; /* count maps that have an inverse, or NULL */
+};
+
+struct transform placement_transform(const struct placements *placements, uint32_t i);
 
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
 /* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */

@@ -11,7 +11,6 @@
 
 #include "geometry/bernstein.h"
 #include "geometry/crossing.h"
-#include "geometry/surface_mapping.h"
 #include "shape/part_tree_internal.h"
 
 enum { CELL_DEPTH = 9, REGIONS = 4, BODY = 0, BALL_A = 1, BALL_B = 2 };

@@ -5,7 +5,7 @@
  * its box follows from the inverse. */
 #include "shape/quadric.h"
 
-#include "geometry/surface_mapping.h"
+#include "geometry/crossing.h"
 #include "math/roots.h"
 #include "shape/box_shape.h"
 #include "shape/planar.h"

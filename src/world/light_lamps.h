@@ -3,6 +3,7 @@
 #define GRAY_WORLD_LIGHT_LAMPS_H
 
 #include "world/flatten.h"
+#include "world/world.h"
 
 /* Fills `mesh` and `table` of the lights that are meshes and skies. After flattening, with the same f; lights: the
  * world's own copy. Meshes that are not in the scene emit invisibly, at the pose of the light's node and of the nodes
@@ -13,5 +14,17 @@ bool light_lamps_resolve(struct flattening *f, struct light *lights, const struc
 /* Sets `mesh` of a light that is one placed mesh alone, with the emission of its materials. Errors: no memory. */
 bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error);
+
+/* Which primitives each light reaches, from its lists of nodes. */
+
+/* Fills `lit` of every light that has a list: a primitive counts as listed when its node or any node on the way to it
+ * from the root is. After flattening. lights: the world's own copy. Errors: no memory. */
+bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, const struct node *root,
+                         struct error *error);
+
+/* Sets lit[i] to `value` for every primitive i that comes from a listed node or one below it. False: no memory.
+ */
+bool light_lists_mark(const struct world *world, const struct node *const *list, uint32_t count, uint8_t *lit,
+                      uint8_t value, const struct node *root);
 
 #endif

@@ -2,7 +2,6 @@
 #include "base/mem.h"
 #include "world/flatten.h"
 #include "world/light_lamps.h"
-#include "world/light_lists.h"
 #include "world/world_internal.h"
 
 #include <string.h>

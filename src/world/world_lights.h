@@ -21,8 +21,8 @@
 #define GRAY_WORLD_WORLD_LIGHTS_H
 
 #include "accel/box_tree.h"
-#include "light/light_box.h"
 #include "light/light_sampler.h"
+#include "math/sampling.h"
 #include "world/world.h"
 
 /* What a light has to do with primitives. */

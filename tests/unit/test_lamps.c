@@ -1,9 +1,9 @@
 /* Lamps that are rectangles seen large, meshes, and skies: against view factors, solid angles and integrals. */
 #include "base/random.h"
 #include "light/light.h"
-#include "light/light_box.h"
 #include "light/light_mesh.h"
 #include "light/sky_light.h"
+#include "math/sampling.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"

@@ -5,7 +5,7 @@
 #include "scene/traversal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "world/light_lists.h"
+#include "world/light_lamps.h"
 #include "world/path.h"
 
 #include <stdio.h>

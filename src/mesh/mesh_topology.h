@@ -1,6 +1,6 @@
 /* Vertices at the same position, bit for bit (-0 and 0 are equal). */
-#ifndef GRAY_MESH_MESH_WELD_H
-#define GRAY_MESH_MESH_WELD_H
+#ifndef GRAY_MESH_MESH_TOPOLOGY_H
+#define GRAY_MESH_MESH_TOPOLOGY_H
 
 #include <stdbool.h>
 #include <stdint.h>
