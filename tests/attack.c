@@ -1,4 +1,5 @@
-/* See attack.h. A row compares two walks over its folders, so what it does not name it forbids. */
+/* See attack.h. A row compares the folders before and after the run: every change that the row does not name is a
+ * failure. */
 #define _GNU_SOURCE
 #include "tests/attack_files.h"
 
@@ -27,7 +28,7 @@ enum { ORDINARY_USER = 65534, SECONDS = 20 };
 
 static time_t clock_ahead;
 
-/* In place of the C library's: a file cannot be given an old time of change, so the clock of the test goes ahead. */
+/* Replaces the C library's function: the change time of a file cannot be set, so the clock of the test runs ahead. */
 int clock_gettime(clockid_t clock, struct timespec *time) {
     long result = syscall(SYS_clock_gettime, clock, time);
     if (result == 0 && clock == CLOCK_REALTIME)
@@ -65,7 +66,7 @@ static enum attack_system attack_system;
 static bool limit_system(void) {
 #define DATA(member) (uint32_t) offsetof(struct seccomp_data, member)
 #define REFUSE(number) BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | (number))
-    /* The low halves of arguments, on machines that have them first. */
+    /* The low halves of arguments on little-endian machines. */
     struct sock_filter without_tmpfile[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, DATA(nr)),
                                             BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_openat, 0, 3),
                                             BPF_STMT(BPF_LD | BPF_W | BPF_ABS, DATA(args[2])),
@@ -114,7 +115,7 @@ static void become(uid_t user) {
         _exit(125);
 }
 
-/* Other users may pass through the folders of the tests, which are the runner's own. */
+/* Lets other users pass through the folders of the tests, which belong to the runner. */
 static void open_folders(void) {
     char path[4096];
     struct stat status;
@@ -147,7 +148,7 @@ uid_t attack_user(void) {
 
 /* One run of the program. */
 struct run {
-    int status; /* -1: had to be ended */
+    int status; /* -1: it had to be killed */
     char *out, *err;
 };
 
@@ -184,7 +185,7 @@ static void execute(const struct attack *attack) {
     _exit(127);
 }
 
-/* 128 + signal; -1: it had to be ended. */
+/* 128 + signal; -1: it had to be killed. */
 static int wait_up_to(pid_t program, double seconds) {
     int how = 0;
     double limit = attack_now() + seconds;
@@ -227,7 +228,7 @@ static struct run run_attack(struct attack_stand *stand) {
     return run;
 }
 
-/* The checks. Of a row that fails the first reason is reported. */
+/* The checks. The first reason of a row that fails is reported. */
 static void blame(struct attack_stand *stand, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void blame(struct attack_stand *stand, const char *format, ...) {
     va_list arguments;
@@ -368,7 +369,7 @@ static void check_files(struct attack_stand *stand, struct attack_tree *old) {
     attack_tree_free(&new);
 }
 
-/* Special files are watched, as what is opened and closed leaves no trace otherwise. */
+/* Special files are watched with inotify, because opening and closing leaves no other trace. */
 static void watch_special(struct attack_stand *stand, struct attack_tree *tree, int watcher) {
     for (size_t i = 0; i < tree->count; i++) {
         struct attack_entry *entry = &tree->entries[i];
@@ -436,7 +437,7 @@ static bool prepare(struct attack_stand *stand) {
     return attack_statements(stand, stand->in, attack->before, true);
 }
 
-/* True when it holds. */
+/* True if the claim holds. */
 static bool run_as(const struct attack *attack, uid_t user) {
     static int number;
     struct attack_stand stand = {.attack = attack, .user = user};
@@ -466,7 +467,7 @@ static bool run_as(const struct attack *attack, uid_t user) {
 
 void attacks_run(const struct attack *rows, size_t count) {
     const uid_t user = attack_user();
-    (void)attack_binary(); /* its name may count from the folder we are in now */
+    (void)attack_binary(); /* its name may be relative to the current folder */
     (void)umask(022);
     for (size_t i = 0; i < count; i++) {
         const struct attack *row = &rows[i];
@@ -512,7 +513,7 @@ static pid_t start(const char *in, const char *words, uid_t user, bool traced) {
         const char *options = getenv("ASAN_OPTIONS");
         char *more = NULL;
         if (asprintf(&more, "%s%sdetect_leaks=0", options ? options : "", options ? ":" : "") > 0)
-            (void)setenv("ASAN_OPTIONS", more, 1); /* it cannot look for leaks under ptrace */
+            (void)setenv("ASAN_OPTIONS", more, 1); /* the leak checker does not work under ptrace */
         if (ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0 || raise(SIGSTOP) != 0)
             _exit(125);
     }

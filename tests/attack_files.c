@@ -70,7 +70,7 @@ bool attack_put_scene(const char *path, const char *text) {
     return true;
 }
 
-/* By way of its folder's descriptor: an address holds 108 bytes. */
+/* Through the descriptor of its folder: an address has room for 108 bytes only. */
 static bool make_socket(const char *path) {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -109,7 +109,7 @@ static bool set_age(const char *path, double seconds) {
     return utimensat(AT_FDCWD, path, times, AT_SYMLINK_NOFOLLOW) == 0;
 }
 
-/* Statements of files with contents; false: none of them. */
+/* Statements that make files with contents; false: the statement is not one of them. */
 static bool made_file(const char *verb, const char *path, const char *argument, size_t length, bool *ok) {
 #define KIND(verb, bytes)                                                                                              \
     { verb, bytes, sizeof bytes - 1 }
@@ -163,7 +163,7 @@ static bool made_special(struct attack_stand *stand, const char *verb, const cha
     return true;
 }
 
-/* chown comes after everything that belongs to the user, so it is a statement of its own pass. */
+/* chown comes after everything else that the user owns, so it has a pass of its own. */
 static bool statement(struct attack_stand *stand, const char *in, char *text, bool late) {
     char path[2048], *rest = NULL, *verb = strtok_r(text, " ", &rest);
     char *name = strtok_r(NULL, " ", &rest), *argument = strtok_r(NULL, " ", &rest);

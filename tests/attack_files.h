@@ -1,4 +1,4 @@
-/* The files of a row: statements that make them, and walks that see what is there. For tests/attack.c. */
+/* The files of a row: statements that make them, and listings of what exists. For tests/attack.c. */
 #ifndef GRAY_TESTS_ATTACK_FILES_H
 #define GRAY_TESTS_ATTACK_FILES_H
 
@@ -18,7 +18,7 @@ struct attack_stand {
     int readers[MAX_STREAMS], terminals[MAX_STREAMS], reader_count, terminal_count;
 };
 
-/* A walk over the row's folders. */
+/* A listing of the row's folders. */
 struct attack_entry {
     char path[1200]; /* below the row's folder */
     struct stat status;
@@ -35,14 +35,14 @@ struct attack_tree {
 /* %XX is a byte; the length counts zeros. */
 size_t attack_decode(char *text);
 bool attack_put_scene(const char *path, const char *text);
-/* The statements of a row; `late`: those about rights, owners and ages, else the others. */
+/* Executes the statements of a row: those about modes, owners and ages if `late`, else the others. */
 bool attack_statements(struct attack_stand *stand, const char *in, const char *all, bool late);
 
 /* Everything below "in" and "out". */
 struct attack_tree attack_tree(const char *root);
 void attack_tree_free(struct attack_tree *tree);
 struct attack_entry *attack_find(const struct attack_tree *tree, const char *path);
-/* How they differ, or NULL. */
+/* The first difference, or NULL. */
 const char *attack_difference(const struct attack_entry *a, const struct attack_entry *b);
 bool attack_begins(const struct attack_entry *entry, const char *bytes, size_t size);
 /* Why this is not a picture as gray should write it, or NULL. */

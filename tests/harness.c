@@ -3,8 +3,8 @@
  *
  * Between the runner and each test stands a reaper, the parent of the test. It adopts every process whose parent dies
  * below it, so that none can leave its tree, whatever group or session it moves to. When the test has ended, or the
- * runner is gone, the reaper ends what is left of the tree and removes the folder of the test. Invariant: no process
- * and no folder of a test outlives the runner by more than a moment, even when the runner is ended by SIGKILL. */
+ * runner is gone, the reaper kills the rest of the tree and removes the folder of the test. Invariant: no process and
+ * no folder of a test outlives the runner by more than a moment, even when the runner is ended by SIGKILL. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -33,9 +33,9 @@ enum { STATUS_PASSED = 0, STATUS_FAILED = 1, STATUS_SKIPPED = 77, LIMIT_SECONDS 
 
 static struct test *all_tests;
 static int test_count;
-/* Inside the process of one test. */
+/* State inside the process of one test. */
 static int failures;
-static char folder_path[404]; /* made when it is first needed */
+static char folder_path[404]; /* created when it is first needed */
 static bool folder_made;
 
 void test_register(struct test *test) {
@@ -292,7 +292,7 @@ static void remove_at(int at, const char *name) {
 
 struct process {
     pid_t pid, parent;
-    bool below; /* the calling process, and not below one that is spared */
+    bool below; /* descends from the calling process, but not from one that is spared */
 };
 
 static bool read_process(const char *digits, struct process *process) {
@@ -305,14 +305,14 @@ static bool read_process(const char *digits, struct process *process) {
     ssize_t got = read(file, text, sizeof text - 1);
     (void)close(file);
     text[got > 0 ? got : 0] = '\0';
-    const char *end = strrchr(text, ')'); /* the name before it may hold anything */
+    const char *end = strrchr(text, ')'); /* the name before it may contain anything */
     if (!end || sscanf(end, ") %*c %d", &parent) != 1)
         return false;
     *process = (struct process){.pid = (pid_t)atoi(digits), .parent = (pid_t)parent};
     return true;
 }
 
-/* All processes there are, from malloc; NULL when they cannot be listed. */
+/* All existing processes, from malloc; NULL if they cannot be listed. */
 static struct process *list_processes(size_t *count) {
     struct process *list = NULL;
     size_t room = 0;
@@ -343,8 +343,8 @@ static bool is_one_of(pid_t pid, const pid_t *list, int count) {
     return false;
 }
 
-/* Sends a signal to every process below this one, except those that are spared and what is below them. Returns how
- * many there were. */
+/* Sends a signal to every process below this one, except those that are spared and their descendants. Returns how many
+ * there were. */
 static int signal_descendants(int number, const pid_t *spared, int spared_count) {
     size_t count;
     struct process *list = list_processes(&count);
@@ -367,8 +367,8 @@ static int signal_descendants(int number, const pid_t *spared, int spared_count)
     return found;
 }
 
-/* Ends every process below this one, which adopts what loses its parent: first politely, for servers that have files to
- * remove, then by force. Returns when none is left, or after 10 seconds. */
+/* Ends every process below this one, which adopts orphans: first with SIGTERM, for servers that have files to remove,
+ * then with SIGKILL. Returns when none is left, or after 10 seconds. */
 static void end_descendants(void) {
     double begun = now();
     bool asked = false;
@@ -385,8 +385,8 @@ static void end_descendants(void) {
     }
 }
 
-/* What a test finds: every signal that arrived ignored has its default again, none is blocked, and there is
- * nothing to read. */
+/* The state in which a test starts: every signal that was ignored has its default action again, none is blocked, and
+ * standard input is empty. */
 static void reset_inheritance(void) {
     for (int number = 1; number < NSIG; number++) {
         struct sigaction action;
@@ -419,15 +419,15 @@ struct runner {
     FILE *log;        /* or NULL */
     char *title;      /* the words of the command line, which ps shows; a reaper has another one */
     size_t title_size;
-    bool keep;    /* folders of tests that failed stay */
-    bool strays;  /* a reaper was killed: what was below it is to be ended */
+    bool keep;    /* folders of failed tests are kept */
+    bool strays;  /* a reaper was killed: its descendants must be ended */
     int ended_by; /* a signal, or 0 */
     double begun, next_progress, progress_seconds;
     int chosen, begun_tests, ended, passed, failed, skipped;
     struct running slots[JOBS_MAX];
 };
 
-/* quiet: where there is a log, this line is not worth one on the screen. */
+/* quiet: if there is a log, this line does not go to the screen. */
 static void print_text(struct runner *runner, bool quiet, const char *text, size_t size) {
     if (runner->log)
         (void)fwrite(text, 1, size, runner->log);
@@ -445,7 +445,7 @@ __attribute__((format(printf, 3, 4))) static void print_line(struct runner *runn
     print_text(runner, quiet, text, strlen(text));
 }
 
-/* What ps shows of this process: who looks for the runner by its words does not find its reapers. */
+/* The command line that ps shows for this process: a search for the runner's command line does not find its reapers. */
 static void set_title(const struct runner *runner, const char *title) {
     (void)prctl(PR_SET_NAME, title);
     memset(runner->title, 0, runner->title_size);
@@ -459,7 +459,7 @@ static _Noreturn void run_test(const struct runner *runner, const struct running
     (void)setpgid(0, 0);
     set_title(runner, slot->test->name);
     reset_inheritance();
-    fault_apart(); /* what this test makes fail is not to fail in the test beside it */
+    fault_apart(); /* a failure that this test requests must not occur in another test */
     (void)dup2(slot->output, STDOUT_FILENO);
     (void)dup2(slot->output, STDERR_FILENO);
     (void)alarm(LIMIT_SECONDS * (slot->test->kind == TEST_SLOW ? 12 : 1));
@@ -472,7 +472,7 @@ static _Noreturn void run_test(const struct runner *runner, const struct running
     exit(failures ? STATUS_FAILED : STATUS_PASSED);
 }
 
-/* Waits until the test has ended, or the runner wants it to. Returns its status, or -1. */
+/* Waits until the test has ended or the runner asks to end it. Returns its status, or -1. */
 static int await_test(pid_t test) {
     sigset_t awaited;
     (void)sigemptyset(&awaited);
@@ -489,8 +489,7 @@ static int await_test(pid_t test) {
     }
 }
 
-/* Never returns. SIGTERM, which is blocked, says that the test is no longer wanted; the kernel sends it when the runner
- * is gone. */
+/* Never returns. SIGTERM, which is blocked, asks to end the test; the kernel sends it when the runner is gone. */
 static _Noreturn void reap_test(struct runner *runner, int index, pid_t runner_pid) {
     struct running *slot = &runner->slots[index];
     char above[300];
@@ -505,7 +504,7 @@ static _Noreturn void reap_test(struct runner *runner, int index, pid_t runner_p
     set_title(runner, "test-reaper");
     int status = -1;
     (void)snprintf(above, sizeof above, "%s/%d", runner->folder, runner->begun_tests);
-    /* As /tmp is: a test may become another user. */
+    /* The mode of /tmp: a test may become another user. */
     if (getppid() == runner_pid && mkdir(above, 0700) == 0 && chmod(above, 01777) == 0) {
         pid_t reaper = getpid(), test = fork();
         if (test == 0)
@@ -577,7 +576,7 @@ static void begin_test(struct runner *runner, struct test *test) {
         end_test(runner, index);
 }
 
-/* Takes the end of reapers and of processes that lost theirs. */
+/* Collects ended reapers, and processes whose reaper is gone. */
 static void reap(struct runner *runner) {
     int how;
     for (pid_t done; (done = waitpid(-1, &how, WNOHANG)) > 0;) {
@@ -610,7 +609,7 @@ static void show_progress(struct runner *runner) {
     }
     if (runner->log)
         (void)fflush(runner->log);
-    if (fflush(stdout) != 0 && !runner->ended_by) /* nobody reads any more */
+    if (fflush(stdout) != 0 && !runner->ended_by) /* the reader is gone */
         runner->ended_by = SIGPIPE;
 }
 
@@ -644,7 +643,7 @@ static void run_tests(struct runner *runner, struct test **tests, int jobs) {
     }
 }
 
-/* Signals that arrive ignored stay ignored here (nohup, a shell's background), not in the tests. */
+/* Signals that are ignored at the start (nohup, background jobs of a shell) stay ignored here, but not in the tests. */
 static void listen_to_signals(struct runner *runner) {
     static const int ending[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
     (void)sigemptyset(&runner->awaited);

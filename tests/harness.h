@@ -1,9 +1,9 @@
 /* A small test harness. TEST(name) registers itself; CHECK and friends report and count. A test's name is its claim.
  * Run: build/CONFIG/tests/run [-j N] [--long] [--list] [--keep] [--log FILE] [pattern ...]; the last line is
  * "N passed, N failed, N skipped". Every test runs in a process of its own with a time limit, so that a crash or a hang
- * is one failed test, and with standard input empty and no signal ignored. Its output is shown when it does not pass.
- * A line says how far the run is every 15 seconds, or as many as GRAY_TEST_PROGRESS says. With --log lines of tests
- * that passed and the last line go into FILE only, together with all others. */
+ * is one failed test; its standard input is empty and no signal is ignored. Its output is shown if it does not pass. A
+ * line reports the progress of the run every 15 seconds, or every GRAY_TEST_PROGRESS seconds. With --log all lines go
+ * to FILE; those of passed tests and the last line go only there. */
 #ifndef GRAY_TESTS_HARNESS_H
 #define GRAY_TESTS_HARNESS_H
 
@@ -23,7 +23,7 @@ struct test {
     struct test *next;
 };
 void test_register(struct test *test);
-/* Whether some test of any kind has a name that the pattern of fnmatch fits. */
+/* Whether the name of any test, of any kind, matches the pattern (fnmatch). */
 bool test_is_named(const char *pattern);
 
 #define TEST_DEFINE(test_name, test_kind)                                                                              \
@@ -67,18 +67,17 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
                       check_b ? check_b : "(null)");                                                                   \
     } while (0)
 
-/* For tests with the program in a real window: skips this one where there is no gray-gui beside the program, or no
- * Xvfb, xvfb-run or xdotool. From then on windows are drawn without OpenGL, whose threads the thread sanitizer does not
- * know, and the libraries of the desktop may leak; what the supervisor itself leaks is found under a window of the
- * tests' own. */
+/* For tests with the program in a real window: skips the test if gray-gui, Xvfb, xvfb-run or xdotool is missing. From
+ * then on windows are drawn without OpenGL, whose threads the thread sanitizer does not know, and the libraries of the
+ * desktop may leak. Leaks of the supervisor itself are found by the tests with a simulated window. */
 void test_need_window(void);
 
-/* A fresh empty folder for this test; the working directory stays the repository root. The folder is removed when the
- * test ends, except that of a failed test under run --keep. TMPDIR names the folder above it, which is this test's,
- * too.
+/* A new empty folder for this test; the working directory stays the repository root. The folder is removed when the
+ * test ends, except that of a failed test under run --keep. TMPDIR names its parent folder, which also belongs to this
+ * test.
  */
 const char *test_folder(void);
-/* The path of a name in it; the last eight answers stay as they are. */
+/* The path of a name in it; the last eight results stay valid. */
 const char *test_path(const char *name);
 /* Whether the program under test was built with a sanitizer. */
 bool test_has_sanitizer(void);

@@ -1,4 +1,4 @@
-/* A scene, a world and a render without Lua or files, for tests that look at colours as they are before any byte. */
+/* A scene, a world and a render without Lua or files, for tests of colours before they are rounded to bytes. */
 #ifndef GRAY_TESTS_STAGE_H
 #define GRAY_TESTS_STAGE_H
 
@@ -25,19 +25,19 @@ struct stage {
     struct film film; /* of the last stage_render */
 };
 
-/* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings,
- * but that every ray counts. */
+/* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings except
+ * that no ray is cut off. */
 void stage_begin(struct stage *s, int threads);
 void stage_end(struct stage *s);
-/* Begins with a white floor at y = 0 (normal +y), one light to be filled in, one sample of every pixel. */
+/* Begins with a white floor at y = 0 (normal +y), one light that the caller fills in, one sample per pixel. */
 void stage_floor(struct stage *s);
-/* The mean square error of a pixel whose value should be 1/2, over 64 seeds: of 8 x 8 samples, or of 64 pictures of
- * one. */
+/* The mean square error of a pixel whose value should be 1/2, over 64 seeds: with 8 x 8 samples each, or as the mean of
+ * 64 pictures with one sample. */
 double stage_variance_about_half(struct stage *s, bool alone);
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);
 /* Builds the world of s->root and renders; the film lives until the next render or the end. Failures fail the test. */
 bool stage_render(struct stage *s, uint32_t width, uint32_t height);
-/* What stage_render renders, for what else can be asked of it; borrows the stage's world and film. */
+/* The job that stage_render renders, for other queries; borrows the stage's world and film. */
 struct render_job stage_job(struct stage *s, uint32_t width, uint32_t height);
 struct vec3 stage_pixel(const struct stage *s, uint32_t x, uint32_t y);
 

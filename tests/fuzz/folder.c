@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* There with sanitizers only. */
+/* Exists with sanitizers only. */
 void __sanitizer_set_report_fd(void *descriptor) __attribute__((weak));
 
 static char folder[256];
@@ -28,7 +28,7 @@ void fuzz_empty_folder(void) {
 }
 
 static void remove_folder(void) {
-    if (getpid() != owner) /* a process that was forked for one input */
+    if (getpid() != owner) /* a process forked for one input */
         return;
     fuzz_empty_folder();
     (void)rmdir(folder);

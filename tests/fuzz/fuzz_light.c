@@ -1,4 +1,4 @@
-/* Any bytes as a Radiance, PFM or EXR picture (Radiance where they begin like none): an image whose every
+/* Any bytes as a Radiance, PFM or EXR picture (Radiance if they begin like none of them): an image whose every
  * level can be looked up, or one line that names the file. */
 #include "image/exr.h"
 #include "image/float_read.h"

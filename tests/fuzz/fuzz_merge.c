@@ -1,5 +1,5 @@
-/* Any bytes as parts of pictures for `gray merge`: they are cut wherever a file of tiles could begin. What comes out
- * are pictures, or status 1. When the last byte is odd the checks of all records are made right first. */
+/* Any bytes as parts of pictures for `gray merge`: they are cut wherever a file of tiles could begin. The result is
+ * pictures, or status 1. If the last byte is odd, the checksums of all records are corrected first. */
 #define _GNU_SOURCE
 #include "output/merge.h"
 #include "tests/fuzz/folder.h"
@@ -14,9 +14,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 enum { PARTS = 6 };
 static const char magic[] = "GRAYTILE";
 
-/* A part is not to claim a picture that is larger than a test can write. */
+/* A part must not claim a picture larger than a test can write. */
 static bool is_small(const uint8_t *bytes, size_t size) {
-    static const size_t full_width = 16 + 16 + 4 + 64; /* behind the heads of file and record, number and key */
+    static const size_t full_width = 16 + 16 + 4 + 64; /* after the headers of file and record, number and key */
     for (size_t at = 16; size - at >= 24;) {
         uint64_t kind = tile_bytes_number(bytes + at, 4), length = tile_bytes_number(bytes + at + 8, 8);
         if (length > size - at - 24)

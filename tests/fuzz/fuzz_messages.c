@@ -1,7 +1,7 @@
-/* Any bytes as what a render process that a scene has taken over says to its supervisor: frames that are not sound
- * are refused, sound ones begin, finish and give up pictures in a folder of their own, and nothing outside of it. Each
- * frame is a length of two bytes, little-endian, and so many bytes, the rest being zero where the kind has a fixed
- * size. */
+/* Any bytes as messages from a render process under a scene's control to its supervisor: invalid messages are refused;
+ * valid ones begin, finish and abandon pictures in a private folder and change nothing outside it. In the input each
+ * message is a length of two bytes, little-endian, and that many bytes; the rest is zero if the kind has a fixed size.
+ */
 #include "output/output_session.h"
 #include "session/channel.h"
 #include "tests/fuzz/folder.h"
@@ -11,7 +11,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Of the kinds that this target is about; others are sent as long as they are. */
+/* The sizes of the kinds that this target tests; others are sent with the length in the input. */
 static size_t whole_size(uint32_t kind, size_t size) {
     if (kind == MESSAGE_BEGIN)
         return sizeof(struct picture_request);
@@ -24,7 +24,7 @@ static size_t whole_size(uint32_t kind, size_t size) {
     return kind == MESSAGE_FILM || kind == MESSAGE_ANSWER ? sizeof(struct message_answer) : size;
 }
 
-/* As the supervisor does. */
+/* As in the supervisor. */
 static bool take(struct output_session *output, const struct message *message) {
     const struct picture_request *request = &message->body.request;
     struct error error = {0};

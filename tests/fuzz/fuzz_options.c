@@ -1,5 +1,5 @@
-/* Any bytes as a command line, its words parted by line ends or NUL: options whose numbers are in range, or one line
- * and status 2; names of pictures made from -o stay inside of their buffer. */
+/* Any bytes as a command line, its words separated by line ends or NUL: options whose numbers are in range, or one line
+ * and status 2; picture names made from -o stay inside their buffer. */
 #include "session/options.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct order_finding finding;
-    char *text = malloc(size + 1); /* of its exact size, so that reading past the end is seen */
+    char *text = malloc(size + 1); /* of the exact size, so that a sanitizer detects a read past the end */
     if (!text)
         return 0;
     if (size)

@@ -1,5 +1,5 @@
-/* Any bytes as a PNG file: an image whose every level can be looked up anywhere, or one line that names the file. The
- * check sums of the chunks are repaired first when the last byte is odd, or nothing would get behind them. */
+/* Any bytes as a PNG file: an image whose every level can be looked up anywhere, or one line that names the file. If
+ * the last byte is odd, the checksums of the chunks are corrected first; otherwise hardly any input would pass them. */
 #include "image/levels.h"
 
 #include <math.h>

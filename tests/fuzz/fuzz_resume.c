@@ -1,6 +1,6 @@
-/* Any bytes as the checkpoint that --resume goes on with: tiles in the film of the picture, or one line that names the
- * file; and whatever it held, the checkpoint that is written next can be read again. When the last byte is odd the
- * checks of all records are made right first. */
+/* Any bytes as the checkpoint that --resume continues: tiles in the film of the picture, or one line that names the
+ * file. Whatever it contained, the checkpoint written next can be read again. If the last byte is odd, the checksums of
+ * all records are corrected first. */
 #include "base/mem.h"
 #include "output/checkpoint.h"
 #include "tests/fuzz/folder.h"
@@ -20,7 +20,7 @@ static void check_error(const struct error *error) {
     demand(error->kind == ERROR_SCENE && strstr(error->text, "c.tiles") && !strchr(error->text, '\n'));
 }
 
-/* The picture that the run makes: the one of the file, as a changed scene cannot go on, or another one. */
+/* The picture that the run makes: the one of the file (a changed scene cannot continue), or another one. */
 static void go_on(struct checkpoint *checkpoint, const struct tile_picture *picture) {
     struct error error = {0};
     char notice[256];

@@ -1,6 +1,6 @@
 /* Any bytes as a scene: through the grammar of gr calls (script_grammar.h) they become a script, which runs in this
- * process with small limits; its pictures are flattened and rendered with 8 x 8 pixels. What comes out is a film, or
- * one line. GRAY_FUZZ_PRINT in the environment shows the text. Bytes that begin with "--" are a script as they are. */
+ * process with small limits; its pictures are flattened and rendered with 8 x 8 pixels. The result is a film, or one
+ * line. GRAY_FUZZ_PRINT in the environment shows the text. Bytes that begin with "--" are a script as they are. */
 #define _GNU_SOURCE
 #include "base/mem.h"
 #include "image/png_write.h"
@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { SIDE = 8, PICTURES = 3 };
 
-/* Set by the clock: nothing that a scene asks for may go on for long after it. */
+/* Set by the clock: nothing that a scene starts may continue for long after it. */
 static _Atomic int wish_to_stop;
 
 static void pattern_row(void *context, uint32_t y, uint8_t *line) {
@@ -32,7 +32,7 @@ static void pattern_row(void *context, uint32_t y, uint8_t *line) {
         line[i] = (uint8_t)(i * 37 + y * 91);
 }
 
-/* Of the working copy, when that is where the program was started. */
+/* Of the working copy, if the program was started there. */
 static void copy_font(int start) {
     static uint8_t bytes[1 << 18];
     int file = openat(start, "data/fonts/gray-round.ttf", O_RDONLY | O_CLOEXEC);
@@ -111,7 +111,7 @@ static int smaller(int a, int b) {
     return a < b ? a : b;
 }
 
-/* The same work as for a large picture, but little of it. */
+/* The same kinds of work as for a large picture, but little of each. */
 static struct settings small_settings(const struct settings *asked) {
     struct settings settings = *asked;
     settings.samples = smaller(settings.samples, 2);

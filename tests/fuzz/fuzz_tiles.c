@@ -1,5 +1,5 @@
-/* Any bytes as a file of tiles: a description and tiles that fit its film, or one line that names the file. When the
- * last byte is odd the checks of all records are made right first, or nothing would get behind them. */
+/* Any bytes as a file of tiles: a description and tiles that fit its film, or one line that names the file. If the last
+ * byte is odd, the checksums of all records are corrected first; otherwise hardly any input would pass them. */
 #include "base/mem.h"
 #include "render/tile_file.h"
 #include "tests/fuzz/tile_bytes.h"

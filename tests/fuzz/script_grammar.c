@@ -1,5 +1,5 @@
-/* See script_grammar.h. A script is a prelude, statements until the bytes or the room run out, and a picture of all
- * nodes. Numbers are small ones mostly, else ends of ranges and the odd ends of double precision. */
+/* See script_grammar.h. A script is a prelude, statements until the bytes or the buffer run out, and a picture of all
+ * nodes. Most numbers are small; others are the ends of ranges and extreme values of double precision. */
 #include "tests/fuzz/script_grammar.h"
 
 #include "script/table.h"
@@ -213,7 +213,7 @@ static void say_argument(struct grammar *g, const struct script_parameter *p) {
         say_list(g, "l");
         return;
     case KIND_POINTS:
-        if (next(g) % 4 == 0) { /* as many as patches want */
+        if (next(g) % 4 == 0) { /* as many as patches need */
             say(g, "{");
             for (unsigned i = 0; i < 16; i++)
                 say(g, "{%u, %u, %u}, ", i % 4, i / 4, next(g) % 8);
@@ -321,7 +321,7 @@ static void say_statement(struct grammar *g) {
 void script_grammar(const uint8_t *data, size_t size, char out[SCRIPT_GRAMMAR_SIZE]) {
     struct grammar g = {data, data + size, out, 0};
     say(&g, "%s", prelude);
-    /* A statement that would not fit is left out whole: there is always room for the ending. */
+    /* A statement that does not fit is left out completely: there is always room for the ending. */
     for (int count = 0; g.at < g.end && count < STATEMENTS && g.used < SCRIPT_GRAMMAR_SIZE - 2 * STATEMENT_ROOM;
          count++) {
         size_t begun = g.used;

@@ -1,7 +1,7 @@
 /* Bytes become a scene: they choose calls, forms and arguments from the table of gr functions, so that nearly every
- * input gets behind the reading of arguments. Every call is protected: what is refused leaves the rest of the script to
- * run. Some arguments are wrong on purpose, tables whose metamethods lie or raise errors among them. The same bytes
- * give the same text. */
+ * input passes the argument checks. Every call is protected: after a refused call the rest of the script runs. Some
+ * arguments are wrong on purpose, tables whose metamethods lie or raise errors among them. The same bytes give the same
+ * text. */
 #ifndef GRAY_TESTS_FUZZ_SCRIPT_GRAMMAR_H
 #define GRAY_TESTS_FUZZ_SCRIPT_GRAMMAR_H
 

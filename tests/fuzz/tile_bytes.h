@@ -1,4 +1,5 @@
-/* For the targets that read files of tiles: the checks of all records made right, or nothing would get behind them. */
+/* For the targets that read files of tiles: corrects the checksums of all records; otherwise hardly any input would
+ * pass them. */
 #ifndef GRAY_TESTS_FUZZ_TILE_BYTES_H
 #define GRAY_TESTS_FUZZ_TILE_BYTES_H
 

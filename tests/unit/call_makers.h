@@ -31,7 +31,7 @@ static inline void write_files(void) {
     free(font);
 }
 
-/* Functions that need a library this build is without say so and no more. */
+/* Functions that need a library this build lacks only report that. */
 static inline bool can_run(const struct script_function *function) {
     return strcmp(function->name, "glyphs") != 0 || strcmp(font_library(), "none") != 0;
 }
@@ -73,7 +73,8 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
     case KIND_COLOUR:
     case KIND_TRIPLE:
     case KIND_BACKGROUND:
-        text = strcmp(p->name, "target") == 0 ? "{3, 2, 1}" : "{1, 2, 3}"; /* not where a light or the eye stands */
+        text = strcmp(p->name, "target") == 0 ? "{3, 2, 1}"
+                                              : "{1, 2, 3}"; /* not at the position of a light or of the camera */
         if (strcmp(p->name, "max") == 0 || strcmp(p->name, "b") == 0 || strcmp(p->name, "up") == 0)
             text = "{4, 3, 8}"; /* corners and edges of one shape differ */
         if (strcmp(p->name, "c") == 0)
@@ -98,7 +99,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
     case KIND_MATERIALS:
         text = "{glass}";
         break;
-    case KIND_IMAGE: /* faces of a sky are square */
+    case KIND_IMAGE: /* the faces of a sky are square */
         text = function_is_square(p->help) ? "'square.png'" : "'cross.png'";
         break;
     case KIND_NODES:
@@ -180,7 +181,7 @@ static inline void positional_call(const struct script_function *function, const
     append(call, separator[0] == '(' ? "()" : ")");
 }
 
-/* What the table form must have, less `wrong`. Meshes want vertices and faces, or a file. */
+/* The required fields of the table form, without `wrong`. Meshes need vertices and faces, or a file. */
 static inline bool is_needed(const struct script_function *function, int index) {
     const struct script_parameter *p = &function->parameters[index];
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;

@@ -1,4 +1,4 @@
-/* Small files that scenes of the tests name, in the folder of the test. */
+/* Writes small files that the tests' scenes name into the folder of the test. */
 #ifndef GRAY_TESTS_FILE_MAKERS_H
 #define GRAY_TESTS_FILE_MAKERS_H
 

@@ -1,4 +1,4 @@
-/* Meshes made in the tests: solids, soups, slivers. Everything from malloc; maker_free gives it back. */
+/* Meshes made in the tests: solids, soups, slivers. Everything is from malloc; maker_free frees it. */
 #ifndef GRAY_TESTS_MESH_MAKERS_H
 #define GRAY_TESTS_MESH_MAKERS_H
 
@@ -65,7 +65,7 @@ static inline struct mesh_input maker_input(const struct maker *m) {
                                .vertex_index = m->corners};
 }
 
-/* Its triangles, which must be all its faces; valid as long as the maker is. */
+/* The triangles of a maker whose faces are all triangles; valid as long as the maker is. */
 static inline struct triangle_set set_of(const struct maker *m) {
     struct box box = box_empty();
     for (uint32_t i = 0; i < m->vertex_count; i++)
@@ -93,8 +93,8 @@ static inline void maker_scale(struct maker *m, double scale, double dx, double 
     }
 }
 
-/* An octahedron, each face divided into size * size triangles, pushed out to the unit sphere. Corners that fall
- * together are given the same coordinates bit for bit. */
+/* An octahedron, each face divided into size * size triangles, projected onto the unit sphere. Coincident corners get
+ * the same coordinates bit for bit. */
 static inline void maker_sphere(struct maker *m, int size) {
     for (int side = 0; side < 8; side++) {
         double sx = side & 1 ? -1 : 1, sy = side & 2 ? -1 : 1, sz = side & 4 ? -1 : 1;
@@ -130,7 +130,7 @@ static inline void maker_tiny_ball(struct maker *m, double shrink) {
     maker_triangle(m, a, b, maker_vertex(m, 1.7, -0.4142, 1.9));
 }
 
-/* A torus with a square section that turns `twist` quarter turns on its way round, `around` steps. */
+/* A torus with a square section that turns by `twist` quarter turns along the ring, in `around` steps. */
 static inline void maker_twisted_torus(struct maker *m, int around, int section, int twist) {
     uint32_t base = m->vertex_count;
     for (int i = 0; i < around; i++)
@@ -202,7 +202,7 @@ static inline struct vec3 test_point(struct test_random *random, double size) {
     return vec3_make(x, y, test_uniform(random, -size, size));
 }
 
-/* A ray of many kinds round a mesh: from inside, outside, far away, along axes, at vertices, along edges. */
+/* A ray of one of many kinds at a mesh: from inside, outside, far away, along axes, at vertices, along edges. */
 static inline struct ray test_any_ray(const struct maker *m, const struct mesh *mesh, struct test_random *random) {
     struct box box = mesh_bounds(mesh);
     double size = vec3_length(vec3_sub(box.max, box.min));

@@ -1,4 +1,4 @@
-/* Bytes of mesh files made in the tests, and the comparison of what comes back. Everything from malloc. */
+/* Bytes of mesh files made in the tests, and the comparison of what the readers return. Everything from malloc. */
 #ifndef GRAY_TESTS_MODEL_MAKERS_H
 #define GRAY_TESTS_MODEL_MAKERS_H
 
@@ -61,7 +61,7 @@ static inline void bytes_free(struct bytes *b) {
 /* An OBJ square with texture coordinates, without its face. */
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
 
-/* The path of a file in the test's folder; four of them live at a time. */
+/* The path of a file in the test's folder; the last four results stay valid. */
 static inline const char *in_folder(const char *name) {
     static char path[4][400];
     static int turn;
@@ -70,7 +70,7 @@ static inline const char *in_folder(const char *name) {
     return out;
 }
 
-/* Parses a copy of exactly this size, so that the sanitizer sees every byte read beside it. True with a model. */
+/* Parses a copy of exactly this size, so that the sanitizer detects every read outside it. True if there is a model. */
 static inline bool parse_model(struct model *model, const char *path, const void *data, size_t size,
                                const struct model_options *options, struct error *error) {
     static const struct model_options none = {0};
@@ -106,7 +106,7 @@ static inline void check_text_refused(const char *path, const char *text, const 
     check_refused(path, text, strlen(text), message);
 }
 
-/* Every beginning of the file is a mesh or one line that names it. */
+/* Every prefix of the file is a mesh or one line that names it. */
 static inline void check_cut_anywhere(const char *path, const struct bytes *b, size_t step) {
     for (size_t size = 0; size < b->size; size += step) {
         struct model model;
@@ -172,7 +172,7 @@ static inline bool same_faces(const struct mesh *a, const struct mesh *b) {
     return true;
 }
 
-/* Coordinates that float holds exactly. */
+/* Coordinates that are exact in float. */
 static inline void maker_round(struct maker *m) {
     for (uint32_t i = 0; i < m->vertex_count; i++)
         for (int k = 0; k < 3; k++)

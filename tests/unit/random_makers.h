@@ -1,4 +1,4 @@
-/* Points, rays, trees and meshes of tests that ask at random. */
+/* Points, rays, trees and meshes for randomised tests. */
 #ifndef GRAY_TESTS_RANDOM_MAKERS_H
 #define GRAY_TESTS_RANDOM_MAKERS_H
 
@@ -18,8 +18,8 @@ static inline struct ray ray_from(struct vec3 origin, struct vec3 direction) {
     return (struct ray){.origin = origin, .direction = direction, .t_min = -INFINITY, .t_max = INFINITY};
 }
 
-/* A random tree of `count` leaves from `first` on, in reverse Polish notation, with an inverse after a part of the
- * tokens; gives its length, 2 count - 1 and the inverses. */
+/* A random tree of `count` leaves from `first` on, in reverse Polish notation, with an inverse after some of the
+ * tokens. Returns its length: 2 count - 1 and the inverses. */
 static inline uint32_t random_program(struct test_random *random, uint32_t first, uint32_t count, double inverses,
                                       struct csg_token *program) {
     uint32_t length = 0, depth = 0, next = 0;

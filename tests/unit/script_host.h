@@ -1,4 +1,4 @@
-/* A host for scripts without any rendering: it keeps what was asked and said. Used by the tests of src/script. */
+/* A host for scripts that does not render: it records requests and messages. Used by the tests of src/script. */
 #ifndef GRAY_TESTS_SCRIPT_HOST_H
 #define GRAY_TESTS_SCRIPT_HOST_H
 
@@ -12,15 +12,15 @@
 #include <string.h>
 
 struct listener {
-    int renders, messages, polls, cancel_at; /* cancel_at: the poll that says yes; 0 = none */
-    char said[8192];                         /* all messages, one a line */
-    char files[4096];                        /* names of the pictures, one a line */
+    int renders, messages, polls, cancel_at; /* cancel_at: the poll that cancels; 0 = none */
+    char said[8192];                         /* all messages, one per line */
+    char files[4096];                        /* names of the pictures, one per line */
     struct render_request last;              /* pointers in it are stale after the call */
     struct affine first_child[64];           /* parent_from_node of the root's first child, by render */
-    void (*seen)(struct listener *listener, const struct render_request *request); /* NULL: nothing more */
-    uint64_t fail_at, failing; /* the first picture makes this allocation after it fail; which one that is */
-    enum fault_kind fail_kind; /* or this call to the system */
-    struct error answer;       /* what render fails with; ERROR_NONE: it succeeds */
+    void (*seen)(struct listener *listener, const struct render_request *request); /* NULL: no more */
+    uint64_t fail_at, failing; /* the first picture makes this later allocation fail; the number of that allocation */
+    enum fault_kind fail_kind; /* or this system call */
+    struct error answer;       /* the error of render; ERROR_NONE: it succeeds */
 };
 
 static inline bool listener_render(void *context, const struct render_request *request, struct error *error) {
@@ -89,12 +89,12 @@ static inline bool listen_to_text(struct listener *listener, const char *text, c
     return listen_to(listener, path, options, error, NULL);
 }
 
-/* A short text that runs, or is refused with these words. */
+/* A short script that runs, or fails with these words. */
 struct corner {
     const char *text, *words; /* NULL: it runs */
 };
 
-/* Before each text comes `preparation`, and the name of its folder as arg_folder. */
+/* Each script is preceded by `preparation` and by the name of its folder as arg_folder. */
 static inline void check_corner(const char *preparation, const struct corner *corner,
                                 const struct script_options *options) {
     char text[4096];

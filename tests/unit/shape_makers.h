@@ -1,6 +1,6 @@
-/* A maker for every kind of shape, of about the size of the unit ball around the origin (planes and some quadrics have
- * no end), for tests that hold for all of them. The makers are in test_every_shape.c: the compiler names the one that
- * is missing for a new kind. */
+/* A maker for every kind of shape, about as large as the unit ball at the origin (planes and some quadrics are
+ * unbounded), for tests that hold for all of them. The makers are in test_every_shape.c: the compiler names the one
+ * that is missing for a new kind. */
 #ifndef GRAY_TESTS_SHAPE_MAKERS_H
 #define GRAY_TESTS_SHAPE_MAKERS_H
 
@@ -12,22 +12,22 @@
 
 enum { MADE_MESHES = 512 };
 
-/* Owns what the shapes are made of. Zero-initialise to create. */
+/* Owns the memory of the shapes. Zero-initialise to create. */
 struct shape_makers {
     struct arena arena;
-    struct mesh *meshes[MADE_MESHES]; /* beyond them earlier ones come again */
+    struct mesh *meshes[MADE_MESHES]; /* after that, earlier ones are used again */
     uint32_t mesh_count;
 };
 
-/* Volume and area by a closed form, or NAN where there is none. The area of a curve, which faces every ray, is that of
- * a sheet which as many random lines cross. */
+/* Volume and area in closed form, or NAN if there is none. A curve faces every ray; its area is that of a sheet that as
+ * many random lines cross. */
 struct made_shape {
     struct shape shape;
     double volume, area;
 };
 
 struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, struct test_random *random);
-/* The same of what the world places: shapes by their kind, and SHAPE_KIND_COUNT for a CSG solid. */
+/* The same for everything that a world contains: shapes by their kind, and SHAPE_KIND_COUNT for a CSG solid. */
 struct made_geometry {
     struct geometry geometry;
     double volume, area;
@@ -38,7 +38,7 @@ struct made_geometry make_geometry(struct shape_makers *makers, int kind, struct
 struct shape make_solid(struct shape_makers *makers, struct test_random *random);
 void shape_makers_destroy(struct shape_makers *makers);
 
-/* A map that turns, scales by 1/2 to 2 along each axis, mirrors now and then, and moves by up to `spread`. */
+/* A map that rotates, scales by 1/2 to 2 along each axis, sometimes mirrors, and translates by up to `spread`. */
 struct transform make_transform(struct test_random *random, double spread);
 
 #endif

@@ -257,7 +257,7 @@ static inline void check_ray(const struct shape *shape, const struct ray *ray, d
     for (uint32_t i = 0; i < count; i++)
         tally->disorder += own[i].enter != (i % 2 == 0) || (i > 0 && !(own[i].t > own[i - 1].t));
 
-    /* The nearest one from somewhere is the first of the list there. */
+    /* The nearest one from a point is the first of the list after that point. */
     struct ray part = *ray;
     part.t_min = count ? own[count / 3].t : 0;
     scratch->used = 0;

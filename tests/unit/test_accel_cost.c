@@ -1,4 +1,4 @@
-/* The cost model of the frame beside what is counted when frames of many sizes are walked. */
+/* The cost model of the scene accelerator against counts from the traversal of grids of many resolutions. */
 #include "tests/harness.h"
 
 #include "accel/accel_cost.h"
@@ -10,8 +10,8 @@
 
 #include <stdlib.h>
 
-/* In visits of a node, as accel_cost.c counts: a triangle of a block of eight 0.2, a voxel with the start of its
- * hierarchy 1.2 (most of those that are visited hold something), a box 0.3. */
+/* In units of a node visit, as in accel_cost.c: a triangle of a block of eight costs 0.2, a voxel with the start of its
+ * hierarchy 1.2 (most visited voxels are not empty), a box 0.3. */
 static double cost_of(double nodes, double triangles, double voxels) {
     return nodes + 0.2 * triangles + 1.2 * voxels;
 }
@@ -36,7 +36,8 @@ static void soup_add(struct soup *s, struct test_random *random, struct vec3 at,
 
 enum { SOUP = 20000, FORMS = 6 };
 
-/* Even in a cube; slivers of dust in it; a sheet; a ball; a ball in a wide bowl of large triangles; two far heaps. */
+/* Distributions: uniform in a cube; tiny slivers in it; a sheet; a ball; a ball in a wide bowl of large triangles; two
+ * distant clusters. */
 static struct soup make_soup(int form, struct test_random *random) {
     struct soup s = {.vertices = malloc(3 * SOUP * sizeof *s.vertices),
                      .corners = malloc(SOUP * sizeof *s.corners),
@@ -70,7 +71,7 @@ static struct soup make_soup(int form, struct test_random *random) {
     return s;
 }
 
-/* Half of the rays are lines at random, half look at random triangles. */
+/* Half of the rays are random lines, half go to random triangles. */
 static struct ray soup_ray(const struct soup *s, struct test_random *random, int i) {
     struct vec3 size = vec3_sub(s->bounds.max, s->bounds.min), route, target;
     route = vec3_make(test_uniform(random, -1, 1), test_uniform(random, -1, 1), test_uniform(random, -1, 1));
@@ -148,7 +149,7 @@ TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
     }
 }
 
-/* Of a made-up mesh: a million voxels that hold something, of which a ray meets one. */
+/* The cost of an invented mesh: a million occupied voxels, of which a ray meets one. */
 TEST(a_mesh_whose_voxels_spare_more_than_the_walk_costs_gets_them) {
     struct cost_sample cost_sample = {.level_count = 4, .items = 1e6};
     for (uint32_t l = 0; l < 4; l++)
@@ -169,7 +170,7 @@ static void add_ball(struct stage *s, struct node *root, struct vec3 at, double 
     stage_move(s, node, at.x, at.y, at.z);
 }
 
-/* An even cloud, a sparse one, a heap over a wide floor, a sheet, two heaps, sizes of all orders. */
+/* A uniform cloud, a sparse one, a cluster over a wide floor, a sheet, two clusters, sizes of all magnitudes. */
 static void make_world(struct stage *s, int form, int count, struct test_random *random) {
     struct node *root = s->root;
     for (int i = 0; i < count; i++) {
@@ -271,7 +272,7 @@ TEST(building_takes_at_most_twice_the_memory_of_what_is_built) {
         check_peak("a mesh", before, triangle_index_memory(index));
         triangle_index_destroy(index);
 
-        /* Boxes of the triangles, as if each were placed by itself; the boxes are a part of what is built. */
+        /* Boxes of the triangles, as if each were a primitive; the boxes count as memory of the structure. */
         struct box *boxes = malloc(s.count * sizeof *boxes);
         for (uint32_t i = 0; i < s.count; i++) {
             boxes[i] = box_empty();

@@ -26,7 +26,7 @@ static void set_direction(struct ray_packet *packet, uint32_t i, struct vec3 d) 
 
 enum { BEAM, FAN, AT_VERTICES, ALONG_AXES, ROUND_ABOUT, ODD_ONES, FORMS };
 
-/* Rays of one origin in one of many ways; what is odd must fall to single rays, not fail. */
+/* Rays of one origin in one of many patterns; unusual packets must be traced as single rays and not fail. */
 static struct ray_packet any_packet(const struct maker *m, const struct mesh *mesh, struct test_random *random,
                                     int form) {
     struct box box = mesh_bounds(mesh);
@@ -130,7 +130,7 @@ TEST(packets_answer_as_single_rays_for_every_instruction_set) {
     CHECK(cpu_select_isa("auto"));
 }
 
-/* Single precision knows places hardly better than the ball's triangles are large. */
+/* Single precision resolves positions hardly better than the size of the ball's triangles. */
 TEST(packets_from_near_a_tiny_dense_ball_in_a_wide_scene_answer_as_single_rays) {
     uint64_t hits = 0;
     for (int isa = 0; isa < 3; isa++) {
@@ -163,7 +163,7 @@ TEST(packets_from_near_a_tiny_dense_ball_in_a_wide_scene_answer_as_single_rays) 
     CHECK(hits > 10000);
 }
 
-/* The rays of pixels: edges that run through every pixel, straight on and askew, and rays exactly through vertices. */
+/* Camera rays: edges that run through every pixel, frontal and oblique, and rays exactly through vertices. */
 TEST(the_camera_rays_of_a_tile_answer_as_single_rays) {
     for (int isa = 0; isa < 3; isa++) {
         if (!cpu_select_isa(sets[isa]))

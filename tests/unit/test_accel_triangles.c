@@ -13,7 +13,7 @@ static struct triangle_index *build(const struct triangle_set *set, uint32_t vox
     return index;
 }
 
-/* The nearest and any hit are those that trying every triangle gives; true when there is one. */
+/* The nearest hit and any hit agree with a test of every triangle; true if there is one. */
 static bool meets_the_same(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                            struct triangle_cost *cost) {
     struct triangle_hit expected = {0}, hit = {0};
@@ -25,7 +25,7 @@ static bool meets_the_same(const struct triangle_index *index, const struct tria
 }
 
 struct tally {
-    uint64_t once[64]; /* one bit for every triangle met; sets here are small */
+    uint64_t once[64]; /* one bit per triangle that was met; the sets here are small */
     double sum;
 };
 
@@ -110,7 +110,7 @@ TEST(rays_from_a_million_sizes_away_are_answered_as_by_trying_every_triangle) {
     maker_free(&m);
 }
 
-/* Unused lanes of blocks and the way rays are taken into local space both depend on how near the origin is. */
+/* Unused lanes of blocks and the transform of rays into local space both depend on the distance of the origin. */
 TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothing_else) {
     struct test_random random = {14};
     struct maker m = {0};
@@ -122,7 +122,7 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
     for (int i = 0; i < 20000; i++) {
         struct vec3 route = i & 1 ? test_point(&random, 1) : vec3_add(vec3_all(1), test_point(&random, 0.2));
         struct vec3 origin = vec3_scale(vec3_normalize(route), test_uniform(&random, 1, 30));
-        /* At the mesh, or past places where an index may have put what is not of the mesh. */
+        /* At the mesh, or past places where an index may have put padding. */
         struct vec3 target = test_point(&random, 1);
         double far = pow(2, floor(test_uniform(&random, 1, 9)));
         if (i & 2)
@@ -142,9 +142,9 @@ TEST(rays_from_a_few_sizes_away_meet_what_trying_every_triangle_meets_and_nothin
     maker_free(&m);
 }
 
-/* A small dense ball in a scene that is up to a million times as wide, not in its middle: single precision knows places
- * hardly better there than the ball's triangles are large. Rays go at edges and corners, from near and far and from the
- * ball itself. */
+/* A small dense ball in a scene that is up to a million times as wide, away from its middle: there single precision
+ * resolves positions hardly better than the size of the ball's triangles. Rays go at edges and corners, from near and
+ * far and from the ball itself. */
 TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_meets) {
     static const char *const sets[] = {"base", "avx2", "avx512"};
     int hits = 0;
@@ -179,8 +179,9 @@ TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_m
     CHECK(hits > 3000);
 }
 
-/* Whether a ray leaves the floor it starts on is more than single precision can say below some height, and the floor is
- * so large that the slack of its test is, too. Odd sides, so that no number of the floor is exact; the same tilted. */
+/* Below some height, single precision cannot decide whether a ray leaves the floor it starts on; the floor is so large
+ * that the tolerance of the triangle test is large, too. The sides are odd numbers, so that no coordinate of the floor
+ * is exact; the same for a tilted floor. */
 TEST(rays_that_start_close_above_or_below_a_huge_floor_meet_what_trying_every_triangle_meets) {
     static const char *const sets[] = {"base", "avx2", "avx512"};
     for (int isa = 0; isa < 3; isa++) {

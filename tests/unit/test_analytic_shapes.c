@@ -1,10 +1,10 @@
 /* Quadrics, torus, superellipsoid, flat shapes: crossings lie on the surface and none is missed, normals are gradients,
  * boxes are tight, image coordinates move as their derivatives say, CSG agrees with point tests. The implicit functions
- * here are written anew, in long double. */
+ * here are independent of the sources, in long double. */
 #include "csg/csg.h"
-#include "shape/shape.h"
-#include "shape/revolved_quadric.h"
 #include "shape/planar.h"
+#include "shape/revolved_quadric.h"
+#include "shape/shape.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 
@@ -105,7 +105,8 @@ static struct shape random_shape(enum form form, struct test_random *random, str
     switch (form) {
     case CYLINDER:
     case OPEN_CYLINDER:
-        s.revolved_quadric = revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, form == OPEN_CYLINDER);
+        s.revolved_quadric =
+            revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, form == OPEN_CYLINDER);
         break;
     case CONE:
         s.revolved_quadric = revolved_quadric_frustum(zero, 0, vec3_make(0, 1, 0), 1, false);
@@ -238,7 +239,7 @@ static struct vec3 target_at(const struct shape *s, double size, struct test_ran
     return p;
 }
 
-/* ---- the surfaces, written anew ---- */
+/* ---- the surfaces, independently ---- */
 
 struct point {
     long double x, y, z;
@@ -313,7 +314,7 @@ static double residual(const struct shape *s, struct vec3 p) {
     return (double)(value == 0 ? 0 : value / length);
 }
 
-/* Whether the surface's limits hold p, with room to spare (or missing, when `room` is negative). */
+/* Whether p is inside the surface's limits by at least `room` (outside by as much if `room` is negative). */
 static bool within_limits(const struct shape *s, struct vec3 p, double room) {
     if (s->kind == SHAPE_REVOLVED_QUADRIC) {
         double h = vec3_dot(vec3_sub(p, s->revolved_quadric.base), s->revolved_quadric.axis);
@@ -338,7 +339,8 @@ static bool is_flat(const struct shape *s) {
     return s->kind == SHAPE_PLANAR && s->planar.kind != PLANAR_PLANE;
 }
 
-/* A flat shape's membership, told in another way: by distances and areas in space, a polygon by its winding numbers. */
+/* Whether a planar shape contains a point, by other formulas: by distances and areas in space, for a polygon by winding
+ * numbers. */
 static bool flat_has(const struct shape *s, enum form form, struct vec3 p, double *clearance) {
     const struct planar *f = &s->planar;
     switch ((int)form) { /* the flat ones */
@@ -405,13 +407,13 @@ static void check_crossing(const struct shape *s, const struct ray *ray, const s
     if (side) {
         double far = residual(s, p) / size;
         n->worst = fmax(n->worst, far);
-        /* A tip has no gradient: there the distance is that to the tip. */
+        /* A tip has no gradient: there the distance to the tip is taken. */
         struct point g = gradient(s, point_of(p));
         tip = sqrtl(g.x * g.x + g.y * g.y + g.z * g.z) < 1e-3L;
         n->off += !(far < 1e-9) && !tip;
         n->off += !within_limits(s, p, -1e-9 * size);
         long double aligned = dot_of(vec3_normalize(surface.normal), g) / sqrtl(g.x * g.x + g.y * g.y + g.z * g.z);
-        /* Where the surface bends sharply the place itself is not known well enough. */
+        /* Where the surface bends sharply, the position itself is not accurate enough. */
         bool bent = s->kind == SHAPE_SUPERELLIPSOID && (fmin(fabs(p.x), fabs(p.z)) < 1e-3 || fabs(p.y) < 1e-3 ||
                                                         s->superellipsoid.e < 0.3 || s->superellipsoid.n < 0.3);
         n->normals += !tip && !bent && !(aligned > 1 - 1e-6L);
@@ -431,7 +433,7 @@ static void check_crossing(const struct shape *s, const struct ray *ray, const s
     n->crossings++;
 }
 
-/* The list against point tests along the line. */
+/* The list of crossings against point tests along the line. */
 static void march(const struct shape *s, enum form form, const struct ray *ray, const struct crossing *list,
                   uint32_t count, struct counts *n) {
     if (is_flat(s)) {
@@ -578,7 +580,8 @@ TEST(analytic_shapes_alternate_on_degenerate_lines) {
 TEST(cylinder_cone_torus_and_square_have_the_dimensions_of_the_specification) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
-    struct shape cylinder = {.kind = SHAPE_REVOLVED_QUADRIC}, cone = cylinder, torus = {.kind = SHAPE_TORUS, .torus = {2, 0.5}};
+    struct shape cylinder = {.kind = SHAPE_REVOLVED_QUADRIC}, cone = cylinder,
+                 torus = {.kind = SHAPE_TORUS, .torus = {2, 0.5}};
     cylinder.revolved_quadric = revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false);
     cone.revolved_quadric = revolved_quadric_frustum(vec3_all(0), 0, vec3_make(0, 1, 0), 1, false);
     struct shape square = {.kind = SHAPE_PLANAR};
@@ -621,7 +624,7 @@ TEST(cylinder_cone_torus_and_square_have_the_dimensions_of_the_specification) {
     geom_scratch_destroy(&scratch);
 }
 
-/* Every side of the box under any map is touched within 1 %, and nothing reaches beyond. */
+/* Under any map the shape touches every side of its box within 1 % and does not reach beyond it. */
 TEST(analytic_shapes_have_tight_world_boxes_under_any_affine_map) {
     struct arena arena = {0};
     struct test_random random = {6};
@@ -685,7 +688,7 @@ TEST(analytic_shapes_have_tight_world_boxes_under_any_affine_map) {
     arena_destroy(&arena);
 }
 
-/* u to the right and v upwards seen from outside (of flat shapes: from the front), or both turned round. */
+/* u increases to the right and v upwards as seen from outside (planar shapes: from the front), or both are reversed. */
 TEST(analytic_shapes_never_show_pictures_mirrored) {
     struct test_random random = {77};
     struct arena arena = {0};
@@ -736,7 +739,7 @@ TEST(analytic_shapes_have_image_coordinates_that_move_as_their_derivatives_say) 
             shape_describe(&s, &near, &b, &q);
             bool endless = form == HALF_SPACE || form == QUADRIC_ENDLESS;
             range += !p.has_uv || (!endless && !(p.u >= 0 && p.u <= 1 && p.v >= 0 && p.v <= 1));
-            /* Seams, poles, grazing light and sharp bends say nothing about derivatives. */
+            /* Seams, poles, grazing rays and sharp bends are not suitable for a test of derivatives. */
             struct vec3 moved = vec3_sub(q.point, p.point);
             if (fabs(p.u - q.u) > 0.5 || fabs(p.v - q.v) > 0.5 || vec3_length(moved) > 1e-4)
                 continue;
@@ -753,7 +756,8 @@ TEST(analytic_shapes_have_image_coordinates_that_move_as_their_derivatives_say) 
     arena_destroy(&arena);
 }
 
-/* Rays longer by a power of two: t shorter by it, bit by bit. Shapes, too, where a length may be scaled. */
+/* A ray direction scaled by a power of two gives t divided by it, bit by bit. The same for shapes whose lengths can be
+ * scaled. */
 TEST(analytic_shapes_scaled_by_powers_of_two_give_the_same_t) {
     struct test_random random = {8};
     struct arena arena = {0};

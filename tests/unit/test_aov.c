@@ -1,4 +1,4 @@
-/* Pictures beside the picture against closed forms, and statistics that must agree with one another. */
+/* Render layers (AOVs) against closed forms, and statistics that must agree with one another. */
 #include "output/layers.h"
 #include "render/aov.h"
 #include "tests/harness.h"
@@ -52,7 +52,7 @@ TEST(layers_of_a_ball_are_their_closed_forms) {
             CHECK(layer(&s, AOV_MATERIAL, x, y)[1] == (depth > 0 ? 1.0f : 0.0f));
             CHECK(layer(&s, AOV_LIGHTS, x, y)[0] == (depth > 0 ? 0.5f : 0.0f)); /* the other one is behind it */
             const float *uv = layer(&s, AOV_UV, x, y);
-            if (depth > 0) { /* round the y axis, and from the south pole up */
+            if (depth > 0) { /* around the y axis, and upwards from the south pole */
                 worst = fmax(worst, fabs((double)uv[0] - (0.5 + atan2(n.z, n.x) / (2 * M_PI))));
                 worst = fmax(worst, fabs((double)uv[1] - (0.5 + asin(n.y) / M_PI)));
             }
@@ -177,7 +177,7 @@ TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
     free(reference);
 }
 
-/* Nothing is met, and without any accelerator every ray tries every box: the cost is known. */
+/* No ray hits anything, and without an accelerator every ray tests every box: the cost is known. */
 TEST(the_cost_of_a_ray_that_tries_everything_is_the_number_of_things) {
     enum { THINGS = 37 };
     struct stage s;
@@ -205,7 +205,7 @@ static void crowd(struct stage *s) {
     stage_point_light(s, vec3_make(4, 6, 8), vec3_all(1));
 }
 
-/* Rays that do not go in packets are measured as they are traced, so the parts are the whole. */
+/* Rays outside packets are measured while they are traced, so the parts add up to the total. */
 TEST(the_costs_of_all_pixels_are_those_of_the_statistics) {
     struct stage s;
     stage_begin(&s, 2);
@@ -220,7 +220,7 @@ TEST(the_costs_of_all_pixels_are_those_of_the_statistics) {
     CHECK(layer_sum(&s, AOV_SAMPLES) == (double)s.statistics.camera_rays);
     const struct render_statistics *t = &s.statistics;
     uint64_t work = t->box_tests + t->shape_tests + t->triangle_tests + t->voxels + t->hierarchy_steps;
-    /* A shadow ray begins with what stopped the one before it, which is another one when pixels are measured. */
+    /* A shadow ray first tests the occluder of the previous one, which differs when pixels are measured. */
     CHECK(fabs(layer_sum(&s, AOV_COST) - (double)work) < 0.02 * (double)work);
     stage_end(&s);
 }
@@ -240,7 +240,8 @@ TEST(every_accelerator_sends_the_same_rays) {
         CHECK(t->camera_rays == first.camera_rays && t->reflected_rays == first.reflected_rays);
         CHECK(t->refracted_rays == first.refracted_rays && t->shadow_rays == first.shadow_rays);
         CHECK(t->samples == t->camera_rays && t->pixels == 60 * 40 && t->marked_pixels == first.marked_pixels);
-        /* Trying everything tries most; a tree without steps and a grid without voxels would be none. */
+        /* Without an accelerator the most primitives are tested; a tree must visit nodes and a grid must visit voxels.
+         */
         CHECK(i == 0 || t->shape_tests <= first.shape_tests);
         CHECK((t->hierarchy_steps > 0) ==
               (kinds[i] == ACCEL_AUTO || kinds[i] == ACCEL_BVH || kinds[i] == ACCEL_KDTREE));

@@ -1,5 +1,5 @@
-/* The corners of what everything stands on: sizes beyond all memory, names of files that cannot be, every call to the
- * system that fails while a file is written, standard descriptors that somebody has closed. */
+/* Corner cases of src/base: sizes beyond all memory, impossible file names, every system call that can fail while a
+ * file is written, closed standard descriptors. */
 #define _GNU_SOURCE
 #include "base/arena.h"
 #include "base/fault.h"
@@ -62,7 +62,7 @@ TEST(an_arena_that_is_reset_keeps_its_largest_block_wherever_it_stands) {
     CHECK(arena.total == 0);
     uint64_t before = mem_allocations();
     CHECK(arena_alloc(&arena, (size_t)90 << 20) != NULL);
-    CHECK(mem_allocations() - before <= 1); /* the question whether it shall fail, and no block */
+    CHECK(mem_allocations() - before <= 1); /* the check for an injected failure, and no block */
     arena_destroy(&arena);
 }
 
@@ -225,7 +225,7 @@ TEST(versions_of_files_are_their_contents_wherever_time_says_otherwise) {
     CHECK(file_version_of(test_path("a"), NULL, &first));
     CHECK(file_version_of(test_path("a"), &first, &second) && digest_equal(first.content, second.content));
     struct file_version known = first;
-    known.content.a ^= 1; /* believed where size and time are the same */
+    known.content.a ^= 1; /* accepted if size and time are the same */
     CHECK(file_version_of(test_path("a"), &known, &second) && digest_equal(known.content, second.content));
     known.seconds--;
     CHECK(file_version_of(test_path("a"), &known, &second) && digest_equal(first.content, second.content));
@@ -238,7 +238,7 @@ TEST(versions_of_files_are_their_contents_wherever_time_says_otherwise) {
     CHECK(!file_map(test_folder(), 2, &bytes, &error) && strstr(error.text, "is a folder, not a regular file"));
 }
 
-/* In a process of its own: whatever is opened later is none of the three, and the input gives nothing. */
+/* In a separate process: no file opened later gets one of the three descriptors, and standard input is empty. */
 TEST(closed_standard_descriptors_are_taken_by_nothing) {
     pid_t child = fork();
     if (child == 0) {
@@ -263,16 +263,17 @@ static bool count_entry(void *context, const char *name) {
     return true;
 }
 
-/* Whichever call fails, with and without files that have no name yet: the old file or the new one, and nothing else. */
+/* Whichever call fails, with and without unnamed temporary files (O_TMPFILE): the old file or the new one remains, and
+ * nothing else. */
 TEST(a_file_is_written_whole_or_not_at_all_whichever_call_fails) {
-    CHECK(chdir(test_folder()) == 0); /* no folders need to be made for a name without any */
+    CHECK(chdir(test_folder()) == 0); /* a name without folders needs none to be made */
     for (uint64_t opening = 0; opening <= 1; opening++)
         for (uint64_t k = 1, over = 0; !over; k++) {
             struct file_output file;
             struct error error = {0};
             size_t size;
             test_write_text("a.txt", "old");
-            /* Folder, look at the name twice, then the file without a name. */
+            /* The calls: open the folder, look at the name twice, then create the unnamed file. */
             fault_at(FAULT_OF_CALL, opening ? 4 : 0);
             bool ok = file_output_open(&file, FILE_AT("a.txt"), &error);
             CHECK(ok && file.nameless == (opening == 0));
@@ -287,7 +288,7 @@ TEST(a_file_is_written_whole_or_not_at_all_whichever_call_fails) {
             over = fault_count(FAULT_OF_CALL) - before < k;
             char *text = test_read_file("a.txt", &size);
             CHECK_TEXT(text, ok ? "new" : "old");
-            CHECK(ok || (!over && error.kind == ERROR_MACHINE)); /* ok: over, or there was another way */
+            CHECK(ok || (!over && error.kind == ERROR_MACHINE)); /* ok: all calls were tried, or a fallback succeeded */
             free(text);
             entries = 0;
             CHECK(file_list(".", 100, count_entry, NULL));

@@ -53,7 +53,7 @@ static const char scene[] =
 enum { RAYS = 3000 };
 static const enum accel_kind accels[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE, ACCEL_NONE};
 
-/* Rays as bounces make them, mixed with fans of one origin and rays in odd places. */
+/* Rays as after a scattering, mixed with bundles from one origin and rays at unusual places. */
 static void make_rays(struct test_random *random, const struct world *world, struct ray *rays) {
     uint32_t fan = 0;
     for (uint32_t i = 0; i < RAYS; i++) {
@@ -80,7 +80,7 @@ static void make_rays(struct test_random *random, const struct world *world, str
     }
 }
 
-/* In batches of any length, none among them, so that they begin and end anywhere. */
+/* In batches of any length, including 0, so that they begin and end anywhere. */
 static void check_batches(const struct world *world, const char *what) {
     static struct ray rays[RAYS];
     static struct hit hits[RAYS], alone;

@@ -249,7 +249,7 @@ TEST(every_kind_of_material_is_made_by_a_function) {
             continue;
         positional_call(function, function->forms[0], -1, "", call);
         make_material(&kinds, call);
-        for (int p = 0; p < function->parameter_count; p++) { /* and with each word of a choice */
+        for (int p = 0; p < function->parameter_count; p++) { /* and with each word of an enumeration */
             const char *words = function->parameters[p].kind == KIND_CHOICE ? function->parameters[p].choices : "";
             for (int length; sscanf(words, " %60s%n", word, &length) == 1; words += length) {
                 char quoted[64];
@@ -260,11 +260,11 @@ TEST(every_kind_of_material_is_made_by_a_function) {
         }
     }
     for (int kind = 0; kind < MATERIAL_KIND_COUNT; kind++)
-        if (!kinds.made[kind] && kind != MATERIAL_METAL) /* which only files have (test_model_look.c) */
+        if (!kinds.made[kind] && kind != MATERIAL_METAL) /* which only model files have (test_model_look.c) */
             test_fail(__FILE__, __LINE__, "no gr function makes a material of kind %d", kind);
 }
 
-/* Whichever allocation fails once the call has begun. Most failures inside Lua are survived by its collector. */
+/* Whichever allocation fails once the call has begun. Lua survives most of its own failures by collecting garbage. */
 static void fail_in_call(const char *call) {
     for (uint64_t k = 1;; k++) {
         char text[CALL_SIZE + 512];

@@ -1,5 +1,6 @@
-/* World boxes under any affine map, for the shapes whose tightest box is known in closed form: contained, and not a
- * hundredth looser. The others are in test_analytic_shapes.c and test_swept_shapes.c, by sampling. */
+/* World boxes under any affine map, for the shapes whose tightest box is known in closed form: the shape is contained,
+ * and the box is less than 1 % too large. The others are in test_analytic_shapes.c and test_swept_shapes.c, by
+ * sampling. */
 #include "mesh/patch.h"
 #include "shape/curve.h"
 #include "tests/harness.h"
@@ -82,7 +83,7 @@ TEST(boxes_of_spheres_boxes_and_quadric_ellipsoids_are_the_closed_forms_under_af
     }
 }
 
-/* Half an ellipsoid: cut by its limits, the box may not reach beyond either. */
+/* Half an ellipsoid: the box may reach neither beyond its limits nor beyond the surface. */
 TEST(boxes_of_cut_quadrics_hold_every_point_and_are_inside_both_boxes) {
     struct test_random random = {32};
     struct quadric whole = {.c = {1, 2, 0.5, 0.4, -0.3, 0.2, 0.1, -0.2, 0.3, -1},
@@ -138,7 +139,7 @@ TEST(boxes_of_placed_meshes_and_patches_are_those_of_their_corners) {
     arena_destroy(&arena);
 }
 
-/* A hair is as wide as its width across every ray: its box is that of balls along the spline. */
+/* A hair has its full width across every ray: its box is that of balls along the spline. */
 TEST(boxes_of_hair_are_those_of_balls_along_it) {
     struct test_random random = {34};
     for (int i = 0; i < 40; i++) {

@@ -1,5 +1,5 @@
-/* Broken mesh files of every kind through the whole program: one script for each, one line for each, status 1. What is
- * claimed by a header is never believed further than the bytes go, so nothing here takes time or memory. */
+/* Broken mesh files of every kind through the whole program: one script for each, one line for each, status 1. Claims
+ * of a header are limited by the bytes that follow, so nothing here takes much time or memory. */
 #include "model_makers.h"
 
 enum { CASES = 64, NAME = 40 };
@@ -51,7 +51,7 @@ static void add_texts(void) {
     add_text("o7.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/5 2/5 3/5\n");
     add_text("o8.obj", "v 0 0 0\nv 1 0 0\nv 0 1");
     add_text("m1.mtl", "newmtl a\nKd 1 1 nan\n");
-    case_count--; /* the model that names it is the case */
+    case_count--; /* the model that names it is the test case */
     add_text("m1.obj", "mtllib m1.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
     add_text("p1.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n");
     add_text("p2.ply", "ply\nformat strange 1.0\nend_header\n");
@@ -153,7 +153,7 @@ TEST(broken_mesh_files_of_every_kind_are_one_line_each_and_status_1) {
         (void)snprintf(arguments + strlen(arguments), sizeof arguments - strlen(arguments), " %d.lua", i);
     struct test_result result = test_gray(NULL, arguments);
     CHECK_EQ_INT(result.status, 1);
-    /* Lines that are not indented are messages; the rest is where in the script. */
+    /* Lines without indentation are messages; the others give the position in the script. */
     int seen = 0;
     for (char *line = strtok(result.err, "\n"); line; line = strtok(NULL, "\n")) {
         if (line[0] == ' ')

@@ -1,5 +1,5 @@
-/* BSDFs: every lobe by itself, several together, and which material makes which lobes. Directions are binned on the
- * sphere in cells of equal solid angle about the geometric normal, so that the surface is a border of cells. */
+/* BSDFs: every lobe alone, several together, and which material has which lobes. Directions are binned on the sphere in
+ * cells of equal solid angle about the geometric normal, so that the tangent plane is a border of cells. */
 #include "tests/harness.h"
 
 #include "material/dielectric.h"
@@ -12,7 +12,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* One surface from which light goes to wo. */
+/* One surface that is seen from wo. */
 struct view {
     struct bsdf bsdf;
     struct vec3 wo;
@@ -23,7 +23,7 @@ static struct vec3 direction_at(double degrees, double turn) {
     return vec3_make(sin(angle) * cos(turn), sin(angle) * sin(turn), cos(angle));
 }
 
-/* A surface with normal +z; its shading normal leans by an angle, and wo stands at another one. */
+/* A surface with normal +z; one angle tilts its shading normal, another one tilts wo. */
 static struct view view_make(double lean, double degrees, double alpha, double eta) {
     struct view view = {.wo = direction_at(degrees, 0.7)};
     struct bsdf *bsdf = &view.bsdf;
@@ -61,14 +61,14 @@ static int cell_of(struct vec3 direction) {
     return r * COLUMNS + c;
 }
 
-/* Of part (i, j) of n x n parts of the cell. */
+/* A direction in part (i, j) of n x n parts of the cell. */
 static struct vec3 direction_in(int cell, int i, int j, int n) {
     double z = -1 + 2 * (cell / COLUMNS + (i + 0.5) / n) / ROWS;
     double turn = 2 * pi * ((cell % COLUMNS + (j + 0.5) / n) / COLUMNS - 0.5), across = sqrt(1 - z * z);
     return vec3_make(across * cos(turn), across * sin(turn), z);
 }
 
-/* The integral of the density over the cell: finer until two steps agree. */
+/* The integral of the density over the cell: refined until two steps agree. */
 static double integral_over(const struct view *view, int cell) {
     double before = -1, solid_angle = 4 * pi / CELLS;
     for (int n = 4;; n *= 2) {
@@ -120,13 +120,13 @@ static void check_distribution(const char *what, const struct view *view) {
     double sum = integral + (t.lost + t.delta) / SAMPLES;
     if (!(fabs(sum - 1) < 4e-3))
         test_fail(__FILE__, __LINE__, "%s: density, lost and single directions are %.5f together", what, sum);
-    /* A normal approximation (Wilson and Hilferty): a right density is refused once in 10^5. */
+    /* A normal approximation (Wilson and Hilferty): a correct density is rejected once in 10^5 tests. */
     double n = degrees > 0 ? degrees : 1, z = (cbrt(chi2 / n) - (1 - 2 / (9 * n))) / sqrt(2 / (9 * n));
     if (!(z < 4.3))
         test_fail(__FILE__, __LINE__, "%s: chi-square %.1f for %d degrees of freedom", what, chi2, degrees);
 }
 
-/* Views that differ in what makes sampling hard. */
+/* Directions wo that are hard to sample in different ways. */
 struct situation {
     double lean, degrees, alpha, eta, exponent;
 };
@@ -227,7 +227,8 @@ TEST(classic_lobes_answer_lights_by_pi_times_f_times_cosine) {
     for (uint32_t i = 0; i < 1000; i++) {
         struct vec3 l = direction_in((int)(i % CELLS), 0, (int)(i % 3), 3), r = dielectric_mirror(n, l);
         double n_l = vec3_dot(n, l), r_v = vec3_dot(r, view.wo), highlight = r_v > 0 ? pow(r_v, 7) : 0;
-        bool before = n_l > 0 && l.z > 0; /* light from behind the surface gives nothing, though the normal leans */
+        bool before =
+            n_l > 0 && l.z > 0; /* light from behind the surface contributes nothing although the normal is tilted */
         double red = before ? 0.5 * n_l + 0.2 * highlight : 0, blue = before ? 0.2 * n_l + 0.4 * highlight : 0;
         struct vec3 light = bsdf_classic(&view.bsdf, BSDF_ALL, view.wo, l);
         CHECK_NEAR(light.x, red, 1e-14);
@@ -334,7 +335,7 @@ TEST(rough_boundaries_are_those_of_walter_with_fresnel_s_share_of_each_facet) {
         }
 }
 
-/* What facets reflect of what they meet: numbers by quadrature over the visible facets. */
+/* The share of light that facets reflect, by quadrature over the visible facets. */
 TEST(grazing_light_meets_facets_that_do_not_graze) {
     static const struct {
         double degrees, roughness, share;
@@ -372,7 +373,7 @@ static double f_of(enum lobe_kind kind, bool fresnel, double alpha, double n, st
     return bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, wo, wi).x / fabs(wi.z);
 }
 
-/* Highlights of docs/language.md 5.2 have no cosine, so they are not (docs/light.md); lobes of one direction have tests
+/* Highlights of docs/language.md 5.2 have no cosine, so they are not reciprocal (docs/light.md); delta lobes have tests
  * of their own. */
 TEST(every_lobe_but_classic_highlights_is_reciprocal_with_the_square_of_the_index) {
     const double n = 1.5;
@@ -462,8 +463,9 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
     }
 }
 
-/* There and back: the direction and Fresnel's share are the same. The weights are eta^2 times that share, with eta of
- * either way: f / n^2 is the same (Veach 1997, equation 5.14), and a beam is wider in the thin medium by n^2. */
+/* Through the boundary and back: the direction and Fresnel's share are the same. The weights are eta^2 times that
+ * share, with eta of either way: f / n^2 is the same (Veach 1997, equation 5.14), and a beam is wider in the thin
+ * medium by n^2. */
 TEST(smooth_refraction_is_reciprocal_with_the_square_of_the_index) {
     struct material base = glass_of(1.5), glass;
     material_derive(&glass, MATERIAL_FRESNEL, &base);
@@ -513,7 +515,7 @@ TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
                 CHECK((sample.direction.z < 0) == ((sample.flags & BSDF_REFLECTS) != 0));
                 *(sample.flags & BSDF_REFLECTS ? &back : &out) += 1;
             }
-            /* Of a rough surface some facets lean so far that light gets through. */
+            /* Some facets of a rough surface are tilted so far that light gets through. */
             CHECK(rough ? out > 50 : out == 0);
             CHECK(total ? back > 500 : back == 0);
         }

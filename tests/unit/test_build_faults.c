@@ -1,5 +1,5 @@
-/* Bad luck while what rays search is built: whichever allocation fails, and whenever somebody stops it, building ends
- * with one error of its kind and can be begun again, with the same result. */
+/* Failures while accelerators are built: whichever allocation fails, and whenever the build is cancelled, it ends with
+ * one error of that kind and can be started again with the same result. */
 #include "accel/box_tree.h"
 #include "base/fault.h"
 #include "tests/unit/mesh_makers.h"
@@ -34,7 +34,7 @@ static struct mesh *bumpy_ball(uint32_t rings) {
 
 static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_KDTREE};
 
-/* Rays find the same by any search. */
+/* Rays find the same hits with every accelerator. */
 static void check_searches(const struct mesh *mesh) {
     struct test_random random = {77};
     struct geom_scratch scratch;
@@ -65,7 +65,7 @@ TEST(indices_of_meshes_survive_any_allocation_that_fails) {
     int failed = 0;
     for (size_t b = 0; b < sizeof kinds / sizeof kinds[0]; b++) {
         bool done = false;
-        for (uint64_t k = 1; !done; k += 1 + k / 6) { /* a tree asks often */
+        for (uint64_t k = 1; !done; k += 1 + k / 6) { /* the build of a tree polls often */
             struct error error = {0};
             fault_at(FAULT_OF_ALLOCATION, k);
             done = mesh_build_accel(mesh, kinds[b], pool, &error);
@@ -121,7 +121,8 @@ static void *stop_soon(void *context) {
     return NULL;
 }
 
-/* Before it begins, and a little later each time, until it is done before it is stopped (or never, on a slow machine).
+/* Cancels before the start, then a little later each time, until the build finishes first (on a slow machine perhaps
+ * never).
  */
 TEST(building_may_be_stopped_at_any_moment) {
     char warning[256];

@@ -1,4 +1,4 @@
-/* Bump maps and normal maps: normals by closed forms, on the same ways that pictures take. */
+/* Bump maps and normal maps: normals by closed forms, through the same functions as in pictures. */
 #include "material/material_inputs.h"
 #include "material/texture_mapping.h"
 #include "tests/harness.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What stands in a texel, 0 .. 1 a channel. */
+/* The value of a texel, 0 .. 1 per channel. */
 typedef struct vec3 painter(double x, double y);
 
 static struct image *paint(painter *colour, uint32_t width, uint32_t height, int bits) {
@@ -36,7 +36,7 @@ static struct vec3 half(double x, double y) {
     return vec3_all(0.5);
 }
 
-/* Whole numbers of 16 bits at the middles of 255 texels. */
+/* 16-bit integers at the centres of 255 texels. */
 #define RAMP (65280.0 / 65535)
 
 static struct vec3 ramp_right(double x, double y) {
@@ -102,7 +102,7 @@ static struct material *cut_out(struct stage *s, struct image *image, struct mat
     return m;
 }
 
-/* The normal of the look and the hit that a ray meets. */
+/* The shading normal of the material and the hit of a ray. */
 static bool look_at(struct stage *s, struct ray ray, struct hit *hit, struct vec3 *normal) {
     struct world_scratch scratch;
     struct surface_inputs look;
@@ -218,7 +218,7 @@ TEST(bump_ramp_tilts_the_normal_by_the_closed_form_under_affine_maps) {
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         struct transform map = node_parent_from_node(node);
         for (int k = 0; k < 20; k++) {
-            /* Towards a place on the face z = 1, from outside of it. */
+            /* Towards a point of the face z = 1, from outside. */
             struct vec3 p = {test_uniform(&random, 0.05, 0.95), test_uniform(&random, 0.05, 0.95), 1};
             struct vec3 from = affine_point(&map.forward, vec3_add(p, vec3_make(0.1, 0.2, 1)));
             struct vec3 to = affine_point(&map.forward, p);
@@ -238,7 +238,8 @@ TEST(bump_ramp_tilts_the_normal_by_the_closed_form_under_affine_maps) {
     image_release(down);
 }
 
-/* The real surface: a ball with radius 1 + h F; its normal by differences. What Blinn leaves out is of order h F. */
+/* The real surface: a ball with radius 1 + h F; its normal by differences. The terms that Blinn neglects are of order h
+ * F. */
 TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
     const double height = 1e-3, pi = 3.14159265358979323846, e = 1e-5;
     struct image *image = paint(waves, 1024, 512, 16);
@@ -357,7 +358,8 @@ TEST(bumps_finer_than_a_pixel_average_to_flat) {
     image_release(image);
 }
 
-/* Heights, told or not, go with the object: twice the object, twice the bumps, the same bits of the normals. */
+/* Heights, given or by default, scale with the object: twice the object, twice the bumps, the same bits of the normals.
+ */
 TEST(bumps_grow_with_the_object_bit_by_bit) {
     struct image *image = paint(waves, 64, 64, 16);
     struct vec3 first[2] = {{0, 0, 0}};
@@ -407,7 +409,7 @@ TEST(pictures_of_opacity_cut_holes_that_show_what_is_behind) {
     CHECK(stage_render(&s, 20, 20));
     for (uint32_t x = 0; x < 20; x++) {
         if (x == 9 || x == 10)
-            continue; /* the edge of the picture's halves */
+            continue; /* the edge between the halves of the picture */
         CHECK_NEAR(stage_pixel(&s, x, 7).x, x < 10, 1e-6);
         CHECK_NEAR(stage_pixel(&s, x, 7).z, x >= 10, 1e-6);
     }
@@ -437,7 +439,7 @@ TEST(light_falls_through_the_holes_of_pictures_of_opacity) {
                                                    .falloff = {1, 0, 0}};
         s.camera.fov = 40;
         CHECK(stage_render(&s, 60, 20));
-        /* On the wall's line y = 0 the card's shadow is 4 / cos 60 wide; its left half alone is there. */
+        /* On the line y = 0 of the wall the card's shadow is 4 / cos 60 wide; only its left half exists. */
         int dark = 0, all = 0;
         for (uint32_t x = 0; x < 60; x++) {
             double at = ((double)x + 0.5 - 30) / 10 * 10 * tan(20 * 3.14159265358979 / 180);

@@ -9,7 +9,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A small bright ball at a place, nothing else. */
+/* Only a small bright ball at the given position. */
 static void dot_stage(struct stage *s, struct vec3 at, double radius) {
     stage_begin(s, 2);
     struct material *material = stage_phong(s, vec3_all(1), vec3_all(0), 1);
@@ -91,7 +91,8 @@ TEST(what_is_in_focus_is_as_sharp_as_through_a_pinhole) {
     }
 }
 
-/* Stratifying pixel and lens together must beat as many independent places on the lens. */
+/* Stratifying pixel and lens together must have less variance than the same number of independent points on the lens.
+ */
 TEST(samples_of_pixel_and_lens_are_stratified_together) {
     double error[2] = {0, 0};
     for (int alone = 0; alone < 2; alone++) {
@@ -243,8 +244,8 @@ TEST(an_orthographic_ray_that_starts_inside_glass_knows_it) {
     stage_end(&s);
 }
 
-/* A lens half in glass: with the focus far away all its rays have one direction, so the picture is half that of a
- * pinhole in the glass and half that of one in the air. */
+/* A lens half in glass: with a distant focus all its rays have one direction, so the picture is the mean of a pinhole's
+ * in the glass and one in the air. */
 TEST(glass_that_the_lens_cuts_through_is_known_to_each_ray) {
     double lens = 0, pinhole[2] = {0, 0};
     for (int i = 0; i < 3; i++) {

@@ -1,6 +1,6 @@
-/* A wish to stop reaches the threads at once: the flag lies in memory that another process may set, and whatever takes
- * long asks for it. Measured from the flag to the return, at several moments, the best of some runs at each: other
- * programs run beside. */
+/* A request to stop reaches the threads at once: the flag is in memory that another process may set, and every long
+ * task polls it. The time from the flag to the return is measured at several moments; the best of several runs counts
+ * because other programs use the machine. */
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
 
@@ -8,8 +8,8 @@
 #include <stdatomic.h>
 #include <time.h>
 
-/* Quiet machines show some milliseconds (docs/reliability.md). A test must hold on a busy one too: what never asks for
- * the flag goes on for longer than this. */
+/* An idle machine needs some milliseconds (docs/reliability.md). The test must also pass on a busy one: a task that
+ * never polls the flag takes longer than this. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 static const double allowed = 1;
 #else
@@ -37,8 +37,8 @@ static void *ring(void *context) {
     return NULL;
 }
 
-/* Seconds from the flag to the end of `work`, or 0 when it was done before. On a busy machine the processor time of all
- * threads together says more than the clock: the smaller one counts. */
+/* Seconds from the flag to the end of `work`, or 0 if it had finished before. On a busy machine the processor time of
+ * all threads is more meaningful than wall-clock time: the smaller one counts. */
 static double answer(struct pool *pool, double after, bool (*work)(void *context), void *context) {
     struct alarm alarm = {.after = after};
     pthread_t thread;
@@ -69,7 +69,7 @@ struct build {
     struct pool *pool;
 };
 
-/* What mesh_create does comes before any pool: only the index is timed, so the mesh is made first. */
+/* mesh_create runs without a thread pool; only the index is timed, so the mesh is made first. */
 struct index_build {
     struct build build;
     struct mesh *mesh;

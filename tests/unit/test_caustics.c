@@ -1,4 +1,4 @@
-/* Caustics: what is sent arrives, where geometry says, in the unit of direct light. */
+/* Caustics: photons arrive where geometry says, in the unit of direct light. */
 #include "light/sky.h"
 #include "math/elementary.h"
 #include "render/photon_trace.h"
@@ -113,7 +113,7 @@ static const struct node *mesh_above(struct stage *s) {
     return node;
 }
 
-/* A pane of index 1 throws a full shadow; its caustic must be the light that was there. */
+/* A pane of index 1 casts a full shadow; its caustic must replace exactly the light that it blocks. */
 static void pane_gives_back(const char *what, struct light light, double tolerance) {
     struct stage s;
     stage_begin(&s, 2);
@@ -127,7 +127,7 @@ static void pane_gives_back(const char *what, struct light light, double toleran
     box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
     struct vec3 open = floor_light(&s, 0);
     struct material *pane = stage_glass(&s, 0, 1, 1);
-    if (light.kind == LIGHT_SKY) /* no way round it */
+    if (light.kind == LIGHT_SKY) /* no path around it */
         ball(&s, vec3_make(0, 0, 0), 1.5, pane);
     else
         box(&s, vec3_make(-3, 1, -3), vec3_make(3, 1.2, 3), pane);
@@ -163,8 +163,8 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_every_kind) {
     pane_gives_back("spot", spot, 0.01);
 }
 
-/* Lights with an extent that fade as from their centre are as many points to photons: equal but for the square of
- * extent over distance. */
+/* To photons, area lights with falloff from the centre are many point lights: equal up to the square of extent over
+ * distance. */
 TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
     struct light panel = {.kind = LIGHT_PARALLELOGRAM,
                           .position = {0, 5, 0},
@@ -190,7 +190,7 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
     pane_gives_back("lamp: mesh", mesh, 0.03);
     disc.one_sided = true;
     pane_gives_back("lamp: one-sided disc", disc, 0.015);
-    /* Wide and near: photons start in parts of it. */
+    /* Large and near: photons start from parts of it. */
     panel.position.y = panel.corner.y = 2;
     panel.corner = vec3_make(-1, 2, -1);
     panel.edge1.x = panel.edge2.z = 2;
@@ -208,7 +208,7 @@ TEST(a_ball_of_index_1_gives_back_the_light_of_skies) {
                         0.02);
 }
 
-/* The floor has no end, and half of a sky is below it. */
+/* The floor is unbounded, and half of the sky is below it. */
 TEST(a_sky_sends_no_photons_through_the_ground) {
     static const double stops[4][4] = {{-1, 1, 1, 1}, {-1e-9, 1, 1, 1}, {0, 0, 0, 0}, {1, 0, 0, 0}};
     struct sky below = {.kind = SKY_STOPS, .stops = stops, .stop_count = 4};
@@ -242,7 +242,7 @@ TEST(photons_shade_highlights_and_interpolated_sides_like_direct_light) {
 
 /* --- energy --- */
 
-/* Sends photons of one light into a white hollow ball with something without losses in it. */
+/* Sends photons of one light into a white hollow ball with a lossless object inside. */
 static void arrives(const char *what, struct stage *s, double sent, double tolerance) {
     struct photon_map map;
     ball(s, vec3_make(0, 0, 0), 10, white(s));
@@ -282,7 +282,7 @@ TEST(without_absorption_all_flux_arrives) {
     arrives("a lamp in a glass ball", &s, 4 * pi, 0.01);
 }
 
-/* Light that enters the face of a cube of index 1.5 meets the other faces at more than the critical angle. */
+/* Light that enters a face of a cube of index 1.5 meets the other faces beyond the critical angle. */
 TEST(total_reflection_loses_nothing_whatever_use_tir_says) {
     struct stage s;
     stage_begin(&s, 2);
@@ -366,7 +366,7 @@ static const struct vec3 down_a_little = {1, -0.5, 0};
 /* An upright ring of radius 1 and height 1, a mirror, on a white floor. */
 static void ring_on_floor(struct stage *s) {
     stage_begin(s, 2);
-    s->settings.caustics.radius = 0.01; /* no search for radii: only places are looked at */
+    s->settings.caustics.radius = 0.01; /* no search for radii: only positions are used */
     box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(s));
     struct revolved_quadric ring = revolved_quadric_cylinder(vec3_make(0, 0, 0), vec3_make(0, 1, 0), 1, true);
     thing(s, (struct shape){.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = ring}, mirror(s));
@@ -497,7 +497,7 @@ TEST(any_number_of_threads_makes_the_same_photon_map) {
         photon_map_destroy(&maps[i]);
 }
 
-/* Everything a length times 2^k, falloff coefficients along: the same bytes. */
+/* Every length times 2^k, falloff coefficients scaled to match: the same bytes. */
 TEST(caustics_of_a_scene_of_another_scale_are_the_same_bytes) {
     enum { SIZE = 24 };
     float pixels[3][SIZE * SIZE * 3];
@@ -581,7 +581,7 @@ TEST(packed_directions_are_right_to_a_ten_thousandth) {
     }
 }
 
-/* Photons go only where something specular is: most of those sent meet it, however small it is. */
+/* Photons are sent only towards specular objects: most of them meet one, however small it is. */
 TEST(photons_are_sent_to_where_specular_things_are) {
     for (int kind = 0; kind < 2; kind++) {
         struct stage s;

@@ -1,4 +1,4 @@
-/* The channel between supervisor and child: frames arrive whole, and what is no sound frame is refused. */
+/* The channel between supervisor and child: messages arrive complete, and invalid ones are refused. */
 #include "base/share.h"
 #include "session/channel.h"
 #include "tests/harness.h"
@@ -81,7 +81,7 @@ TEST(frames_of_wrong_kind_size_or_content_are_refused) {
     struct message_line line = {.kind = (enum line_kind)77, .text = "x"};
     broken(MESSAGE_LINE, &line, offsetof(struct message_line, text) + 2);
     line.kind = LINE_ERROR;
-    broken(MESSAGE_LINE, &line, offsetof(struct message_line, text) + 1); /* its text does not end */
+    broken(MESSAGE_LINE, &line, offsetof(struct message_line, text) + 1); /* its text has no terminator */
     CHECK(send(ends[1].descriptor, "ab", 2, 0) == 2);
     static struct message message;
     CHECK_EQ_INT(receive(&message), CHANNEL_BROKEN);
@@ -141,7 +141,7 @@ TEST(requests_for_impossible_pictures_are_refused) {
     CHECK_EQ_INT(receive(&message), CHANNEL_MESSAGE);
 }
 
-/* What a child that was taken over might send: texts without an end, kinds that do not exist. */
+/* Messages that a child under a scene's control might send: texts without terminator, unknown kinds. */
 TEST(replies_answers_and_names_without_an_end_are_refused) {
     open_channel();
     static const struct preview_reply sound;
@@ -201,7 +201,7 @@ TEST(shared_memory_passes_through_the_channel) {
     CHECK_EQ_INT(((char *)mine.block)[99999], 42);
     CHECK(ftruncate(theirs.descriptor, 10) != 0);
     share_destroy(&theirs);
-    /* A descriptor in a frame that has none, and memory that is too small. */
+    /* A descriptor in a message that has none, and memory that is too small. */
     CHECK(channel_send(&ends[1], MESSAGE_ABANDON, NULL, 0, mine.descriptor));
     CHECK_EQ_INT(receive(&message), CHANNEL_BROKEN);
     CHECK(!share_attach(&theirs, dup(mine.descriptor), 200000, &error));

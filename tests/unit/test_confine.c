@@ -1,6 +1,6 @@
-/* What a render process that was taken over could try with the arguments of the system calls it keeps: numbers of
- * which only one half passes a test, clocks and limits of other processes, threads with flags of their own. And the
- * warning where the kernel confines less. */
+/* What a render process under a scene's control could try with the arguments of its permitted system calls: numbers of
+ * which a filter checks only one half, clocks and limits of other processes, threads with unusual flags. Also the
+ * warning if the kernel supports less confinement. */
 #define _GNU_SOURCE
 #include "host/confine.h"
 #include "tests/harness.h"
@@ -30,7 +30,7 @@
 
 enum { NO_FILTER = 77 };
 
-/* The high half of an argument: nothing, or what an attacker puts there. */
+/* The high half of an argument: zero, or an attacker's value. */
 static const uint64_t garbage[] = {0, UINT64_C(1) << 32, UINT64_C(0xdeadbeef) << 32, UINT64_C(0xffffffff) << 32};
 enum { GARBAGE = sizeof garbage / sizeof *garbage };
 
@@ -43,7 +43,7 @@ enum { GARBAGE = sizeof garbage / sizeof *garbage };
         }                                                                                                              \
     } while (0)
 
-/* Runs `deed` in a process that is confined, with the test's folder writable or not; it returns 0 when all is well. */
+/* Runs `deed` in a confined process, with the test's folder writable or not; it returns 0 on success. */
 static void check_confined(int (*deed)(void), bool writing) {
     static const char *const scripts[] = {"tests/hostile/time_loop.lua"};
     const char *folders[] = {test_folder()};
@@ -130,7 +130,7 @@ static void *add_one(void *number) {
     return number;
 }
 
-/* CLONE_NEWUSER makes the kernel refuse what the filter lets pass, so no process comes of it: EINVAL then. */
+/* With CLONE_NEWUSER the kernel refuses what the filter passes, so no process is created: EINVAL. */
 static int try_threads(void) {
     static const uint64_t foreign[] = {CLONE_NEWNET, CLONE_NEWNS,  CLONE_NEWIPC, CLONE_NEWUTS, CLONE_NEWPID,
                                        CLONE_PTRACE, CLONE_PARENT, CLONE_VFORK,  CLONE_IO,     SIGCHLD};
@@ -167,7 +167,7 @@ static int try_descriptors(void) {
             TRY(refused(syscall(SYS_open, name, garbage[g] | writing[i], 0666L)));
 #endif
         }
-        /* The kernel reads an int: what it reads is plain reading. */
+        /* The kernel reads an int: here it is a plain read access. */
         TRY(syscall(SYS_openat, AT_FDCWD, name, garbage[g] | O_RDONLY, 0L) >= 0);
         TRY(refused(syscall(SYS_fcntl, open_file, garbage[g] | F_SETFL, (long)O_NONBLOCK)));
         TRY(refused(syscall(SYS_fcntl, open_file, garbage[g] | F_SETOWN, (long)getppid())));
@@ -229,7 +229,7 @@ TEST(hostile_a_confined_process_that_may_write_changes_files_and_no_folders) {
     CHECK(access(test_path("inner"), F_OK) == 0);
 }
 
-/* From now on this process and what it starts get an error from a system call, as on a kernel without it. value: of the
+/* From now on a system call returns an error in this process and its children, as on a kernel without it. value: of the
  * first argument, or -1 for any. */
 static void forbid(unsigned call, int value, unsigned number) {
     struct sock_filter steps[] = {
@@ -248,7 +248,7 @@ static void forbid(unsigned call, int value, unsigned number) {
         test_skip("no seccomp filter in this kernel");
 }
 
-/* What the program says under these arguments begins like this and is one line; "": no word. */
+/* The program's message with these arguments begins like this and is one line; "": no message. */
 static void check_said(const char *arguments, const char *begin) {
     struct test_result result = test_gray_scene("x = 1", arguments, NULL);
     CHECK_EQ_INT(result.status, 0);
@@ -269,7 +269,7 @@ TEST(hostile_a_kernel_without_landlock_is_one_warning) {
     check_said("-q scene.lua", "");
     check_said("--verbose scene.lua", "gray: warning: no Landlock in this kernel (Function not implemented): ");
     check_said("--no-sandbox scene.lua", "gray: warning: --no-sandbox: ");
-    /* A render process that dies is followed by another one, which does not repeat it. */
+    /* A render process that dies is replaced by another one, which does not repeat the message. */
     test_write_text(test_path("dies.lua"), "string.find(string.rep('x', 200000), string.rep('x*', 8) .. 'y')");
     struct test_result result = test_gray_scene("x = 1", "--script-time 0.05 dies.lua scene.lua", NULL);
     const char *first = strstr(result.err, "no Landlock");

@@ -30,7 +30,7 @@ static struct transform random_transform(struct test_random *random, double reac
     return then(t, transform_translate(random_vec3(random, reach)));
 }
 
-/* A random tree of `count` leaves as a postfix program: leaves are pushed and combined in random order. */
+/* A random tree of `count` leaves as a postfix program: leaves are pushed and combined at random. */
 static const struct csg *build(struct arena *arena, const struct csg_leaf *leaves, uint32_t count,
                                const struct csg_token *program, uint32_t length) {
     struct error error = {0};
@@ -52,7 +52,7 @@ static struct crossing_list all_crossings(const struct csg *csg, const struct ra
     return list;
 }
 
-/* Enter and leave alternate, t ascends, nearest and any agree with the list. */
+/* Entries and exits alternate, t ascends, nearest and any agree with the list. */
 static void check_list(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
                        struct crossing_list list) {
     CHECK_EQ_INT(list.count % 2, 0);
@@ -76,7 +76,7 @@ struct tally {
     uint64_t segments, insides, wrong, inward, surfaces;
 };
 
-/* Every segment's middle is inside just if the list says so; normals point to where the solid is not. */
+/* The middle of every segment is inside exactly if the list says so; normals point out of the solid. */
 static void check_segments(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
                            struct crossing_list list, struct tally *tally) {
     for (uint32_t i = 0; i <= list.count; i++) {
@@ -130,7 +130,7 @@ TEST(csg_segments_equal_point_by_point_evaluation_on_a_million_rays) {
     geom_scratch_destroy(&scratch);
 }
 
-/* The box from `min` to `max` as a leaf, arrived at in a roundabout way so that its rounding errors are its own. */
+/* The box from `min` to `max` as a leaf, through several transforms so that it has rounding errors of its own. */
 static struct csg_leaf roundabout_box(struct test_random *random, struct vec3 min, struct vec3 max,
                                       const struct transform *last) {
     struct vec3 size = vec3_sub(max, min), by = random_vec3(random, 3);
@@ -152,7 +152,7 @@ struct expected_box {
 };
 
 /* A program of boxes with common faces must be exactly one box, or nothing (min > max): on every line two crossings or
- * none, where that box has them. */
+ * none, at the same t as for that box. */
 static void check_is_box(uint64_t seed, const struct expected_box *operands, uint32_t count,
                          const struct csg_token *program, uint32_t length, struct expected_box expected) {
     struct test_random random = {seed};
@@ -199,7 +199,7 @@ static void check_is_box(uint64_t seed, const struct expected_box *operands, uin
             if (found == list.count) {
                 if (found && (fabs(t[0] - c[0].t) > tolerance || fabs(t[1] - c[1].t) > tolerance))
                     wrong++;
-            } else { /* only a chord as short as a rounding error may be missed or seen */
+            } else { /* only a chord as short as a rounding error may differ */
                 double chord = list.count ? c[1].t - c[0].t : t[1] - t[0];
                 wrong += found > 2 || chord > tolerance;
             }
@@ -220,13 +220,13 @@ TEST(csg_difference_with_common_faces_leaves_no_skin) {
     /* The cutter shares five faces with what it cuts. */
     struct expected_box half[] = {{{0, 0, 0}, {1, 1, 1}}, {{0.5, 0, 0}, {1, 1, 1}}};
     check_is_box(1, half, 2, two[0], 3, (struct expected_box){{0, 0, 0}, {0.5, 1, 1}});
-    /* One face, the others stand over. */
+    /* One common face; the cutter protrudes at the others. */
     struct expected_box over[] = {{{0, 0, 0}, {1, 1, 1}}, {{-1, -1, 0.3}, {2, 2, 1}}};
     check_is_box(2, over, 2, two[0], 3, (struct expected_box){{0, 0, 0}, {1, 1, 0.3}});
-    /* Touching from outside takes nothing away. */
+    /* A cutter that touches from outside removes nothing. */
     struct expected_box outside[] = {{{0, 0, 0}, {1, 1, 1}}, {{1, 0, 0}, {2, 1, 1}}};
     check_is_box(3, outside, 2, two[0], 3, (struct expected_box){{0, 0, 0}, {1, 1, 1}});
-    /* Nothing is left of a solid less itself. */
+    /* A solid minus itself is empty. */
     struct expected_box same[] = {{{0, 0, 0}, {1, 1, 1}}, {{0, 0, 0}, {1, 1, 1}}};
     check_is_box(4, same, 2, two[0], 3, (struct expected_box){{1, 1, 1}, {0, 0, 0}});
 }
@@ -256,7 +256,7 @@ TEST(csg_intersection_of_touching_solids_is_empty) {
     check_is_box(8, same, 2, program, 3, (struct expected_box){{0, 0, 0}, {1, 1, 1}});
 }
 
-/* Two faces in one plane do not flicker between the materials of both. */
+/* Of two coincident faces one wins everywhere; their materials do not alternate. */
 TEST(csg_coincident_faces_show_one_operand) {
     struct test_random random = {9};
     struct geom_scratch scratch;
@@ -285,7 +285,7 @@ TEST(csg_coincident_faces_show_one_operand) {
     geom_scratch_destroy(&scratch);
 }
 
-/* Two programs cross every line at the same t in the same sense. Returns how many crossings there were. */
+/* Two programs have crossings with every line at the same t in the same direction. Returns the number of crossings. */
 static uint32_t check_same(const struct csg *a, const struct csg *b, struct test_random *random, int rays) {
     struct geom_scratch scratch_a, scratch_b;
     CHECK(geom_scratch_init(&scratch_a, 64) && geom_scratch_init(&scratch_b, 64));
@@ -306,7 +306,7 @@ static uint32_t check_same(const struct csg *a, const struct csg *b, struct test
     return crossings;
 }
 
-/* The unit cube as a mesh; `outward` false winds it inside out. */
+/* The unit cube as a mesh; with `outward` false its faces are reversed. */
 static struct mesh *mesh_cube(bool outward) {
     static const double vertices[8][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},
                                           {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}};
@@ -531,7 +531,7 @@ TEST(csg_needs_no_more_scratch_than_it_says_and_grows_into_it) {
         CHECK_EQ_INT(again.count, 2 * COUNT);
         CHECK(enough.capacity == csg->max_crossings && small.capacity > 2 * COUNT);
     }
-    /* Too small, every question says so and leaves the scratch as it was. */
+    /* If the scratch is too small, every query reports it and leaves the scratch unchanged. */
     struct ray ray = line_through(vec3_make(100, 1, 2), vec3_all(0));
     struct crossing c;
     struct crossing_list list;
@@ -602,8 +602,8 @@ TEST(csg_of_malformed_programs_is_refused) {
     const struct csg_token programs[][3] = {
         {{CSG_LEAF, 0}, {CSG_UNION, 0}, {CSG_LEAF, 1}}, /* operation without operands */
         {{CSG_LEAF, 0}, {CSG_LEAF, 0}, {CSG_UNION, 0}}, /* a leaf used twice */
-        {{CSG_LEAF, 0}, {CSG_LEAF, 2}, {CSG_UNION, 0}}, /* a leaf that is not there */
-        {{CSG_LEAF, 0}, {CSG_LEAF, 1}, {CSG_LEAF, 1}},  /* operands left over */
+        {{CSG_LEAF, 0}, {CSG_LEAF, 2}, {CSG_UNION, 0}}, /* a leaf that does not exist */
+        {{CSG_LEAF, 0}, {CSG_LEAF, 1}, {CSG_LEAF, 1}},  /* unused operands */
     };
     for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++)
         CHECK(!csg_build(&arena, leaves, 2, programs[i], 3, &error) && error.kind == ERROR_SCENE);

@@ -1,5 +1,5 @@
-/* Solids of every closed shape against point-by-point evaluation; inverses, clips, hints and unions in parts against
- * what they are by definition. */
+/* Solids of every closed shape against point-by-point evaluation; inverses, clips, bounds and divided unions against
+ * their definitions. */
 #include "csg/csg_split.h"
 #include "shape/planar.h"
 #include "tests/unit/shape_makers.h"
@@ -66,7 +66,7 @@ static struct ray random_line(struct test_random *random) {
 
 /* ---- every shape ---- */
 
-/* No shape is flatter than this where a ray touches it; thinner segments are not asked about. */
+/* No shape is flatter than this where a ray touches it; thinner segments are not tested. */
 #define THIN 1e-5
 
 struct counts {
@@ -103,7 +103,7 @@ static void check_line(const struct csg *csg, const struct ray *ray, struct geom
         double cosine = vec3_dot(vec3_normalize(surface.normal), vec3_normalize(ray->direction));
         tally->inward += fabs(cosine) > 1e-5 && copy.enter != (cosine < 0);
     }
-    /* The nearest hit from a random place on is the first of the list behind it. */
+    /* The nearest hit after a random t is the first of the list after it. */
     struct ray part = *ray;
     part.t_min = 0.3;
     struct crossing nearest, expected = {.t = INFINITY};
@@ -164,7 +164,7 @@ TEST_LONG(csg_of_every_closed_shape_equals_point_by_point_evaluation_on_ten_mill
 
 /* ---- inverses ---- */
 
-/* Two programs cross every line at the same places, by the same operands, in the same sense. */
+/* Two programs have crossings with every line at the same t, of the same operands, in the same direction. */
 static uint32_t check_same(const struct csg *a, const struct csg *b, struct test_random *random, int rays) {
     struct geom_scratch of_a, of_b;
     CHECK(geom_scratch_init(&of_a, 64) && geom_scratch_init(&of_b, 64));
@@ -261,8 +261,8 @@ TEST(csg_inverse_has_the_same_surface_turned_inside_out) {
 
 /* ---- clips ---- */
 
-/* The crossings of the clipped thing are those of the thing itself that are inside of the clip. Those near the clip's
- * surface may be either. */
+/* The crossings of the clipped object are those of the object that are inside the clip. Those near the clip's surface
+ * may be either. */
 static void check_clipped(const struct csg *clipped, const struct csg *clip, const struct ray *ray,
                           const struct crossing *all, uint32_t count, struct geom_scratch *scratch, uint64_t *wrong,
                           uint64_t *shown) {
@@ -378,7 +378,7 @@ TEST(csg_clipped_open_shapes_are_their_surface_inside_of_the_clip) {
 
 /* ---- coincident faces ---- */
 
-/* The unit cube arrived at in a roundabout way, so that its rounding errors are its own. */
+/* The unit cube through several transforms, so that it has rounding errors of its own. */
 static struct csg_leaf roundabout_box(struct test_random *random, struct vec3 min, struct vec3 max,
                                       const struct transform *last) {
     double angle = test_uniform(random, -180, 180), factor = exp(test_uniform(random, -1, 1));
@@ -414,7 +414,7 @@ TEST(a_cube_cut_by_a_cube_with_a_common_face_leaves_no_speckle_on_a_million_rays
             roundabout_box(&random, vec3_make(0.25, 0.5, 0.25), vec3_make(0.75, 1, 0.75), &last)};
         const struct csg *csg = build(&arena, leaves, 2, program, 3);
         for (int i = 0; csg && i < 10000; i++) {
-            /* From above through the hole in the top: what is met must be the floor or a wall of the hole. */
+            /* From above through the hole in the top: the hit must be the floor or a wall of the hole. */
             double x = test_uniform(&random, 0.2501, 0.7499), z = test_uniform(&random, 0.2501, 0.7499);
             struct vec3 from = random_vec3(&random, 2), hole = {x, 1, z};
             from.y = test_uniform(&random, 2, 4);
@@ -442,7 +442,7 @@ TEST(a_face_in_the_surface_of_the_clip_is_shown_whole) {
     struct test_random random = {8};
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
-    /* The clip stands on the cube, and then lies in its upper half: either way the top is shown. */
+    /* First the clip stands on the cube, then it lies in its upper half: both show the top. */
     const struct csg_token program[] = {{CSG_LEAF, 0}, {CSG_LEAF, 1}};
     for (int turn = 0; turn < 40; turn++) {
         struct arena arena = {0};
@@ -471,8 +471,8 @@ TEST(a_face_in_the_surface_of_the_clip_is_shown_whole) {
 
 /* ---- boxes and parts ---- */
 
-/* The shell of the bounds is touched: nothing of the surface is outside, and what a box along the axes takes off an end
- * is not in it. */
+/* The bounds are tight: no part of the surface is outside, and the part that an axis-aligned box cuts off an end is not
+ * counted. */
 TEST(csg_bounds_are_intersected_and_subtracted) {
     struct arena arena = {0};
     struct csg_leaf leaves[3] = {
@@ -486,7 +486,7 @@ TEST(csg_bounds_are_intersected_and_subtracted) {
     CHECK_NEAR(csg->bounds.max.y, 0.5, 1e-9);
     CHECK_NEAR(csg->bounds.min.x, 0.25, 1e-9);
     CHECK(csg->bounds.max.y >= 0.5 && csg->bounds.min.x <= 0.25 && csg->bounds.max.x >= 1 && csg->bounds.min.y <= 0);
-    /* A solid between two planes without end is not known to end; what it is cut with knows. */
+    /* A solid between two infinite planes has no known bounds; the operand that cuts it has. */
     const struct csg_token inverse[] = {
         {CSG_LEAF, 0}, {CSG_INVERSE, 0}, {CSG_LEAF, 1}, {CSG_UNION, 0}, {CSG_INVERSE, 0}};
     csg = build(&arena, leaves, 2, inverse, 5);
@@ -499,7 +499,7 @@ TEST(csg_asks_no_operand_whose_part_of_the_solid_the_ray_misses) {
     struct arena arena = {0};
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 1000));
-    /* A ball less a wide plate through its middle, far beyond it. */
+    /* A ball minus a plate through its middle that extends far beyond it. */
     struct csg_leaf leaves[2] = {
         {.shape = {.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}}, .csg_from_leaf = transform_identity()},
         {.shape = {.kind = SHAPE_BOX, .box = {{-9, -0.1, -9}, {9, 0.1, 9}}}, .csg_from_leaf = transform_identity()}};
@@ -516,7 +516,7 @@ TEST(csg_asks_no_operand_whose_part_of_the_solid_the_ray_misses) {
     geom_scratch_destroy(&scratch);
 }
 
-/* The nearest crossing of several solids; by t alone, since parts that keep apart have no common ones. */
+/* The nearest crossing of several solids; by t alone, since disjoint parts have no common crossings. */
 static bool nearest_of(const struct csg *const *parts, uint32_t count, const struct ray *ray,
                        struct geom_scratch *scratch, struct crossing *out) {
     bool found = false;

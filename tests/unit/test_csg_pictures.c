@@ -1,5 +1,4 @@
-/* What the forms of CSG look like: pictures that must be equal, byte for byte where nothing but the way of saying it
- * differs. */
+/* Pictures of CSG that must be equal, byte for byte if two scripts describe the same solid. */
 #include "tests/harness.h"
 
 #include <math.h>
@@ -50,7 +49,7 @@ static uint32_t differing(const char *name_a, const char *name_b, int levels) {
     return count;
 }
 
-/* How many pixels are not the colour of the first one. */
+/* The number of pixels that differ from the first one. */
 static uint32_t varied(const char *name) {
     struct test_picture p = picture(name);
     uint32_t count = 0;
@@ -90,7 +89,7 @@ TEST(a_merge_is_the_union_and_looks_like_a_group_from_outside) {
                   "show(gr.node{children=parts(glass)}, 'glass_group.png')\n");
     CHECK_EQ_INT(differing("merge.png", "csg_merge.png", 0), 0);
     CHECK_EQ_INT(differing("merge.png", "union.png", 0), 0);
-    CHECK(differing("merge.png", "group.png", 1) <= 7); /* a thousandth: points of the shadows' edges */
+    CHECK(differing("merge.png", "group.png", 1) <= 7); /* a thousandth: pixels at the edges of shadows */
     CHECK(differing("glass_merge.png", "glass_group.png", 8) > 60);
 }
 
@@ -106,7 +105,7 @@ TEST(merged_glass_has_no_walls_inside) {
 }
 
 TEST(a_union_in_parts_gives_the_bytes_of_the_whole) {
-    /* Less something far away it is no union at its root and stays whole. */
+    /* After subtraction of a distant solid the root is no union, and the solid is not divided. */
     renders(STAGE "local far = ball(white, 0, -100, 0, .1)\n"
                   "local bark = gr.marble_pnd_material(blue, 2.2, 6, 7, 1, {.9,.8,.7})\n"
                   "local function many(m) local t, k = {}, 0\n"
@@ -129,7 +128,7 @@ TEST(a_union_in_parts_gives_the_bytes_of_the_whole) {
 }
 
 TEST(a_bounding_solid_changes_nothing_where_it_is_true) {
-    renders(STAGE "local function crystal(m) local t = {}\n" /* of half-spaces alone */
+    renders(STAGE "local function crystal(m) local t = {}\n" /* only of half-spaces */
                   "for k = 0, 5 do local a = k * math.pi / 3\n"
                   "t[#t + 1] = gr.plane{normal={math.cos(a),.5,math.sin(a)}, distance=1, material=m}\n"
                   "t[#t + 1] = gr.plane{normal={math.cos(a),-.5,math.sin(a)}, distance=1, material=m} end\n"
@@ -193,7 +192,7 @@ TEST(a_camera_inside_of_a_solid_sees_it_from_inside) {
     CHECK(varied("ball.png") > 100 && varied("hollow.png") > 20);
 }
 
-/* A glass ball around the camera is as good as glass everywhere but in a cave: what is seen is refracted into the cave.
+/* A glass ball around the camera looks like glass everywhere except in a cave: the view is refracted into the cave.
  */
 TEST(what_is_far_away_is_inside_of_an_inverse) {
     renders(STAGE "local cave = gr.inverse(ball(glass, 0, 0, 0, 1))\n"
@@ -201,7 +200,7 @@ TEST(what_is_far_away_is_inside_of_an_inverse) {
                   "show(cave, 'a.png') show(sea, 'b.png')\n"
                   "show(gr.union('u', cave, ball(red, 0, 0, 0, .5)), 'c.png')\n");
     struct test_picture a = picture("a.png"), b = picture("b.png");
-    /* Rays that never leave the sea end in the background in both, those through the cave are the same. */
+    /* In both, rays that never leave the sea end in the background; those through the cave are the same. */
     uint32_t same = 0, size = a.width * a.height;
     for (uint32_t i = 0; a.rgb && b.rgb && i < size; i++)
         same += memcmp(a.rgb + 3 * i, b.rgb + 3 * i, 3) == 0;
@@ -243,7 +242,8 @@ TEST(solids_of_any_number_of_operands_are_those_of_two_by_two) {
     CHECK(differing("1.png", "3.png", 8) > 150 && differing("3.png", "6.png", 8) > 40);
 }
 
-/* Nothing: a mesh without faces, a node that is scaled flat, a solid of such. Everything: the inverse of nothing. */
+/* Empty: a mesh without faces, a node scaled to zero thickness, a solid of such operands. Everything: the inverse of
+ * the empty solid. */
 #define NOTHINGS                                                                                                       \
     "function hollow() return gr.mesh{verts={{0,0,0}}, faces={}} end\n"                                                \
     "function squashed() return ball(blue, 0, 0, 0, 9):scale(0, 1, 1) end\n"                                           \
@@ -251,7 +251,7 @@ TEST(solids_of_any_number_of_operands_are_those_of_two_by_two) {
 
 TEST(solids_of_nothing_and_of_everything_are_what_sets_are) {
     static const struct {
-        const char *solid, *same; /* NULL: nothing is seen of it */
+        const char *solid, *same; /* NULL: it is invisible */
     } all[] = {{"gr.union('u', a(), hollow())", "a()"},
                {"gr.union('u', squashed(), a(), hollow())", "a()"},
                {"gr.union('u', hollow(), squashed())", NULL},

@@ -1,4 +1,4 @@
-/* The picture shown elsewhere: every byte that the viewer tev gets, and what terminals are told. */
+/* External displays: every byte that the viewer tev receives, and the output for terminals. */
 #define _GNU_SOURCE
 #include "output/display.h"
 #include "output/terminal.h"
@@ -12,10 +12,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* --- a receiver in place of tev --- */
+/* --- a receiver instead of tev --- */
 
 struct receiver {
-    int listening, max; /* most: it closes the connection after so many bytes; 0: never */
+    int listening, max; /* most: it closes the connection after this many bytes; 0: never */
     unsigned port;
     uint8_t *bytes;
     size_t size;
@@ -49,7 +49,7 @@ static bool receiver_begin(struct receiver *r, int max) {
     return ok && pthread_create(&r->thread, NULL, receive, r) == 0;
 }
 
-/* Where nobody has called, the thread waits: it is called from here. */
+/* If nobody has connected, the thread still waits: connect from here. */
 static void receiver_end(struct receiver *r) {
     struct sockaddr_in address = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)r->port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
@@ -81,13 +81,14 @@ static char *read_in_folder(const char *name, size_t *size) {
     return test_read_file(path, size);
 }
 
-/* The floats of a PFM file, whose rows go upwards. */
+/* The floats of a PFM file, whose rows are stored bottom to top. */
 static const float *pfm_at(const char *file, size_t size, uint32_t x, uint32_t y) {
     const char *floats = file + size - (size_t)75 * 50 * 12;
     return (const float *)(const void *)(floats + (((size_t)(49 - y) * 75) + x) * 12);
 }
 
-/* What tev is to get for a tile whose corner is x, y; built from the format's description, not from display.c. */
+/* The bytes that tev must receive for a tile with corner x, y; from the description of the protocol, not from
+ * display.c. */
 static size_t expected_update(uint8_t *out, const char *file, size_t size, uint32_t x, uint32_t y) {
     uint32_t w = 75 - x < 32 ? 75 - x : 32, h = 50 - y < 32 ? 50 - y : 32;
     uint8_t *at = out;
@@ -113,7 +114,7 @@ static size_t expected_update(uint8_t *out, const char *file, size_t size, uint3
 }
 
 TEST(tev_gets_the_picture_and_every_tile_once_byte_for_byte) {
-    static const uint8_t created[] = "\x20\0\0\0\4\1out.pfm\0\x4b\0\0\0\x32\0\0\0\3\0\0\0R\0G\0B"; /* and its zero */
+    static const uint8_t created[] = "\x20\0\0\0\4\1out.pfm\0\x4b\0\0\0\x32\0\0\0\3\0\0\0R\0G\0B"; /* and its NUL */
     struct receiver r;
     char arguments[100];
     CHECK(receiver_begin(&r, 0));
@@ -163,7 +164,7 @@ TEST(a_viewer_that_goes_away_or_is_not_there_is_done_without) {
     free(r.bytes);
     free(result.out);
     free(result.err);
-    /* The port is free again: nobody listens there. */
+    /* A port that was freed: nobody listens there. */
     (void)snprintf(arguments, sizeof arguments, "--display tev:127.0.0.1:%u scene.lua", r.port);
     result = test_gray_scene(NULL, arguments, NULL);
     CHECK_EQ_INT(result.status, 0);
@@ -194,7 +195,7 @@ TEST(places_to_display_are_read_or_refused) {
 
 /* --- terminals --- */
 
-/* What a function prints, from malloc. */
+/* The output of a function, from malloc. */
 static char *printed(void (*print)(FILE *, const uint8_t *, uint32_t, uint32_t), const uint8_t *rgb, uint32_t width,
                      uint32_t height) {
     char *text = NULL;
@@ -275,7 +276,7 @@ TEST(kitty_gets_all_bytes_of_the_image_in_pieces) {
     free(text);
 }
 
-/* Draws what a sixel text says; returns the place behind it. */
+/* Draws a sixel image; returns a pointer past its end. */
 static const char *draw_sixels(const char *at, uint8_t *rgb, unsigned width, unsigned height) {
     static int palette[256][3];
     unsigned w = 0, h = 0, x = 0, top = 0, colour = 0, repeat = 1;

@@ -1,4 +1,4 @@
-/* What the pages of docs/ name exists: tests, files, other pages and their sections. */
+/* Everything that the pages of docs/ name exists: tests, files, other pages and their sections. */
 #include "tests/harness.h"
 
 #include <ctype.h>
@@ -37,7 +37,7 @@ static void each_page(void (*visit)(const char *name, char *text)) {
     CHECK(count > 20);
 }
 
-/* Takes the next text in back quotes off a page. */
+/* Takes the next text in back quotes from a page. */
 static bool next_quoted(const char **at, char word[WORD]) {
     for (const char *begin = strchr(*at, '`'); begin; begin = strchr(*at, '`')) {
         size_t length = strcspn(begin + 1, "`\n");
@@ -51,7 +51,7 @@ static bool next_quoted(const char **at, char word[WORD]) {
     return false;
 }
 
-/* A name of a test, or a part of one: small letters with two underscores at least, "..." for what is left out. */
+/* A test name or a part of one: lower-case letters with at least two underscores, "..." for omitted parts. */
 static bool is_test_name(const char *word) {
     int underscores = 0;
     for (const char *c = word; *c; c++) {
@@ -63,8 +63,8 @@ static bool is_test_name(const char *word) {
     return underscores >= 2 && islower((unsigned char)*word) && (!dot || strncmp(dot, "...", 3) == 0);
 }
 
-/* Whether a source of tests/unit/ defines a test that the pattern fits: tests of an optional library are compiled only
- * where the library is. */
+/* Whether a source of tests/unit/ defines a test that matches the pattern: tests of an optional library are compiled
+ * only if it is installed. */
 static bool test_is_in_sources(const char *pattern) {
     bool found = false;
     DIR *folder = opendir("tests/unit");
@@ -123,12 +123,12 @@ TEST(documents_name_tests_that_exist) {
     each_page(tests_of_page);
 }
 
-/* Pages that name files of another time: what a run of the coverage has found, files that are to be made, old ones. */
+/* Pages that may name files that do not exist: coverage results, files that a reader creates, old files. */
 static bool is_of_another_time(const char *page) {
     return strstr(page, "coverage.md") || strstr(page, "CONTRIBUTING.md") || strstr(page, "notebook.md");
 }
 
-/* A program in bench/ is named without the ending of its source. */
+/* A program in bench/ is named without the extension of its source. */
 static bool is_there(const char *name) {
     char source[WORD + 2];
     (void)snprintf(source, sizeof source, "%s.c", name);
@@ -151,7 +151,7 @@ TEST(documents_name_files_that_exist) {
     each_page(files_of_page);
 }
 
-/* The anchor that a heading gets: small letters, blanks as dashes, without other signs. */
+/* The anchor of a heading: lower case, hyphens for blanks, without other punctuation. */
 static void anchor_of(const char *heading, char out[WORD]) {
     size_t used = 0;
     for (; *heading && *heading != '\n' && used + 1 < WORD; heading++) {

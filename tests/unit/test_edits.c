@@ -1,5 +1,5 @@
-/* What somebody changes in a window: steps and their inverses, changes laid over a scene and taken off again, the same
- * changes as calls of a script, and what a click finds. */
+/* Edits in the window: steps and their inverses, edits applied to a scene and removed again, the same edits as calls of
+ * a script, and the node that a click selects. */
 #include "inspect/pick.h"
 #include "render/camera.h"
 #include "tests/harness.h"
@@ -26,7 +26,7 @@ static bool same_list(const struct change_list *a, const struct change_list *b) 
     return true;
 }
 
-/* What holds after the first steps, worked out from nothing. */
+/* The state after the first steps, computed from the empty state. */
 static bool holds(const struct edits *edits) {
     struct change_list list = {0};
     for (uint32_t i = 0; i < edits->at; i++)
@@ -73,7 +73,7 @@ TEST(edits_of_one_drag_are_one_step) {
         CHECK(edits_make(&edits, &change, true, true));
     }
     struct change other = change_of(CHANGE_PLACE, 4, 1);
-    CHECK(edits_make(&edits, &other, true, true)); /* of another target: a step of its own */
+    CHECK(edits_make(&edits, &other, true, true)); /* of another target: a separate step */
     CHECK_EQ_INT(edits.count, 2);
     CHECK(edits_undo(&edits, &target) && target.serial == 4);
     CHECK(edits_undo(&edits, &target) && target.serial == 3);
@@ -81,7 +81,7 @@ TEST(edits_of_one_drag_are_one_step) {
     CHECK(!edits_undo(&edits, &target));
     CHECK(edits_redo(&edits, &target));
     CHECK_NEAR(edits.now.items[0].numbers[0], 49, 0);
-    CHECK(edits_make(&edits, &other, true, false)); /* what was undone is forgotten */
+    CHECK(edits_make(&edits, &other, true, false)); /* undone steps are discarded */
     CHECK(!edits_redo(&edits, &target));
     edits_destroy(&edits);
 }
@@ -107,7 +107,7 @@ static void count_warning(void *context, const char *text) {
     ++*(int *)context;
 }
 
-/* The window keeps the world when only colours change: its materials are copies, which are made again. */
+/* The window keeps the world when only colours change: its materials are copies, which are updated. */
 TEST(a_kept_world_has_changed_colours_once_its_materials_are_updated) {
     static struct stage s;
     stage_begin(&s, 1);
@@ -323,10 +323,10 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
     const double exposure = 1.0 / 3;
     CHECK(edits_write_lua(&list, "out.png", &camera, &exposure, collect, &c));
     CHECK(strstr(c.text, "'ba\\039l\\092l\\010'") != NULL);
-    /* Numbers as C reads them are the numbers as they were. */
+    /* Read back by C, the numbers are unchanged. */
     const char *at = strstr(c.text, "gr.change_material(1, {");
     CHECK(at && strtod(at + strlen("gr.change_material(1, {"), NULL) == 1.0 / 7);
-    /* And Lua runs it. */
+    /* Lua runs the file. */
     static char scene[20000];
     (void)snprintf(scene, sizeof scene, "local ball = gr.geometry('ba\\039l\\092l\\010', gr.sphere('s'))\n%s\n%s",
                    c.text, SCENE_HEAD SCENE_TAIL("{0, 0, 6}", LIGHT));
@@ -393,7 +393,7 @@ TEST(picking_returns_the_path_of_a_node_its_position_and_its_box) {
     CHECK_NEAR(picked.corners[0].x, -2, 1e-12);
     CHECK_NEAR(picked.corners[7].z, 1, 1e-12);
     CHECK_NEAR(affine_point(&picked.world_from_parent, vec3_make(0, 0, 0)).z, -1, 1e-12);
-    /* One up: the group, with all that is under it. */
+    /* One level up: the group with all its descendants. */
     CHECK(pick_at(&job, s.root, (struct pick_query){50, 40, 1}, &picked, &s.error));
     CHECK_TEXT(picked.name, "group");
     CHECK_TEXT(picked.shape, "group");
@@ -412,7 +412,7 @@ static bool near(struct vec3 a, struct vec3 b) {
 }
 
 TEST(changes_turn_and_size_lights_about_their_place) {
-    const double quarter[9] = {0, 0, 1, 0, 1, 0, -1, 0, 0}; /* z to x, x to -z */
+    const double quarter[9] = {0, 0, 1, 0, 1, 0, -1, 0, 0}; /* z becomes x, x becomes -z */
     const double double_size[9] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
     struct light sun = {.kind = LIGHT_DIRECTIONAL, .direction = {0, 0, 1}};
     light_turn(&sun, quarter);
@@ -493,7 +493,8 @@ TEST(changes_that_turn_a_sky_give_the_bytes_of_a_script_that_turns_it_itself) {
     same_picture(turned, SKY_SCENE("0", "gr.change_light(1, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0})\n", "s"),
                  true);
     same_picture(turned, SKY_SCENE("0", "", "s"), false);
-    /* Of a turn and a size only what goes about the y axis counts; the sky behind is turned if it is the same. */
+    /* Of a rotation and a scale only the rotation about the y axis has an effect; the background turns too if it is the
+     * same sky. */
     same_picture(turned, SKY_SCENE("-90", "gr.change_light(1, {0, 0, 0}, nil, {-3, 0, 0, 0, 2, 0, 0, 0, -3})\n", "s"),
                  true);
     same_picture(turned, SKY_SCENE("0", "gr.change_light(1, {0, 0, 0}, nil, {0, 0, 1, 0, 1, 0, -1, 0, 0})\n", "sky(0)"),
@@ -566,7 +567,7 @@ TEST(changes_give_a_shape_a_material_of_its_own_which_is_changed_alone) {
                  "c:translate(0, 1.5, 0)\nr:add_child(c)\n"
                  "gr.change_own('b', 3)\ngr.change_own('c', 6)\ngr.change_material(2147483647, {0.1, 0.9, "
                  "0.1})\ngr.change_material(2147483646, {0.2, 0.2, 1})\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
-                 true); /* What stands over the base stays, and other chains over it stay with the old one. */
+                 true); /* The decorators above the base stay, and other chains keep the old base. */
     same_picture(
         "local function glaze(kd) return gr.difresnel_material(gr.rr_material(kd, {0.4, 0.4, 0.4}, 20, 0, 0, 1.5)) "
         "end\n"
@@ -596,7 +597,7 @@ static struct node *grow(struct forest *f, int depth) {
     struct node *node;
     if (depth == 0 || what < 0.2) {
         node = stage_sphere(s, stage_group(s, s->root), f->material);
-        s->root->last_child->node->singular = true; /* it stands in the solid only */
+        s->root->last_child->node->singular = true; /* it is only in the solid */
         node->singular = test_uniform(&f->random, 0, 1) < 0.1;
     } else if (what < 0.35) {
         static const double places[2][3] = {{-0.4, 0, 0}, {0.6, 0.1, 0}};
@@ -643,14 +644,14 @@ TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
             CHECK(picked.serial == whole->serial && picked.below > 0 && !picked.can_own);
             CHECK(leaf.below == 0 && leaf.up == -(int32_t)picked.below && leaf.can_own);
             CHECK_TEXT(leaf.shape, "sphere");
-            /* The place that was hit lies on the unit sphere of that operand. */
+            /* The hit point lies on the unit sphere of that operand. */
             const struct node *node = f.nodes[leaf.serial];
             struct transform above;
             CHECK(node && transform_from_affine(&leaf.world_from_parent, &above));
             struct vec3 p = affine_point(&above.inverse, leaf.position);
             p = affine_point(&node->parent_from_node.inverse, p);
             CHECK_NEAR(vec3_length(p), 1, 1e-9);
-            /* And in the box of whatever is between. */
+            /* It is also in the box of every node in between. */
             int32_t up = -(int32_t)(test_uniform(&f.random, 0, picked.below + 0.99));
             CHECK(pick_at(&job, s.root, (struct pick_query){x, y, up}, &between, &s.error));
             CHECK(between.levels == picked.levels + (uint32_t)-up && between.has_box);

@@ -1,8 +1,8 @@
 /* Elementary functions: errors against correctly rounded values (elementary_reference.h) and against the 80-bit
  * functions of the C library on random arguments, special cases, exact cases, and a fingerprint of the bits.
  *
- * The library's long double functions serve as a ruler only: they are good to about 2^-63, that is 0.001 units in the
- * last place of a double. */
+ * The library's long double functions are only a reference: their error is about 2^-63, that is 0.001 units in the last
+ * place of a double. */
 #include <errno.h>
 #include <float.h>
 #include <math.h>
@@ -146,7 +146,7 @@ TEST(elementary_angles_err_by_less_than_1_05_last_places) {
     CHECK_ONE(sin, 0.9, UNIFORM, -0.8, 0.8);
     CHECK_ONE(sin, 0.9, UNIFORM, -100.0, 100.0);
     CHECK_ONE(sin, 0.9, UNIFORM, -2e6, 2e6);
-    CHECK_ONE(sin, 0.9, EXPONENTS, -40, 62); /* beyond 2^63 the ruler gives up */
+    CHECK_ONE(sin, 0.9, EXPONENTS, -40, 62); /* beyond 2^63 the reference functions fail */
     CHECK_ONE(cos, 0.9, UNIFORM, -100.0, 100.0);
     CHECK_ONE(cos, 0.9, EXPONENTS, -40, 62);
     CHECK_ONE(tan, 1.05, UNIFORM, -0.8, 0.8);
@@ -200,8 +200,9 @@ static bool same(double a, double b) {
     return (isnan(a) && isnan(b)) || (a == b && !signbit(a) == !signbit(b));
 }
 
-/* Annex F fixes these; the library's long double functions keep to it and serve as the table. Where both arguments are
- * finite only exact results are compared. (The double functions of this program may be ours: libm_override.c.) */
+/* Annex F of the C standard fixes these values; the library's long double functions follow it and serve as the table.
+ * If both arguments are finite, only exact results are compared. (The double functions of this program may be ours:
+ * libm_override.c.) */
 TEST(elementary_special_arguments_follow_annex_f) {
     static const double odd[] = {0.0, -0.0, 1.0, -1.0, INFINITY, -INFINITY, NAN, 2.0, -2.0, 3.0, -3.0, 0.5, -0.5};
     for (int i = 0; i < COUNT(odd); i++) {
@@ -311,7 +312,7 @@ static uint64_t stir(uint64_t hash, double x) {
     return (hash ^ bits) * 0x100000001b3u;
 }
 
-/* The number changes only when somebody changes the functions: then pictures change, and so may this number. */
+/* This number changes only with the functions; then pictures change as well. */
 TEST(elementary_bits_are_the_same_on_every_machine) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (int i = 1; i <= 20000; i++) {

@@ -1,11 +1,11 @@
-/* What holds for every kind of shape, and the makers of all kinds. A new shape is tested by its maker alone: its
- * crossings are in order and agree with nearest, any, box and points, its normals look outwards, and it has the volume
- * or the area that its maker states. */
+/* Claims for every kind of shape, and the makers of all kinds. A new shape needs only a maker to be tested: its
+ * crossings are sorted and agree with nearest, any, box and point tests, its normals point outwards, and it has the
+ * volume or the area that its maker states. */
 #include "tests/unit/shape_makers.h"
 
 #include "csg/csg.h"
-#include "shape/revolved_quadric.h"
 #include "shape/planar.h"
+#include "shape/revolved_quadric.h"
 #include "tests/unit/swept_makers.h"
 
 #include <math.h>
@@ -68,7 +68,7 @@ static struct made_shape made_ellipsoid(struct test_random *random) {
     return (struct made_shape){shape, 4 * M_PI / 3 * radii.x * radii.y * radii.z, NAN};
 }
 
-/* An ellipsoid, or a saddle in a box, closed, open or without end. */
+/* An ellipsoid, or a saddle in a box, closed, open or unbounded. */
 static struct made_shape made_quadric(struct shape_makers *makers, struct test_random *random) {
     struct box all = {vec3_all(-INFINITY), vec3_all(INFINITY)}, limits = {{-1, -0.8, -0.9}, {1, 0.75, 1}};
     struct vec3 r = vec3_add(random_vec3(random, 0.3), vec3_all(0.6));
@@ -251,7 +251,7 @@ static struct made_shape made_mesh(struct shape_makers *makers, struct test_rand
     return (struct made_shape){shape, closed ? fabs(box) / 6 : NAN, area};
 }
 
-/* A cube with a hollow ball in it, or a tree of any solids. */
+/* A cube with a hollow ball in it, or a random tree of solids. */
 static struct made_geometry made_csg(struct shape_makers *makers, struct test_random *random) {
     enum { LEAVES = 5 };
     struct csg_leaf leaves[LEAVES];
@@ -356,14 +356,14 @@ static const char *kind_name(int kind) {
     return kind == SHAPE_KIND_COUNT ? "csg" : shape_kind_name((enum shape_kind)kind);
 }
 
-/* What is thinner than this is not asked about: the surface of a shape is where it is up to rounding. */
+/* Thinner segments are not tested: the position of a surface is known only up to rounding. */
 #define THIN 1e-5
 
 struct failures {
     long crossings, order, nearest, any, box, primitive_box, points, normals, layout;
 };
 
-/* A surface has what the layout of its shape promises. */
+/* A surface supplies what the layout of its shape states. */
 static bool layout_holds(const struct geometry *geometry, const struct surface *surface) {
     if (geometry->csg) /* that of one of its operands */
         return true;
@@ -386,11 +386,12 @@ static void check_line_of(const struct geometry *geometry, struct test_random *r
     bool closed = geometry_is_closed(geometry);
     n->crossings += list.count;
     n->order += closed && list.count % 2 != 0;
-    n->order += !geometry_mesh(geometry) && list.count > geometry_scratch_need(geometry); /* of a mesh it is a guess */
+    n->order +=
+        !geometry_mesh(geometry) && list.count > geometry_scratch_need(geometry); /* for a mesh it is an estimate */
     for (uint32_t k = 1; k < list.count; k++)
         n->order += !(scratch->items[k - 1].t < scratch->items[k].t) && closed;
 
-    /* Nearest and any, from a place between two crossings on. */
+    /* Nearest and any, from a t between two crossings. */
     struct ray part = ray;
     uint32_t from = list.count > 0 ? (uint32_t)test_uniform(random, 0, list.count - 0.001) : 0;
     double first = list.count > 0 ? scratch->items[from].t : 0;
@@ -481,7 +482,7 @@ TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
     geom_scratch_destroy(&scratch);
 }
 
-/* Sums of a random number: its mean and the standard error of that. */
+/* Sums of a random variable: its mean and the standard error of the mean. */
 struct sums {
     double count, sum, squares;
 };
@@ -492,7 +493,7 @@ static void add_to(struct sums *sums, double x) {
     sums->squares += x * x;
 }
 
-/* Within five standard errors, which are small; of a number that is not known anything. */
+/* Within five standard errors, which are small; true for any mean if the expected value is not known. */
 static bool agrees(const struct sums *sums, double factor, double expected) {
     double mean = sums->sum / sums->count, variance = sums->squares / sums->count - mean * mean;
     double deviation = factor * sqrt(variance / sums->count);
@@ -501,7 +502,7 @@ static bool agrees(const struct sums *sums, double factor, double expected) {
 
 /* Integral geometry (Santalo 1976, I.4 and IV.14): of lines that cross a ball of radius R evenly from all sides, the
  * mean length inside a solid times pi R^2 is its volume, the mean number of crossings times 2 pi R^2 the area of its
- * surface. The ball is the one around the shape's box. */
+ * surface. The ball encloses the shape's box. */
 static void measure(const struct made_geometry *made, struct test_random *random, struct geom_scratch *scratch) {
     enum { LINES = 60000 };
     struct box box = geometry_bounds(&made->geometry);

@@ -1,5 +1,5 @@
-/* A picture and a bump map laid over every shape, by its material or by the node: the same bytes, and not those of the
- * bare shape; but for meshes without coordinates, which say so and stay bare. */
+/* An image and a bump map on every shape, by its material or by the node: both give the same bytes, and not those of
+ * the plain shape. Meshes without texture coordinates give a warning and stay plain. */
 #include "tests/harness.h"
 
 #include <stdio.h>
@@ -83,7 +83,8 @@ TEST(every_shape_shows_pictures_and_bumps_by_its_material_and_by_its_node) {
     CHECK(strstr(result.err, "has a bump map, but its mesh has no texture coordinates"));
     for (int i = 0; i < SHAPES; i++) {
         const char *name = shapes[i].name;
-        bool bare = strcmp(name, "bare") == 0, ball = strcmp(name, "sphere") == 0; /* its node maps as of old */
+        bool bare = strcmp(name, "bare") == 0,
+             ball = strcmp(name, "sphere") == 0; /* its node uses the classic mapping */
         if (same_picture(name, "plain", "node") != bare || same_picture(name, "plain", "material") != bare)
             test_fail(__FILE__, __LINE__, "%s: the picture is%s shown", name, bare ? "" : " not");
         if (same_picture(name, "plain", "bumps") != bare || same_picture(name, "plain", "relief") != bare)

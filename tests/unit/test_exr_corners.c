@@ -1,5 +1,5 @@
-/* EXR that the library reads and we do not, or not so easily: tiles, windows that are none, the lossy codings; and
- * every allocation and every call into the library failing in its turn. */
+/* EXR files that the library reads but gray refuses or treats specially: tiles, invalid windows, lossy compression; and
+ * failures of each allocation and each call into the library. */
 #include "base/fault.h"
 #include "image/exr.h"
 #include "image/image_file.h"
@@ -29,7 +29,7 @@ static void window(struct bytes *b, const char *name, const int32_t corners[4]) 
         bytes_number(b, (uint32_t)corners[i], 4, false);
 }
 
-/* The beginning of a file ("Technical Introduction to OpenEXR"): all that is looked at before chunks are. */
+/* The header of a file ("Technical Introduction to OpenEXR"): everything that is read before the chunks. */
 static void make_header(struct bytes *b, bool tiled, int compression, const int32_t corners[4]) {
     bytes_add(b, "\x76\x2f\x31\x01\x02\0\0\0", 8);
     b->data[b->size - 3] = tiled ? 2 : 0;
@@ -61,7 +61,7 @@ static void make_header(struct bytes *b, bool tiled, int compression, const int3
         bytes_number(b, 0, 1, false);
     }
     bytes_add(b, "", 1);
-    for (int i = 0; i < 64; i++) /* a table of chunks that leads nowhere */
+    for (int i = 0; i < 64; i++) /* a table of chunks with invalid offsets */
         bytes_number(b, 0, 8, false);
 }
 
@@ -84,7 +84,7 @@ TEST(exr_of_other_kinds_is_told) {
     bytes_free(&b);
     for (int compression = 0; compression < 10; compression++) { /* 8 and 9: DWAA and DWAB */
         make_header(&b, false, compression, wide);
-        /* Pictures of blocks may be so small, others may not. */
+        /* A file of these compressions may be this small, others may not. */
         expect_line(&b, compression < 8 ? "the file is too short for its pixels" : "");
         bytes_free(&b);
     }

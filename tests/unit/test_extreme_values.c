@@ -1,5 +1,5 @@
-/* Numbers at the ends of their range. Every numeric argument of every gr function takes each of a list of extreme
- * values, the scene around it is rendered with all layers, and what comes of it is one line or a finite picture. */
+/* Numbers at the ends of their range. Every numeric argument of every gr function takes each value of a list of
+ * extremes, the scene is rendered with all layers, and the result is one line or a finite picture. */
 #include "base/mem.h"
 #include "formats/model.h"
 #include "image/exr.h"
@@ -16,14 +16,14 @@
 
 enum { SIDE = 6, TEXT_SIZE = 8192 };
 
-/* What a script's pictures came to. */
+/* A summary of a script's pictures. */
 struct gallery {
     struct pool *pool;
     struct assets assets;
     int pictures;
     int max; /* numbers of an argument that are tried one by one */
     bool finite, clamped;
-    char first[160]; /* where the first number that is not finite is */
+    char first[160]; /* the position of the first number that is not finite */
 };
 
 static _Atomic int out_of_time;
@@ -170,7 +170,7 @@ static void close_gallery(struct gallery *gallery) {
     assets_destroy(&gallery->assets);
 }
 
-/* What stands around the call that is tried. */
+/* The scene around the tested call. */
 static const char preparation[] =
     "white = gr.material({0.8, 0.8, 0.8}, {0.5, 0.5, 0.5}, 20)\n"
     "glass = gr.rr_material({0.5, 0.5, 0.5}, {1, 1, 1}, 10, 0.5, 0.5, 1.5)\n"
@@ -184,7 +184,7 @@ static const char preparation[] =
     "function show(t) t.file = 'x.png' t.width = 6 t.height = 6 t.eye = t.eye or {0, 1, 7} t.node = t.node or root\n"
     "if not t.view then t.target = t.target or {0, 0, 0} end t.lights = t.lights or {lamp} gr.render(t) end\n";
 
-/* What is done with the answer of the call, X. */
+/* The use of the call's result, X. */
 static const char *use_of(const struct script_function *function) {
     switch (function->result) {
     case RESULT_NODE:
@@ -275,7 +275,7 @@ static bool replace_number(const char *text, int which, const char *with, char *
     return replaced;
 }
 
-/* Values that take effect only beside others; V stands for the value. */
+/* Values that have an effect only together with others; V stands for the value. */
 static const char *const combinations[] = {
     "root:add_child(ball) show{aperture = 0.1, focus = V}",
     "root:add_child(ball) show{aperture = V}",
@@ -475,7 +475,7 @@ static void try_scene(struct gallery *gallery, const char *label, const char *sc
         test_fail(__FILE__, __LINE__, "%s: kind %d: %s", label, (int)error.kind, error.text);
 }
 
-/* The call, and what is done with its answer; the only thing that must be a mesh is a mesh light. */
+/* The call and the use of its result; only a mesh light requires a mesh. */
 static void scene_of(const struct script_function *function, const char *call, char *out, size_t size) {
     bool mesh = strcmp(function->name, "mesh_light") == 0;
     (void)snprintf(out, size, "%sX = %s\n%s", mesh ? "ball = sheet " : "", call, use_of(function));
@@ -571,7 +571,7 @@ TEST_LONG(extreme_numbers_of_every_size_give_one_line_or_a_finite_picture) {
                false, true, true);
 }
 
-/* Colours above 1 and below 0 belong to the language; only the absorption of a medium has a least value. */
+/* The language allows colours above 1 and below 0; only the absorption of a medium has a minimum. */
 TEST(every_colour_may_be_as_large_as_1e30_in_either_direction) {
     struct gallery gallery;
     open_gallery(&gallery);
@@ -596,7 +596,7 @@ TEST(every_colour_may_be_as_large_as_1e30_in_either_direction) {
     close_gallery(&gallery);
 }
 
-/* What must be said of values that are refused though they are small. */
+/* The messages for small values that are refused. */
 TEST(what_cannot_be_divided_by_is_named) {
     static const struct corner refused[] = {
         {"show{aperture = 0.1, focus = 5e-324}", "focus is too small: 4.94066e-324"},
@@ -660,7 +660,8 @@ static int format_count(const char *text, const char *words) {
 
 static const char clamped_words[] = "light beyond the largest float is clamped to it";
 
-/* Brighter than a float can hold, in a mirror and behind glass as well; one lamp takes away what another one gives. */
+/* Brighter than the largest float, in a mirror and behind glass as well; one lamp has negative light and cancels
+ * another. */
 static const char bright_scene[] =
     "m = gr.material{kd = {1e30, 1, 0}, ks = {1e30, 0, -1e30}, reflect = 1, emission = {0, 0, -1e20}}\n"
     "b = gr.sphere('b') b:set_material(m) f = gr.plane{normal = {0, 1, 0}, distance = -1, material = m}\n"
@@ -802,7 +803,7 @@ TEST(the_ends_of_the_ranges_of_options_give_a_finite_picture) {
 
 /* --- files --- */
 
-/* A file as a mesh, or its refusal. */
+/* A file as a mesh, or the error message. */
 struct model_case {
     const char *name, *text, *words; /* NULL: it is drawn */
 };
@@ -869,7 +870,7 @@ TEST(numbers_of_mesh_files_have_the_limit_of_scripts) {
     close_gallery(&gallery);
 }
 
-/* A PFM picture of one row whose pixels are such numbers. */
+/* A PFM picture of one row with these values. */
 static void write_strange_pfm(const char *name, const char *scale) {
     const float values[] = {INFINITY, -INFINITY, NAN, FLT_MAX, -FLT_MAX, 1e30F, 1e-45F, -NAN, 0, 1, 3e38F, 2};
     char bytes[128];
@@ -909,7 +910,7 @@ TEST(pictures_that_hold_strange_numbers_give_finite_pictures) {
     close_gallery(&gallery);
 }
 
-/* A tile whose checks are right and whose colour is none. */
+/* A tile with correct checksums whose colour is not a number. */
 TEST(tiles_with_colours_that_are_not_finite_are_refused) {
     static const float strange[] = {NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < sizeof strange / sizeof strange[0]; i++) {

@@ -1,6 +1,6 @@
-/* Farms without machines: ranks in one process, messages in queues, tiles painted by the test. Whatever the order of
- * steps, whatever nonsense travels between true messages and whoever falls out or is silent, the first rank ends with
- * every tile. Time passes when the test says so. */
+/* A simulated farm: ranks in one process, messages in queues, tiles painted by the test. Whatever the order of steps,
+ * whatever invalid messages arrive among valid ones and whichever rank fails or is silent, the first rank ends with
+ * every tile. The test controls the clock. */
 #include "output/farm.h"
 #include "render/render.h"
 #include "tests/harness.h"
@@ -25,7 +25,7 @@ struct post {
     uint32_t begun, ended;
 };
 
-static struct post boxes[RANKS]; /* by the rank that they are for */
+static struct post boxes[RANKS]; /* by the receiving rank */
 static struct farm *farms[RANKS];
 
 static void post(int from, int to, int kind, const void *data, size_t size) {
@@ -118,7 +118,7 @@ static struct tile_picture picture_of(uint32_t number, const char *name) {
     return picture;
 }
 
-/* What a worker would do: the first tile that is wanted, a colour for each pixel. */
+/* The work of a worker: the first tile that is requested, a colour for each pixel. */
 static void paint(struct film *film) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         if (film->tiles[tile] != FILM_TILE_WANTED)
@@ -162,7 +162,7 @@ static void disturb(struct test_random *random) {
     post(from, 0, to_first[(int)test_uniform(random, 0, 9)], bytes, (size_t)test_uniform(random, 0, 40));
     static const int to_others[] = {BEGIN, TILE, LEAVE, LINE, NO_KIND, ANSWER, ALIVE, NOTE};
     post(0, from, to_others[(int)test_uniform(random, 0, 8)], bytes, test_uniform(random, 0, 1) < 0.5 ? 8 : 5);
-    memcpy(bytes, pairs[(int)test_uniform(random, 0, 2)], 8); /* neither a tile nor a picture that there is */
+    memcpy(bytes, pairs[(int)test_uniform(random, 0, 2)], 8); /* a tile and a picture that do not exist */
     post(0, from, test_uniform(random, 0, 1) < 0.5 ? ASSIGN : CLOSE, bytes, bytes[0] == 1 && bytes[4] == 15 ? 5 : 8);
 }
 
@@ -181,7 +181,7 @@ TEST(ranks_in_any_order_with_nonsense_between_make_every_tile_once) {
             bool already = false;
             CHECK(farm_begin(farms[rank], &picture, &films[rank], &already, &error) && !already);
         }
-        /* On some turns rank 2 falls out after a while, or rank 3 has nothing to say any more. */
+        /* In some rounds rank 2 fails after a while, or rank 3 becomes silent. */
         for (int step = 0; step < 4000 && is_open(0); step++) {
             int rank = (int)test_uniform(&random, 0, RANKS);
             if (turn % 2)
@@ -229,7 +229,7 @@ static void begin_picture(int count) {
     }
 }
 
-/* Time passes in small steps, in which these ranks are there. */
+/* Time passes in small steps in which these ranks are alive. */
 static void pass(double seconds, const char *there) {
     for (double end = time_now + seconds; time_now < end; time_now += 0.25) {
         if (strchr(there, '0') && !is_open(0))
@@ -252,7 +252,7 @@ static void expect_note(const char *part) {
         test_fail(__FILE__, __LINE__, "\"%s\" does not say \"%s\"", line, part);
 }
 
-/* Makes and sends tiles until the picture is whole. */
+/* Makes and sends tiles until the picture is complete. */
 static void make_all(const char *makers) {
     for (int step = 0; step < 1000 && is_open(0); step++) {
         for (int rank = 0; rank < RANKS; rank++) {
@@ -367,7 +367,7 @@ TEST(the_end_of_a_farm_waits_for_no_silent_rank) {
     farm_finish(farms[0], true, ignore_line, NULL);
     expect_note("rank 2 has been silent");
     CHECK_EQ_INT(silent_at_end[0], 2); /* rank 1 has said goodbye, and nothing since then */
-    /* Both read that it is over, the silent one when it goes on; it asks for a picture that comes too late. */
+    /* Both read the end message, the silent rank when it continues; it asks for a picture, which comes too late. */
     struct error error;
     struct tile_picture later = picture_of(2, "b.png");
     bool already = false;
@@ -430,7 +430,7 @@ TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_answered
         CHECK(farm_begin(farms[0], &picture, &films[0], &already, &error));
         CHECK(!farm_begin(farms[1], &other, &films[1], &already, &error));
         CHECK(error.kind == ERROR_SCENE && strstr(error.text, "a different picture from the first one"));
-        /* Lines of a rank that the first one has told itself are not told again; too many are cut. */
+        /* Lines of a rank that the first rank has printed itself are not printed again; too many are cut. */
         farm_report(farms[0], "the same");
         farm_report(farms[1], "the same");
         for (int i = 0; i < 20; i++)
@@ -447,7 +447,7 @@ TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_answered
         post(1, 0, BYE, "", 1);
         told = 0;
         farm_finish(farms[0], well, count_line, NULL);
-        CHECK_EQ_INT(told, 4); /* another, and three times what is foreign */
+        CHECK_EQ_INT(told, 4); /* another one, and three times an unknown message */
         bool asked = farm_begin(farms[1], &later, &films[1], &already, &error);
         CHECK(well ? asked && already : !asked && error.kind == ERROR_CANCELLED);
         farm_finish(farms[1], true, count_line, NULL);
@@ -462,7 +462,7 @@ TEST(a_rank_that_waits_is_stopped_by_an_interruption) {
     begin_farm(2);
     controls[1].cancel = 1;
     CHECK(!farm_begin(farms[1], &picture, &films[1], &already, &error) && error.kind == ERROR_CANCELLED);
-    controls[0].cancel = 1; /* nobody says goodbye any more */
+    controls[0].cancel = 1; /* no rank sends a goodbye any more */
     farm_finish(farms[0], true, count_line, NULL);
     end_farm(2);
 }

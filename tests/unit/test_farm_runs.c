@@ -1,5 +1,5 @@
-/* Whole farms under mpirun, whose processes are stopped and killed: the pictures have the bytes of one run, and the
- * status of gray is 0. Moments are counted in processor time of the renderer, so that a busy machine changes nothing.
+/* Real farms under mpirun, whose processes are stopped and killed: the pictures have the bytes of a single run, and the
+ * status of gray is 0. Moments are measured in processor time of the renderer, so that a busy machine does not matter.
  */
 #define _GNU_SOURCE
 #include "base/process.h"
@@ -48,7 +48,7 @@ static void need_mpi(const char *scene) {
         test_skip("there is no gray-mpi beside the program, or no mpirun");
 }
 
-/* The last answer stays until the next one. */
+/* The last result stays valid until the next call. */
 static const char *said(void) {
     static char *text;
     free(text);
@@ -62,13 +62,13 @@ static double clock_now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* The status of the first rank goes into status.txt; every process has GRAY_TEST_FARM in its environment, and ranks but
- * the first what the variable `others` says. */
+/* The status of the first rank goes into status.txt; every process has GRAY_TEST_FARM in its environment, and all ranks
+ * but the first also have the contents of the variable `others`. */
 static pid_t start_farm(const char *mpirun_options, int ranks, const char *words) {
     char line[2048];
     (void)snprintf(line, sizeof line,
                    "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 GRAY_TEST_FARM=$PWD; "
-                   "export OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp}; " /* goes with the test */
+                   "export OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp}; " /* ends with the test */
                    "export words='--mpi -j 1 scene.lua %s'; rm -f status.txt; "
                    "exec mpirun %s --oversubscribe -n %d sh -c '"
                    "test $OMPI_COMM_WORLD_RANK = 0 || exec env $others $gray $words; $gray $words; "
@@ -131,7 +131,7 @@ static int processes_of(int rank, pid_t found[8]) {
     return count;
 }
 
-/* The process that mpirun has started, or its renderer; 0: not there. */
+/* The process that mpirun has started, or its renderer; 0: it does not exist. */
 static pid_t process_of(int rank, bool renderer) {
     pid_t found[8];
     int count = processes_of(rank, found);
@@ -145,7 +145,7 @@ static pid_t process_of(int rank, bool renderer) {
     return 0;
 }
 
-/* Waits until the renderer of the rank has worked so long and a file is there (or NULL). */
+/* Waits until the renderer of the rank has used this processor time and a file exists (or NULL). */
 static bool await_work(int rank, double seconds, const char *file) {
     for (double begun = clock_now(); clock_now() - begun < 60; (void)usleep(5000)) {
         pid_t renderer = process_of(rank, true);
@@ -164,7 +164,7 @@ static bool await_words(const char *words) {
     return false;
 }
 
-/* The status of mpirun; a farm that does not end is ended. */
+/* The status of mpirun; a farm that does not end is killed. */
 static int await_end(pid_t mpirun) {
     int how;
     for (double begun = clock_now(); clock_now() - begun < 120; (void)usleep(5000)) {
@@ -279,7 +279,7 @@ TEST(a_rank_that_is_stopped_is_done_without) {
     pid_t farm = start_farm("", 3, WORDS);
     if (await_work(2, 0.03, NULL))
         CHECK(kill(process_of(2, false), SIGSTOP) == 0);
-    CHECK_EQ_INT(await_end(farm), 0); /* it is woken at the end, to end with the others */
+    CHECK_EQ_INT(await_end(farm), 0); /* it is continued at the end, so that it ends with the others */
     expect_pictures("rank 2 has been silent for 1 s, others render its tiles", COMPARE);
     CHECK(process_of(2, false) == 0 && process_of(2, true) == 0);
 }
@@ -314,7 +314,7 @@ TEST(a_rank_that_is_killed_leaves_the_first_one_time_for_its_checkpoint) {
         start_farm("--mca odls_base_sigkill_timeout 2", 3, "-full -ss 60 --checkpoint c.tiles --checkpoint-every 1000");
     if (await_work(0, 0.3, NULL))
         CHECK(kill(process_of(2, false), SIGKILL) == 0);
-    CHECK(await_end(farm) > 0); /* mpirun ends all */
+    CHECK(await_end(farm) > 0); /* mpirun ends all processes */
     CHECK_EQ_INT(shell("! test -e out.png && test -s c.tiles"), 0);
 }
 

@@ -1,6 +1,6 @@
-/* Bad luck: every allocation, and every call to the system that can fail, fails once in a whole run of the program,
- * over a scene that reads scripts, meshes and pictures and writes several files. Whatever fails, the program ends by
- * itself with a line and a fitting status, leaves whole pictures or none, and loses no old one. */
+/* Injected failures: every allocation and every system call that can fail fails once in a complete run of the program,
+ * with a scene that reads scripts, meshes and pictures and writes several files. Whatever fails, the program ends by
+ * itself with one line and the right status, leaves complete pictures or none, and keeps old ones. */
 #define _GNU_SOURCE
 #include "base/fault.h"
 #include "tests/harness.h"
@@ -33,7 +33,7 @@ static const char module[] = "local shapes = {}\n"
                              "return shapes\n";
 static const char mesh[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-/* The tests run beside each other: the failures that one asks for are its own. */
+/* Tests run in parallel: each has failures of its own. */
 TEST(processes_that_count_apart_do_not_fail_for_each_other) {
 #ifndef GRAY_FAULTS
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
@@ -92,7 +92,7 @@ static void prepare(uint64_t counts[2]) {
     put("mesh.obj", mesh);
     put("numbers.txt", "3\n");
     CHECK_EQ_INT(shell("cp \"$OLDPWD\"/textures/$(ls \"$OLDPWD\"/textures | grep png | head -n 1) image.png"), 0);
-    /* The old pictures are the ones that a run without failures makes: either they stay or the same come. */
+    /* The old pictures have the bytes that a run without failures makes: they are kept or replaced by equal ones. */
     CHECK_EQ_INT(shell("GRAY_FAULT_COUNT=$PWD/counts $gray -j 2 -write-pre-aa p- --checkpoint c.tiles "
                        "--checkpoint-every 0 scene.lua"),
                  0);
@@ -118,7 +118,7 @@ static void survive(const char *variable, uint64_t number) {
     char *said = content("err.txt", &size), *picture = content("sub/a.png", NULL);
     bool known = status == 0 || status == 1 || status == 3;
     bool told = status == 0 || (said && size > 10 && strncmp(said, "  ", 2) != 0);
-    /* The leak checker itself cannot look round in a process that was confined without its folder. */
+    /* The leak checker does not work in a confined process that cannot read /proc. */
     bool blind = said && strstr(said, "LeakSanitizer has encountered a fatal error");
     bool clean = !said || blind || (!strstr(said, "Sanitizer") && !strstr(said, "runtime error"));
     bool old = picture && strcmp(picture, "PF\n1 old") == 0;
@@ -156,8 +156,8 @@ TEST_LONG(faults_any_allocation_may_fail_in_a_whole_run) {
         survive("GRAY_FAIL_ALLOC", number);
 }
 
-/* The same of other ways to use the program, on a smaller scene: `line` runs with the variable set; what it makes
- * (`names`) is what a run without failures makes, or is not there. */
+/* The same for other uses of the program, with a smaller scene: `line` runs with the variable set; each file that it
+ * makes (`names`) has the bytes of a run without failures or is absent. */
 static void survive_line(const char *variable, uint64_t step, const char *line, const char *names) {
     static const char kind_of[] = "GRAY_FAIL_CALL";
     char text[2048];

@@ -1,5 +1,5 @@
-/* Writing files: what is replaced, what is refused, and what is left behind. The whole program is attacked in
- * test_hostile_writing.c; here is the mechanism itself. */
+/* Writing files: which files are replaced, which are refused, and which temporary files remain. The whole program is
+ * attacked in test_hostile_writing.c; here is the mechanism itself. */
 #define _GNU_SOURCE
 #include "base/file_output.h"
 
@@ -155,7 +155,7 @@ TEST(a_name_that_must_be_new_replaces_nothing) {
     holds(path, old_picture);
 }
 
-/* Names of leftovers, and what stands there. */
+/* Names of temporary files, and their contents. */
 static void leave(const char *name, long age) {
     const char *path = test_path(name);
     struct timespec times[2] = {{.tv_nsec = UTIME_OMIT}, {.tv_sec = time(NULL) - age}};
@@ -167,7 +167,7 @@ static bool is_there(const char *name) {
     return file_exists(test_path(name));
 }
 
-/* The time of a change cannot be set: what is removed after a minute is in the long test below. */
+/* The change time of a file cannot be set: the removal after a minute is tested in the long test below. */
 TEST(leftovers_that_are_young_or_locked_or_no_leftovers_stay) {
     static const char *const names[] = {".gray.part-0123456789abcdef", ".gray.part-0123456789abcde",
                                         ".gray.part-0123456789abcdeg", ".gray.part-0123456789ABCDEF",
@@ -182,7 +182,7 @@ TEST(leftovers_that_are_young_or_locked_or_no_leftovers_stay) {
     CHECK(mkfifo(test_path(".gray.part-3333333333333333"), 0666) == 0);
     CHECK(file_output_check(&(struct file_target){.path = test_path("a.png"), .rules = &rules}, &error));
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        CHECK(is_there(names[i])); /* the first one was changed just now */
+        CHECK(is_there(names[i])); /* the first one has just been changed */
     CHECK(is_there(".gray.part-1111111111111111") && is_there(".gray.part-2222222222222222") &&
           is_there(".gray.part-3333333333333333") && !is_there("a.png"));
     file_guard_destroy(&guard);
@@ -222,7 +222,7 @@ TEST(a_set_of_files_holds_what_was_added_and_not_removed) {
     file_set_destroy(&set);
 }
 
-/* Waiting for the reader of a pipe. */
+/* Waits for the reader of a pipe. */
 
 static struct test_result run_in_shell(const char *line) {
     char *command = NULL, binary[4096];
@@ -239,7 +239,7 @@ static struct test_result run_in_shell(const char *line) {
     "local r = gr.node('r') r:add_child(gr.sphere(gr.material({1, 1, 1}, {0, 0, 0}, 1)))\n"                            \
     "gr.render(r, 'a.png', W, W, {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 50, {1, 1, 1}, {})\n"
 
-/* The program runs until it waits; then it gets the signal, and must end within ten seconds. */
+/* The program runs until it blocks; then it gets the signal and must end within ten seconds. */
 static void ends_at(const char *signal, const char *begin, const char *then) {
     char line[1024];
     (void)snprintf(line, sizeof line,

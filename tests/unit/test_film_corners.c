@@ -1,5 +1,5 @@
-/* The film at its borders: sizes that cannot be, parts outside of the picture, what each view of it shows, tiles whose
- * bytes do not fit; and the layer of lights for a light of every kind. */
+/* Corner cases of the film: impossible sizes, parts outside the picture, the contents of each view, tiles whose bytes
+ * do not fit; and the light layer for every kind of light. */
 #include "light/light.h"
 #include "render/aov.h"
 #include "tests/harness.h"
@@ -91,7 +91,8 @@ TEST(names_of_layers_are_read_or_refused) {
         CHECK(!aov_parse(wrong[i], &mask));
 }
 
-/* A floor, a light whose middle is at (0, 5, 0) (or so far up), a small cube half way: its shadow is right below it. */
+/* A floor, a light with centre (0, 5, 0) (or at the given height), a small cube half way: its shadow is directly below
+ * it. */
 TEST(the_layer_of_lights_knows_the_middle_of_every_kind_of_light) {
     enum { SIZE = 21 };
     static const struct light all[] = {

@@ -1,5 +1,5 @@
-/* What films record of a pixel has a size that the picture states: any record comes back from tiles and files, files of
- * the first format keep their bytes, and pixels of another record are never mixed. */
+/* The record of a pixel has a size that the picture states: any record survives tiles and files, files of the first
+ * format keep their bytes, and pixels with different records are never mixed. */
 #include "output/checkpoint.h"
 #include "render/render.h"
 #include "render/tile_file.h"
@@ -21,7 +21,7 @@ static struct film film_of(struct film_record record) {
     return film;
 }
 
-/* Every tile done; where a pixel is not marked, its floats are its colour. */
+/* Every tile is done; the floats of an unmarked pixel are its colour. */
 static struct film painted(struct film_record record) {
     struct film film = film_of(record);
     struct test_random random = {7};
@@ -99,7 +99,7 @@ TEST(a_film_without_marks_shows_its_colours_as_first_pass_and_no_red) {
     free(film.pixels);
 }
 
-/* The format number, and the size of the description of the picture behind the head of 16 bytes. */
+/* The format number, and the size of the picture description after the header of 16 bytes. */
 static void check_head(const char *path, uint8_t format, size_t size) {
     uint8_t head[32] = {0};
     FILE *file = fopen(path, "rb");

@@ -1,5 +1,5 @@
-/* Pictures of light as images: Radiance HDR and PFM read back what was written, of every spelling; broken ones are one
- * line. */
+/* High dynamic range images: Radiance HDR and PFM files of every variant give back what was written; broken files give
+ * one line. */
 #include "base/mem.h"
 #include "image/exr.h"
 #include "image/float_write.h"
@@ -29,7 +29,7 @@ static void light_row(void *context, uint32_t y, float *line) {
 }
 
 static struct image *parse(const char *name, const void *data, size_t size, struct error *error) {
-    /* A buffer of exactly this size, so that reading beyond it is seen. */
+    /* A buffer of exactly this size, so that a sanitizer detects a read beyond it. */
     uint8_t *exact = malloc(size ? size : 1);
     memcpy(exact, data, size);
     *error = (struct error){0};
@@ -90,19 +90,19 @@ TEST(radiance_pictures_of_every_spelling_are_read) {
     CHECK_NEAR(first_red("a", WHOLE(HEAD "EXPOSURE=2\nEXPOSURE= 2.0\n\n-Y 1 +X 1\n\x80\0\0\x81"), 0, 0), one / 4, 0);
     /* Repeated pixels, 2 and then 1 * 256 of them. */
     CHECK_NEAR(first_red("a", WHOLE(HEAD "\n-Y 1 +X 259\n\x80\0\0\x81\1\1\1\2\1\1\1\1"), 258, 0), one, 0);
-    /* A row too long for runs of channels, in a file that is long enough for it. */
+    /* A row too long for run-length coding per channel, in a file that is long enough for it. */
     static char row[1024];
     int head = snprintf(row, sizeof row, HEAD "#%0500d\n\n-Y 1 +X 32768\n", 0);
     memcpy(row + head, "\x80\0\0\x81\1\1\1\xff\1\1\1\x7f", 12);
     CHECK_NEAR(first_red("a", row, (size_t)head + 12, 32767, 0), one, 0);
-    /* Runs of channels, literal ones and repeated ones. */
+    /* Run-length coded channels, with literal and repeated runs. */
     CHECK_NEAR(first_red("a", WHOLE(HEAD "\n-Y 1 +X 8\n\2\2\0\x08\x03\0\0\0\x85\x80\x88\0\x88\0\x88\x81"), 7, 0), one,
                0);
     /* PFM of both byte orders, with a scale, and of one channel. */
     CHECK_NEAR(first_red("a", WHOLE("PF\n1 2\n-1.0\n\0\0\x80?\0\0\0\0\0\0\0\0\0\0\0@\0\0\0\0\0\0\0\0"), 0, 1), 1, 0);
     CHECK_NEAR(first_red("a", WHOLE("PF\n1 2\n0.5\n?\x80\0\0\0\0\0\0\0\0\0\0@\0\0\0\0\0\0\0\0\0\0\0"), 0, 0), 1, 0);
     CHECK_NEAR(first_red("a", WHOLE("Pf 1 1 -1 \0\0\x80?"), 0, 0), 1, 0);
-    /* NaN and negative light are none. */
+    /* NaN and negative light become 0. */
     CHECK_NEAR(first_red("a", WHOLE("Pf\n1 1\n-1\n\0\0\xc0\x7f"), 0, 0), 0, 0);
     CHECK_NEAR(first_red("a", WHOLE("Pf\n1 1\n-1\n\0\0\x80\xbf"), 0, 0), 0, 0);
 }
@@ -165,7 +165,7 @@ TEST(pictures_of_light_cut_anywhere_are_one_line) {
         size_t size;
         char *file = test_read_file(path, &size);
         no_cut_is_a_picture(file, size);
-        /* One byte changed: a picture or one line, and no more memory than the bytes deserve. */
+        /* One byte changed: a picture or one line, and memory in proportion to the bytes. */
         struct test_random random = {5};
         for (int k = 0; k < 2000; k++) {
             size_t at = (size_t)test_uniform(&random, 0, (double)size);
@@ -215,7 +215,7 @@ TEST(reading_light_survives_every_failed_allocation) {
     test_fail(__FILE__, __LINE__, "still fails after 20 allocations");
 }
 
-/* --- EXR, where its library is --- */
+/* --- EXR, if its library is installed --- */
 
 TEST(exr_pictures_are_read_as_they_were_written) {
     if (!exr_can_write())

@@ -1,4 +1,4 @@
-/* Fog against its integrals, and the cut-off of rays that no longer count. */
+/* Fog against its integrals, and the cut-off of rays with small contributions. */
 #include "material/medium.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
@@ -74,7 +74,7 @@ TEST(fog_is_the_exponential_of_its_integral) {
     CHECK_NEAR(fog_transmittance(&grid, vec3_make(50, 0, 0), up, INFINITY), 1, 0);
 }
 
-/* Beside and on the borders of what it is made of, and along axes: the closed forms are the numbers on the right. */
+/* Outside and on the borders of the parts of fog, and along axes: the numbers on the right are the closed forms. */
 TEST(fog_is_integrated_on_its_borders_and_along_axes) {
     static const double heights[] = {0, 1, 3}, levels[] = {0, 0.4, 0.2}, sums[] = {0, 0.2, 0.8};
     static const double cells[] = {0.1, 0.2, 0.3, 0.4};
@@ -102,8 +102,8 @@ TEST(fog_is_integrated_on_its_borders_and_along_axes) {
                {&grid, {0.5, 0.5, 0.5}, {1, 0, 0}, 0.25, 0.25 * 0.1}, /* ends in its cell */
                {&grid, {2, 0.5, 0.5}, {-1, 0, 0}, 99, 0.1 + 0.2},     /* from its face on */
                {&grid, {0, 0.5, 0}, {0.6, 0, 0.8}, 2.5, 0},           /* on its edge, see below */
-               {&height, {0, 1e4, 0}, {0, 1, 0}, INFINITY, 0},        /* where there is no more of it, and up */
-               {&height, {0, 0, 0}, {0, 1, 0}, INFINITY, 0.5},        /* all that is above */
+               {&height, {0, 1e4, 0}, {0, 1, 0}, INFINITY, 0},        /* where it has ended, and upwards */
+               {&height, {0, 0, 0}, {0, 1, 0}, INFINITY, 0.5},        /* all fog above */
                {&height, {0, 0, 0}, {1, 0, 0}, 3, 1.5}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         double depth = all[i].depth;
@@ -128,7 +128,7 @@ TEST(simple_fogs_follow_their_formulas) {
     CHECK_NEAR(fog_transmittance(&fog, o, d, 7), 0, 0);
 }
 
-/* The camera at (0, 0, 10), a mirror at z = 0, fog: what is mirrored fades over the whole way. */
+/* The camera at (0, 0, 10), a mirror at z = 0, fog: the mirror image is attenuated over the whole path. */
 TEST(reflected_and_refracted_rays_go_through_the_fog) {
     struct fog fog = {.kind = FOG_EXPONENTIAL, .density = 0.05, .colour = {0, 1, 0}};
     for (int through = 0; through < 2; through++) {
@@ -187,7 +187,7 @@ TEST(a_hall_of_mirrors_ends_by_the_cut_off) {
     stage_end(&s);
 }
 
-/* The same hall: what is four times as bright, or shown so, counts two reflections longer. */
+/* The same hall: with four times the brightness, or four times the exposure, two more reflections count. */
 TEST(the_cut_off_knows_how_bright_things_can_be_and_are_shown) {
     static const uint64_t expected[] = {8, 10, 10, 9, 11};
     for (int i = 0; i < 5; i++) {

@@ -35,7 +35,7 @@ static struct font read_font(void) {
     return font;
 }
 
-/* From a copy of exactly this size, so that the sanitizer sees every byte read beside it. */
+/* From a copy of exactly this size, so that the sanitizer detects every read outside it. */
 static bool lay_out(const uint8_t *data, size_t size, const char *text, struct arena *arena, struct font_text *out,
                     struct error *error) {
     uint8_t *copy = malloc(size ? size : 1);
@@ -47,7 +47,7 @@ static bool lay_out(const uint8_t *data, size_t size, const char *text, struct a
     return done;
 }
 
-/* Every number finite, every contour of whole pieces, every letter in its order. */
+/* Every number is finite, every contour has complete pieces, every letter is in order. */
 static void check_text(const struct font_text *text) {
     for (uint32_t k = 0; k < text->count; k++) {
         const struct font_glyph *glyph = &text->glyphs[k];
@@ -88,7 +88,7 @@ TEST(font_letters_have_the_areas_of_the_pen_that_drew_them) {
     CHECK_TEXT(error.text, "");
     CHECK_EQ_INT(text.count, 3);
     check_text(&text);
-    /* A pen 0.105 em thick along a stroke 0.7 em long, with round ends. */
+    /* A stroke 0.105 em wide and 0.7 em long, with round ends. */
     double pen = 0.9 * 0.7 / 6, pi = 3.14159265358979;
     CHECK_NEAR(fabs(area_of(&text.glyphs[0])), 0.7 * pen + pi * pen * pen / 4, 2e-4);
     CHECK_NEAR(fabs(area_of(&text.glyphs[2])), 1.8 * 0.7 / 6 * pen + pi * pen * pen / 4, 2e-4);
@@ -162,7 +162,7 @@ TEST(font_cut_anywhere_or_with_any_changed_byte_is_text_or_one_line) {
         expect_answer(font.data, size);
     for (int round = 0; round < 3000; round++) {
         random = random * 1664525u + 1013904223u;
-        /* Half of them in the tables at the front, which say where everything is. */
+        /* Half of them in the tables at the front, which contain all offsets. */
         size_t at = (random >> 8) % (round % 2 ? font.size : 700);
         uint8_t old = font.data[at];
         random = random * 1664525u + 1013904223u;

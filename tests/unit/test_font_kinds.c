@@ -1,7 +1,7 @@
-/* Fonts that are not TrueType as others are: cubic outlines (Type 1), pictures of letters (BDF), a packed font that
- * claims to be huge (WOFF), and letters whose contours have no length. They are made here, as their specifications say.
- * Sources: Adobe, "Adobe Type 1 Font Format" (1990); Adobe, "Glyph Bitmap Distribution Format"; W3C, "WOFF File Format
- * 1.0"; Apple, "TrueType Reference Manual". */
+/* Fonts other than ordinary TrueType: cubic outlines (Type 1), bitmaps (BDF), a compressed font that claims to be huge
+ * (WOFF), and letters whose contours have no length. They are made here from their specifications. Sources: Adobe,
+ * "Adobe Type 1 Font Format" (1990); Adobe, "Glyph Bitmap Distribution Format"; W3C, "WOFF File Format 1.0"; Apple,
+ * "TrueType Reference Manual". */
 #include "base/fault.h"
 #include "base/mem.h"
 #include "formats/font.h"
@@ -99,7 +99,7 @@ TEST(fonts_with_cubic_outlines_keep_their_control_points) {
         CHECK(!glyph->missing);
         CHECK_NEAR(glyph->advance, 0.7, 1e-12);
         CHECK_EQ_INT(glyph->starts[1] - glyph->starts[0], 6);
-        /* The contour may begin with any of its points and run either way. */
+        /* The contour may begin with any of its points and run in either direction. */
         for (int i = 0; i < 6; i++) {
             double nearest = 1;
             for (int k = 0; k < 6; k++)
@@ -121,7 +121,7 @@ TEST(fonts_with_pictures_of_letters_are_refused) {
     expect_refused(bdf, strlen(bdf), "A", "t.font: this font has pictures of its letters, not outlines");
 }
 
-/* 72 bytes that claim half a gigabyte: the room for the unpacked font is asked for first. */
+/* 72 bytes that claim half a gigabyte: memory for the unpacked font is requested first. */
 TEST(fonts_that_ask_for_too_much_memory_are_refused) {
     struct bytes woff = {0};
     const uint32_t unpacked = 0x20000000, packed = 8, total = 44 + 20 + 8;
@@ -155,7 +155,7 @@ static uint32_t table_of(const uint8_t *font, const char *tag) {
     return 0;
 }
 
-/* Our own font with the same letter everywhere: a point, a triangle of legs of 300, and a point. */
+/* Our own font with the same letter everywhere: a point, a right triangle with legs of 300, and a point. */
 static struct bytes font_of_triangles(void) {
     struct bytes letter = {0}, font = {0};
     font.data = (uint8_t *)test_read_file("data/fonts/gray-round.ttf", &font.size);
@@ -205,13 +205,13 @@ TEST(contours_without_length_are_left_out) {
 #ifdef GRAY_FAULTS
     fault_at(FAULT_OF_CALL, 1);
     expect_refused(font.data, font.size, "B", "t.font: this font has pictures of its letters, not outlines");
-    fault_at(FAULT_OF_CALL, 2); /* walking along the outline */
+    fault_at(FAULT_OF_CALL, 2); /* while the outline is traversed */
     expect_refused(font.data, font.size, "B", "t.font: not a font that can be read");
 #endif
     bytes_free(&font);
 }
 
-/* How many units an em has is what everything is divided by. */
+/* All numbers are divided by the units per em. */
 TEST(fonts_without_units_are_refused) {
     struct bytes font = font_of_triangles();
     memset(font.data + table_of(font.data, "head") + 18, 0, 2);

@@ -1,5 +1,5 @@
-/* What fuzzers have found before, and the seeds that they begin with, through the same targets in every build: a target
- * aborts when its claim is broken. And the targets of the list here are those of tests/fuzz. */
+/* Inputs that fuzzers have found, and their seeds, through the same targets in every build: a target aborts if its
+ * claim is broken. The list of targets here must be that of tests/fuzz. */
 #include "tests/harness.h"
 
 #include <dirent.h>
@@ -14,7 +14,7 @@
     X(gltf)                                                                                                            \
     X(gz) X(jpeg) X(light) X(merge) X(mtl) X(obj) X(options) X(order) X(ply) X(png) X(resume) X(script) X(stl) X(tiles)
 
-/* Bytes of all inputs of a target. */
+/* The total size of the inputs of a target. */
 struct inputs {
     uint8_t *bytes[4096];
     size_t sizes[4096];
@@ -42,7 +42,7 @@ static void read_inputs(struct inputs *inputs, const char *kind, const char *tar
         free(entries);
 }
 
-/* The name stands last in the output of a test that crashed. */
+/* The name is the last line in the output of a test that crashed. */
 static void feed(const char *target, int (*input)(const uint8_t *data, size_t size)) {
     static struct inputs inputs;
     read_inputs(&inputs, "found", target);
@@ -50,7 +50,7 @@ static void feed(const char *target, int (*input)(const uint8_t *data, size_t si
     CHECK(inputs.count > 0);
     (void)input((const uint8_t *)"", 0);
     for (int i = 0; i < inputs.count; i++) {
-        /* Of their exact size, so that a sanitizer sees reading past the end. */
+        /* In a buffer of the exact size, so that a sanitizer detects a read past the end. */
         uint8_t *exact = malloc(inputs.sizes[i] > 0 ? inputs.sizes[i] : 1);
         CHECK(exact != NULL);
         memcpy(exact, inputs.bytes[i], inputs.sizes[i]);
@@ -60,7 +60,7 @@ static void feed(const char *target, int (*input)(const uint8_t *data, size_t si
         free(exact);
         free(inputs.bytes[i]);
     }
-    /* A few bytes that claim to be much are refused before memory is taken for them. */
+    /* A few bytes that claim to be large are refused before memory is allocated for them. */
     struct rusage usage;
     (void)getrusage(RUSAGE_SELF, &usage);
     CHECK(usage.ru_maxrss < 2 << 20); /* KiB */

@@ -12,7 +12,7 @@ TEST(gltf_without_its_parser_says_so) {
 #else
 
 #define ASSET "\"asset\":{\"version\":\"2.0\"}"
-/* Three corners (float), three indices (u8) behind them. */
+/* Three corners (float), followed by three indices (u8). */
 #define TRIANGLE_URI "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA=="
 #define TRIANGLE                                                                                                       \
     "\"buffers\":[{\"byteLength\":40,\"uri\":\"" TRIANGLE_URI                                                          \
@@ -79,7 +79,7 @@ TEST(gltf_buffers_and_pictures_may_be_files_beside_it) {
     free(bytes);
 }
 
-/* Where node `name` has the point. */
+/* The point in the space of node `name`. */
 static struct vec3 place_of(const struct node *node, const char *name, struct vec3 p, bool *found) {
     if (strcmp(node->name, name) == 0) {
         *found = true;
@@ -254,7 +254,7 @@ TEST(gltf_accessors_of_all_kinds_are_read) {
     mesh_describe(only_mesh(&model), &ray, &crossing, &s);
     CHECK(s.has_uv && s.has_colour);
     CHECK_NEAR(s.u, 0.25, 1e-12);
-    CHECK_NEAR(1 - s.v, 0.5, 1e-12); /* glTF counts from above */
+    CHECK_NEAR(1 - s.v, 0.5, 1e-12); /* glTF counts v from the top */
     CHECK_NEAR(s.colour.x, 0.25, 1e-6);
     CHECK_NEAR(s.colour.z, 0.75, 1e-6);
     CHECK_NEAR(vec3_normalize(s.shading_normal).z, 1, 1e-12);
@@ -328,7 +328,7 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     struct model_placing placing = {.name = "m"};
     scene_init(&scene, &assets);
     struct node *node = model_add_nodes(&scene, &model, &placing, &error);
-    /* The texel that a hit at uv sees: (2 u + 0.5, 3 v + 0.25) counted from above, clamped and mirrored. */
+    /* The texel at uv: (2 u + 0.5, 3 v + 0.25) counted from the top, clamped and mirrored. */
     struct hit hit = {.has_uv = true, .u = 0.05, .v = 1 - 0.125};
     struct surface_inputs look;
     material_inputs_at(node->slots[0], &hit, &look);

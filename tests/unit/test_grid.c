@@ -1,4 +1,4 @@
-/* The voxel grid against looking at every item, on random worlds of boxes; degenerate worlds; exactness under scaling.
+/* The voxel grid against a test of every item, on random worlds of boxes; degenerate worlds; exactness under scaling.
  */
 #include "accel/grid.h"
 #include "base/mem.h"
@@ -99,7 +99,7 @@ static struct ray random_ray(struct test_random *random, const struct box *boxes
     } else if (kind < 0.7) { /* from far away */
         ray.origin = vec3_add(target, random_vec3(random, exp(test_uniform(random, 3, 25))));
         ray.direction = vec3_sub(target, ray.origin);
-    } else { /* along an axis or in a plane of two, with either zero, also exactly on lattice planes */
+    } else { /* along an axis or in a coordinate plane, with +0 or -0, also exactly on lattice planes */
         ray.origin = vec3_add(target, random_vec3(random, 15));
         ray.direction = random_vec3(random, 1);
         if (kind < 0.85) {
@@ -247,7 +247,7 @@ TEST(grid_of_points_flats_and_extreme_sizes_loses_nothing) {
             grid_destroy(&grid);
         }
     }
-    /* Everything in the origin itself: there is no length to be relative to. */
+    /* Everything at the origin: there is no length for a relative error. */
     struct box zero[5] = {{{0, 0, 0}, {0, 0, 0}}};
     struct grid grid;
     CHECK(grid_build(&grid, zero, 5, NULL, &error));

@@ -1,9 +1,9 @@
-/* Scenes that want to do harm: tests/hostile holds one script each, with what must come of it in its first lines.
- *   -- expect: FIRST LINE   of standard error. SCRIPT is the script's name; a star stands for anything; empty: no word
+/* Malicious scenes: tests/hostile has one script each, with the expected result in its first lines.
+ *   -- expect: FIRST LINE   of standard error. SCRIPT is the script's name; a star matches anything; empty: no output
  *   -- status: N            1 when there is none
  *   -- arguments: ...       beside the standard ones below
- * Beside the line and the status: no script takes more than its limits of time and memory and a tenth, none leaves
- * anything behind, and the render process is confined by the kernel as it says. */
+ * Beside the line and the status: no script exceeds its limits of time and memory by more than a tenth, none leaves a
+ * file behind, and the kernel confines the render process as reported. */
 #define _GNU_SOURCE
 #include "host/confine.h"
 #include "tests/harness.h"
@@ -29,7 +29,7 @@
 static const double time_limit = 0.1;
 static const long memory_limit = 64 << 10; /* KiB, as ru_maxrss counts */
 
-/* The header line, from malloc; NULL when there is none. */
+/* The header line, from malloc; NULL if there is none. */
 static char *header(const char *text, const char *name) {
     char start[64];
     (void)snprintf(start, sizeof start, "-- %s:", name);
@@ -41,7 +41,7 @@ static char *header(const char *text, const char *name) {
     return strndup(found, strcspn(found, "\n"));
 }
 
-/* Stars in the pattern stand for anything; SCRIPT for the name. */
+/* Stars in the pattern match anything; SCRIPT stands for the name. */
 static bool matches(const char *pattern, const char *name, const char *text) {
     if (strncmp(pattern, "SCRIPT", 6) == 0)
         return strncmp(text, name, strlen(name)) == 0 && matches(pattern + 6, name, text + strlen(name));
@@ -95,7 +95,7 @@ static void check_script(const char *folder, const char *name) {
     (void)snprintf(pattern, sizeof pattern, "%s%s", expect ? expect : "?", length > 0 && expect[0] == '*' ? "*" : "");
     if (length > 0 && strchr(expect, '*') && pattern[strlen(pattern) - 1] != '*')
         (void)strcat(pattern, "*");
-    /* With sanitizers a limit of time may be met before the script has reached its line. */
+    /* With sanitizers a script may reach its time limit before the tested line. */
     const char *claim = strstr(pattern, "the script used up");
     char anywhere[1024 + 8];
     (void)snprintf(anywhere, sizeof anywhere, "SCRIPT:*%s", claim ? claim : "");
@@ -104,7 +104,7 @@ static void check_script(const char *folder, const char *name) {
         test_fail(__FILE__, __LINE__, "%s says \"%s\", not \"%s\"", name, first, pattern);
     if (result.status != (status ? atoi(status) : 1))
         test_fail(__FILE__, __LINE__, "%s ends with %d", name, result.status);
-    /* A tenth more, and the start of two processes. */
+    /* A tenth more, plus the start of two processes. */
     if (!more && !test_has_sanitizer() && used > time_limit * 1.1 + 0.08)
         test_fail(__FILE__, __LINE__, "%s took %.3f s of processor time", name, used);
     free(result.out);
@@ -122,7 +122,7 @@ static void write_huge_image(const char *path) {
     test_write_file(path, start, sizeof start);
 }
 
-/* The scripts in a folder of their own, with links that lead out. */
+/* The scripts in a separate folder, with links that lead out of it. */
 static const char *prepare(void) {
     static char folder[512];
     char to[1024];
@@ -217,7 +217,7 @@ TEST(hostile_sizes_are_one_line_before_memory_is_taken) {
     CHECK(run_scripts("size_") >= 4);
 }
 
-/* What a render process could try if a scene had taken it over. Each returns when it was not stopped. */
+/* What a render process under a scene's control could try. Each function returns if it was not stopped. */
 static void try_program(void) {
     (void)execl("/bin/true", "true", (char *)NULL);
 }
@@ -245,10 +245,10 @@ static void confine_here(void) {
         _exit(1);
     }
     if (!strstr(report, "seccomp;"))
-        _exit(77); /* not in this kernel or build: said in the report */
+        _exit(77); /* not in this kernel or build: reported */
 }
 
-/* How a process ends that is confined and then does something: the signal, or -1 when it goes on, -2 without seccomp.
+/* How a confined process ends after an action: the signal, or -1 if it continues, -2 without seccomp.
  */
 static int end_of(void (*deed)(void)) {
     fflush(stdout);
@@ -272,7 +272,7 @@ TEST(hostile_a_confined_process_is_ended_for_programs_sockets_forks_traces_and_s
     CHECK_EQ_INT(end_of(try_socket), SIGSYS);
     CHECK_EQ_INT(end_of(try_trace), SIGSYS);
     CHECK_EQ_INT(end_of(try_signal), SIGSYS);
-    CHECK(end_of(try_fork) == -1); /* refused by an error: clone is needed for threads */
+    CHECK(end_of(try_fork) == -1); /* refused with an error: threads need clone */
 }
 
 static void *add_one(void *number) {

@@ -1,5 +1,5 @@
-/* Files that are named after a picture: checkpoints, parts, layers, debug pictures, what an interruption leaves. The
- * rows are attacks: see attack.h. What a row does not name must be as it was. */
+/* Files that are named after a picture: checkpoints, parts, layers, debug pictures, files of an interrupted run. The
+ * rows are attacks: see attack.h. Everything that a row does not name must be unchanged. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
 #include "viewer/viewer.h"
@@ -392,7 +392,7 @@ TEST(hostile_what_an_interruption_writes_follows_the_rules_of_pictures) {
     ATTACKS(rows);
 }
 
-/* What the window saves when a key is pressed, three times each. */
+/* Files that the window saves on key presses, three times each. */
 static int save(bool (*one)(const struct viewer *, const struct file_target *, char *, struct error *)) {
     static struct viewer viewer;
     static const struct file_rules rules = {.never_replace = true};

@@ -1,6 +1,6 @@
-/* Files that want to do harm: tests/hostile/files holds them, its expected.txt one row for each: how it is read, the
- * file, the exit status, the first line on standard error. Files that a script reads go through one run of the program
- * with one script for each, since a script that fails does not keep the next from running. */
+/* Malicious files: they are in tests/hostile/files, whose expected.txt has a row for each: how it is read, the file,
+ * the exit status, the first line on standard error. Files that scripts read share one run of the program with one
+ * script each, since a script that fails does not prevent the next from running. */
 #include "tests/harness.h"
 
 #include <dirent.h>
@@ -84,7 +84,7 @@ static bool is_read(const struct row *row) {
     return true;
 }
 
-/* Stars in the pattern stand for anything. */
+/* Stars in the pattern match anything. */
 static bool matches(const char *pattern, const char *text) {
     for (; *pattern && *pattern != '*'; pattern++, text++)
         if (*pattern != *text)
@@ -102,7 +102,7 @@ static void check_line(const struct row *row, const char *line) {
         test_fail(__FILE__, __LINE__, "%s says \"%s\", not \"%s\"", row->file, line, row->line);
 }
 
-/* The next message: lines that are indented tell where in the script. */
+/* The next message: indented lines give the position in the script. */
 static char *next_message(char **rest) {
     char *line = strsep(rest, "\n");
     while (line && (line[0] == ' ' || line[0] == '\0'))
@@ -110,8 +110,8 @@ static char *next_message(char **rest) {
     return line;
 }
 
-/* All files that are read in one way and must end with this status; use: what the script says, with %s for the file,
- * or NULL: the file is the script. */
+/* All files that are read in the same way and must end with this status; use: the script with %s for the file, or NULL:
+ * the file is the script. */
 static void check_scripts(const char *how, const char *use, const char *options, int status) {
     char arguments[4000], path[1024], text[400], place[40];
     int count = 0;
@@ -183,7 +183,7 @@ TEST(hostile_files_are_two_hundred_and_more_and_each_has_its_row) {
     DIR *stream = opendir(folder);
     for (struct dirent *entry; stream && (entry = readdir(stream)) != NULL;) {
         bool found = entry->d_name[0] == '.' || strcmp(entry->d_name, "expected.txt") == 0;
-        for (int i = 0; i < row_count; i++) /* a library of materials goes with the mesh of its name */
+        for (int i = 0; i < row_count; i++) /* a material library is read by the mesh of the same name */
             found =
                 found || strcmp(rows[i].file, entry->d_name) == 0 ||
                 (strstr(entry->d_name, ".mtl") && strncmp(rows[i].file, entry->d_name, strlen(entry->d_name) - 3) == 0);

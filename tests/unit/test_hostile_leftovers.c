@@ -1,5 +1,5 @@
-/* Temporary files of runs that were killed: which ones the next run in the folder removes. The rows are attacks: see
- * attack.h. Nobody can give a file an old time of change, so the check runs inside of the test, whose clock is ahead.
+/* Temporary files of killed runs: which ones the next run in the folder removes. The rows are attacks: see attack.h.
+ * The change time of a file cannot be set, so the check runs inside the test, whose clock is ahead.
  */
 #define _GNU_SOURCE
 #include "base/file_output.h"
@@ -15,7 +15,7 @@
 
 #define LEFT ".gray.part-0123456789abcdef"
 
-/* The check of a picture's name that every run makes before it renders. */
+/* The check of a picture's name that every run makes before rendering. */
 static int check_ahead(const char *picture, time_t seconds) {
     struct file_guard guard = {0};
     const struct file_rules rules = {.guard = &guard, .role = FILE_ROLE_PICTURE};
@@ -105,7 +105,7 @@ TEST(hostile_the_next_run_removes_only_files_with_names_of_temporary_files) {
     ATTACKS(rows);
 }
 
-/* Two programs that are not about the folder at all: the check of a scene outside, and one that is refused. */
+/* Two runs that do not use the folder: the check of a scene outside, and a scene that is refused. */
 TEST(hostile_a_scene_cannot_have_files_removed_elsewhere) {
     static const struct attack rows[] = {
         {.name = "the folder is a link outside",
@@ -141,7 +141,7 @@ TEST(hostile_the_next_run_spares_a_file_that_a_process_still_writes) {
     spared("a file with a shared lock", LOCK_SH);
 }
 
-/* The whole program, and the minute itself. */
+/* The whole program with a real minute. */
 TEST_LONG(hostile_a_run_removes_what_was_left_more_than_a_minute_ago) {
     char in[600], path[700];
     (void)snprintf(in, sizeof in, "%s/in", test_folder());

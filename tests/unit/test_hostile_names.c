@@ -1,5 +1,5 @@
-/* Names that scenes give to pictures. The rows are attacks: see attack.h. What a row does
- * not name must be as it was. */
+/* Names that scenes give to pictures. The rows are attacks: see attack.h. Everything that a row does not name must be
+ * unchanged. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
 
@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NAME_250                                                                                                       \
-    "string.rep('n', 250)" /* a Lua expression; with .png 254 bytes, with a dot and digits more than it may be */
+#define NAME_250 "string.rep('n', 250)" /* a Lua expression; 254 bytes with .png, too long with a dot and digits */
 #define LISTS ".png|.pfm|.hdr|.exr|-o"
 
 TEST(hostile_names_without_an_ending_get_one_and_one_notice) {
@@ -356,7 +355,7 @@ TEST(hostile_names_cannot_speak_for_the_program) {
     ATTACKS(rows);
 }
 
-/* Reads one JSON text; NULL where it is none. Enough for lines of progress and statistics. */
+/* Reads one JSON text; NULL if it is invalid. Enough for lines of progress and statistics. */
 static const char *json_end(const char *at);
 static const char *json_text(const char *at) {
     if (*at++ != '"')

@@ -1,5 +1,5 @@
-/* What stands under the name that a scene gives to a picture, and when it is looked at. The rows are attacks: see
- * attack.h. What a row does not name must be as it was. */
+/* Existing files with the name that a scene gives to a picture, and the moment of the check. The rows are attacks: see
+ * attack.h. Everything that a row does not name must be unchanged. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
 

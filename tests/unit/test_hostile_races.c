@@ -1,6 +1,6 @@
-/* Moments: what changes in the folder just before any one call to the system (the program is stopped there with
- * ptrace), or as fast as another process can; kills before any call, and what they leave. What stands outside of the
- * folder must never be harmed, and no special file opened. */
+/* Races: the folder changes just before any one system call (the program is stopped there with ptrace), or as fast as
+ * another process can change it; the program is killed before any call. Files outside the folder must never be harmed,
+ * and no special file opened. */
 #define _GNU_SOURCE
 #include "base/file_output.h"
 #include "tests/attack_files.h"
@@ -20,16 +20,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* A scene, and what another process does at one moment. */
+/* A scene, and the action of another process at one moment. */
 struct race {
     const char *name;
     const char *before, *scene, *options;
     const char *act; /* "FROM TO; ...": renames in the working directory; "parts": links in place of temporary files */
-    const char *stays; /* a file that must be there afterwards, by whatever name; or NULL */
+    const char *stays; /* a file that must exist afterwards, under any name; or NULL */
 };
 
 static char root[512], in[700];
-/* Where names cannot be exchanged a file that appears just before a rename is lost. */
+/* If names cannot be exchanged, a file that appears just before a rename is lost. */
 static bool may_lose;
 
 static void fresh_folder(const struct race *race, uid_t user) {
@@ -131,7 +131,7 @@ static bool next_stop(pid_t program, int *how) {
             return WIFSTOPPED(*how);
         if (found < 0)
             return false;
-        if (attack_now() > limit) { /* it waits inside of a call */
+        if (attack_now() > limit) { /* it waits inside a call */
             (void)kill(program, SIGKILL);
             limit += 20;
         }
@@ -142,12 +142,12 @@ static bool next_stop(pid_t program, int *how) {
 
 struct ending {
     int status; /* 128 + signal */
-    long calls; /* how many calls about names there were */
+    long calls; /* the number of calls with names */
     bool acted;
 };
 
-/* Runs the program; just before its call number `moment` about names, counted from the start of its render process,
- * something happens to the folder (or it is killed, where race->act is NULL). */
+/* Runs the program; just before its call number `moment` with a name, counted from the start of its render process, the
+ * race changes the folder (or kills the program if race->act is NULL). */
 static struct ending run_traced(const struct race *race, long moment, uid_t user) {
     struct ending ending = {0};
     char words[1024];
@@ -200,7 +200,7 @@ static bool is_there(const struct attack_tree *tree, const struct attack_entry *
     return false;
 }
 
-/* What has changed and must not have; NULL: nothing. */
+/* A forbidden change; NULL: none. */
 static const char *harm(const struct race *race, const struct attack_tree *old, const struct attack_tree *new) {
     char path[300];
     for (size_t i = 0; i < new->count; i++) {
@@ -218,7 +218,7 @@ static const char *harm(const struct race *race, const struct attack_tree *old, 
     return stays && !is_there(new, stays) ? "loses a file that is no picture" : NULL;
 }
 
-/* FIFOs of a race: read by the test, and watched. */
+/* The FIFOs of a race: the test reads and watches them. */
 struct fifos {
     int readers[2], watcher;
 };
@@ -261,7 +261,7 @@ static const char *close_fifos(struct fifos *fifos) {
 static void run_race(const struct race *race, uid_t user) {
     char *reason = NULL;
     bool acted = true;
-    /* A user's rights change little, so every third moment is enough. */
+    /* The user's rights make little difference, so every third moment is enough. */
     for (long moment = 1; !reason && acted && moment < 400; moment += user && getuid() == 0 ? 3 : 1) {
         fresh_folder(race, user);
         struct attack_tree old = attack_tree(root);
@@ -388,7 +388,7 @@ TEST(hostile_no_moment_lets_a_file_beside_a_picture_out_by_its_folders) {
     RACES(races);
 }
 
-/* As fast as a process can, over and over. */
+/* Repeated changes, as fast as a process can make them. */
 TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
     static const struct race races[] = {
         {"a picture, a link and a FIFO change places",
@@ -412,7 +412,8 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
         pid_t thrower = fork();
         if (thrower == 0) {
             for (double limit = attack_now() + 60; attack_now() < limit;)
-                act(race, RENAME_NOREPLACE); /* never over what gray has put back: its own loss would look like ours */
+                act(race, RENAME_NOREPLACE); /* never over a file that gray has restored: such a loss would look like a
+                                                fault of gray */
             _exit(0);
         }
         (void)snprintf(words, sizeof words, "-q -j 1 %s scene.lua", race->options ? race->options : "");
@@ -433,7 +434,7 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
     }
 }
 
-/* What the next run in the folder does, two minutes later. */
+/* The next run in the folder, two minutes later. */
 static void check_later(uid_t user) {
     fflush(stdout);
     pid_t child = fork();

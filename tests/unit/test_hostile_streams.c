@@ -1,4 +1,4 @@
-/* Pipes, FIFOs and terminals that nobody reads: whatever the program waits for, a signal ends it with 130. */
+/* Pipes, FIFOs and terminals without a reader: whatever the program waits for, a signal ends it with status 130. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
 
@@ -25,7 +25,7 @@ static void fresh_folder(const char *files, const char *scene) {
     free(text);
 }
 
-/* Without a process of its own (--no-fork, for debuggers) the signal itself may end the program. */
+/* Without a separate render process (--no-fork, for debuggers) the signal itself may end the program. */
 static const char *end_of(pid_t program, int signal, bool alone) {
     (void)kill(program, signal);
     int status = attack_wait(program, 20);
@@ -34,7 +34,7 @@ static const char *end_of(pid_t program, int signal, bool alone) {
                                                               : "it does not end with 130";
 }
 
-/* The program must still be there after a while, and end at the signal. */
+/* The program must still run after a while, and end at the signal. */
 static void interrupt(const char *name, const char *words, int signal, uid_t user) {
     pid_t program = attack_start(in, words, user);
     for (int i = 0; i < 8; i++) {
@@ -88,7 +88,7 @@ TEST(hostile_writing_to_a_reader_that_stopped_ends_at_a_signal) {
     }
 }
 
-/* A pipe is full when nothing more has come into it for a while. */
+/* A pipe is full if nothing has been added to it for a while. */
 static bool is_full(int pipe, pid_t program) {
     int before = -1, now = 0, how;
     for (double limit = attack_now() + 15; attack_now() < limit;) {
@@ -104,7 +104,7 @@ static bool is_full(int pipe, pid_t program) {
     return false;
 }
 
-/* One of the program's own streams goes into a pipe of this test, which nobody reads. */
+/* One of the program's standard streams is a pipe of this test, which nobody reads. */
 static void interrupt_stream(const char *name, const char *scene, const char *options, int stream) {
     static int tried;
     int ends[2], signal = tried++ % 2 ? SIGTERM : SIGINT;

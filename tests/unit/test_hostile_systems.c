@@ -1,5 +1,5 @@
-/* The rules of writing on file systems that can do less: without files that have no name, without exchanging two names,
- * without second names. The rows are attacks: see attack.h. */
+/* The rules of writing on file systems with fewer features: without unnamed files, without exchange of two names,
+ * without hard links. The rows are attacks: see attack.h. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
 

@@ -1,5 +1,5 @@
-/* What a scene could say in the name of the program, learn from the words of errors, or get to see of the program's own
- * values; and what is printed in vain. */
+/* What a scene could print as if it were the program, learn from error messages, or see of the program's internal
+ * values; and output that cannot be written. */
 #define _GNU_SOURCE
 #include "output/progress.h"
 #include "tests/harness.h"
@@ -18,9 +18,9 @@ static void free_result(struct test_result *result) {
     free(result->err);
 }
 
-/* --- values of our own --- */
+/* --- internal values --- */
 
-/* Functions of C run as __close after an error that nothing catches; they get a value for it. */
+/* C functions that run as __close after an error that nothing catches; they receive a value for it. */
 static const char *const closers = "local function closing(f) return setmetatable({}, {__close = f}) end\n"
                                    "local function guarded(deed)\n"
                                    "  local a <close> = closing(print)\n"
@@ -61,7 +61,7 @@ TEST(hostile_no_value_of_the_program_reaches_a_script_after_its_end) {
         }
 }
 
-/* --- standard output that takes nothing --- */
+/* --- standard output that cannot be written --- */
 
 #define PICTURE(name) "gr.render(gr.sphere('s'), '" name "', 8, 8, {0,0,5}, {0,0,-1}, {0,1,0}, 40, {1,1,1}, {})\n"
 
@@ -80,7 +80,7 @@ static int shell(const char *line) {
 
 static const char *const lost = "gray: standard output cannot be written\n";
 
-/* With its standard output where nothing can be written the program ends with 3 and says so once. */
+/* If its standard output cannot be written, the program ends with status 3 and reports it once. */
 static void check_lost(const char *arguments) {
     static const char *const places[] = {">/dev/full", ">&-", "| true"};
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
@@ -138,28 +138,29 @@ TEST(hostile_what_standard_output_does_not_take_is_status_3) {
                                             "--check print.lua"};
     for (size_t i = 0; i < sizeof arguments / sizeof *arguments; i++)
         check_lost(arguments[i]);
-    CHECK(access(test_path("b.png"), F_OK) == 0);                  /* the picture is there nevertheless */
+    CHECK(access(test_path("b.png"), F_OK) == 0);                  /* the picture exists nevertheless */
     CHECK_EQ_INT(shell("\"$gray\" -q picture.lua >/dev/full"), 0); /* nothing was printed */
     CHECK_EQ_INT(shell("\"$gray\" -q print.lua >/dev/null"), 0);
 }
 
-/* --- what lies outside --- */
+/* --- files outside --- */
 
-/* The scene lies in a/s, so it may read below a. What lies in out, and in the hidden folders a/.hid and a/s/.hid, is
+/* The scene is in a/s, so it may read below a. The contents of out and of the hidden folders a/.hid and a/s/.hid are
  * brought into each of these states. */
 static const char *const states[] = {
-    ":",                                                                         /* nothing is there */
+    ":",                                                                         /* nothing exists */
     "mkdir $o",                                                                  /* an empty folder */
-    "mkdir $o && for e in '' .lua .obj .png .mtl; do echo \"$t\" >$o/x$e; done", /* files that speak for the old order
+    "mkdir $o && for e in '' .lua .obj .png .mtl; do echo \"$t\" >$o/x$e; done", /* files that suggest the old order
                                                                                   */
     "for e in '' .lua .obj .png .mtl; do mkdir -p $o/x$e && echo \"$t\" >$o/x$e/y; done", /* folders */
     "mkdir $o && for e in '' .lua .obj .png .mtl; do mkfifo $o/x$e; done",                /* pipes without a writer */
     "mkdir $o && for e in '' .lua .obj .png .mtl; do echo \"$t\" >$o/x$e && chmod 0 $o/x$e; done", /* unreadable ones */
     "mkdir $o && for e in '' .lua .obj .png .mtl; do ln -s x$e $o/x$e; done",           /* links to themselves */
-    "mkdir $o && for e in '' .lua .obj .png .mtl; do ln -s ../a/s/in.txt $o/x$e; done", /* links that lead in again */
-    "echo \"$t\" >$o",                             /* a file in the place of the folder */
+    "mkdir $o && for e in '' .lua .obj .png .mtl; do ln -s ../a/s/in.txt $o/x$e; done", /* links that lead back inside
+                                                                                         */
+    "echo \"$t\" >$o",                             /* a file instead of the folder */
     "mkdir $o && echo \"$t\" >$o/x && chmod 0 $o", /* a closed folder */
-    "ln -s /nowhere/at/all $o",                    /* a link that leads nowhere */
+    "ln -s /nowhere/at/all $o",                    /* a dangling link */
 };
 enum { STATES = sizeof states / sizeof *states };
 
@@ -231,7 +232,7 @@ static const char *const probes =
     "for _, n in ipairs{'own.obj', 'own2.obj', 'own.gltf'} do show('mesh', n, pcall(gr.mesh, {file = n})) end\n"
     "dofile('in.txt')\n";
 
-/* All that comes of a run: its status, what it prints and says. */
+/* The whole result of a run: its status, output and messages. */
 static char *all_of(const char *folder, const char *arguments) {
     struct test_result result = test_gray(folder, arguments);
     char *all = NULL;
@@ -326,7 +327,7 @@ TEST(hostile_hidden_files_and_those_outside_do_not_influence_the_transform_order
         test_write_text(test_path("a/s/scene.lua"), texts[i]);
         check_state_is_not_seen("scene.lua");
     }
-    /* Hidden neighbours, more of them than are looked at, and links to what is hidden. */
+    /* Hidden neighbours, more of them than are inspected, and links to hidden files. */
     test_write_text(test_path("a/s/scene.lua"), texts[0]);
     test_write_text(test_path("a/s/new.lua"), "gr.geometry('x', 1)\n");
     char *before = all_of(test_path("a/s"), "scene.lua");
@@ -341,7 +342,7 @@ TEST(hostile_hidden_files_and_those_outside_do_not_influence_the_transform_order
     free(after);
 }
 
-/* A folder that was given under another name is reached by that name, too. */
+/* A folder that was named by another path can be reached by that path, too. */
 TEST(a_scene_behind_a_link_reaches_its_files) {
     CHECK_EQ_INT(
         shell("mkdir -p deep/er/real x/y && ln -s ../../deep/er/real x/y/link && echo text >deep/er/real/t.txt && "
@@ -375,7 +376,8 @@ TEST(a_scene_behind_a_link_reaches_its_files) {
 
 /* --- lines of standard error --- */
 
-/* How many bytes at `at` take no place or steer: controls but tab, escape sequences, invisible characters. 0: none. */
+/* The number of bytes at `at` that are invisible or control the terminal: controls except tab, escape sequences,
+ * invisible characters. 0: none. */
 static size_t unseen(const char *at) {
     static const char *const invisible[] = {"\xe2\x80\x8b", "\xe2\x80\x8c", "\xe2\x80\x8d",    "\xe2\x81\xa0",
                                             "\xef\xbb\xbf", "\xc2\xad",     "\xcc\x81",        "\xcd\x8f",
@@ -390,7 +392,7 @@ static size_t unseen(const char *at) {
     return 0;
 }
 
-/* A line that a terminal shows as one of the program, other than its own. */
+/* A line that a terminal shows like a message of the program although the program did not write it. */
 static const char *forged_line(const char *said) {
     static const char *const own[] = {"gray: warning: --no-fork: ", "gray: confined by "};
     for (const char *line = said; *line;) {
@@ -416,7 +418,7 @@ static const char *forged_line(const char *said) {
 
 struct impostor {
     const char *text, *arguments; /* NULL: scene.lua alone */
-    bool marked;                  /* the line is shown with its mark; else it is shown harmless in another way */
+    bool marked;                  /* the line is shown with its mark; else it is made harmless in another way */
 };
 
 TEST(hostile_no_scene_begins_a_line_as_the_program_does) {
@@ -538,7 +540,7 @@ TEST(hostile_no_scene_begins_a_line_as_the_program_does) {
     }
 }
 
-/* Pieces, lines of the program and text without an end come out whole and in their order. */
+/* Fragments, lines of the program and text without a line end are printed completely and in order. */
 TEST(hostile_words_of_a_scene_and_of_the_program_stand_in_their_order) {
     static const char *const text = "io.stderr:write('one\\n', 2, ' ', 3.5, '\\n', 'gr')\n"
                                     "gr.sphere('s', 1)\n"
@@ -568,12 +570,12 @@ TEST(hostile_words_of_a_scene_and_of_the_program_stand_in_their_order) {
     CHECK_TEXT(result.err, "more words");
     free_result(&result);
     result = test_gray_scene("io.stderr:write('\\27[1mgray: x')", "--no-sandbox -q scene.lua", NULL);
-    CHECK_TEXT(result.err, "\33[1mgray: x"); /* then a scene may do anything */
+    CHECK_TEXT(result.err, "\33[1mgray: x"); /* then a scene may call anything */
     free_result(&result);
 }
 
-/* The program in the test's folder, its standard error a pipe that nobody reads; the status after a signal, or -1 when
- * it has not ended in a minute. */
+/* Runs the program in the test's folder with standard error in a pipe that nobody reads; returns the status after a
+ * signal, or -1 if it has not ended in a minute. */
 static int status_unread(const char *script, int signal_number) {
     char binary[4096];
     int ends[2], how = 0;

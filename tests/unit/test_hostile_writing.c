@@ -1,5 +1,5 @@
-/* Pictures against files that a run has read or needs, and what the command line names.
- * The rows are attacks: see attack.h. What a row does not name must be as it was. */
+/* Pictures that would replace files which a run has read or needs, and files that the command line names. The rows are
+ * attacks: see attack.h. Everything that a row does not name must be unchanged. */
 #define _GNU_SOURCE
 #include "tests/attack.h"
 

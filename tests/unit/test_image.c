@@ -123,7 +123,8 @@ TEST(image_wraps_repeat_mirror_and_clamp) {
             check_same(image_lookup(image, 2 + u, v, w, w, f, IMAGE_MIRROR, IMAGE_CLAMP), inside, 1e-14);
             check_same(image_lookup(image, 2 - u, v, w, w, f, IMAGE_MIRROR, IMAGE_CLAMP), inside, 1e-14);
         }
-    /* A repeating picture is continuous over its edge: half way between the last and the first texel is their mean. */
+    /* A repeated image is continuous across its edge: half way between the last and the first texel it has their mean.
+     */
     struct rgba a = image_texel(image, 3, 1), b = image_texel(image, 0, 1);
     struct rgba seam = image_lookup(image, 0, 0.375, 0, 0, IMAGE_BILINEAR, IMAGE_REPEAT, IMAGE_CLAMP);
     check_same(seam, (struct rgba){(a.r + b.r) / 2, (a.g + b.g) / 2, (a.b + b.b) / 2, 1}, 1e-15);
@@ -206,7 +207,7 @@ TEST(image_transparent_texels_have_no_colour) {
 }
 
 TEST(image_wide_footprints_average_and_narrow_ones_do_not) {
-    uint8_t *stripes = malloc(64 * 64 * 4); /* columns black and white by turns */
+    uint8_t *stripes = malloc(64 * 64 * 4); /* alternate black and white columns */
     for (size_t i = 0; i < 64 * 64 * 4; i++)
         stripes[i] = i % 4 == 3 || (i / 4 % 2) ? 255 : 0;
     struct image *image = make(64, 64, 8, stripes);
@@ -214,7 +215,7 @@ TEST(image_wide_footprints_average_and_narrow_ones_do_not) {
     CHECK_NEAR(clamped(image, u, 0.4, 1 / 64.0, IMAGE_MIPMAP).r, 1, 0);
     CHECK_NEAR(clamped(image, u, 0.4, 1 / 8.0, IMAGE_MIPMAP).r, 0.5, 1e-4);
     CHECK_NEAR(clamped(image, u, 0.4, 1 / 8.0, IMAGE_BILINEAR).r, 1, 0);
-    /* Wide along the stripes only: they stay sharp. Wide across them: gray. */
+    /* A footprint that is wide only along the stripes keeps them sharp; across them it gives gray. */
     struct rgba along = image_lookup(image, u, 0.4, 1 / 64.0, 8 / 64.0, IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_REPEAT);
     struct rgba across = image_lookup(image, u, 0.4, 8 / 64.0, 1 / 64.0, IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_REPEAT);
     CHECK_NEAR(along.r, 1, 1e-12);

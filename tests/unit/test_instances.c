@@ -1,4 +1,4 @@
-/* One node in many places: the same bits as a node for each place, and little memory. */
+/* One node at many placements: the same bits as separate nodes, and little memory. */
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -24,7 +24,7 @@ static void scatter(struct scatter *out) {
     }
 }
 
-/* What is placed: a ball beside a cube, under a node that moves them. */
+/* The instanced node: a ball beside a cube, under a node that moves them. */
 static struct node *thing(struct stage *s) {
     struct node *group = scene_node(&s->scene, NODE_GROUP, "thing", &s->error);
     stage_sphere(s, group, stage_phong(s, vec3_make(0.9, 0.4, 0.2), vec3_all(0.3), 10));
@@ -39,7 +39,7 @@ static void finish(struct stage *s) {
     stage_point_light(s, vec3_make(4, 6, 5), vec3_all(0.9));
 }
 
-/* kind 0: nodes, 1: places with turns and sizes, 2: matrices as nodes would have them */
+/* kind 0: nodes, 1: positions with rotations and sizes, 2: the matrices of the nodes */
 static void build(struct stage *s, const struct scatter *all, int kind, struct placements *placements) {
     struct node *of = thing(s), *parent = stage_group(s, s->root);
     stage_rotate(s, parent, 1, 20);
@@ -116,7 +116,8 @@ TEST(lists_of_lights_hold_for_what_stands_in_many_places) {
     stage_end(&s);
 }
 
-/* 56 bytes each, 48 for the box, 90 or so for the hierarchy; those that are only moved share one linear map. */
+/* 56 bytes each, 48 for the box, about 90 for the hierarchy; instances that are only translated share one linear map.
+ */
 TEST(a_placement_costs_less_than_two_hundred_bytes_of_the_world) {
     enum { SIDE = 400 };
     struct stage s;
@@ -150,8 +151,8 @@ TEST(a_group_takes_no_memory_for_what_only_shapes_have) {
     stage_end(&s);
 }
 
-/* Rays that meet a dense heap, alone and on a floor ten thousand times its size, in a hall that holds both: what
- * searching looks at must stay about the same. */
+/* Rays at a dense cluster, alone and on a floor ten thousand times its size, in a hall around both: the work of the
+ * search must stay about the same. */
 TEST(a_dense_heap_in_a_huge_scene_costs_about_what_it_costs_alone) {
     uint64_t work[2] = {0, 0}, balls[2] = {0, 0};
     for (int kind = 0; kind < 2; kind++) {

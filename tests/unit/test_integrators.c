@@ -1,4 +1,4 @@
-/* What holds for every integrator, by construction: these tests go over the list of them. */
+/* Claims for every integrator: these tests loop over the list of integrators. */
 #include "base/list.h"
 #include "render/pixel_trace.h"
 #include "tests/harness.h"
@@ -67,7 +67,7 @@ TEST(every_integrator_records_what_tiles_can_carry) {
     }
 }
 
-/* The rest of a picture whose first tiles came from a checkpoint is that of one straight run. */
+/* A picture whose first tiles come from a checkpoint is that of an uninterrupted run. */
 TEST(every_integrator_goes_on_where_a_film_has_stopped) {
     for (int kind = 0; kind < LIST_COUNT(INTEGRATORS); kind++) {
         struct stage s;
@@ -85,7 +85,7 @@ TEST(every_integrator_goes_on_where_a_film_has_stopped) {
     }
 }
 
-/* Observers see the final colour of the pixel, and its samples with a ray each. */
+/* Observers get the final colour of the pixel, and its samples with one ray each. */
 static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, struct error *error) {
     const struct stage *s = context;
     struct vec3 want = stage_pixel(s, pixel_trace->x, pixel_trace->y);

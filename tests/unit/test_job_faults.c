@@ -1,6 +1,6 @@
-/* Bad luck while a picture is made: over scenes with every kind of thing in them, whichever allocation fails while the
- * world is built and the picture rendered, with every way to find hits, the job ends with one error of the machine or
- * with the picture, and the next one is as it should be. */
+/* Failures while a picture is made: with scenes of every kind of object and every accelerator, whichever allocation
+ * fails while the world is built and the picture is rendered, the job ends with one machine error or with the picture,
+ * and the next job succeeds. */
 #include "base/fault.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
@@ -45,7 +45,7 @@ static const char things[] =
     "local bounded = gr.bounded_by{object = gr.sphere(red), by = gr.cube(red)} root:add_child(bounded)\n"
     "root:add_child(gr.clipped_by{object = gr.mesh{material = red, verts = verts, faces = faces}, by = "
     "gr.sphere(red)})\n"
-    /* solids that fall apart, one of them with holes, one in a bound; nothing at all */
+    /* solids of disjoint parts, one with holes, one with a bound; an empty node */
     "root:add_child(gr.union{name = 'apart', gr.sphere{material = image, centre = {-9, 0, 0}}, gr.sphere{material = "
     "red, centre = {9, 0, 0}},\n"
     "  gr.bounded_by{object = gr.sphere{material = red, centre = {0, 9, 0}}, by = gr.cube{corner = {-2, 7, -2}, size = "
@@ -53,7 +53,7 @@ static const char things[] =
     "root:add_child(gr.mesh{verts = verts, faces = {}})\n";
 static const char view[] = "file = 'a.png', width = 6, height = 6, eye = {0, 1, 9}, view = {0, 0, -1}, fov = 60, ";
 
-/* Keeps what the plain run gave, to see that the runs after a failure give the same. */
+/* Keeps the result of the run without failures, to compare the runs after a failure with it. */
 static int failed_runs, pictures;
 
 static void no_warning(void *context, const char *text) {
@@ -115,7 +115,7 @@ static void fail_each(struct listener *listener, const struct render_request *re
     (void)listener;
     pictures++;
     for (size_t a = 0; a < sizeof kinds / sizeof kinds[0]; a++) {
-        /* The colours, and the first pass behind them. */
+        /* The colours, followed by the first pass. */
         static struct film_pixel wanted[2 * SIDE * SIDE], after[2 * SIDE * SIDE];
         if (!make(request, kinds[a], pool, wanted, &error)) {
             test_fail(__FILE__, __LINE__, "picture %d: %s", pictures, error.text);
@@ -140,7 +140,7 @@ static void fail_each(struct listener *listener, const struct render_request *re
     pool_destroy(pool);
 }
 
-/* What may be asked of a picture besides it. */
+/* Queries about a picture. */
 enum question {
     ASK_PIXELS,
     ASK_PIXELS_JSON,
@@ -154,7 +154,7 @@ enum question {
     QUESTIONS
 };
 
-/* The answer as one number: texts letter by letter, pictures byte by byte. */
+/* The result as one hash: of all characters of a text or all bytes of a picture. */
 static void add_bytes(uint64_t *sum, const void *bytes, size_t size) {
     for (size_t i = 0; i < size; i++)
         *sum = (*sum ^ ((const uint8_t *)bytes)[i]) * UINT64_C(0x100000001b3);
@@ -212,7 +212,7 @@ static bool answer(enum question question, const struct render_request *request,
     return ok;
 }
 
-/* One answer of a world that is built, with allocation k failing (0: none); *over: there was none of that number. */
+/* One query of a built world with allocation k failing (0: none); *over: there were fewer than k allocations. */
 static bool ask(enum question question, const struct render_request *request, const struct world *world,
                 struct pool *pool, uint64_t k, bool *over, uint64_t *sum, struct error *error) {
     struct film film = {.full_width = SIDE, .full_height = SIDE};

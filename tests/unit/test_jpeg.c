@@ -64,7 +64,7 @@ static uint8_t *encode(int components, bool progressive, size_t *size) {
     return data;
 }
 
-/* A copy of exactly this size, so that the sanitizer sees every byte read beside it. */
+/* A copy of exactly this size, so that the sanitizer detects every read outside it. */
 static struct image *parse(const uint8_t *data, size_t size, struct error *error) {
     uint8_t *copy = malloc(size ? size : 1);
     if (size)
@@ -177,7 +177,7 @@ TEST(jpeg_survives_every_failed_allocation) {
     free(data);
 }
 
-/* More scans than a picture can use: each coefficient alone, in four rounds. */
+/* More scans than a picture can use: each coefficient separately, in four passes. */
 TEST(jpeg_with_hundreds_of_scans_is_refused) {
     static jpeg_scan_info scans[260];
     struct jpeg_compress_struct jpeg;
@@ -229,7 +229,7 @@ TEST(jpeg_that_claims_a_huge_size_is_refused) {
     free(data);
 }
 
-/* Adobe's mark in the place of JFIF's, with a transform that nobody knows: taken for the usual one. */
+/* Adobe's marker instead of JFIF's, with an unknown transform: read as the usual one. */
 TEST(jpeg_with_an_unknown_transform_is_read) {
     size_t size;
     uint8_t *data = encode(3, false, &size);
@@ -253,7 +253,7 @@ TEST(jpeg_of_no_bytes_is_one_line) {
     CHECK(strstr(error.text, "t.jpg: broken JPEG: ") == error.text);
 }
 
-/* libjpeg takes the coefficients of a progressive picture before we take its texels. */
+/* libjpeg allocates the coefficients of a progressive picture before gray allocates its texels. */
 TEST(jpeg_that_finds_no_memory_for_its_coefficients_is_told) {
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
     test_skip("the sanitizers' own memory is beyond any limit on addresses");

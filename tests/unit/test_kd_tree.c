@@ -1,5 +1,5 @@
-/* The kd-tree over boxes: cheaper than trying everything, bounded in size, the same after scaling; what it loses would
- * show against brute force in test_world.c and test_mesh.c. */
+/* The kd-tree over boxes: cheaper than brute force, bounded in size, the same after scaling; missed hits would show in
+ * test_world.c and test_mesh.c, which compare with brute force. */
 #include "accel/kd_tree.h"
 #include "base/mem.h"
 #include "tests/harness.h"
@@ -65,7 +65,7 @@ TEST(kd_tree_loses_no_points_and_no_flats_at_extreme_sizes) {
             struct kd_tree tree;
             CHECK(kd_tree_build(&tree, boxes, 64, NULL, NULL, NULL, &error));
             for (uint32_t i = 0; i < 64; i++) {
-                /* Points are met exactly along an axis. */
+                /* Rays along an axis meet the points exactly. */
                 struct vec3 p = boxes[i].min, aside = vec3_make(0, 0, 8 * s);
                 struct ray ray = {.origin = vec3_sub(p, aside), .direction = {0, 0, s}, .t_max = INFINITY};
                 CHECK(offers(&tree, &ray, i));
@@ -110,7 +110,7 @@ TEST(kd_tree_of_small_items_offers_few_of_them) {
             offered += traversal.count;
         steps += traversal.steps;
     }
-    /* A ray of length 20 meets about 20000 * 0.01 / 400 * 20 boxes' surroundings. */
+    /* A ray of length 20 comes near about 20000 * 0.01 / 400 * 20 boxes. */
     CHECK(offered < (uint64_t)RAYS * 60);
     CHECK(steps < (uint64_t)RAYS * 400);
     kd_tree_destroy(&tree);

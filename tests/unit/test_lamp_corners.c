@@ -1,5 +1,5 @@
-/* Lamps met by rays and asked from places where their formulas end: inside of them, on them, level with them,
- * infinitely far away. The claims are geometry, written anew. */
+/* Lamps that rays hit, and that are sampled from points where their formulas degenerate: inside them, on them, in their
+ * plane, infinitely far away. The expected values are independent geometry. */
 #include "light/light_mesh.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
@@ -39,7 +39,7 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
         struct ray above = part_of(vec3_make(0.2, 9, 0.2), vec3_make(0, -1, 0), 0, INFINITY);
         CHECK(light_meets_ray(lamps[k], &below, &met) && met.t == 2);
         CHECK(light_meets_ray(lamps[k], &above, &met) && met.t == 5);
-        lamps[k]->one_sided = true; /* they shine down: the normal of the disc, edge1 x edge2 of the sheet */
+        lamps[k]->one_sided = true; /* they shine downwards: the normal of the disc, edge1 x edge2 of the rectangle */
         CHECK(light_meets_ray(lamps[k], &below, &met) && !light_meets_ray(lamps[k], &above, &met));
         below.t_max = 1.5;
         CHECK(!light_meets_ray(lamps[k], &below, &met));
@@ -48,7 +48,7 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
         struct ray level = part_of(vec3_make(-9, 4, 0), vec3_make(1, 0, 0), 0, INFINITY);
         CHECK(!light_meets_ray(lamps[k], &level, &met));
     }
-    /* In the outline or not, at random. */
+    /* Inside or outside the outline, at random. */
     struct test_random random = {9};
     for (int i = 0; i < 2000; i++) {
         double x = test_uniform(&random, -2.5, 2.5), z = test_uniform(&random, -2.5, 2.5), v = (z + 1) / 2;
@@ -61,7 +61,7 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
     CHECK(!light_meets_ray(&mesh, &ray, &met) && !light_meets_ray(&sky, &ray, &met));
 }
 
-/* Every target lies on the ball, on its near side from outside. From on it there is none. */
+/* Every target is on the ball, seen from outside on its near side. From a point on the ball there is none. */
 TEST(a_ball_is_aimed_at_from_any_distance_and_from_inside) {
     struct light ball = {.kind = LIGHT_SPHERE, .position = {0, 0, 0}, .radius = 1, .emits = true};
     struct light_context context;
@@ -90,7 +90,7 @@ TEST(a_ball_is_aimed_at_from_any_distance_and_from_inside) {
     }
 }
 
-/* The light of a point in the lamp itself, or in its plane, is none and no infinity. */
+/* A point on the lamp, or in its plane, gets no light, and not an infinite amount. */
 TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
     struct light writer = {.kind = LIGHT_PARALLELOGRAM,
                            .corner = {0, 0, 0},
@@ -115,7 +115,7 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
             sample = light_sample(&lamp, &context, place);
             CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
         }
-    /* Behind a lamp that shines to one side, and before it. */
+    /* Behind and in front of a lamp that shines to one side. */
     struct light_sample sample;
     struct vec3 behind = {0.2, 0.2, -1}, before = {0.2, 0.2, 1};
     (void)light_context_make(&lamp, behind, behind, &context);

@@ -1,4 +1,4 @@
-/* Lamps that are rectangles seen large, meshes, and skies: against view factors, solid angles and integrals. */
+/* Lamps that are nearby rectangles, meshes and skies: against view factors, solid angles and integrals. */
 #include "base/random.h"
 #include "light/light.h"
 #include "light/light_mesh.h"
@@ -14,7 +14,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Seen at one point from nearby, below all lamps. */
+/* A view of one point from nearby, below all lamps. */
 static double patch_at(struct stage *s, double x, double z) {
     s->camera = (struct camera){{x + 0.02, 0.03, z}, {-0.02, -0.03, 0}, {0, 0, -1}, 1e-4};
     CHECK(stage_render(s, 1, 1));
@@ -72,9 +72,9 @@ TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
     CHECK(!spherical_rectangle_make(from, vec3_make(1, 0, 0), vec3_make(0, 0, 1), from, &seen));
 }
 
-/* Sixteen shadow rays, a lamp close above. One whose edges are a little off the right angle is sampled by area: the
+/* Sixteen shadow rays to a lamp close above. One whose edges are a little off the right angle is sampled by area: the
  * light of one of its rays varies by the factor 600. */
-/* Whether a direction from the origin enters the box, and by which eighth of all directions. */
+/* Whether a direction from the origin meets the box, and its octant. */
 static bool direction_meets(const struct light_box *box, struct vec3 from, struct vec3 d) {
     double enter = 0, leave = INFINITY;
     for (int i = 0; i < 3; i++) {
@@ -87,7 +87,7 @@ static bool direction_meets(const struct light_box *box, struct vec3 from, struc
     return enter < leave;
 }
 
-/* Of a box, too: as many samples in each cell of directions as its share of the solid angle says. */
+/* For a box, too: the number of samples in each cell of directions is in proportion to its solid angle. */
 TEST(a_box_is_sampled_by_its_solid_angle) {
     enum { N = 60000, CELLS = 6 * 12 };
     static const double sizes[][3] = {{1, 1, 1}, {0.1, 4, 0.2}, {3, 0.001, 2}};
@@ -196,7 +196,7 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
     for (int i = 0; i < 8; i++) {
         struct stage s;
         stage_floor(&s);
-        bool shown = i < 4; /* or not in the scene, and the light says what it emits */
+        bool shown = i < 4; /* or not in the scene, and the light states its emission */
         double a = sides[i % 4][0], b = sides[i % 4][1], h = sides[i % 4][2];
         struct node *holder = stage_group(&s, s.root), *node = square_node(&s, glowing(&s, shown ? 2 : 0));
         stage_scale(&s, node, a, 1, b);
@@ -212,8 +212,8 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
     }
 }
 
-/* What the scene does not show lights it in the same way: by what the light says, by its material, as a group of two
- * halves of which one hangs deeper and each has a material of its own. */
+/* A mesh that is not part of the scene lights it equally: with the emission of the light, with that of its material, as
+ * a group of two halves with separate materials, one of them at a deeper level. */
 TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
     enum { BY_LIGHT, BY_MATERIAL, BY_SLOTS, BY_GROUP, WAYS };
     for (int route = 0; route < WAYS; route++) {
@@ -224,7 +224,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
         const struct material *const slots[] = {glowing(&s, 2), NULL};
         if (route == BY_SLOTS) {
             node->slots = slots;
-            node->slot_count = 2; /* faces without slots have the first */
+            node->slot_count = 2; /* faces without slots have the first one */
         }
         s.lights[0] = mesh_lamp(node, 48);
         if (route == BY_GROUP) {
@@ -249,7 +249,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
     }
 }
 
-/* No ray meets it, so a mirror has no image of it: its light is the highlight. */
+/* No ray hits it, so a mirror does not show it: its light makes a highlight. */
 TEST(a_mesh_that_is_not_shown_is_not_seen_in_mirrors) {
     for (int shown = 0; shown < 2; shown++) {
         struct stage s;
@@ -267,7 +267,7 @@ TEST(a_mesh_that_is_not_shown_is_not_seen_in_mirrors) {
     }
 }
 
-/* A closed mesh: only what faces the patch is asked, and its own other side is in nobody's way. */
+/* A closed mesh: only the faces towards the patch are sampled, and its far side casts no shadow on them. */
 TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
     for (int i = 0; i < 3; i++) {
         struct stage s;
@@ -330,7 +330,7 @@ TEST(a_mesh_light_needs_a_mesh_and_warns_without_light) {
         CHECK(node_add_child(&s.scene, group, square_node(&s, NULL), &s.error));
         s.warnings = 0;
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
-        CHECK(s.warnings == 1 + shown); /* a mesh that is shown has no material, either */
+        CHECK(s.warnings == 1 + shown); /* a visible mesh has no material, either */
         stage_end(&s);
     }
 }
@@ -355,7 +355,7 @@ static struct light sky_lamp(const struct sky *sky, int samples) {
     return (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = sky, .samples = samples};
 }
 
-/* What is lit by a sky whose radiance is (1 + y) / 2 shows 1/2 + n.y / 3. */
+/* A surface under a sky of radiance (1 + y) / 2 shows 1/2 + n.y / 3. */
 TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
     static const double stops[2][4] = {{-1, 0, 0, 0}, {1, 1, 1, 1}};
     struct sky sky = {.kind = SKY_STOPS, .stops = stops, .stop_count = 2};
@@ -376,7 +376,7 @@ TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
     }
 }
 
-/* The furnace: in uniform light what reflects everything cannot be seen. */
+/* The furnace test: in uniform light a surface that reflects everything is invisible. */
 TEST(white_rough_and_polished_things_vanish_in_uniform_light) {
     struct stage s;
     stage_begin(&s, 2);
@@ -405,7 +405,7 @@ TEST(white_rough_and_polished_things_vanish_in_uniform_light) {
         worst = fmax(worst, fabs(off));
     }
     CHECK_NEAR(sum, 0, 1e-3);
-    CHECK_NEAR(worst, 0, 0.08); /* of 256 stratified directions over the whole sphere */
+    CHECK_NEAR(worst, 0, 0.08); /* from 256 stratified directions over the whole sphere */
     stage_end(&s);
 }
 
@@ -423,8 +423,8 @@ static double irradiance(const struct sky *sky, struct vec3 normal, int steps) {
     return sum * 4 / (2.0 * steps * steps);
 }
 
-/* Chi-square over cells of equal solid angle, of N samples at random places; the shares by the midpoint rule, finer
- * than the table. */
+/* Chi-square over cells of equal solid angle, with N random samples; expected shares by the midpoint rule, finer than
+ * the table. */
 static void check_density(const struct sky *sky, const struct sky_table *table) {
     enum { ROWS = 8, COLUMNS = 16, FINE = 64, N = 40000 };
     double chi = 0, share[ROWS * COLUMNS] = {0}, all = 0;
@@ -448,7 +448,7 @@ static void check_density(const struct sky *sky, const struct sky_table *table) 
     for (int i = 0; i < ROWS * COLUMNS; i++) {
         double expected = share[i] * N;
         all += share[i];
-        CHECK(expected > 5); /* a part of them goes everywhere */
+        CHECK(expected > 5); /* some of them go everywhere */
         chi += (counted[i] - expected) * (counted[i] - expected) / expected;
     }
     CHECK_NEAR(all, 1, 1e-9);
@@ -492,7 +492,7 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
             sum += cosine > 0 ? cosine * light.y : 0;
             max = fmax(max, light.z);
         }
-        /* The gradient is blue alone. */
+        /* The gradient has only blue. */
         double expected = i == 0 ? 0 : irradiance(&skies[i], normal, 500);
         CHECK_NEAR(sum / (N * N), expected, 0.01 * expected + 1e-12);
         check_density(&skies[i], table);
@@ -506,7 +506,7 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
         image_release(six[i]);
 }
 
-/* Most of the light comes from a thousandth of this sky; drawn alike everywhere, 64 rays would mostly miss it. */
+/* Most of the light comes from a thousandth of this sky; 64 uniformly distributed rays would mostly miss it. */
 TEST(more_samples_go_where_a_sky_is_bright) {
     enum { W = 128, H = 64 };
     static uint16_t texels[W * H * 4];

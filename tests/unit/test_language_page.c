@@ -16,7 +16,8 @@ static bool is_quoted_in(const char *begin, const char *end, const char *word) {
     return found && found < end;
 }
 
-/* The chapter ("## ...") in which the call "gr.NAME(" or "node:NAME(" begins a line; false: it is not listed. */
+/* Finds the chapter ("## ...") in which a line begins with the call "gr.NAME(" or "node:NAME("; false: it is not
+ * listed. */
 static bool find_chapter(const char *page, const struct script_function *function, const char **begin,
                          const char **end) {
     static const char *const owners[] = {[OWNER_GR] = "gr.", [OWNER_NODE] = "node:"};
@@ -70,7 +71,7 @@ static void copy_into_test_folder(const char *folder, const char *name) {
     free(bytes);
 }
 
-/* The first block is a scene with the place of the others in it. */
+/* The first block is a scene with a mark where the others are inserted. */
 TEST(language_page_has_examples_that_render_without_a_warning) {
     static const char *const textures[] = {"bricks_height.png", "checker.png", "earth.png",       "leaves_mask.png",
                                            "sky_letters.png",   "star.png",    "weave_normal.png"};
@@ -94,7 +95,7 @@ TEST(language_page_has_examples_that_render_without_a_warning) {
             if (!tail)
                 break;
             *tail = '\0';
-            begin = tail; /* nothing in the place of the mark */
+            begin = tail; /* nothing instead of the mark */
             tail += strlen(mark);
         }
         CHECK(asprintf(&scene, "%s%s%s", head, begin, tail) > 0);

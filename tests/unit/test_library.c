@@ -1,6 +1,6 @@
-/* The Lua library, by scripts that hold its claims: tests/library/claims_*.lua. Each runs in the program itself with
- * --check, so that the meshes which it hands to CSG are taken, or refused, by the renderer. A claim that is not true
- * ends the script with its sentence. */
+/* The Lua library, by scripts with its claims: tests/library/claims_*.lua. Each runs in the program with --check, so
+ * that the renderer accepts or refuses the meshes that it uses in CSG. A false claim ends the script with its sentence.
+ */
 #include "tests/harness.h"
 
 #include <stdio.h>
@@ -60,7 +60,7 @@ TEST(library_text_has_the_areas_of_its_pen_and_is_closed_letter_by_letter) {
     claims_hold("claims_text");
 }
 
-/* Every block of Lua in the page, as a scene of its own; an example may name the font that stands beside it. */
+/* Every Lua block of the page, as a separate scene; an example may name the font in the same folder. */
 TEST(library_examples_of_the_documentation_run) {
     char *page = test_read_file("docs/library.md", NULL), path[1024];
     size_t size;

@@ -1,5 +1,5 @@
-/* Pictures of light: short files of every spelling and every fault; EXR with each byte changed, as a picture of one
- * channel, and with each allocation and call failing. */
+/* High dynamic range images: short files of every variant with every error; EXR with each byte changed, with one
+ * channel, and with failures of each allocation and call. */
 #include "base/fault.h"
 #include "image/exr.h"
 #include "image/float_write.h"
@@ -19,7 +19,7 @@ static void light_row(void *context, uint32_t y, float *line) {
 }
 
 static struct image *parse(const char *name, const void *data, size_t size, struct error *error) {
-    uint8_t *exact = malloc(size ? size : 1); /* so that reading beyond it is seen */
+    uint8_t *exact = malloc(size ? size : 1); /* so that a read beyond it is detected */
     if (size)
         memcpy(exact, data, size);
     *error = (struct error){0};
@@ -92,7 +92,7 @@ TEST(corners_of_pfm_pictures_are_read_or_told) {
     expect_text("PF\n9 9\n-1\nabc", "the file is too short for its pixels");
 }
 
-/* A file of EXR, from malloc; NULL when this build has none. */
+/* An EXR file, from malloc; NULL if this build has no EXR. */
 static char *some_exr(size_t *size) {
     char path[512];
     struct error error = {0};
@@ -113,7 +113,7 @@ TEST(exr_with_any_byte_changed_is_a_picture_or_one_line) {
             char old = file[at];
             file[at] = (char)(k < sizeof values ? values[k] : (uint8_t)(old ^ 4));
             struct image *image = parse("t", file, size, &error);
-            /* what is claimed may be more than there is */
+            /* a header may claim more than the file has */
             if (!image && error.kind != ERROR_MACHINE &&
                 (strncmp(error.text, "t: ", 3) != 0 || strchr(error.text, '\n')))
                 test_fail(__FILE__, __LINE__, "byte %zu: %s", at, error.text);
@@ -123,7 +123,7 @@ TEST(exr_with_any_byte_changed_is_a_picture_or_one_line) {
     free(file);
 }
 
-/* The channels by other names, in their order: A, X and Y are a picture in greys; A, G, R are none. */
+/* The channels with other names, in their order: A, X and Y are a grey picture; A, G, R are refused. */
 TEST(exr_of_other_channels_is_grey_or_told) {
     static const struct {
         const char *names, *words;
@@ -138,7 +138,7 @@ TEST(exr_of_other_channels_is_grey_or_told) {
         for (size_t k = 0; k < 3; k++)
             file[at + 18 * k] = channels[i].names[k];
         expect(file, size, channels[i].words);
-        file[at + 18 + 10] = 2; /* half as many samples of the second one */
+        file[at + 18 + 10] = 2; /* half as many samples in the second one */
         struct error error;
         image_release(parse("t", file, size, &error));
         file[at + 18 + 10] = 1;

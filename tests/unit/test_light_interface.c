@@ -1,5 +1,5 @@
-/* What every kind of light has to keep: samples have the density that light_pdf states, show what a ray sees, and
- * photons carry the same light. The examples are made by a switch over all kinds, so that a new one is tested, too. */
+/* The contract of every kind of light: samples have the density of light_pdf and the radiance that a ray sees, and
+ * photons carry the same light. A switch over all kinds makes the examples, so that a new kind is tested, too. */
 #include "base/random.h"
 #include "light/light_edit.h"
 #include "light/light_mesh.h"
@@ -43,7 +43,8 @@ static void make_mesh(struct example *e, struct vec3 middle, double size) {
     e->light.mesh = &e->mesh;
 }
 
-/* Above the origin, about `size` large, to be seen from below; `lamp`: with a radiance where the kind can do without.
+/* Above the origin, with a size of about `size`, visible from below; `lamp`: with a radiance even if it is optional for
+ * the kind.
  */
 static void example_begin(struct example *e, enum light_kind kind, bool lamp, double size) {
     char warning[256];
@@ -103,7 +104,7 @@ static struct sample2 place_of(uint64_t seed, uint64_t index) {
                             random_unit(random_combine(seed, 2 * index + 1))};
 }
 
-/* Where a ray meets a triangle of a mesh (Moeller and Trumbore 1997). */
+/* The intersection of a ray and a triangle of a mesh (Moeller and Trumbore 1997). */
 static bool triangle_meets_ray(const struct light_triangle *t, const struct ray *ray, struct light_hit *hit) {
     struct vec3 p = vec3_cross(ray->direction, t->edge2), off = vec3_sub(ray->origin, t->corner);
     double det = vec3_dot(t->edge1, p), u = vec3_dot(off, p) / det;
@@ -114,7 +115,7 @@ static bool triangle_meets_ray(const struct light_triangle *t, const struct ray 
     return u >= 0 && v >= 0 && u + v <= 1 && hit->t > 0;
 }
 
-/* Every place in which a ray meets the light: once, but of a mesh. */
+/* Every hit of a ray on the light: at most one, except for a mesh. */
 static int meet(const struct light *light, const struct ray *ray, struct light_hit hits[8]) {
     int count = 0;
     for (uint32_t i = 0; light->mesh && i < light->mesh->count; i++) {
@@ -150,7 +151,7 @@ static bool hit_of_sample(const struct light *light, const struct light_context 
     return count > 0;
 }
 
-/* Near lamps are sampled by solid angle where they can be, far ones by area. */
+/* Near lamps are sampled by solid angle if possible, far ones by area. */
 #define FOR_EVERY_LAMP(e, context)                                                                                     \
     for (int kind_ = 0; kind_ < LIGHT_KIND_COUNT; kind_++)                                                             \
         for (int far_ = 0; far_ < 2; far_++)                                                                           \
@@ -175,8 +176,8 @@ static bool lamp_begin(struct example *e, enum light_kind kind, bool far, struct
 
 /* --- densities --- */
 
-/* Cells of equal solid angles (Archimedes), the poles beside the lamps; a fine grid within each gives its share by
- * light_pdf. */
+/* Cells of equal solid angle (Archimedes), with the poles away from the lamps; a fine grid within each cell gives its
+ * share by light_pdf. */
 enum { ROWS = 12, COLUMNS = 24, FINE = 40, CELLS = ROWS * COLUMNS };
 
 static struct vec3 grid_direction(double row, double column) {
@@ -217,7 +218,7 @@ TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
         for (int cell = 0; cell < CELLS; cell++) {
             double share = share_of_cell(&e.light, &context, cell), expected = share * N;
             all += share;
-            if (expected < 20) { /* too few for the normal approximation: one cell of them all */
+            if (expected < 20) { /* too few for the normal approximation: joined into one cell */
                 rest += expected;
                 rest_counted += counted[cell];
                 continue;
@@ -227,7 +228,7 @@ TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
         }
         if (rest > 20)
             chi += (rest_counted - rest) * (rest_counted - rest) / rest;
-        /* Samples that are not of the light are missing in the integral. */
+        /* Samples that miss the light are not in the integral. */
         CHECK_NEAR(all, 1 - (double)lost / N, 0.01);
         if (chi > used + 1 + 5 * sqrt(2.0 * (used + 1)))
             test_fail(__FILE__, __LINE__, "%s: chi-square %g in %d cells", light_kind_name(e.light.kind), chi, used);
@@ -249,7 +250,7 @@ TEST(the_mean_of_one_over_pdf_is_the_solid_angle_of_a_lamp) {
             struct ray ray = {.origin = context.from, .direction = d, .t_max = INFINITY};
             struct light_hit hits[8];
             int count = meet(&e.light, &ray, hits);
-            for (int k = 0; k < count; k++) /* the triangles of a mesh each by itself, those that face the point */
+            for (int k = 0; k < count; k++) /* each triangle of a mesh that faces the point separately */
                 angle += light_pdf(&e.light, &context, d, &hits[k]) > 0 ? 4 * pi / (SIDE * SIDE) : 0;
         }
         CHECK_NEAR(mean / angle, 1, 0.03);
@@ -318,7 +319,7 @@ TEST(a_light_without_emission_shades_from_one_direction_and_has_no_density) {
 enum { GRID = 24, PLACES = 16, PHOTONS = 100000 };
 static const double floor_radius = 2;
 
-/* What arrives on a disc in the plane y = 0 by samples. */
+/* The light on a disc in the plane y = 0, by samples. */
 static struct vec3 flux_by_samples(const struct light *light) {
     struct vec3 sum = {0, 0, 0};
     for (uint64_t k = 0; k < GRID * GRID; k++) {
@@ -335,8 +336,8 @@ static struct vec3 flux_by_samples(const struct light *light) {
     return vec3_scale(sum, pi * floor_radius * floor_radius / (GRID * GRID * PLACES));
 }
 
-/* A photon drawn alike everywhere, and what stands for its density: LOCAL over all directions, others over a square
- * across that holds the disc. */
+/* A uniformly drawn photon and the inverse of its density: LOCAL over all directions, others over a perpendicular
+ * square that contains the disc. */
 static struct light_photon photon_at(const struct light_emitter *emitter, uint64_t index) {
     struct sample2 a = place_of(11, index), b = place_of(12, index);
     struct vec3 direction = grid_direction(a.x * ROWS, a.y * COLUMNS);
@@ -375,7 +376,7 @@ TEST(photons_of_every_light_carry_what_its_samples_bring) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         for (int lamp = 0; lamp < 2; lamp++) {
             struct example e;
-            /* Without emission it is sampled as from its centre: small, so that the places do not matter. */
+            /* Without emission it is sampled as if from its centre: small, so that positions do not matter. */
             example_begin(&e, (enum light_kind)kind, lamp, lamp ? 1.2 : 0.2);
             struct vec3 sampled = flux_by_samples(&e.light), sent = flux_by_photons(&e.light);
             CHECK(sampled.x > 0);
@@ -410,7 +411,7 @@ TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
 
 /* --- from afar --- */
 
-/* Importance is 0 only where no sample brings light, and about as large as what they bring where they do. */
+/* The importance is 0 only if no sample brings light; otherwise it is about as large as the light of the samples. */
 TEST(the_bounds_of_every_light_hold_what_its_samples_bring) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         for (int lamp = 0; lamp < 2; lamp++) {

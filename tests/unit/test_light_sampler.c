@@ -1,4 +1,4 @@
-/* Choosing one light of many: probabilities, what must have a chance, and what it is worth in a corridor of lamps. */
+/* Choosing one light of many: probabilities, lights that must have a chance, and the gain in a corridor of lamps. */
 #include "base/error.h"
 #include "base/random.h"
 #include "light/light_sampler.h"
@@ -24,7 +24,7 @@ static struct vec3 vector(uint64_t seed, uint64_t index, double spread) {
                      number(seed, 3 * index + 2, -spread, spread));
 }
 
-/* Every kind that needs no scene, with every fading, on both sides, some of them dark. */
+/* Every kind that needs no scene, with every falloff, on both sides, some of them dark. */
 static struct light random_light(uint64_t seed, uint64_t i) {
     static const enum light_kind kinds[] = {LIGHT_POINT, LIGHT_PARALLELOGRAM, LIGHT_SPOT, LIGHT_DISC, LIGHT_SPHERE};
     static const double falloffs[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0.25, 0.125}};
@@ -77,7 +77,8 @@ TEST(probabilities_of_all_lights_sum_to_one) {
                     sum += light_sampler_pmf(&l.sampler, point, normal, k);
                 bool some = light_sampler_sample(&l.sampler, point, normal, 0.5, &pmf) != LIGHT_NONE;
                 CHECK(sum <= 1 + 1e-12);
-                if (some) /* a way down may end where nothing is lit: then less is chosen */
+                if (some) /* a descent may end at a light that contributes nothing: then the probabilities sum to less
+                             than 1 */
                     CHECK(sum > 0.9 || choice == LIGHT_CHOICE_TREE);
                 if (choice != LIGHT_CHOICE_TREE && some)
                     CHECK_NEAR(sum, 1, 1e-12);
@@ -89,7 +90,7 @@ TEST(probabilities_of_all_lights_sum_to_one) {
     }
 }
 
-/* Chi-square over the lights, with those that are chosen too rarely as one; a choice of nothing counts as one more. */
+/* Chi-square over the lights; lights with few expected choices are joined, and "no light" counts as one more. */
 TEST(lights_are_chosen_as_often_as_their_probability_says) {
     enum { LIGHTS = 60, N = 200000 };
     for (int choice = LIGHT_CHOICE_TREE; choice <= LIGHT_CHOICE_UNIFORM; choice++) {
@@ -142,7 +143,7 @@ TEST(every_light_that_reaches_a_point_has_a_chance) {
     lights_sampler(&l, LIGHT_CHOICE_TREE);
     for (uint64_t i = 0; i < 300; i++) {
         struct vec3 point = vector(300, i, 6), normal = vec3_normalize(vector(301, i, 1));
-        if (i < LIGHTS) /* at the light itself */
+        if (i < LIGHTS) /* at the position of the light */
             point = l.all[i].position;
         for (uint32_t k = 0; k < LIGHTS; k++) {
             double pmf = light_sampler_pmf(&l.sampler, point, normal, k);
@@ -191,7 +192,7 @@ TEST(lights_in_one_place_and_far_apart_make_a_tree_that_is_not_deep) {
 }
 
 /* 1,000 lamps of equal power below the ceiling of a corridor of 3 x 3 x 200. The variance of one choice is exact: the
- * sum of f^2 / p less the square of the sum of f, f what a lamp brings by its middle. */
+ * sum of f^2 / p minus the square of the sum of f, where f is the light of a lamp from its centre. */
 static double relative_variance(const struct lights *l, struct vec3 point, struct vec3 normal) {
     double sum = 0, squares = 0;
     for (uint32_t i = 0; i < l->count; i++) {

@@ -1,6 +1,6 @@
-/* Lights against closed forms. What a small patch of a white floor gets from a lamp of radiance 1 is the view factor of
- * the lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12
- * (disc), B-3 (rectangle over its corner), B-38 (sphere). */
+/* Lights against closed forms. A small patch of a white floor under a lamp of radiance 1 shows the view factor of the
+ * lamp; the formulas are those of Howell, "A Catalog of Radiation Heat Transfer Configuration Factors": B-12 (disc),
+ * B-3 (rectangle over its corner), B-38 (sphere). */
 #include "math/elementary.h"
 #include "math/sampling.h"
 #include "shape/planar.h"
@@ -13,7 +13,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Seen at one point from far up by a camera of almost no angle. */
+/* A view of one point from far above with a very small field of view. */
 static double patch_at(struct stage *s, double x, double z) {
     s->camera = (struct camera){{x + 3, 1000, z}, {-3, -1000, 0}, {0, 0, -1}, 1e-4};
     CHECK(stage_render(s, 1, 1));
@@ -48,7 +48,7 @@ TEST(disc_lamp_gives_its_view_factor) {
         double r = radius[i], h = 2;
         s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, h, 0), r);
         CHECK_NEAR(patch_at(&s, 0, 0), r * r / (r * r + h * h), 2e-3);
-        /* Off the axis by a: B-13. */
+        /* At distance a from the axis: B-13. */
         double a = 1.5, hh = h / a, rr = r / a, z = 1 + hh * hh + rr * rr;
         CHECK_NEAR(patch_at(&s, a, 0), 0.5 * (1 - (z - 2 * rr * rr) / sqrt(z * z - 4 * rr * rr)), 2e-3);
     }
@@ -83,7 +83,7 @@ TEST(sphere_lamp_gives_its_view_factor) {
     stage_end(&s);
 }
 
-/* A patch inside sees nothing but the lamp. */
+/* A patch inside sees only the lamp. */
 TEST(the_inside_of_a_ball_lamp_is_lit) {
     struct stage s;
     stage_floor(&s);
@@ -100,8 +100,7 @@ static void plane_below(struct node *node) {
     node->shape = plane;
 }
 
-/* A light that stands in the plane of a flat floor, .55 of it above: the floor hides the rest, as the ground of a solid
- * does. */
+/* A light that intersects a planar floor, .55 of it above: the floor hides the rest, as the top of a solid does. */
 TEST(a_flat_shape_hides_what_is_below_it) {
     for (int kind = 0; kind < 3; kind++) {
         double seen[2];
@@ -117,7 +116,7 @@ TEST(a_flat_shape_hides_what_is_below_it) {
                 s.lights[0] = lamp(kind == 1 ? LIGHT_DISC : LIGHT_SPHERE, middle, 1);
             s.lights[0].direction = vec3_make(-1, 0, 0);
             s.lights[0].emits = false;
-            seen[planar] = patch_at(&s, 0, 0) * sqrt(4.01) / 0.1; /* over the cosine of the middle */
+            seen[planar] = patch_at(&s, 0, 0) * sqrt(4.01) / 0.1; /* divided by the cosine of the centre */
             stage_end(&s);
         }
         CHECK_NEAR(seen[1], seen[0], 1e-9);
@@ -180,7 +179,7 @@ TEST(spot_is_full_inside_smooth_between_and_dark_outside) {
                                  .cos_outer = cos(40 * pi / 180)};
     CHECK_NEAR(patch_at(&s, tan(19.9 * pi / 180), 0), cos(19.9 * pi / 180), 1e-6);
     CHECK_NEAR(patch_at(&s, tan(40.1 * pi / 180), 0), 0, 0);
-    /* Where the cosine is half way between the two, the share is one half. */
+    /* At the mean of the two cosines the share is one half. */
     double middle = acos((cos(20 * pi / 180) + cos(40 * pi / 180)) / 2);
     CHECK_NEAR(patch_at(&s, 0, tan(middle)), cos(middle) / 2, 1e-6);
     double before = 2;
@@ -193,7 +192,7 @@ TEST(spot_is_full_inside_smooth_between_and_dark_outside) {
 }
 
 TEST(lists_of_nodes_decide_what_a_light_reaches) {
-    /* Two balls, the left one under a group; both seen face on with the light at the eye. */
+    /* Two balls, the left one in a group; both seen from the front with the light at the camera. */
     for (int mode = 0; mode < 4; mode++) {
         struct stage s;
         stage_begin(&s, 1);
@@ -254,7 +253,7 @@ TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
     }
 }
 
-/* A square at y = 0 whose shading normal leans to +x by `degrees`. */
+/* A square at y = 0 whose shading normal is tilted towards +x by `degrees`. */
 static struct node *leaning_square(struct stage *s, double degrees, double half, const struct material *material) {
     const double corners[4][3] = {{-half, 0, -half}, {-half, 0, half}, {half, 0, half}, {half, 0, -half}};
     const double normal[1][3] = {{sin(degrees * pi / 180), cos(degrees * pi / 180), 0}};
@@ -275,7 +274,7 @@ static struct node *leaning_square(struct stage *s, double degrees, double half,
     return node;
 }
 
-/* All kinds that have a place, at one side of the square (y = 2 or -2), to where the shading normal leans. */
+/* All kinds that have a position, on one side of the square (y = 2 or -2), in the direction of the tilt. */
 static struct light light_at(int kind, bool emits, double y) {
     struct light light = lamp((enum light_kind)kind, vec3_make(6, y, 0), 0.5);
     if (kind == LIGHT_PARALLELOGRAM)
@@ -313,8 +312,8 @@ TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_lean
             }
 }
 
-/* A mirror below a lamp that shows itself shows the lamp's radiance; its highlight is the same light again. A mirror
- * below a lamp that does not shows the highlight alone. */
+/* A mirror below a visible lamp shows the lamp's radiance; its highlight is the same light again. Below an invisible
+ * lamp it shows only the highlight. */
 TEST(a_visible_lamp_counts_once_in_a_mirror) {
     for (int visible = 0; visible < 2; visible++)
         for (int rough = 0; rough < 2; rough++) {
@@ -365,7 +364,7 @@ TEST(half_of_a_lamp_behind_a_wall_gives_half_of_the_light) {
     stage_end(&s);
 }
 
-/* All kinds at once over things that throw shadows. */
+/* All kinds together over objects that cast shadows. */
 static void lit_scene(struct stage *s, double unit) {
     struct node *top = stage_group(s, s->root);
     struct material *white = stage_phong(s, vec3_make(0.8, 0.7, 0.6), vec3_all(0.2), 20);
@@ -468,7 +467,8 @@ TEST(disc_map_keeps_areas_and_stays_inside) {
     CHECK_NEAR(inside / 40000.0, 0.36, 2e-3);
 }
 
-/* With one shadow ray a sample, the samples of a pixel together must do better than as many independent ones. */
+/* With one shadow ray per sample, the samples of a pixel must have less variance than the same number of independent
+ * ones. */
 TEST(samples_of_pixel_and_lamp_are_stratified_together) {
     struct stage s;
     stage_floor(&s);

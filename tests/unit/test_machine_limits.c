@@ -1,5 +1,5 @@
-/* Little of what the machine gives: descriptors, stack, threads, long names. The program says what is missing with
- * status 3, refuses a scene's wrong name with status 1, or makes the picture that it makes with plenty. */
+/* Scarce resources: descriptors, stack, threads, long names. The program reports what is missing with status 3, refuses
+ * a scene's invalid name with status 1, or makes the same picture as without limits. */
 #define _GNU_SOURCE
 #include "base/pool.h"
 #include "tests/harness.h"
@@ -42,7 +42,7 @@ static void be_program(const char *arguments, int resource, long limit) {
     (void)dup2(err, STDERR_FILENO);
     for (int descriptor = 3; descriptor < 64; descriptor++)
         (void)close(descriptor);
-    if (resource == RLIMIT_NOFILE) { /* looking for leaks opens files */
+    if (resource == RLIMIT_NOFILE) { /* the leak checker opens files */
         char options[512];
         const char *given = getenv("ASAN_OPTIONS");
         (void)snprintf(options, sizeof options, "%s%sdetect_leaks=0", given ? given : "", given ? ":" : "");
@@ -174,7 +174,7 @@ static char *picture(size_t *size) {
     return is_there("x.pfm") ? test_read_file(test_path("x.pfm"), size) : NULL;
 }
 
-/* With each limit on the stack what comes of it is what comes of it without. */
+/* With each stack limit the result is the same as without. */
 static void same_with_any_stack(const struct deep *cases, size_t count, const long *kibibytes) {
     for (size_t i = 0; i < count; i++) {
         put_scene(cases[i].text);
@@ -232,7 +232,7 @@ TEST_LONG(no_depth_of_a_scene_depends_on_any_limit_of_the_stack) {
     same_with_any_stack(EACH(deep_scripts), every);
 }
 
-/* Everything the program does beside rendering, and rendering in one process. */
+/* Everything that the program does besides rendering, and rendering in one process. */
 TEST(every_action_works_with_a_stack_of_128_kilobytes) {
     if (test_has_sanitizer())
         test_skip("frames are several times as large under a sanitizer");
@@ -270,7 +270,7 @@ static void count_call(void *context) {
     ++*(int *)context;
 }
 
-/* The limit of the shell is too small, and no thread can be made either. */
+/* The limit of the shell is too small, and no thread can be created. */
 TEST(a_stack_that_cannot_be_had_is_one_line_and_status_3) {
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
     test_skip("sanitizers need more addresses than a limit leaves");
@@ -287,7 +287,7 @@ TEST(a_stack_that_cannot_be_had_is_one_line_and_status_3) {
 
 /* --- descriptors --- */
 
-/* The number of lines that begin a message, or -1 for a message without text. */
+/* The number of messages, or -1 if one of them has no text. */
 static int messages(const char *text) {
     int count = 0;
     for (const char *line = text; *line; line = strchr(line, '\n') + 1) {
@@ -298,15 +298,15 @@ static int messages(const char *text) {
     return count;
 }
 
-/* With few descriptors one line names them, with more the picture is there; in between nothing else. */
-/* Each of `scripts` may say it once. */
+/* With few descriptors one line names the problem, with more there is a picture; nothing else happens in between. */
+/* Each of the `scripts` may report it once. */
 static void descriptors_up_to_40(const char *arguments, const char *made, int scripts) {
     bool worked = false;
     for (int limit = 3; limit <= 40; limit += limit < 16 ? 1 : 6) {
         (void)unlink(test_path(made));
         (void)unlink(test_path("c"));
         struct run run = run_limited(arguments, RLIMIT_NOFILE, limit);
-        /* Before main the dynamic linker says it in its own words. */
+        /* Before main the dynamic linker reports it in its own words. */
         bool unstarted = run.status == 127 && strstr(run.err, "error while loading shared libraries");
         bool refused = run.status == 3 && strstr(run.err, "Too many open files") && messages(run.err) >= 1 &&
                        messages(run.err) <= scripts;
@@ -349,7 +349,7 @@ TEST(few_descriptors_are_one_line_for_parts_and_several_scripts) {
     descriptors_up_to_40("-q -o out-%d.pfm scene.lua scene.lua scene.lua", "out-3.pfm", 3);
 }
 
-/* A scene that keeps all but `left` of the descriptors it can have, and then goes on. */
+/* A scene that opens all but `left` of its possible descriptors and then continues. */
 TEST(descriptors_that_a_scene_holds_are_missed_with_status_3) {
     static const struct {
         const char *then;
@@ -455,7 +455,7 @@ TEST(names_of_255_bytes_are_read) {
     forget(&run);
 }
 
-/* What a mesh file names is a warning, as other names that are not there. */
+/* A name in a mesh file gives a warning, like other missing files. */
 TEST(long_names_in_mesh_files_are_warnings) {
     static const size_t lengths[] = {256, 1000, 5000};
     for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; k++) {

@@ -1,4 +1,4 @@
-/* What media do to the rays that they affect, and to no others. */
+/* Media change the rays that they affect, and no others. */
 #include "tests/harness.h"
 
 #include "material/medium.h"

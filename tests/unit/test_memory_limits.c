@@ -1,6 +1,6 @@
-/* --script-memory holds for everything that a scene makes the program hold: while files are decoded, for what is built
- * for a picture, for the picture itself. Each attack is one line with status 1, and no process takes more than the
- * limit and a tenth over what an empty script takes; with a picture, three quarters of the limit more. */
+/* --script-memory limits everything that a scene makes the program allocate: memory to decode files, the structures for
+ * a picture, the picture itself. Each attack ends with one line and status 1, and no process takes more than the limit
+ * plus a tenth beyond the memory of an empty script; with a picture, three quarters of the limit more. */
 #include "base/mem.h"
 #include "base/size.h"
 #include "formats/font.h"
@@ -29,7 +29,7 @@
 
 enum { KIB_OF_LIMIT = 16 << 10 };
 
-/* The most that any child has taken, in KiB. */
+/* The peak memory of any child, in KiB. */
 static long max_memory(void) {
     struct rusage usage;
     (void)getrusage(RUSAGE_CHILDREN, &usage);
@@ -50,7 +50,7 @@ static void forget(struct test_result result) {
     free(result.err);
 }
 
-/* What an empty script takes; to be called after files are made. */
+/* The memory of an empty script; to be called after files are made. */
 static long memory_of_nothing(void) {
     struct test_result plain = test_gray_scene("local x = 1", "scene.lua", NULL);
     CHECK_EQ_INT(plain.status, 0);
@@ -64,7 +64,7 @@ static void check_memory(const char *what, long without, long limit) {
         test_fail(__FILE__, __LINE__, "%s: %ld KiB over an empty script for a limit of %ld", what, more, limit);
 }
 
-/* The scene ends with one line that holds these words, and status 1. */
+/* The scene ends with one line that contains these words, and status 1. */
 static void check_line(const char *text, const char *arguments, const char *words) {
     struct test_result result = test_gray_scene(text, arguments, NULL);
     const char *end = strchr(result.err, '\n');
@@ -73,9 +73,9 @@ static void check_line(const char *text, const char *arguments, const char *word
     forget(result);
 }
 
-/* --- files that need more than there is --- */
+/* --- files that need more memory than there is --- */
 
-/* A file that begins like this and is empty from there on, on disk too. */
+/* A file with this beginning followed by a hole. */
 static void write_sparse(const char *name, const void *head, size_t head_size, off_t size) {
     test_write_file(test_path(name), head, head_size);
     CHECK(truncate(test_path(name), size) == 0);
@@ -129,7 +129,7 @@ static void write_black_png(const char *name, uint32_t width, uint32_t height) {
     free(data);
 }
 
-/* A text again and again, packed. */
+/* A text repeated many times, compressed. */
 static void write_gzip(const char *name, const char *text, int times) {
     gzFile file = gzopen(test_path(name), "wb1");
     for (int k = 0; k < times; k++)
@@ -161,7 +161,7 @@ static void write_grid(const char *name, int n) {
 }
 
 struct attack {
-    const char *file, *scene; /* a format with the name in it */
+    const char *file, *scene; /* a format string for the name */
 };
 
 static void check_attacks(const struct attack *attacks, size_t count) {
@@ -182,7 +182,7 @@ TEST(a_mesh_file_that_needs_more_memory_than_allowed_is_one_line) {
     static const struct attack attacks[] = {
         {"sparse.stl", MESH},
         {"sparse.stl", "gr.mesh{file='%s', weld=true, smooth=30, flip=true, " MATERIAL "}"},
-        {"corners.stl", MESH}, /* fits, but not what is made of it */
+        {"corners.stl", MESH}, /* fits, but its results do not */
         {"sparse.obj", MESH},
         {"sparse.obj", "pcall(gr.mesh, {file='%s', " MATERIAL "})"},
         {"sparse.obj", "coroutine.wrap(pcall)(gr.mesh, {file='%s', " MATERIAL "})"},
@@ -278,7 +278,7 @@ static void write_jpeg(const char *name, uint32_t width, uint32_t height, bool p
     free(line);
 }
 
-/* Of a progressive one libjpeg holds all coefficients, in memory of its own. */
+/* For a progressive file libjpeg holds all coefficients in its own memory. */
 TEST(a_jpeg_that_needs_more_memory_than_allowed_is_one_line) {
     static const struct attack attacks[] = {
         {"large.jpg", IMAGE}, {"progressive.jpg", IMAGE}, {"medium.jpg", IMAGE}, {"sparse.jpg", IMAGE}};
@@ -299,7 +299,7 @@ TEST(a_picture_file_that_needs_more_memory_than_allowed_is_one_line) {
         {"black.png", "gr.sky_cross('%s')"},
         {"black.png", "gr.sky_map('%s')"},
         {"black.png", "pcall(gr.texture, '%s')"},
-        {"mips.png", IMAGE}, /* fits, but not with its levels */
+        {"mips.png", IMAGE}, /* fits, but not with its mip levels */
         {"sparse.pfm", IMAGE},
         {"texels.pfm", IMAGE},
         {"sparse.hdr", IMAGE},
@@ -323,7 +323,7 @@ TEST(an_exr_that_needs_more_memory_than_allowed_is_one_line) {
     CHECK_EQ_INT(made.status, 0);
     forget(made);
     write_sparse("sparse.exr", "\x76\x2f\x31\x01", 4, 1 << 28);
-    /* Writing it took memory too: what is measured begins with the next process. */
+    /* Writing the file took memory, too: the measurement begins with the next process. */
     guard();
     for (size_t i = 0; i < sizeof attacks / sizeof *attacks; i++) {
         char text[256], words[256];
@@ -364,7 +364,7 @@ TEST(lua_and_text_files_that_need_more_memory_than_allowed_are_one_line) {
     long without = memory_of_nothing();
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         check_line(texts[i], "--script-memory 4 scene.lua", "the script used up its memory of 4 MiB");
-        check_memory(texts[i], without, KIB_OF_LIMIT); /* an eighth of what the files took of it above */
+        check_memory(texts[i], without, KIB_OF_LIMIT); /* an eighth of what the files above took */
     }
     struct test_result result = test_gray(NULL, "--script-memory 16 sparse.lua");
     CHECK_EQ_INT(result.status, 1);
@@ -373,7 +373,7 @@ TEST(lua_and_text_files_that_need_more_memory_than_allowed_are_one_line) {
     check_memory("the scene", without, KIB_OF_LIMIT);
 }
 
-/* What a call makes of its arguments may be far larger than they are. */
+/* The result of a call may be far larger than its arguments. */
 TEST(arguments_that_need_more_memory_than_allowed_are_one_line) {
     static const char *const texts[] = {
         "local p = {0, 0, 0} local v = {} for i = 1, 4e5 do v[i] = p end gr.mesh{verts=v, faces={{0, 1, 2}}, " MATERIAL
@@ -391,7 +391,7 @@ TEST(arguments_that_need_more_memory_than_allowed_are_one_line) {
     }
 }
 
-/* One after the other: what failed to fit leaves nothing behind, what is finished is counted. */
+/* One after the other: memory of a refused object is freed, memory of a finished one is counted. */
 TEST(files_count_together_and_what_is_read_again_counts_once) {
     write_grid("grid.obj", 100);
     write_black_png("small.png", 1000, 600);
@@ -461,7 +461,7 @@ TEST(a_world_that_needs_more_memory_than_allowed_is_one_line) {
         "local n, s = gr.node('n'), gr.sphere{" MATERIAL "} local p, t = {}, {}\n"
         "for i = 1, 60000 do p[i], t[i] = {i, 0, 0}, i / 1000 end\n"
         "n:add_child(gr.instances{of=s, at=p, turn=t}) p, t = nil, nil collectgarbage()\n" RENDER(""),
-        /* which light shines on what */
+        /* which light shines on which node */
         MANY(
             20000) "local l = {} for i = 1, 1500 do l[i] = gr.light{position={0, 9, 0}, colour={1, 1, 1}, include={s}} "
                    "end\n" RENDER(", lights=l"),
@@ -499,7 +499,7 @@ TEST_LONG(ten_million_instances_render_at_the_defaults) {
     forget(result);
 }
 
-/* Worlds are given back: each of these fits, all together do not. */
+/* Worlds are freed: each of these fits, all together do not. */
 TEST(worlds_one_after_the_other_fit_where_one_does) {
     long without = memory_of_nothing();
     struct test_result result = test_gray_scene(MANY(30000) "for k = 1, 12 do " RENDER("") " end",
@@ -540,7 +540,7 @@ TEST(a_picture_that_needs_more_memory_than_allowed_is_one_line) {
         check_line(text, "-j 2 --script-memory 16 scene.lua", too_much);
         check_memory(pictures[i].extension, without, KIB_OF_LIMIT);
     }
-    /* The sizes of most scenes are small, and the command line may ask for any. */
+    /* The sizes in scenes are limited, but the command line may request any size. */
     (void)snprintf(text, sizeof text, format, "png", 640, 480);
     struct test_result small = test_gray_scene(text, "-q -j 2 --script-memory 16 scene.lua", NULL);
     struct test_result large = test_gray_scene(text, "-q -j 2 --script-memory 16 --size 1000x1000 scene.lua", NULL);
@@ -572,7 +572,7 @@ TEST(files_of_tiles_of_any_size_take_the_memory_of_one_record) {
     }
 }
 
-/* A picture that was finished, by a huge file: it is read piece by piece and made again. */
+/* A huge file instead of a finished picture: it is read in blocks, and the picture is made again. */
 TEST(a_file_in_the_place_of_a_finished_picture_takes_no_memory) {
     static const char text[] =
         "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}}\n"
@@ -714,7 +714,7 @@ TEST(an_account_counts_what_is_held_and_refuses_what_is_beyond) {
     CHECK(a && b && c && account.held >= 3000 && account.held < 4000);
     CHECK(!mem_alloc(1 << 20) && !mem_alloc_zero(1 << 10, 1 << 10) && !mem_alloc_aligned(64, 1 << 20));
     CHECK(!mem_resize(a, 1 << 20) && !mem_reserve(1 << 20));
-    CHECK(!mem_alloc_zero(SIZE_MAX / 2, 4)); /* is no size at all */
+    CHECK(!mem_alloc_zero(SIZE_MAX / 2, 4)); /* is not a size */
     CHECK_EQ_INT((long long)mem_refusals(), 5);
     CHECK(!error_no_memory(&error, "a mesh") && error.limit && error.kind == ERROR_SCENE);
     CHECK_TEXT(error.text, "out of memory for a mesh: x allows no more");
@@ -737,7 +737,7 @@ TEST(an_account_counts_what_is_held_and_refuses_what_is_beyond) {
     CHECK(!error_no_memory(&error, "a mesh") && !error.limit && error.kind == ERROR_MACHINE);
 }
 
-/* Blocks grow as long as they may. */
+/* Blocks grow up to the limit. */
 TEST(an_arena_uses_nearly_all_that_an_account_allows) {
     struct mem_account account = {.limit = 3 << 20, .option = "--x", .words = "x"};
     struct arena arena = {0};

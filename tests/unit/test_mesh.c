@@ -1,4 +1,4 @@
-/* Meshes: closed or not, watertight, the index against trying every triangle, and what describes a hit. */
+/* Meshes: closed or not, watertight, the index against a test of every triangle, and the description of hits. */
 #include "mesh_makers.h"
 
 static struct geom_scratch scratch_make(void) {
@@ -160,7 +160,8 @@ TEST(mesh_describe_interpolates_normals_uv_and_their_derivatives) {
     CHECK_NEAR(s.dpdu.x, 2, 0);
     CHECK_NEAR(s.dpdu.y, 0, 0);
     CHECK_NEAR(s.dpdv.y, 2, 0);
-    CHECK_NEAR(s.shading_normal.x, 0.5 * sqrt(0.5), 1e-15); /* corner normals count by direction, not by length */
+    CHECK_NEAR(s.shading_normal.x, 0.5 * sqrt(0.5),
+               1e-15); /* only the direction of corner normals counts, not their length */
     CHECK_NEAR(s.shading_normal.z, 0.5 + 0.5 * sqrt(0.5), 1e-15);
     crossing = (struct crossing){.part = 1, .u = 0.5, .v = 0.5}; /* triangle 0 2 3, where the normals cancel */
     mesh_describe(mesh, &ray, &crossing, &s);
@@ -172,7 +173,7 @@ TEST(mesh_describe_interpolates_normals_uv_and_their_derivatives) {
     mesh_release(mesh);
 }
 
-/* Every line must enter as often as it leaves, in turns; the same from the index and by trying everything. */
+/* On every line entries and exits must alternate and be equal in number; the same with the index and by brute force. */
 static void check_parity(const struct mesh *mesh, const struct ray *ray, struct geom_scratch *scratch, bool expect_hit,
                          const char *what) {
     struct crossing_list list;
@@ -234,7 +235,7 @@ TEST(closed_meshes_from_a_thousandth_to_a_million_let_no_ray_through_vertices_an
                 CHECK(mesh_any(mesh, &ray, ACCEL_GRID, &scratch));
                 check_parity(mesh, &ray, &scratch, true, "from inside");
             }
-            /* Along the axes through vertices: the ray runs in edges and faces of the sphere. */
+            /* Along the axes through vertices: the ray lies in edges and faces of the sphere. */
             for (uint32_t v = 0; v < m.vertex_count; v += 1 + m.vertex_count / 500)
                 for (int axis = 0; axis < 3; axis++) {
                     struct vec3 d = vec3_make(axis == 0, axis == 1, axis == 2);

@@ -1,4 +1,4 @@
-/* Materials by face, culling, and what scripts ask of meshes. */
+/* Materials per face, culling, and methods of meshes in scripts. */
 #include "model_makers.h"
 
 #include "script_host.h"
@@ -28,7 +28,7 @@ static struct node *cube_node(struct stage *s, const struct material *const *slo
     return node;
 }
 
-/* The material that a ray along an axis meets, or NULL. */
+/* The material at the hit of a ray along an axis, or NULL. */
 static const struct material *seen(const struct stage *s, struct vec3 from, struct vec3 along, double *t) {
     struct world_scratch scratch;
     struct hit hit;
@@ -72,7 +72,7 @@ TEST(mesh_faces_have_the_material_of_their_slot) {
         const struct material *m = seen(&s, from[i], along[i], NULL);
         CHECK(i == 4 ? m->phong.kd.x == 0.5 : m == slots[i]);
     }
-    /* One material for all covers them. */
+    /* One material for the whole mesh overrides the slots. */
     world_destroy(&s.world);
     node->material = slots[2];
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -108,7 +108,7 @@ TEST(mesh_faces_that_are_culled_are_passed_by_every_ray) {
         make_slots(&s, slots);
         struct node *node = cube_node(&s, slots);
         node->cull = (enum node_cull)cull;
-        stage_scale(&s, node, -1, 1, 1); /* a mirror image keeps its outside */
+        stage_scale(&s, node, -1, 1, 1); /* a mirrored mesh keeps its outside */
         stage_scale(&s, node, -1, 1, 1);
         CHECK(node_add_child(&s.scene, s.root, node, &s.error));
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
@@ -244,7 +244,7 @@ TEST(script_gives_parts_of_files_and_faces_of_tables_their_materials) {
     CHECK_TEXT(listener.said, "1 7 01\n8 9 01\n4 5 01\n1 2 101\n");
 }
 
-/* clip: what is drawn, made of `box`. */
+/* clip: the rendered node, made of `box`. */
 static bool picture_of(const char *cull, const char *drawn, struct test_picture *out) {
     char text[1600];
     (void)snprintf(text, sizeof text,
@@ -272,8 +272,8 @@ static bool is_colour(const struct test_picture *picture, uint32_t x, uint32_t y
     return p[0] == 255 * r && p[1] == 255 * g && p[2] == 255 * b;
 }
 
-/* A cube looked into from the front: whole, its front; without fronts, the inside of the other five sides in the colour
- * of each; its back sides alone are never seen from outside. */
+/* A cube seen from the front: complete, it shows its front; without front faces, the inside of the other five sides,
+ * each in its colour; if only back faces are culled, the inside is never seen from outside. */
 TEST(pictures_of_a_culled_cube_show_its_front_or_its_inside) {
     struct test_picture whole, back, front;
     if (!picture_of("none", "box", &whole) || !picture_of("back", "box", &back) || !picture_of("front", "box", &front))
@@ -294,8 +294,8 @@ TEST(pictures_of_a_culled_cube_show_its_front_or_its_inside) {
     free(whole.rgb), free(back.rgb), free(front.rgb);
 }
 
-/* A clip that takes nothing away shows what there was; one that takes off the near half shows the inside of the far
- * one: its back sides where they are not culled, and through them nothing. */
+/* A clip that removes nothing changes nothing; one that removes the near half shows the inside of the far half if its
+ * back faces are not culled, else nothing. */
 TEST(clips_heed_what_a_mesh_does_not_show) {
     static const char *const culls[] = {"none", "back", "front"};
     static const char around[] = "gr.clipped_by(box, gr.sphere{centre={0.5,0.5,0.5}, radius=2})";
@@ -307,7 +307,7 @@ TEST(clips_heed_what_a_mesh_does_not_show) {
             return;
         CHECK(memcmp(plain.rgb, clipped.rgb, 3 * 40 * 40) == 0);
         if (i == 1)
-            CHECK(is_colour(&cut, 20, 20, 1, 1, 1)); /* all that is left is seen from behind */
+            CHECK(is_colour(&cut, 20, 20, 1, 1, 1)); /* all remaining faces are seen from behind */
         else
             CHECK(is_colour(&cut, 20, 20, 1, 0, 0));
         free(plain.rgb), free(clipped.rgb), free(cut.rgb);

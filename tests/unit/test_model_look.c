@@ -1,4 +1,5 @@
-/* What the maps of MTL and glTF materials do to a surface: looks of a hit, by the formulas of the formats. */
+/* The effect of the maps of MTL and glTF materials on a surface: inputs of the BSDF at a hit, by the formulas of the
+ * formats. */
 #include "model_makers.h"
 
 #include "formats/model_node.h"
@@ -12,7 +13,7 @@ static void even_row(void *context, uint32_t y, uint8_t *line) {
         memcpy(line + (ptrdiff_t)3 * x, colour, 3);
 }
 
-/* Grows by 10 of 255 a texel to the right. */
+/* Increases to the right by 10 of 255 per texel. */
 static void ramp_row(void *context, uint32_t y, uint8_t *line) {
     (void)context, (void)y;
     for (int x = 0; x < 16; x++)
@@ -25,7 +26,7 @@ static void write_even(const char *name, uint8_t r, uint8_t g, uint8_t b) {
     CHECK(png_write(FILE_AT(in_folder(name)), 16, 16, even_row, colour, &error));
 }
 
-/* In the middle of a square of the size of its picture, seen from the front. */
+/* In the middle of a square as large as its picture, seen from the front. */
 static struct hit middle(void) {
     return (struct hit){.has_uv = true,
                         .u = 0.5,
@@ -120,7 +121,7 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
 
 #define TRIANGLE_URI "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAECAA=="
 
-/* One triangle for each of four materials; pictures stand beside the file. */
+/* One triangle for each of four materials; the images are in the same folder. */
 static void write_two_materials(const char *materials) {
     char text[5000];
     (void)snprintf(text, sizeof text,
@@ -167,7 +168,7 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
 
 #endif
 
-/* The window changes numbers of the base after the material was made. */
+/* The window changes numbers of the base material after the material was made. */
 TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
     struct arena arena = {0};
     struct error error = {0};

@@ -1,4 +1,5 @@
-/* Motion blur: poses in between, boxes that hold the way, pictures against box filters and against means of sharp ones.
+/* Motion blur: interpolated poses, boxes that contain the whole motion, pictures against box filters and against means
+ * of sharp ones.
  */
 #include "math/motion.h"
 #include "tests/harness.h"
@@ -59,7 +60,7 @@ TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
     CHECK_NEAR(half.forward.m[0][3], 1.5, 1e-15);
     half.forward.m[0][3] = 0;
     CHECK(difference(&half.forward, &expected.forward) < 1e-12);
-    /* Half a turn has an axis, too. */
+    /* A turn by 180 degrees has an axis, too. */
     struct transform identity = transform_identity(), back = transform_rotate(0, 180);
     CHECK(motion_interpolate(&identity, &back, vec3_all(0), &motion));
     CHECK_NEAR(motion.degrees, 180, 1e-9);
@@ -112,8 +113,8 @@ static void flat_view(struct stage *s, double size) {
 }
 
 /* The edge at x = -8 moves 12 to the right while the shutter is open: how long a place x was covered is a ramp, and a
- * pixel is its mean. Of 64 moments, one from each 64th part, all but those six are certain in which the edge is inside
- * of the pixel: half of them is the most that can be wrong. */
+ * pixel is its mean. Of 64 stratified moments, all are certain except the six in which the edge is inside the pixel: at
+ * most half of these can be wrong. */
 TEST(a_moving_edge_is_its_box_filter) {
     struct stage s;
     stage_begin(&s, 2);
@@ -168,7 +169,7 @@ static void moving_stage(struct stage *s, int threads, double unit) {
     solid->material = white;
     maker_free(&maker);
     stage_move(s, solid, -2 * unit, -unit, 0.5 * unit);
-    solid->velocity = vec3_make(0, 0, unit); /* of a thing on a wheel */
+    solid->velocity = vec3_make(0, 0, unit); /* of an object on a wheel */
     CHECK(node_add_child(&s->scene, wheel, solid, &s->error));
     struct node *nowhere = scene_node(&s->scene, NODE_GROUP, "nowhere", &s->error), *operands[2];
     operands[0] = stage_cube(s, nowhere, white);
@@ -179,7 +180,7 @@ static void moving_stage(struct stage *s, int threads, double unit) {
     stage_move(s, cut, -3 * unit, -4 * unit, 0);
     cut->velocity = vec3_make(0, 0.8 * unit, 0.5 * unit);
     CHECK(node_add_child(&s->scene, s->root, cut, &s->error));
-    struct node *again = stage_group(s, s->root); /* the moving ball once more, under something that stands */
+    struct node *again = stage_group(s, s->root); /* the moving ball once more, under a node that does not move */
     stage_move(s, again, 6 * unit, -2.5 * unit, 0);
     CHECK(node_add_child(&s->scene, again, ball, &s->error));
     struct node *floor = stage_cube(s, s->root, mirror);
@@ -264,7 +265,7 @@ TEST(moving_the_camera_is_moving_everything_the_other_way) {
     free(first);
 }
 
-/* Stratifying pixel and moment together must beat as many independent moments. */
+/* Stratifying pixel and time together must have less variance than the same number of independent times. */
 TEST(samples_of_pixel_and_time_are_stratified_together) {
     double error[2] = {0, 0};
     for (int alone = 0; alone < 2; alone++) {
@@ -307,7 +308,7 @@ TEST(motion_gives_the_same_bits_for_any_threads_search_crop_and_power_of_two) {
     free(reference);
 }
 
-/* The eye is outside at first and inside a moving ball of glass at the end: each ray must know. */
+/* The camera is outside a moving glass ball at first and inside it at the end: each ray must have the right medium. */
 TEST(a_camera_that_glass_moves_over_knows_it_at_every_moment) {
     struct stage s;
     stage_begin(&s, 2);

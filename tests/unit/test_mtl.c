@@ -80,7 +80,7 @@ TEST(mtl_maps_have_their_options_and_are_found) {
     model_destroy(&model);
 }
 
-/* A library in a folder of its own, pictures in a folder beside it, blanks in all names, both kinds of slashes. */
+/* A material library in one folder, images in another beside it, blanks in all names, both kinds of slashes. */
 TEST(mtl_paths_are_relative_to_the_library_and_may_hold_blanks) {
     char path[500];
     struct error error = {0};
@@ -232,9 +232,9 @@ TEST(mtl_materials_are_placed_with_the_mesh) {
     assets_destroy(&assets);
 }
 
-/* --- crease angles, welding, turning round --- */
+/* --- crease angles, welding, reversing faces --- */
 
-/* The cube with a vertex of its own for every corner of every face, as exporters write hard edges. */
+/* The cube with a separate vertex for every corner of every face, as exporters write hard edges. */
 static void cube(struct maker *m, bool shared) {
     static const int sides[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     for (int v = 0; shared && v < 8; v++)
@@ -292,7 +292,7 @@ TEST(smooth_cube_has_corner_normals_at_91_degrees_and_flat_faces_at_89) {
 }
 
 TEST(smooth_normals_do_not_depend_on_how_faces_are_cut_into_triangles) {
-    /* The tip of a pyramid over a square, one side cut into many slivers: weights by angle see no difference. */
+    /* The tip of a pyramid over a square with one side cut into many slivers: weights by angle do not change. */
     struct maker m = {0}, n = {0};
     for (int cut = 0; cut < 2; cut++) {
         struct maker *p = cut ? &n : &m;

@@ -1,5 +1,5 @@
-/* Noise and the patterns: the values of docs/language.md 5.6, continuity, bounds, and coordinates that no conversion
- * may trip on.
+/* Noise and the patterns: the values of docs/language.md 5.6, continuity, bounds, and coordinates that are difficult to
+ * convert.
  */
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* The OBJ reader: every spelling, every error with its line, numbers correctly rounded. */
+/* The OBJ reader: every variant of the syntax, every error with its line, numbers correctly rounded. */
 #include "base/mem.h"
 #include "formats/decimal.h"
 #include "formats/obj.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From a buffer of exactly the text's size, so that the address sanitizer sees a byte read too many. */
+/* From a buffer of exactly the text's size, so that the address sanitizer detects a read past the end. */
 static struct mesh *parse_bytes(const char *text, size_t size, struct error *error) {
     char *copy = malloc(size ? size : 1);
     if (size)
@@ -28,7 +28,7 @@ static struct mesh *parse(const char *text) {
     return mesh;
 }
 
-/* Two triangles over four vertices; uvs and normals are compared when the mesh has them. */
+/* Two triangles over four vertices; uvs and normals are compared if the mesh has them. */
 static const double square[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}};
 static const double square_uvs[3][2] = {{0, 0}, {1, 0.25}, {0.5, 1}};
 static const double square_normals[2][3] = {{0, 0, 1}, {0.6, 0, 0.8}};
@@ -271,7 +271,8 @@ TEST(decimal_numbers_are_correctly_rounded) {
         (void)snprintf(text, sizeof text, formats[i % 9], x);
         check_number(text);
     }
-    /* Halfway cases: a double plus half a unit in the last place, with digits to tell it exactly or just not. */
+    /* Halfway cases: a double plus half a unit in the last place, with digits that state it exactly or slightly differ.
+     */
     for (int i = 0; i < 50000; i++) {
         char text[64];
         double x = floor(test_uniform(&random, 1e15, 9e15));

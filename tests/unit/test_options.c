@@ -1,4 +1,4 @@
-/* The command line: every option in its spellings, every refusal with its sentence. */
+/* The command line: every option in its spellings, every error with its message. */
 #include "session/options.h"
 #include "tests/harness.h"
 
@@ -33,7 +33,7 @@ static void forget(struct parsed *parsed) {
     free(parsed);
 }
 
-/* The line is refused as wrong usage, and the sentence is this. */
+/* The line is refused as wrong usage with this message. */
 static void refused(const char *line, const char *sentence) {
     struct parsed *parsed = parse(line);
     if (parsed->ok)

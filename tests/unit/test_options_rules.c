@@ -1,5 +1,5 @@
-/* What options ask of one another: every pair that does not go together is refused with the sentence of its rule, and
- * either of the two alone is taken. Words at the borders of what is read; memory that ends. */
+/* Rules between options: every incompatible pair is refused with the message of its rule, and either of the two alone
+ * is accepted. Words at the limits of the parser; failing allocations. */
 #include "base/fault.h"
 #include "session/options.h"
 #include "tests/harness.h"
@@ -10,7 +10,7 @@
 
 enum { WORDS = 16 };
 
-/* Parses the words of a line, split at single blanks; "~" stands for an empty word. The words live on in `copy`. */
+/* Parses the words of a line, split at single blanks; "~" stands for an empty word. The words stay in `copy`. */
 static bool parse(const char *line, char copy[512], struct options *options, struct arena *arena, struct error *error) {
     char *words[WORDS] = {copy};
     int count = 1;
@@ -21,7 +21,7 @@ static bool parse(const char *line, char copy[512], struct options *options, str
     return options_parse(options, count, words, arena, error);
 }
 
-/* Taken where the sentence is NULL. */
+/* Accepted if the message is NULL. */
 static void expect(const char *line, const char *sentence) {
     char copy[512];
     struct options options;
@@ -33,7 +33,7 @@ static void expect(const char *line, const char *sentence) {
     arena_destroy(&arena);
 }
 
-/* Each of the options (parted by bars) beside `first`: refused with this sentence, and each without it is taken. */
+/* Each of the options (separated by bars) together with `first`: refused with this message; each alone is accepted. */
 static void exclude(const char *first, const char *options, const char *sentence) {
     char copy[512], line[600];
     strcpy(copy, options);
@@ -140,7 +140,7 @@ TEST(a_command_line_of_no_words_names_no_scene) {
 }
 
 #ifdef GRAY_FAULTS
-/* An arena asks for memory seldom: each list here is larger than what it asks for at once. */
+/* An arena allocates rarely: each list here is larger than one block. */
 TEST(memory_may_end_anywhere_in_a_command_line) {
     enum { MANY = 20000 };
     static char option[] = "-D", define[] = "a_name_that_is_rather_long=1", script[] = "x";

@@ -1,4 +1,4 @@
-/* Lines over a picture. */
+/* Overlay lines on a picture. */
 #include "render/camera.h"
 #include "render/overlay.h"
 #include "tests/harness.h"
@@ -80,7 +80,7 @@ TEST(the_box_of_a_ball_is_drawn_where_its_edges_are_and_faintly_behind_it) {
     stage_end(&s);
 }
 
-/* What each eye of a pair sees of a box lies on what it sees of the box as lines. */
+/* For each eye of a stereo pair, the edges of a box in the picture coincide with its overlay lines. */
 TEST(a_pair_of_pictures_has_the_lines_of_each_eye_in_its_half) {
     enum { WIDTH = 120, HEIGHT = 60 };
     struct stage s;

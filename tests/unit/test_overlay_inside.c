@@ -1,5 +1,5 @@
-/* Lines over a picture whose camera stands among the boxes: edges that run past the eye, boxes behind it, boxes without
- * end. What is drawn is what edges give that are projected point by point. */
+/* Overlay lines on a picture whose camera is among the boxes: edges that pass the camera, boxes behind it, unbounded
+ * boxes. The lines must be those of edges projected point by point. */
 #include "render/camera.h"
 #include "render/overlay.h"
 #include "shape/planar.h"
@@ -87,7 +87,7 @@ TEST(edges_around_the_camera_are_drawn_where_their_points_are) {
                 false_ink += drawn[y * WIDTH + x] && !near_marked(wanted, x, y);
                 missing += wanted[y * WIDTH + x] && !near_marked(drawn, x, y);
             }
-        /* What crosses the seam of a panorama is left out, a 32nd of an edge. */
+        /* A piece that crosses the seam of a panorama is left out, 1/32 of an edge. */
         int left_out = s.settings.lens.projection == PROJECTION_PANORAMA ? 15 : 0;
         if (false_ink > 0 || missing > left_out || inked < 20)
             test_fail(__FILE__, __LINE__, "turn %d: %d dots, %d where no edge is, %d missing", turn, inked, false_ink,

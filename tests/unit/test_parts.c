@@ -1,5 +1,5 @@
-/* Pictures made in several goes: checkpoints, --resume, --shard and gray merge. However the work was interrupted or
- * parted, the bytes are those of one undisturbed run; what does not belong together is refused. */
+/* Pictures made in several runs: checkpoints, --resume, --shard and gray merge. However the work was interrupted or
+ * divided, the bytes are those of one complete run; parts that do not belong together are refused. */
 #define _GNU_SOURCE
 #include "render/render.h"
 #include "render/tile_file.h"
@@ -168,7 +168,7 @@ TEST(merge_writes_only_where_a_script_might) {
     CHECK(exists("here.png"));
 }
 
-/* Kills the run after a moment, again and again, until it gets through. */
+/* Kills the run after a moment, again and again, until it finishes. */
 static void resume_until_done(int tries, double from, double step) {
     char line[1024];
     (void)snprintf(line, sizeof line,
@@ -232,15 +232,15 @@ static bool same_files(const char *a, const char *b) {
     return same;
 }
 
-/* Where a kill came: before anything was kept, among the tiles, or after the picture was there. */
+/* The moment of a kill: before anything was saved, between tiles, or after the picture was written. */
 struct kills {
     int before, among, after;
 };
 
 #define KILLED_RUN "scene.lua -q -j 1 -full -ss 5 --resume --checkpoint c.tiles --checkpoint-every 0"
 
-/* One picture: killed at a moment of its run, from 0 to 1, and resumed. *length: how long a whole run takes on
- * this machine at this time, kept up to date. */
+/* One picture: killed at a moment of its run, from 0 to 1, and resumed. *length: the current duration of a complete run
+ * on this machine; updated. */
 static void kill_once(double moment, double *length, struct kills *kills) {
     int how;
     double at = moment * *length, begun = clock_now();
@@ -257,7 +257,7 @@ static void kill_once(double moment, double *length, struct kills *kills) {
     run = start_gray(KILLED_RUN);
     (void)waitpid(run, &how, 0);
     CHECK(WIFEXITED(how) && WEXITSTATUS(how) == 0);
-    /* A run that begins again takes a whole length; one that ended before the kill took less than the moment. */
+    /* A run that starts again takes the complete duration; one that ended before the kill took less than the moment. */
     if (rest == 1)
         *length += 0.2 * (clock_now() - resumed - *length);
     else if (done)
@@ -330,7 +330,7 @@ TEST(a_checkpoint_of_something_else_is_refused_and_stays) {
     gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "the scene, or a file it reads, has changed");
     CHECK_EQ_INT(shell("cmp c.tiles kept"), 0);
     CHECK(!exists("out.png"));
-    /* Catching the error does not get past it. */
+    /* Catching the error does not avoid it. */
     put("scene.lua", SCENE "pcall(picture, 'a.png', 64, 64)\npicture('b.png', 64, 64)\n");
     gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "cannot be resumed");
     CHECK_EQ_INT(shell("cmp c.tiles kept"), 0);
@@ -344,12 +344,12 @@ TEST(finished_pictures_are_not_made_again) {
     put("keep.sh", "stat -c '%i %Y %y' a.png b.png c.png\n");
     gives("sh keep.sh >before; $gray scene.lua --checkpoint c.tiles --resume --stats", 1, "stop here");
     CHECK_EQ_INT(shell("sh keep.sh >after; cmp before after"), 0);
-    /* One that is no longer what it was is made anew. */
+    /* A picture that has changed is made again. */
     gives("cp b.png whole.png; echo x >>b.png; $gray scene.lua --checkpoint c.tiles --resume", 1, "stop here");
     CHECK_EQ_INT(shell("cmp b.png whole.png"), 0);
 }
 
-/* How fast the machine is decides when a picture is half finished: longer and longer moments are tried. */
+/* The speed of the machine decides when a picture is half finished: the delay grows until it fits. */
 #define MOMENTS "0.02 0.04 0.06 0.1 0.15 0.25 0.4 0.6 1 1.6 2.5 4 6"
 
 TEST(a_signal_writes_the_checkpoint_at_once) {
@@ -378,8 +378,8 @@ TEST(an_interrupted_run_keeps_what_is_finished) {
     gives("$gray scene.lua -q -full -ss 3 --resume && cmp out.png whole.png && ! test -e out.png.checkpoint", 0, NULL);
 }
 
-/* Ctrl-C finishes the tiles under way, and what they are is what is asked for: a checkpoint, a picture beside. (A shell
- * has its children ignore SIGINT: env sets it right.) */
+/* Ctrl-C finishes the tiles in progress and saves them as requested: a checkpoint, a partial picture. (Shells start
+ * background children with SIGINT ignored: env resets it.) */
 TEST(control_c_finishes_tiles_and_writes_what_is_asked) {
     put("scene.lua", ONE);
     gives("$gray scene.lua -full -ss 3 -o whole.png; printf 'PF\\n1 old' >out.png; for moment in " MOMENTS "; do "
@@ -437,7 +437,7 @@ TEST(a_part_that_is_there_is_not_made_again) {
           0, NULL);
 }
 
-/* Several processes, when the program with MPI was built and mpirun is there. */
+/* Several processes, if the program with MPI was built and mpirun is installed. */
 
 static void need_mpi(void) {
     if (shell("test -x $(dirname $gray)/gray-mpi && command -v mpirun >out.txt") != 0)
@@ -467,7 +467,7 @@ TEST(a_rank_that_falls_out_is_done_without) {
     need_mpi();
     put("scene.lua", ONE);
     gives("$gray scene.lua -q -full -ss 6 -o whole.png", 0, NULL);
-    /* The youngest render process is killed, not its supervisor: that one gives its tiles back. */
+    /* The newest render process is killed, not its supervisor, which returns its tiles. */
     gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 & pid=$!; "
           "for i in $(seq 400); do c=; for p in $(pgrep -P $pid); do c=$(pgrep -P $p | head -n 1); done; "
           "test $c && break; sleep 0.02; done; sleep 0.2; kill -9 $c; wait $pid; status=$?; "

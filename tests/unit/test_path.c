@@ -33,7 +33,7 @@ static struct estimate render_path(struct stage *s, int samples, int depth, uint
     return estimate_of(s, 0);
 }
 
-/* Of a picture whose pixels differ: from two of them with other numbers. */
+/* The error of a picture whose pixels differ: from two pictures with different random numbers. */
 static struct estimate render_twice(struct stage *s, int samples, int depth, uint64_t seed) {
     static struct film_pixel first[SIZE * SIZE];
     double squares = 0;
@@ -45,7 +45,7 @@ static struct estimate render_twice(struct stage *s, int samples, int depth, uin
     return (struct estimate){(a.mean + b.mean) / 2, sqrt(squares) / (2 * SIZE * SIZE)};
 }
 
-/* What is left for the rounding of pixels to float. */
+/* An allowance for the rounding of pixels to float. */
 static void check_estimate(struct estimate e, double value) {
     CHECK(e.error <= 0.001 * value);
     CHECK_NEAR(e.mean, value, 4 * e.error + 1e-6 * value);
@@ -129,7 +129,7 @@ TEST_LONG(closed_scenes_show_the_sum_of_their_bounces) {
     }
 }
 
-/* Without roughness the rest of the light is that of a sphere: the same everywhere. E / pi is I cos / d^2 of a light of
+/* Without roughness the remaining light is uniform, as always in a sphere. E / pi is I cos / d^2 of a light of
  * intensity I; its mean over a sphere of radius R is I / R^2 wherever the light is. */
 static void check_lit_sphere(double albedo, int samples, int seeds, struct vec3 at) {
     enum { RADIUS = 8 };
@@ -146,7 +146,7 @@ static void check_lit_sphere(double albedo, int samples, int seeds, struct vec3 
         (void)render_path(&s, samples, 1, (uint64_t)seed);
         memcpy(direct, s.film.pixels, sizeof direct);
         (void)render_path(&s, samples, 1000, (uint64_t)seed);
-        for (size_t i = 0; i < SIZE * SIZE; i++) /* of what the surface shows, the light that came by other walls */
+        for (size_t i = 0; i < SIZE * SIZE; i++) /* the indirect part of the surface's colour */
             s.film.pixels[i].rgb[0] = (s.film.pixels[i].rgb[0] - direct[i].rgb[0]) / (float)albedo;
         check_estimate(estimate_of(&s, 0), 64 / (double)(RADIUS * RADIUS) * albedo / (1 - albedo));
     }
@@ -241,7 +241,7 @@ TEST_LONG(coaxial_discs_light_each_other_by_their_form_factor_for_every_seed) {
 
 /* --- glass --- */
 
-/* Red comes by reflection, green through the pane. */
+/* Red light arrives by reflection, green light through the pane. */
 static void check_pane(int samples, int seeds) {
     struct stage s;
     stage_begin(&s, 1);

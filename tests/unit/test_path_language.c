@@ -1,4 +1,4 @@
-/* What the classic language means to the path tracer (docs/light.md): one test for each rule. */
+/* The meaning of the classic language in the path tracer (docs/light.md): one test for each rule. */
 #include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
@@ -58,7 +58,7 @@ static struct light *add_light(struct stage *s, enum light_kind kind) {
     return light;
 }
 
-/* A ball throws a shadow on the floor. */
+/* A ball casts a shadow on the floor. */
 static void check_light_as_whitted(enum light_kind kind, bool emits, double tolerance) {
     struct stage s;
     (void)begin_floor(&s);
@@ -113,7 +113,7 @@ TEST(every_falloff_gives_intensity_times_cosine) {
         light->falloff[2] = 0.2;
         light->range = 5;
         light->intensity = 6;
-        s.camera.fov = 0.01; /* the foot of the light: cosine 1, distance 3 */
+        s.camera.fov = 0.01; /* directly below the light: cosine 1, distance 3 */
         const double want[3] = {0.8 / (0.5 + 0.3 + 1.8), 0.8 * (1 - 3.0 / 5), 0.8 * 6 / 9};
         CHECK_NEAR(path_mean(&s, 1, 1), want[attenuation], 1e-5);
         stage_end(&s);
@@ -156,7 +156,7 @@ TEST(a_chosen_background_lights_the_scene_and_the_gradient_that_nobody_chose_doe
     struct test_picture colour = test_read_picture(test_path("colour.png"));
     for (size_t i = 0; i < 16; i++) {
         CHECK_EQ_INT(none.rgb[3 * i + 2], 0);
-        CHECK(gradient.rgb[3 * i + 2] > 90); /* half the way from horizon to horizon */
+        CHECK(gradient.rgb[3 * i + 2] > 90); /* half way from horizon to horizon */
         CHECK_NEAR(colour.rgb[3 * i], 127, 12);
     }
     free(none.rgb);
@@ -214,11 +214,11 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
     CHECK(light[0] > 0.01);
     CHECK_NEAR(seen[0], 0, 0.2);
     CHECK_NEAR(seen[1], 4, 1e-5);
-    CHECK(mirrored[0] < 0.1); /* a highlight stands for its image */
+    CHECK(mirrored[0] < 0.1); /* a highlight replaces its image */
     CHECK_NEAR(mirrored[1], 4, 1e-5);
 }
 
-/* Of two halves of a floor one is left out by the lists of every light, sampled and met. */
+/* Of two halves of a floor every light excludes one, whether the light is sampled or hit. */
 TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
     static const struct sky grey = {.kind = SKY_CONSTANT, .colour = {1, 1, 1}};
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
@@ -285,7 +285,7 @@ TEST(materials_that_emit_light_the_scene_from_both_sides) {
     }
 }
 
-/* --- numbers outside of nature --- */
+/* --- unphysical numbers --- */
 
 TEST(negative_colours_are_kept) {
     struct stage s;
@@ -319,7 +319,7 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
     (void)stage_sphere(&s, s.root, material);
     s.camera.eye = vec3_all(0);
     CHECK_NEAR(path_mean(&s, 4096, 5), 63, 0.2); /* 1 + 2 + ... + 32 */
-    CHECK(isfinite(path_mean(&s, 1, 1000000)));  /* one in twenty ends */
+    CHECK(isfinite(path_mean(&s, 1, 1000000)));  /* one path in twenty ends */
     stage_end(&s);
 }
 
@@ -334,7 +334,7 @@ TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
     struct node *ball = stage_sphere(&s, s.root, mirror);
     stage_move(&s, ball, 0.5, 1, 0);
     (void)add_light(&s, LIGHT_POINT);
-    s.sky.colour = vec3_all(0); /* that lights nothing */
+    s.sky.colour = vec3_all(0); /* that does not light anything */
     s.fog = &fog;
     s.settings.reflect_limit = 1;
     double want = whitted_mean(&s);

@@ -1,5 +1,5 @@
-/* The folders of a scene: what lies below them and what does not, by every spelling; with kernels of every age, and
- * with every call to the system failing in its turn. */
+/* The folders of a scene: which paths are below them and which are not, in every spelling; with old and new kernels,
+ * and with a failure of each system call. */
 #define _GNU_SOURCE
 #include "base/path_policy.h"
 
@@ -117,7 +117,7 @@ TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
     CHECK(!path_policy_may_create(&path_policy, test_path("below/inner.txt/x")) &&
           !path_policy_may_create(&path_policy, "/x"));
     CHECK(!path_policy_may_create(&path_policy, test_path("below/a/..")) && !path_policy_may_create(&path_policy, "x"));
-    /* hidden folders that are there */
+    /* hidden folders that exist */
     CHECK(mkdir(test_path("below/.own"), 0777) == 0 && mkdir(test_path("below/sub/.own"), 0777) == 0);
     CHECK(!path_policy_may_create(&path_policy, test_path("below/.own/x")) &&
           !path_policy_may_create(&path_policy, test_path("below/sub/.own/x")));
@@ -175,7 +175,7 @@ TEST(any_allocation_or_call_may_fail_while_files_are_reached) {
         }
 }
 
-/* In a folder that has been removed nothing has a place. */
+/* In a removed folder no path is valid. */
 TEST(a_working_directory_that_is_gone_holds_nothing) {
     struct path_policy path_policy = {0};
     struct error error;
@@ -198,7 +198,7 @@ TEST(a_working_directory_that_is_gone_holds_nothing) {
 #ifdef GRAY_FAULTS
 static char race_from[600], race_to[600], race_kept[600];
 
-/* What stood at the name goes aside, a link that leads out takes its place. */
+/* The file is moved away, and a link that leads out replaces it. */
 static void change_places(void) {
     (void)rename(race_from, race_kept);
     (void)rename(race_to, race_from);
@@ -233,7 +233,7 @@ static void race(const char *outer, const char *mode, int number) {
     CHECK(why == EACCES || why == ELOOP || why == EXDEV);
     CHECK(unlink(race_from) == 0 && rename(race_kept, race_from) == 0);
     char *text = test_read_file(line, NULL);
-    CHECK_TEXT(text, "outside"); /* nor was it emptied */
+    CHECK_TEXT(text, "outside"); /* it was not truncated either */
     free(text);
     path_policy_destroy(&path_policy);
 }
@@ -246,7 +246,7 @@ TEST(a_folder_that_becomes_a_link_between_two_looks_leads_nowhere) {
     prepare();
     race("outer", "r", 0);
     race("outer", "w", 0);
-    /* without openat2: asked where it is */
+    /* without openat2: its real path is checked */
     race("outer", "r", ENOSYS);
     race("outer", "r", EPERM);
     race("outer", "w", ENOSYS);
@@ -293,8 +293,8 @@ TEST(any_call_may_fail_where_the_kernel_opens_no_file_below_a_folder) {
     CHECK_EQ_INT(WEXITSTATUS(how), 0);
 }
 
-/* As on kernels without Landlock and with every version of it: the report says so, and what is refused by name is
- * refused there too. The exit status is a bit for each thing that is not as it should be; 128 without seccomp. */
+/* As on kernels without Landlock and with every version of it: the report states it, and what is refused by name is
+ * refused there, too. The exit status has a bit for each failed check; 128 without seccomp. */
 static int status_of_confined(long version, const char *allowed, size_t report_size) {
     static char report[4096];
     const char *folders[] = {allowed};
@@ -336,7 +336,7 @@ TEST(a_process_is_confined_as_on_kernels_of_every_age) {
         if (status != 0)
             test_fail(__FILE__, __LINE__, "Landlock version %ld: %d", version, status);
     }
-    CHECK_EQ_INT(status_of_confined(LONG_MAX, below, 60), 0); /* a report that is cut */
+    CHECK_EQ_INT(status_of_confined(LONG_MAX, below, 60), 0); /* a truncated report */
     CHECK_EQ_INT(status_of_confined(LONG_MAX, "/", 100) & 64, 0);
     CHECK_EQ_INT(status_of_confined(LONG_MAX, "/", 4096) & 64, 0);
 }

@@ -1,5 +1,5 @@
 /* --picture-count and --picture-bytes: how many pictures the scripts of a run may render, and how much is written for
- * them. A limit ends the script with one line that nothing catches, and pictures that were finished stay. */
+ * them. A limit ends the script with one error that cannot be caught, and finished pictures stay. */
 #include "image/exr.h"
 #include "session/options.h"
 #include "tests/harness.h"
@@ -30,7 +30,7 @@ static bool ends_in(const char *name, const char *ending) {
     return length >= wanted && strcmp(name + length - wanted, ending) == 0;
 }
 
-/* Files of the test's folder with this ending; *bytes: of all of them. */
+/* The number of files in the test's folder with this extension; *bytes: their total size. */
 static int count_files(const char *ending, long long *bytes) {
     int count = 0;
     DIR *folder = opendir(test_folder());
@@ -56,7 +56,7 @@ static void remove_pictures(void) {
         (void)closedir(folder);
 }
 
-/* One line with these words, status 1, and nothing half made. */
+/* One line with these words, status 1, and no incomplete files. */
 static void check_limit(const char *text, const char *arguments, const char *words) {
     struct test_result result = test_gray_scene(text, arguments, NULL);
     long long bytes;
@@ -87,11 +87,11 @@ static const char *const loops[] = {
     "local n = gr.node('n') while true do local c <close> = setmetatable({}, {__close = function() " RENDER(
         "'a.png'") " end}) end",
     "local n = gr.node('n') local function again() pcall(again) " RENDER("'a.png'") " return again() end again()",
-    /* what cannot be made counts too */
+    /* a picture that cannot be made counts, too */
     "local n = gr.node('n') while true do pcall(function() " RENDER("'/outside.png'") " end) end",
     "local t = {gr.node('n'), 'a.png', 8, 8, {0,0,9}, {0,0,0}, {0,1,0}, 50, {1,1,1}, {}}\n" AGAIN("table.unpack(t)"),
     "local n = gr.node('n') while true do pcall(gr.render, {node=n, file='', width=8, height=8, eye={0, 0, 9}}) end",
-    /* nor is there another way to it */
+    /* other functions do not avoid the limit */
     "local n = gr.node('n') while true do n:render{file='a.png', width=8, height=8, eye={0, 0, 9}} end",
 };
 
@@ -111,7 +111,7 @@ static const char *const ways[] = {
     "--quick --size 2x2",
 };
 
-/* Loops that render for ever end, whatever they do about errors. */
+/* Endless render loops end, however they handle errors. */
 TEST(a_loop_of_pictures_ends_at_the_picture_count) {
     for (size_t i = 0; i < sizeof loops / sizeof *loops; i++) {
         double begun = now();
@@ -214,7 +214,7 @@ TEST(the_limits_on_pictures_have_defaults_and_none_without_the_sandbox) {
 
 /* --- bytes --- */
 
-/* 100 x 100 floats of three: 120,000 bytes and a few. */
+/* 100 x 100 pixels of three floats: 120,000 bytes and a header. */
 #define PFM(name) "gr.render{node=n, file=" name ", width=100, height=100, eye={0, 0, 9}}"
 
 TEST(what_exceeds_the_picture_bytes_is_not_written_and_what_was_finished_stays) {
@@ -226,12 +226,12 @@ TEST(what_exceeds_the_picture_bytes_is_not_written_and_what_was_finished_stays) 
                 "-q --picture-bytes 300K scene.lua", words);
     CHECK_EQ_INT(count_files(".pfm", &bytes), 2);
     CHECK(bytes > 240000 && bytes < 241000);
-    /* What is replaced was written all the same. */
+    /* Replaced files count as written, too. */
     check_limit("local n = gr.node('n') while true do pcall(function() " PFM("'same.pfm'") " end) end",
                 "-q --picture-bytes 300K scene.lua", words);
     CHECK_EQ_INT(count_files("same.pfm", &bytes), 1);
     CHECK(bytes > 120000);
-    /* One that is larger than all that is allowed. */
+    /* A single picture larger than the limit. */
     check_limit("local n = gr.node('n') " PFM("'large.pfm'"), "-q --picture-bytes 100K scene.lua",
                 "large.pfm: is not written: the pictures of the run take more than 100 KiB");
     CHECK_EQ_INT(count_files("large.pfm", &bytes), 0);
@@ -285,7 +285,7 @@ TEST(exactly_as_many_bytes_as_are_allowed_are_written_and_then_nothing_is_begun)
     forget(result);
 }
 
-/* --script-output is for what scripts print and write. */
+/* --script-output limits what scripts print and write. */
 TEST(pictures_do_not_count_towards_the_output_of_a_script_nor_the_other_way_round) {
     struct test_result result = test_gray_scene("local n = gr.node('n') for i = 1, 5 do " PFM("i .. '.pfm'") " end",
                                                 "-q --script-output 1K scene.lua", NULL);

@@ -1,4 +1,4 @@
-/* The story of a pixel: what is told is what was computed, and the parts are the sum. */
+/* Pixel traces: the trace reports what was computed, and its parts add up to the sum. */
 #include "material/material_inputs.h"
 #include "render/aov.h"
 #include "render/pixel_trace.h"
@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* --- the parts of a ray are what it brings --- */
+/* --- the parts of a ray add up to its colour --- */
 
 static double difference(struct vec3 a, struct vec3 b) {
     return vec3_max_abs(vec3_sub(a, b)) / (1 + vec3_max_abs(a));
@@ -93,7 +93,7 @@ static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, st
     return true;
 }
 
-/* Tells every seventh pixel of the picture and holds it against the film. */
+/* Traces every seventh pixel of the picture and compares it with the film. */
 static struct check print_picture(struct stage *s, uint32_t width, uint32_t height) {
     enum { MAX = 2000 };
     static uint32_t pixels[MAX][2];
@@ -119,7 +119,7 @@ static struct check print_picture(struct stage *s, uint32_t width, uint32_t heig
     return check;
 }
 
-/* A mirror, marble, glass that swallows light, something rough, something that shines, and shadows between them. */
+/* A mirror, marble, absorbing glass, a rough surface, an emitter, and shadows between them. */
 static void fill_stage(struct stage *s) {
     struct material *mirror = stage_phong(s, vec3_make(0.2, 0.3, 0.2), vec3_all(0.7), 30);
     mirror->phong.reflect = 0.6;
@@ -214,7 +214,7 @@ TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
     stage_end(&s);
 }
 
-/* --- ways to nodes --- */
+/* --- node paths --- */
 
 static bool note_path(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     char(*texts)[200] = context;
@@ -251,7 +251,7 @@ TEST(ways_to_instances_tell_every_node_and_place_on_them) {
     CHECK(world_find_paths(&s.world, s.root, wanted, 2, &s.arena, found, &s.error));
     CHECK_TEXT(found[0], texts[1]);
     CHECK_TEXT(found[1], texts[11]);
-    /* Too little room cuts the text and tells its length. */
+    /* A short buffer truncates the text; the full length is returned. */
     struct scene_step step = {s.root, 0};
     char small[4];
     CHECK_EQ_INT(world_path_text(&step, 1, small, sizeof small), strlen(s.root->name) + 2);
@@ -266,8 +266,8 @@ static void release(struct test_result result) {
     free(result.err);
 }
 
-/* Compares "x":X,"y":Y ... "bytes":[R,G,B] of the first `count` stories with the picture; lines that the scene itself
- * prints, and stories of later pictures, are passed over. */
+/* Compares "x":X,"y":Y ... "bytes":[R,G,B] of the first `count` traces with the picture; lines printed by the scene and
+ * traces of later pictures are skipped. */
 static int compare_lines(const char *scene, const char *lines, const struct test_picture *picture, int count) {
     int compared = 0;
     for (const char *line = lines; *line && compared < count; line = strchr(line, '\n') + 1) {
@@ -289,7 +289,7 @@ static int compare_lines(const char *scene, const char *lines, const struct test
     return compared;
 }
 
-/* The first picture of a scene, and the stories of `count` random pixels of it. */
+/* The first picture of a scene, and the traces of `count` random pixels. */
 static void print_scene(const char *path, uint32_t width, uint32_t height, int count, const char *options) {
     char root[2048], file[4096];
     struct test_random random = {7};
@@ -362,7 +362,7 @@ static bool is_heavy(const char *name) {
     return false;
 }
 
-/* The scenes of data/; some take seconds for the smallest picture. */
+/* The scenes of data/; some take seconds even for the smallest picture. */
 static void print_demos(uint32_t width, uint32_t height, int count, const char *options, bool heavy) {
     char *names[100];
     int found = 0;

@@ -46,7 +46,7 @@ TEST(ply_properties_of_all_types_in_any_order_are_read) {
         for (size_t t = 0; t < sizeof types / sizeof types[0]; t++) {
             struct bytes b = {0};
             bool real = types[t].size == 8;
-            /* unknown elements of every shape before, between and behind */
+            /* unknown elements of every form before, between and after */
             bytes_print(
                 &b, "ply\r\nformat binary_%s_endian 1.0\r\nelement junk 3\r\nproperty %s a\r\nproperty double b\r\n",
                 big ? "big" : "little", types[t].name);

@@ -1,4 +1,4 @@
-/* PNG in and out: every kind of file libpng can write comes back as the texels it says; broken files are one line. */
+/* Reading and writing PNG: every kind of file that libpng can write gives its texels; broken files give one line. */
 #include "base/mem.h"
 #include "image/image.h"
 #include "image/levels.h"
@@ -33,11 +33,11 @@ static void no_flush(png_structp png) {
     (void)png;
 }
 
-/* One kind of file, with random samples and what they must come back as. */
+/* One kind of file, with random samples and the expected texels. */
 struct kind {
     int type, depth, interlace;
     bool transparency; /* a tRNS chunk */
-    bool gamma;        /* gAMA, sRGB or iCCP-like chunks that must change nothing */
+    bool gamma;        /* gAMA, sRGB or iCCP-like chunks that must have no effect */
     uint32_t width, height;
 };
 
@@ -368,7 +368,7 @@ static void noise_words(void *context, uint32_t y, uint16_t *line) {
         line[i] = (uint16_t)(i * 1777 + y * 1313 + (i * y) % 1100);
 }
 
-/* A picture of many stripes and a narrow one, with 8 and 16 bits, against the rows themselves and each other. */
+/* A picture of many strips and a narrow one, with 8 and 16 bits, compared with the rows and with each other. */
 TEST(png_bytes_are_the_same_by_any_number_of_threads) {
     uint32_t width = 1000;
     struct error error = {0};
@@ -413,7 +413,8 @@ TEST(png_write_tells_of_a_full_disk) {
     struct error error = {0};
     uint32_t width = 2000;
     const struct file_rules is_direct = {.is_direct = true};
-    CHECK(!png_write(&(struct file_target){.path = "/dev/full", .rules = &is_direct}, width, 100, noise_rows, &width, &error));
+    CHECK(!png_write(&(struct file_target){.path = "/dev/full", .rules = &is_direct}, width, 100, noise_rows, &width,
+                     &error));
     CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     CHECK(strncmp(error.text, "/dev/full: ", 11) == 0 && !strchr(error.text, '\n'));
 }
@@ -442,7 +443,7 @@ TEST(png_writing_survives_every_failed_allocation) {
         bool ok = png_write(FILE_AT(path), width, 10, noise_rows, &width, &error);
         mem_fail_at(0);
         CHECK(ok || error.kind == ERROR_MACHINE);
-        char *now = test_read_file(path, &size_after); /* the old picture is still there, whole */
+        char *now = test_read_file(path, &size_after); /* the old picture is unchanged */
         CHECK(ok || (size == size_after && memcmp(old, now, size) == 0));
         free(now);
     }

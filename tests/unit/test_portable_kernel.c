@@ -1,4 +1,4 @@
-/* The searches of triangles as they are compiled for processors without vectors. */
+/* The triangle kernels as compiled for processors without SIMD. */
 #define GRAY_NO_SIMD
 #include "mesh_makers.h"
 
@@ -19,7 +19,7 @@ static void add_up(void *context, const struct triangle_hit *hit) {
     sum->t += hit->t * (1 + hit->triangle);
 }
 
-/* One voxel lists a triangle once, so that what is met can be added up. */
+/* One voxel lists a triangle once, so that hits can be added up. */
 TEST(searches_without_vectors_give_the_bits_of_trying_every_triangle) {
     struct test_random random = {11};
     const char *names[SOUP_KINDS] = {"even", "slivers", "flat", "mixed sizes", "tiny in huge", "lattice", "line"};

@@ -1,7 +1,6 @@
-/* Every shape and every way of combining them against POV-Ray, where it is installed: tests/pov/pairs.lua tells both
- * programs the same scenes. Which surface a pixel shows must be the same, and how far away it is, but for pixels at
- * edges: those whose 3 x 3 neighbours, in gray's picture, show another surface or one that is 0.15 units nearer or
- * farther. */
+/* Every shape and every combination against POV-Ray, if it is installed: tests/pov/pairs.lua writes the same scenes for
+ * both programs. Which surface a pixel shows must be the same, and how far away it is, but for pixels at edges: those
+ * whose 3 x 3 neighbours, in gray's picture, show another surface or one that is 0.15 units nearer or farther. */
 #include "tests/harness.h"
 
 #include <math.h>
@@ -18,13 +17,13 @@
 #define DEPTH_TOLERANCE 4e-4
 #define FACET_TOLERANCE 2e-3
 #define EDGE_DEPTH 0.15
-/* No scene may hide behind its edges. */
+/* A scene must not consist mostly of edges. */
 #define MAX_EDGES 0.15
 
 struct view {
     int width, height;
-    int *colour;   /* a bit for each channel; 0: nothing */
-    double *depth; /* from the eye */
+    int *colour;   /* a bit for each channel; 0: no surface */
+    double *depth; /* from the camera */
 };
 
 static void take(struct view *view, int at, const double rgb[3]) {
@@ -63,7 +62,7 @@ static bool read_gray(const char *path, struct view *view) {
     return ok;
 }
 
-/* The next number of a PPM header; lines that begin with # are remarks. NULL at its end. */
+/* The next number of a PPM header; lines that begin with # are comments. NULL at its end. */
 static char *header_number(char *at, int *number) {
     int used = 0;
     while (at && (*at == '\n' || *at == ' ' || *at == '#'))
@@ -125,7 +124,7 @@ static void compare(const char *name, const struct view *gray, const struct view
                   name, other, far, largest, seen, edges);
 }
 
-/* Runs POV-Ray on the text of one scene and compares its picture with gray's, which is there. */
+/* Runs POV-Ray on the text of one scene and compares its picture with gray's, which exists already. */
 static void check_scene(const char *name, const char *text) {
     char path[600], command[2000];
     struct view gray = {0}, pov = {0};
@@ -134,7 +133,7 @@ static void check_scene(const char *name, const char *text) {
     (void)snprintf(command, sizeof command,
                    "cd '%s' && povray +I%s.pov +O%s.ppm +W200 +H150 +FP16 -A -D +WT1 File_Gamma=1.0 >%s.log 2>&1",
                    test_folder(), name, name, name);
-    if (system(command) != 0) { /* NOLINT: the name is a word of pairs.lua */
+    if (system(command) != 0) { /* NOLINT: the name comes from pairs.lua */
         test_fail(__FILE__, __LINE__, "povray fails on %s", path);
         return;
     }

@@ -1,4 +1,4 @@
-/* What is seen of other processes. */
+/* Information about other processes. */
 #include "base/process.h"
 #include "tests/harness.h"
 

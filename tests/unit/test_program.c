@@ -1,5 +1,5 @@
-/* The program as people meet it: exit statuses, names of pictures, signals, crashes, full disks, and the promise that
- * an old picture is never harmed. */
+/* The program from a user's view: exit statuses, names of pictures, signals, crashes, full disks, and the promise that
+ * an old picture is never damaged. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -19,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* It begins as a picture does: nothing else is replaced. */
+/* It begins like a picture: other files are never replaced. */
 #define OLD_PICTURE "PF\n1 an old picture"
 
 /* A lit ball and a mirror: edges, highlights, reflections. %s is the call of gr.render. */
@@ -80,7 +80,7 @@ static void holds_text(const char *name, const char *text) {
     free(have);
 }
 
-/* Files of the folder whose name holds ".part-": temporaries that were left behind. */
+/* Files of the folder with ".part-" in their names: remaining temporary files. */
 static int leftovers(const char *folder) {
     DIR *stream = opendir(folder);
     int count = 0;
@@ -421,11 +421,11 @@ TEST(a_full_device_is_an_error_of_the_machine) {
                 "below the working directory");
 }
 
-/* A file system of eight kilobytes, seen only by this process and its children, with an old picture on it. The program
- * is started there; what became of the picture is looked at before the file system goes. */
+/* A file system of eight kilobytes, visible only to this process and its children, with an old picture on it. The
+ * program runs there; the picture is checked before the file system is removed. */
 enum { NO_SMALL_DISK = 99, PICTURE_HARMED = 98 };
 
-/* An ordinary user mounts in a user namespace, where files can be made only by users that it knows. */
+/* An ordinary user mounts in a user namespace, where only users that it maps can create files. */
 static bool enter_namespace(void) {
     char map[64];
     uid_t user = geteuid();
@@ -619,7 +619,7 @@ TEST(a_script_inside_a_function_of_lua_itself_can_be_interrupted) {
     interrupted_script("string.find(string.rep('a', 200), string.rep('a*', 100) .. 'b')\n");
 }
 
-/* Seconds from the signal to the end of the program, the best of some: other programs run beside. */
+/* Seconds from the signal to the end of the program, the best of several: other programs use the machine. */
 static double shortest_goodbye(const char *scene, const char *const *words, double after) {
     double best = 1e9;
     write_in_folder("scene.lua", scene);
@@ -645,7 +645,7 @@ TEST(a_rendering_in_long_pixels_ends_soon) {
                               "  {gr.area_light({4, 5, 6}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}, {1, 0, 0})})\n",
                          words, 0.3);
     printf("    %.1f ms\n", 1e3 * took);
-    CHECK(took < 0.5); /* some milliseconds on a quiet machine */
+    CHECK(took < 0.5); /* some milliseconds on an idle machine */
 }
 
 TEST(a_build_ends_soon_with_its_memory) {
@@ -667,7 +667,7 @@ TEST(the_rendering_process_goes_with_its_supervisor) {
     pid_t program = start_endless(), child = child_of(program);
     CHECK(child > 0 && kill(program, SIGKILL) == 0);
     CHECK_EQ_INT(finish(program), 128 + SIGKILL);
-    /* It is gone, or a zombie that nobody has collected. */
+    /* It has ended, or is a zombie. */
     char path[64];
     bool gone = false;
     (void)snprintf(path, sizeof path, "/proc/%d/stat", (int)child);
@@ -685,7 +685,7 @@ TEST(check_builds_every_scene_and_writes_nothing) {
     CHECK_TEXT(result.err, "");
     ends(result, 0);
     CHECK(!exists("out.png"));
-    /* Two scenes that bite their own tails, and between them one that is right but for its material. */
+    /* Two scenes with cycles, and between them one that is correct except for its material. */
     ends_saying(
         test_gray_scene(
             "local a, b = gr.node('a'), gr.node('b')\n"
@@ -744,7 +744,7 @@ TEST(a_reader_of_standard_output_that_goes_away_does_the_picture_no_harm) {
 TEST(closed_standard_streams_do_not_spoil_a_picture) {
     write_in_folder("scene.lua", "print('words')\nio.stderr:write('more words')\n" SMALL);
     CHECK_EQ_INT(shell("\"$gray\" scene.lua >out.txt 2>&1 && mv out.png open.png && \"$gray\" scene.lua <&- >&- 2>&-"),
-                 3); /* the words are lost */
+                 3); /* the messages are lost */
     same_bytes("open.png", "out.png");
     CHECK_EQ_INT(shell("\"$gray\" --help >&- 2>err.txt"), 3);
     holds_text("err.txt", "gray: standard output cannot be written\n");

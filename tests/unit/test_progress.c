@@ -1,4 +1,4 @@
-/* The order of tiles, how far the work is, drafts, and what Ctrl-C leaves. */
+/* The order of tiles, the share of work done, drafts, and the files that Ctrl-C leaves. */
 #include "tests/harness.h"
 
 #include "base/random.h"
@@ -44,7 +44,7 @@ TEST(tiles_from_the_centre_come_by_their_distance_from_it) {
     }
 }
 
-/* Of any rectangle of tiles as large a share is done as of all, within a few tiles. */
+/* The share done of any rectangle of tiles equals that of the whole picture, within a few tiles. */
 TEST(spread_tiles_stand_for_the_others_at_any_time) {
     struct film film = film_of(32 * 30, 32 * 20);
     uint32_t order[600];
@@ -80,7 +80,7 @@ TEST(the_order_of_tiles_changes_no_byte) {
     stage_end(&s);
 }
 
-/* A job over a film of its own, with or without somebody who asks how far it is. */
+/* A job with its own film, with or without a thread that polls its progress. */
 static bool run_job(struct stage *s, struct film *film, struct progress_estimate *progress_estimate,
                     const _Atomic int *enough, struct render_statistics *statistics) {
     struct render_job job = {.world = &s->world,
@@ -137,15 +137,16 @@ TEST(the_time_left_is_the_time_so_far_over_the_work_that_is_missing) {
     CHECK_NEAR(progress_estimate_left(&progress_estimate, 7), 6, 1e-6);
     CHECK_NEAR(progress_estimate_left(&progress_estimate, 9.5), 3.5, 1e-6); /* it falls with the clock */
     CHECK_NEAR(progress_estimate_left(&progress_estimate, 20), 0, 0);
-    progress_estimate_report(&progress_estimate, 20, 80, 7 * second); /* the share never falls, what is left may grow */
+    progress_estimate_report(&progress_estimate, 20, 80,
+                             7 * second); /* the share never decreases; the time left may grow */
     CHECK_NEAR(progress_estimate_share(&progress_estimate), 0.25, 1e-8);
     CHECK_NEAR(progress_estimate_left(&progress_estimate, 7), 8, 1e-6);
     progress_estimate_reset(&progress_estimate, false);
     CHECK(!progress_estimate_is_wanted(&progress_estimate) && progress_estimate_left(&progress_estimate, 7) < 0);
 }
 
-/* A picture of 20 x 10 tiles whose left half costs ten times the right one, made row by row or column by column, with
- * rays that tell the truth, that tell nothing, and that are wrong by half as much again from tile to tile. */
+/* A picture of 20 x 10 tiles whose left half costs ten times as much as the right one, rendered row by row or column by
+ * column. The rays of the pre-pass estimate costs exactly, not at all, or with errors of up to half per tile. */
 static double cost_of(uint32_t tile) {
     return tile % 20 < 10 ? 1000 : 100;
 }
@@ -161,7 +162,7 @@ static void look_at_halves(struct time_estimate *time_estimate, double told, dou
     time_estimate_begin_tiles(time_estimate);
 }
 
-/* The largest error of what is left, of itself, from `from` tiles on until `until`. */
+/* The largest relative error of the time left, from `from` tiles on until `until`. */
 static double worst_error(struct time_estimate *time_estimate, const uint32_t *order, int from, int until) {
     double left = 0, done = 0, worst = 0;
     for (int i = 0; i < 200; i++)
@@ -187,8 +188,8 @@ TEST(time_estimate_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
         columns[i] = i % 10 * 20 + i / 10;
     }
     CHECK(tile_order(&film, ORDER_SPREAD, spread));
-    /* Rays that tell the truth: from the first tiles on, by any number of workers. Column by column all dear tiles come
-     * first, and what is believed before of cheap ones is not put to the test. */
+    /* Exact rays: good estimates from the first tiles on, with any number of workers. Column by column all expensive
+     * tiles come first, and the estimates for cheap ones are not tested. */
     for (int workers = 1; workers <= 3; workers++) {
         const uint32_t *orders[3] = {rows, columns, spread};
         for (int i = 0; i < 3; i++) {
@@ -198,12 +199,12 @@ TEST(time_estimate_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
             time_estimate_destroy(&time_estimate);
         }
     }
-    /* Rays that tell nothing: tiles that are spread stand for the others. */
+    /* Rays without information: tiles spread over the picture represent the others. */
     CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
     look_at_halves(&time_estimate, 0, 0);
     CHECK(worst_error(&time_estimate, spread, 66, 180) < 0.2);
     time_estimate_destroy(&time_estimate);
-    /* Half of each: the model learns what the rays left out. */
+    /* Half of each: the model learns the costs that the rays do not show. */
     CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
     look_at_halves(&time_estimate, 0.5, 0);
     CHECK(worst_error(&time_estimate, spread, 66, 190) < 0.1);
@@ -215,7 +216,7 @@ TEST(time_estimate_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
     time_estimate_destroy(&time_estimate);
 }
 
-/* A cost that rays cannot time: tiles cost by their edges alone. */
+/* A cost that rays cannot measure: tiles cost only by their edges. */
 TEST(time_estimate_learns_what_edges_cost) {
     struct time_estimate time_estimate;
     double left = 0, done = 0;
@@ -270,7 +271,7 @@ TEST(time_estimate_counts_tiles_under_way_and_those_of_others) {
     free(block);
 }
 
-/* Tiles that are begun are finished, others are not begun. */
+/* Tiles in progress are finished, others are not started. */
 static void stop_soon(void *context, uint32_t tile, uint32_t done, uint32_t count) {
     (void)tile, (void)count;
     if (done == 3)
@@ -361,7 +362,7 @@ TEST(a_quick_picture_has_its_size_and_one_sample_a_pixel) {
     release(result);
 }
 
-/* --- telling --- */
+/* --- messages --- */
 
 TEST(progress_as_json_has_the_share_of_the_work_and_the_time_left) {
     struct test_result result =

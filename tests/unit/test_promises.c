@@ -1,5 +1,5 @@
-/* Sentences of docs/security.md and docs/reliability.md that no other test would find false; the table "Promises and
- * attacks" in docs/reliability.md names all of them. */
+/* Claims of docs/security.md and docs/reliability.md that no other test would refute; the table "Promises and attacks"
+ * in docs/reliability.md names all of them. */
 #define _GNU_SOURCE
 #include "tests/attack_files.h"
 
@@ -21,7 +21,7 @@
 
 static char in[700];
 
-/* A folder that every user may use, with files and a scene. */
+/* A folder open to every user, with files and a scene. */
 static void fresh_folder(const char *files, const char *scene) {
     static int number;
     char path[1024], *text = NULL;
@@ -80,7 +80,7 @@ TEST(rendering_is_not_counted_as_time_of_the_script) {
     fresh_folder("", "p('x.png', 240, 240) p('y.png', 240, 240)");
     double before = seconds_of_children();
     CHECK_EQ_INT(attack_wait(attack_start(in, "-q -j 1 -full -ss 16 --script-time 0.2 scene.lua", 0), 100), 0);
-    CHECK(seconds_of_children() - before > 0.3); /* else it shows nothing */
+    CHECK(seconds_of_children() - before > 0.3); /* otherwise it is not displayed */
     expect("", "p('x.png', 9, 9) while true do end", "-q --script-time 0.2 scene.lua", 1, "scene.lua:");
 }
 
@@ -188,7 +188,7 @@ TEST(only_regular_files_are_read_and_nothing_waits) {
     free(files);
 }
 
-/* A folder and a link that leads out change places as fast as a process can. */
+/* A process exchanges a folder and a link that leads out as fast as it can. */
 TEST(links_that_are_exchanged_all_the_time_lead_no_reader_out) {
     static const char *const scene = "local good, bad = 0, 0\n"
                                      "for i = 1, 4000 do\n"
@@ -320,7 +320,7 @@ TEST(a_build_with_sanitizers_says_that_it_has_no_filter) {
     free(result.err);
 }
 
-/* The bytes that come out of a terminal in these seconds, after those that came before. */
+/* Appends the bytes that a terminal outputs in these seconds. */
 static size_t read_terminal(int terminal, char *bytes, size_t size, size_t used, double seconds) {
     for (double limit = attack_now() + seconds; attack_now() < limit && used + 1 < size;) {
         ssize_t more = read(terminal, bytes + used, size - used - 1);
@@ -390,7 +390,7 @@ TEST(a_crash_of_the_rendering_process_leaves_the_terminal_as_it_was) {
     (void)close(master);
 }
 
-/* --- how a picture gets its name --- */
+/* --- how a picture file gets its name --- */
 
 /* Calls of the supervisor, in their order: L locks a file, S syncs a file, D syncs the folder, N gives a name. */
 static void record_calls(char *calls, size_t size) {

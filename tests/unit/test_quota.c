@@ -1,8 +1,7 @@
-/* A quota that is used up: one line, status 3, the old picture and nothing beside it; and folders that may not be
- * written, by their mode or because their file system is read-only, with status 1. The quota is met once for real, on a
- * small file system with a quota where this user may mount one (btrfs counts what a subvolume takes, for root too), and
- * once with every call to the system saying so in its turn, as network file systems may at fsync, close and rename as
- * well. */
+/* An exhausted quota: one line, status 3, the old picture and no other file; and folders that may not be written,
+ * because of their mode or a read-only file system, with status 1. The quota is real in one test, on a small file
+ * system if this user may mount one (btrfs counts the size of a subvolume, for root too); in the other, each system
+ * call reports it, as network file systems may also do at fsync, close and rename. */
 #define _GNU_SOURCE
 #include "base/fault.h"
 #include "tests/harness.h"
@@ -13,7 +12,7 @@
 #include <string.h>
 #include <sys/wait.h>
 
-/* It begins as a picture does: nothing else is replaced. */
+/* It begins like a picture: other files are never replaced. */
 #define OLD_PICTURE "PF\n1 an old picture"
 
 /* %s is the file, then its width and height. */
@@ -53,7 +52,7 @@ static void expect_text(const char *name, const char *text) {
     free(have);
 }
 
-/* In a mount namespace of its own: what is mounted goes with it. 77: not possible here. */
+/* In a separate mount namespace, which takes its mounts with it. 77: not possible here. */
 static const char with_quota[] =
     "for tool in unshare mkfs.btrfs btrfs; do command -v $tool >/dev/null || exit 77; done\n"
     "[ -n \"$inside\" ] || { unshare -m true || exit 77; inside=1 exec unshare -m sh \"$0\"; }\n"
@@ -115,7 +114,7 @@ TEST(a_quota_may_be_met_by_any_call_to_the_system) {
     CHECK(told >= 3); /* a write, the sync, the rename */
 }
 
-/* 77: not possible here. Root gives up its rights over files first. */
+/* 77: not possible here. Root drops its privileges over files first. */
 static const char without_rights[] =
     "mkdir shut && printf 'PF\\n1 an old picture' >shut/out.png && chmod 555 shut\n"
     "rights=; [ $(id -u) != 0 ] || rights='setpriv --bounding-set=-all --inh-caps=-all'\n"

@@ -1,4 +1,4 @@
-/* The corners of the readers, one short file each: read, or refused with these words. */
+/* Corner cases of the readers, one short file each: accepted, or refused with these words. */
 #include "formats/decimal.h"
 #include "image/image_file.h"
 #include "model_makers.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 
 struct corner {
-    const char *name, *text, *words; /* NULL: it is read */
+    const char *name, *text, *words; /* NULL: it is accepted */
 };
 
 #define HEAD "{\"asset\":{\"version\":\"2.0\"},"
@@ -50,7 +50,7 @@ static const struct corner corners[] = {
                  "\"SCALAR\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},\"values\":{"
                  "\"bufferView\":1}}}]," MESH "}",
      "it cannot be the indices of vertices"},
-    /* sparse elements before and behind the two vertices that the indices name */
+    /* sparse elements before and after the two vertices that the indices name */
     {"a.gltf",
      HEAD
      "\"buffers\":[{\"uri\":\"data:;base64,AQIBAAI=\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":3},{"
@@ -215,7 +215,7 @@ TEST(mesh_files_with_too_many_of_anything_are_told) {
     /* more warnings than are kept */
     expect_repeated("a.gltf", HEAD TRIANGLE "\"meshes\":[{\"primitives\":[" ONE,
                     ",{\"attributes\":{\"POSITION\":0},\"mode\":0}", 30, "]}]}", NULL);
-    /* more slots in a mesh than are searched, and one that comes again */
+    /* more slots in a mesh than are searched, and a repeated one */
     struct bytes b = {0};
     bytes_print(&b, "%s", HEAD TRIANGLE "\"materials\":[{}");
     for (int i = 1; i < 300; i++)
@@ -263,7 +263,7 @@ TEST(any_allocation_may_fail_while_nodes_are_read) {
 }
 #endif
 
-/* What a test says of how many there may be stands for the numbers that an index of 32 bits cannot name. */
+/* A limit that the test sets replaces the limit of 32-bit indices. */
 static void expect_max(const char *name, const void *data, size_t size, size_t max, const char *words) {
     char path[512];
     struct model model;
@@ -307,7 +307,7 @@ TEST(more_than_an_index_can_name_is_told_by_every_reader) {
     write_stl(&b, &m, true, "ball");
     expect_max("t.stl", b.data, b.size, 5, "triangles are too many");
     bytes_free(&b);
-    /* More vertices than corners, which no reader needs to count by itself. */
+    /* More vertices than corners; the readers have no separate check for that. */
     bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\nproperty float z\n"
                     "element face 1\nproperty list uchar int vertex_indices\nend_header\n");
     for (int i = 0; i < 7; i++)
@@ -353,7 +353,7 @@ TEST(any_allocation_may_fail_while_long_lists_grow) {
     }
     check_failed_allocations("t.stl", &b);
     bytes_free(&b);
-    /* strips and faces with places on a picture, in both orders */
+    /* strips and faces with texture coordinates, in both orders */
     for (int order = 0; order < 2; order++) {
         bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 150\nproperty float x\nproperty float y\n"
                         "property float z\n");
@@ -376,7 +376,7 @@ TEST(any_allocation_may_fail_while_long_lists_grow) {
         check_failed_allocations("t.ply", &b);
         bytes_free(&b);
     }
-    /* many strips of one triangle, whose room nobody foresees */
+    /* many strips of one triangle, whose number is not known in advance */
     bytes_print(&b, "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
                     "element tristrips 3\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
     for (int k = 0; k < 3; k++) {
@@ -403,7 +403,7 @@ TEST(a_place_on_a_picture_that_is_no_number_is_told) {
     bytes_free(&b);
 }
 
-/* Members of gzip whose parts do not meet the pieces they go through zlib in: an empty one, a name of 10,000 bytes, and
+/* gzip members whose parts do not align with the blocks passed to zlib: an empty one, a name of 10,000 bytes, and
  * megabytes. */
 TEST(gzip_of_any_length_is_read_piece_by_piece) {
     char line[4096];
@@ -435,7 +435,7 @@ TEST(names_in_a_library_that_stands_alone_are_kept_as_they_are) {
 }
 
 #ifdef HAVE_JANSSON
-/* Each of 400 primitives uses three vertices and walks twice along 2,000 sparse ones. */
+/* Each of 400 primitives uses three vertices and passes twice over 2,000 sparse ones. */
 TEST(sparse_parts_that_are_walked_through_too_often_are_refused) {
     enum { SPARSE = 2000 };
     struct bytes b = {0}, buffer = {0};
@@ -486,7 +486,7 @@ TEST(numbers_of_any_length_are_read_exactly_or_refused) {
     much[1] = '.';
     CHECK(decimal_read(much, much + 150000, &x) == much + 150000 && x == 0);
     much[149999] = '1';
-    CHECK(decimal_read(much, much + 150000, &x) == NULL); /* too long for what remains of it */
+    CHECK(decimal_read(much, much + 150000, &x) == NULL); /* too long for the rest of the file */
     memset(much, '9', 1300);
     CHECK(decimal_read(much, much + 1300, &x) == NULL);
     CHECK(decimal_read(much, much + 300, &x) == much + 300 && x > 9e299);

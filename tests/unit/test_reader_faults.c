@@ -1,6 +1,6 @@
-/* Files of every kind, with everything in them that the readers know, put wrong in every place: each word replaced by
- * words that do not belong there, each byte changed, each end cut off; each allocation and each call to the system made
- * to fail. What comes of it is a model or one line that names the file. */
+/* Files of every kind that use every feature of the readers, damaged in every place: each word replaced by unexpected
+ * words, each byte changed, each tail cut off; and failures of each allocation and each system call. The result is a
+ * model or one line that names the file. */
 #include "model_makers.h"
 
 #include "base/fault.h"
@@ -78,7 +78,7 @@ static const char ply_corner_text[] =
 static const char stl_text[] = "solid a name\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                                "vertex 0 1 0\nendloop\nendfacet\nendsolid\nsolid\nendsolid b\n";
 
-/* Words that stand in the wrong place somewhere; kinds and sizes that the formats know among them. */
+/* Words to insert in wrong places, including kinds and sizes that the formats know. */
 static const char *const strange[] = {"0",
                                       "1",
                                       "2",
@@ -123,7 +123,7 @@ static void put(const char *name, const void *data, size_t size) {
     test_write_file(path, data, size);
 }
 
-/* What t.gltf stands for: buffers and pictures put in. */
+/* The text of t.gltf with its buffers and pictures inserted. */
 static void make_gltf(struct bytes *out) {
     static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
     struct bytes buffer = {0}, coded = {0}, picture = {0};
@@ -164,7 +164,7 @@ static void prepare(void) {
     put("t.mtl", mtl_text, strlen(mtl_text));
 }
 
-/* The file read and put into a scene, with everything that it names. */
+/* Reads the file into a scene with everything that it names. */
 static bool read_and_place(const char *path, const struct model_options *options, struct error *error, int *triangles) {
     struct model model;
     struct assets assets = {0};
@@ -188,7 +188,7 @@ static bool is_separator(char c) {
     return strchr(" \t\r\n:,{}[]", c) != NULL;
 }
 
-/* The end of the word at `at`: a string with its quotes, or what lies between separators. */
+/* The end of the word at `at`: a string with its quotes, or the text up to a separator. */
 static size_t word_end(const char *text, size_t size, size_t at) {
     size_t end = at + 1;
     if (text[at] == '"') {
@@ -208,7 +208,7 @@ static void expect_line(const char *path, bool ok, const struct error *error, co
         test_fail(__FILE__, __LINE__, "%s, %s: kind %d: %s", path, what, (int)error->kind, error->text);
 }
 
-/* Every word of the text left out, and replaced by every strange one. */
+/* Removes every word of the text, and replaces it by every unexpected one. */
 static void change_words(const char *name, const char *text, size_t size, const struct model_options *options) {
     char path[512];
     (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
@@ -235,7 +235,7 @@ static void change_words(const char *name, const char *text, size_t size, const 
     free(changed);
 }
 
-/* Number 1, 2, 3 ... fails until none is left to fail. */
+/* Call number 1, 2, 3 ... fails until a run has fewer calls. */
 static void fail_everything(const char *name, const struct model_options *options) {
 #ifdef GRAY_FAULTS
     char path[512];
@@ -291,7 +291,7 @@ TEST(any_word_of_an_obj_file_may_be_another) {
     check_text("t.obj", obj_text, strlen(obj_text), 5);
 }
 
-/* As two members of gzip, with zeros behind them. */
+/* As two gzip members, followed by zeros. */
 TEST(any_allocation_may_fail_while_gzip_is_read) {
     char line[2048];
     prepare();
@@ -321,8 +321,8 @@ TEST(any_word_of_an_stl_file_may_be_another) {
     check_text("t.stl", stl_text, strlen(stl_text), 1);
 }
 
-/* Each kind of map alone, each way to bend and to shine, metal without a map; an STL with a part that it does not name;
- * a mesh without triangles. */
+/* Each kind of map alone, each kind of bump and of emission, metal without a map; an STL with an unnamed part; a mesh
+ * without triangles. */
 TEST(any_allocation_may_fail_while_looks_are_placed) {
     static const char library[] = "newmtl a\nillum 2\nKs 1 1 1\nNs 0\nmap_Ks pic.png\nnewmtl b\nbump pic.png\n"
                                   "newmtl c\nillum 6\nNi 0.5\nNs 7\nnewmtl d\nillum 7\nNi 1.5\nnewmtl e\nillum 10\n"

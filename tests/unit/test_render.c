@@ -1,4 +1,4 @@
-/* What a picture must be, by closed forms and by symmetry; no golden files. */
+/* Pictures against closed forms and symmetries; no reference pictures. */
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -129,10 +129,10 @@ TEST(shadow_of_a_sphere_ends_where_geometry_says) {
     struct node *ball = stage_sphere(&s, s.root, white);
     stage_move(&s, ball, 0, 3, 0);
     stage_point_light(&s, vec3_make(0, 8, 0), vec3_all(1));
-    /* Looking down from above through the light: 1 unit is a known number of pixels. */
+    /* A view from above through the light: 1 unit is a known number of pixels. */
     s.camera = (struct camera){{0, 6, 0}, {0, -1, 0}, {0, 0, -1}, 90};
     s.camera.eye.y = 60;
-    s.camera.fov = 2 * atan(6.0 / 60) * 180 / pi; /* the floor's window is 12 x 12 */
+    s.camera.fov = 2 * atan(6.0 / 60) * 180 / pi; /* the visible part of the floor is 12 x 12 */
     s.settings.full = true;
     s.settings.samples = 4;
     CHECK(stage_render(&s, 240, 240));
@@ -175,7 +175,7 @@ TEST(a_face_seen_from_behind_gets_no_light_unless_two_sided) {
 
 /* --- superposition, symmetry, scale, threads --- */
 
-/* A bit of everything. `unit`: length of one. `mirrored`: x becomes -x. */
+/* A scene with many kinds of objects. `unit`: the length of one unit. `mirrored`: x becomes -x. */
 static void busy_scene(struct stage *s, double unit, bool mirrored) {
     struct node *top = stage_group(s, s->root);
     struct material *glass = stage_glass(s, 0.3, 0.8, 1.5);
@@ -221,7 +221,7 @@ static unsigned char *copy_film(const struct stage *s, size_t *size) {
     return copy;
 }
 
-/* The first film is kept, every later one must have its bytes. The caller frees *reference. */
+/* Keeps the first film; every later one must have the same bytes. The caller frees *reference. */
 static void check_same_film(const struct stage *s, unsigned char **reference) {
     size_t size;
     unsigned char *bytes = copy_film(s, &size);
@@ -308,7 +308,7 @@ TEST(every_accelerator_gives_the_same_picture) {
     free(reference);
 }
 
-/* What is set up for a picture does not depend on its size, and nothing else takes memory. */
+/* The memory set up for a picture does not depend on its size, and rendering allocates nothing else. */
 TEST(rendering_a_hundred_times_as_many_pixels_takes_no_more_allocations) {
 #ifndef GRAY_FAULTS
     test_skip("allocations are counted only in builds with GRAY_FAULTS");
@@ -317,7 +317,7 @@ TEST(rendering_a_hundred_times_as_many_pixels_takes_no_more_allocations) {
     uint64_t taken[3];
     stage_begin(&s, 2);
     busy_scene(&s, 1, false);
-    for (int i = 0; i < 3; i++) { /* the first one indexes meshes */
+    for (int i = 0; i < 3; i++) { /* the first one builds the indices of meshes */
         uint64_t before = mem_allocations();
         CHECK(stage_render(&s, i < 2 ? 16 : 160, i < 2 ? 12 : 120));
         taken[i] = mem_allocations() - before;
@@ -404,9 +404,9 @@ TEST(two_lights_together_are_the_sum_of_each_alone) {
         stage_end(&s[i]);
 }
 
-/* --- media: directions through glass, seen as the sky's colour --- */
+/* --- media: directions through glass, from the sky's colour --- */
 
-/* The sky {0, 0, (1 + y) / 2} tells the y of the unit direction that left the scene. */
+/* The sky {0, 0, (1 + y) / 2} shows the y of the unit direction that left the scene. */
 static double leaving_y(struct stage *s) {
     s->settings.samples = 1;
     s->settings.refract_limit = 10;
@@ -441,7 +441,7 @@ TEST(snell_through_a_glass_ball) {
     stage_end(&s);
 }
 
-/* Two spheres round the same centre: outer index a, inner index b. */
+/* Two concentric spheres: outer index a, inner index b. */
 static void nested_balls(double outer, double inner, double radius, bool camera_inside) {
     struct stage s;
     stage_begin(&s, 1);
@@ -474,7 +474,8 @@ TEST(glass_in_water_bubble_in_glass_shell_and_camera_inside_follow_snell) {
 }
 
 TEST(overlapping_solids_are_left_wherever_they_stand_in_the_stack) {
-    /* Two slabs, x-normal, that overlap: a ray passes 1 | A | A+B | B | 1 and leaves parallel to where it came from. */
+    /* Two slabs, x-normal, that overlap: a ray passes 1 | A | A+B | B | 1 and leaves parallel to its original
+     * direction. */
     struct stage s;
     stage_begin(&s, 1);
     for (int i = 0; i < 2; i++) {
@@ -515,7 +516,8 @@ TEST(total_internal_reflection_is_lost_without_use_tir_and_kept_with_it) {
         s.settings.samples = 1;
         s.sky = (struct sky){.kind = SKY_CONSTANT, .colour = {1, 1, 1}};
         CHECK(stage_render(&s, 1, 1));
-        /* With one reflection the path still ends inside: the second wall reflects it totally again: black. */
+        /* With a limit of one reflection the path ends inside: the second wall reflects it totally again, so it is
+         * black. */
         CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0, 0);
         CHECK_EQ_INT(s.statistics.reflected_rays, use_tir);
         stage_end(&s);

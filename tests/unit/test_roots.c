@@ -7,7 +7,7 @@
 #include "math/roots.h"
 #include "tests/harness.h"
 
-/* Coefficients (lowest first) of factor * product of (x - root), in long double so that they are rounded once. */
+/* Coefficients (lowest first) of factor * product of (x - root), in long double, so that they are rounded only once. */
 static void expand(const double *roots, int count, double factor, double *coefficients) {
     long double c[ROOTS_MAX_DEGREE + 1] = {factor};
     for (int i = 0; i < count; i++) {
@@ -29,7 +29,7 @@ static void sort(double *values, int count) {
     }
 }
 
-/* How far a last-place change of every coefficient can move the root, twice over. */
+/* Twice the distance by which a change of every coefficient in the last place can move the root. */
 static double tolerance_at(const double *c, int degree, double x) {
     double size = 0.0, slope = 0.0, power = 1.0;
     for (int i = 0; i <= degree; i++) {
@@ -239,7 +239,7 @@ TEST(roots_of_wildly_different_size_are_found) {
     CHECK_EQ_INT(roots_polynomial((double[]){2.0, -3.0, 1.0, 1e-200, 0, 0, 1e-305}, 6, 0.5, INFINITY, out), 2);
     CHECK_NEAR(out[0], 1.0, 1e-14);
     CHECK_NEAR(out[1], 2.0, 1e-14);
-    /* beyond the doubles it is left out */
+    /* a root beyond the range of double is omitted */
     CHECK_EQ_INT(roots_quartic(5e-324, 1e300, 0.0, -1e300, 0.0, out), 3);
     CHECK_NEAR(out[0], -1.0, 1e-14);
     CHECK(out[1] == 0.0);
@@ -273,8 +273,8 @@ TEST(roots_survive_random_bits) {
     }
 }
 
-/* What the solver can miss is a pair of roots that rounding of the coefficients may as well have taken away: counted by
- * the gap between the two. One root of a pair alone is never missed. */
+/* The solver may miss only a pair of roots that rounding of the coefficients can remove: counted by the gap between the
+ * two. It never misses only one root of a pair. */
 TEST(roots_of_close_pairs_are_missed_together_and_only_below_the_rounding_of_the_coefficients) {
     enum { GAPS = 10, POLYNOMIALS = 3000 };
     struct test_random random = {7};
@@ -285,7 +285,7 @@ TEST(roots_of_close_pairs_are_missed_together_and_only_below_the_rounding_of_the
             int degree = 3 + i % 4, count;
             roots[0] = test_uniform(&random, -0.9, 0.9);
             roots[1] = roots[0] + gap;
-            for (int j = 2; j < degree; j++) /* the others keep away */
+            for (int j = 2; j < degree; j++) /* the others are far away */
                 roots[j] = roots[0] + (j % 2 ? 1 : -1) * test_uniform(&random, 0.5, 2);
             expand(roots, degree, 1, c);
             count = roots_polynomial(c, degree, -INFINITY, INFINITY, out);
@@ -302,5 +302,5 @@ TEST(roots_of_close_pairs_are_missed_together_and_only_below_the_rounding_of_the
     CHECK_EQ_INT(wrong, 0);
     for (int k = 1; k <= 6; k++)
         CHECK_EQ_INT(missed[k], 0);
-    CHECK(missed[GAPS - 1] > 0); /* there the pairs of the true polynomial are gone */
+    CHECK(missed[GAPS - 1] > 0); /* there the exact polynomial has lost the pairs */
 }

@@ -1,6 +1,6 @@
-/* The runner of these tests and make test: what they reset, leave behind, say and end. The examples are tests that only
- * the runs below choose. Every process of such a run carries a word in its environment, by which it is found in /proc
- * wherever it has moved to. */
+/* The runner of these tests and make test: what they reset, print, end and clean up. The examples are tests that only
+ * the runs below select. Every process of such a run has a word in its environment, by which it is found in /proc in
+ * any session or group. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -26,7 +26,7 @@ TEST_EXAMPLE(example_takes_a_second) {
     (void)usleep(1000000);
 }
 
-/* A folder of its own, with one below it that cannot be written, and something in TMPDIR. */
+/* A private folder that contains a read-only folder, and a file in TMPDIR. */
 static void leave_files(void) {
     test_write_text(test_path("file.txt"), "text");
     CHECK(mkdir(test_path("locked"), 0700) == 0);
@@ -68,8 +68,8 @@ TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
     free(result.err);
 }
 
-/* A plain child, one in a session of its own, one that nobody waits for and that ignores what it can, one that is
- * stopped, and the program with its render process. */
+/* An ordinary child, one in its own session, an orphan that ignores every signal that can be ignored, a stopped one,
+ * and the program with its render process. */
 static void leave_processes(void) {
     test_write_text(test_path("scene.lua"), "gr.render(gr.node('n'), 'out.png', 8000, 8000, {0, 0, 1}, {0, 0, -1}, "
                                             "{0, 1, 0}, 40, {1, 1, 1}, {})");
@@ -99,7 +99,7 @@ TEST_EXAMPLE(example_waits_with_processes) {
         (void)pause();
 }
 
-/* Runs of them. */
+/* Runs of the examples. */
 
 static double clock_now(void) {
     struct timespec time;
@@ -107,7 +107,7 @@ static double clock_now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* Processes that carry the word of this test. */
+/* Processes that have the word of this test. */
 static int marked_processes(void) {
     char mark[512], path[64];
     int found = 0;
@@ -137,7 +137,7 @@ static int files_in(const char *path) {
     return count - 2;
 }
 
-/* The folder that stands for /tmp. */
+/* The folder used as /tmp. */
 static const char *temporary(void) {
     static char path[512];
     (void)snprintf(path, sizeof path, "%s/tmp", test_folder());
@@ -152,7 +152,7 @@ static const char *this_program(void) {
     return path;
 }
 
-/* Starts a line of shell; `$run` is the runner. What it prints goes into said.txt. It leads a group of its own. */
+/* Starts a shell command; `$run` is the runner. Its output goes to said.txt. It leads its own process group. */
 static pid_t start(const char *line) {
     char text[8192];
     (void)snprintf(text, sizeof text, "%s", test_path("said.txt"));
@@ -181,7 +181,7 @@ static int wait_for(pid_t child) {
     return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
 }
 
-/* The last answer stays until the next one. */
+/* The last result stays valid until the next call. */
 static const char *said(void) {
     static char *text;
     free(text);
@@ -194,7 +194,7 @@ static void expect(bool is, const char *what, const char *when) {
         test_fail(__FILE__, __LINE__, "%s (%s); said:\n%s", what, when, said());
 }
 
-/* Nothing may be left, after some seconds or at once. */
+/* No process may remain, after some seconds or immediately. */
 static void expect_nothing_left(double seconds, const char *when) {
     double begun = clock_now();
     while ((marked_processes() > 0 || files_in(temporary()) > 0) && clock_now() - begun < seconds)
@@ -216,7 +216,7 @@ static bool ends_with(const char *text, const char *end) {
     return length >= size && strcmp(text + length - size, end) == 0;
 }
 
-/* Starts the line with signals ignored and blocked. */
+/* Starts the command with signals ignored and blocked. */
 static pid_t start_ignoring(const char *line) {
     static const int ignored[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGCHLD, SIGUSR1, SIGALRM, SIGXFSZ};
     const size_t count = sizeof ignored / sizeof *ignored;
@@ -273,7 +273,7 @@ static void end_runner(int number, bool reaper) {
     (void)setenv("GRAY_EXAMPLE_READY", ready, 1);
     pid_t runner = start("exec $run --examples -j 3 example_waits example_crashes");
     expect(await_file(ready) && marked_processes() >= 8, "the processes did not start", when);
-    if (reaper) { /* the runner goes on without them */
+    if (reaper) { /* the runner continues without them */
         char line[64];
         (void)snprintf(line, sizeof line, "pkill -KILL -P %d", (int)runner);
         CHECK(system(line) == 0);
@@ -282,7 +282,7 @@ static void end_runner(int number, bool reaper) {
         CHECK(kill(runner, number) == 0);
         CHECK_EQ_INT(wait_for(runner), 128 + number);
     }
-    /* After SIGKILL the reapers end the tests while nobody waits for that. */
+    /* After SIGKILL the reapers end the tests on their own. */
     expect_nothing_left(number == SIGKILL && !reaper ? 20 : 0, when);
     free(ready);
 }
@@ -324,7 +324,7 @@ TEST(a_runner_says_how_far_it_is) {
     free(log);
 }
 
-/* make test, with a makefile and a runner that do as the test wants. */
+/* make test, with a makefile and a runner that the test controls. */
 
 static void make_tree(void) {
     CHECK(
@@ -375,7 +375,7 @@ TEST(make_test_counts_what_clang_refuses_and_says_what_it_leaves_out_without_cla
            "not skipped", "make test without clang");
 }
 
-/* Compiles a source of a tree of its own by the project's makefile. */
+/* Compiles a source of a separate tree with the project's makefile. */
 static int compile(const char *words) {
     char line[300];
     (void)snprintf(line, sizeof line, "cd $GRAY_EXAMPLE_RUN/warned && exec make -s BUILD=out %s out/src/base/it.o",
@@ -394,11 +394,11 @@ TEST(a_switch_that_forgets_a_kind_compiles_in_make_and_not_in_make_test) {
     test_write_text(test_path("warned/src/base/it.c"), forgets);
     CHECK_EQ_INT(compile(""), 0);
     expect(strstr(said(), "TWO") != NULL, "not named", "make");
-    CHECK(compile("WERROR=1") != 0); /* though the object is there */
+    CHECK(compile("WERROR=1") != 0); /* although the object exists */
     expect(strstr(said(), "TWO") != NULL, "not named", "make WERROR=1");
     test_write_text(test_path("warned/src/base/it.c"), whole);
     CHECK_EQ_INT(compile("WERROR=1"), 0);
-    /* Nothing is compiled anew by the one make after the other: the object stays the file that it was. */
+    /* The second make compiles nothing: the object stays the same file. */
     struct stat before, after;
     CHECK(stat(test_path("warned/out/src/base/it.o"), &before) == 0);
     CHECK_EQ_INT(compile(""), 0);
@@ -408,7 +408,7 @@ TEST(a_switch_that_forgets_a_kind_compiles_in_make_and_not_in_make_test) {
           before.st_mtim.tv_nsec == after.st_mtim.tv_nsec);
 }
 
-/* Ends make, or the script it runs, while it builds or tests. */
+/* Kills make, or the script it runs, during the build or the tests. */
 static void end_make_test(const char *command, bool builds, int number, bool group, bool script) {
     char when[200], *ready = strdup(test_path("ready")), line[1024];
     (void)snprintf(when, sizeof when, "%s, %s, signal %d to %s", command, builds ? "building" : "testing", number,
@@ -435,7 +435,7 @@ static void end_make_test(const char *command, bool builds, int number, bool gro
 TEST(make_test_that_is_ended_by_a_signal_leaves_no_process) {
     make_tree();
     for (int builds = 0; builds <= 1; builds++) {
-        end_make_test("make -s test", builds, SIGINT, true, false); /* as Ctrl-C does */
+        end_make_test("make -s test", builds, SIGINT, true, false); /* like Ctrl-C */
         end_make_test("make -s test", builds, SIGTERM, false, false);
         end_make_test("tools/test.sh", builds, SIGHUP, false, false);
     }

@@ -1,5 +1,5 @@
-/* The numbers of a picture: functions of their indices, the same as when they were computed where they are used, and
- * stratified over the samples of a pixel. */
+/* The random numbers of a picture: functions of their indices, with fixed values, stratified over the samples of a
+ * pixel. */
 #include "render/sampler.h"
 
 #include "tests/harness.h"
@@ -10,7 +10,7 @@ static struct sampler sample_of_pixel(uint64_t number) {
     return sampler_make(7, 1234, number, SIDE);
 }
 
-/* The first definition, written out: keys are chains of random_combine, and pictures depend on every link. */
+/* The definition, written out: keys are chains of random_combine, and pictures depend on every link. */
 TEST(sampler_keys_are_chains_of_seed_pixel_and_sample) {
     uint64_t pixel = random_combine(random_combine(7, 0), 1234);
     for (uint64_t number = 0; number <= ALL; number++) {
@@ -27,7 +27,7 @@ TEST(sampler_keys_are_chains_of_seed_pixel_and_sample) {
         CHECK(sampler_light(s.key, 5) == random_combine(s.key, 5) &&
               sampler_facet(s.key, 6) == random_combine(s.key, 6));
     }
-    /* As numbers, so that a change of random_combine is seen, too. */
+    /* As numbers, so that a change of random_combine is detected, too. */
     CHECK(sample_of_pixel(0).key == UINT64_C(0x51fc99a03bf636c1));
     CHECK(sample_of_pixel(5).key == UINT64_C(0x62d7cec3d5e8bb5b));
 }
@@ -107,7 +107,7 @@ TEST(a_lone_sample_has_one_cell_and_lights_of_the_specification_share_none) {
     struct sample_set a = sampler_on_light(&fifth, 77, 0, 4, false), b = sampler_on_light(&sixth, 77, 0, 4, false);
     for (uint32_t cell = 0; cell < 16; cell++) {
         struct sample2 p = sample_set_point(&a, cell), q = sample_set_point(&b, cell);
-        CHECK(p.x == q.x && p.y == q.y); /* a function of the light's key alone */
+        CHECK(p.x == q.x && p.y == q.y); /* a function of the light's key only */
     }
 }
 

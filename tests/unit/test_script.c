@@ -1,5 +1,5 @@
-/* Scripts as a whole: the scenes of tests/scripts, the messages of tests/errors, old Lua, files and their names,
- * definitions, what a host answers, and what happens when memory runs out. */
+/* Complete scripts: the scenes of tests/scripts, the messages of tests/errors, old Lua, files and their names,
+ * definitions, answers of a host, and failing allocations. */
 #include "base/mem.h"
 #include "base/version.h"
 #include "image/png_write.h"
@@ -343,8 +343,8 @@ static char *header(const char *text, const char *key) {
     return value;
 }
 
-/* tests/errors: `-- expect: FIRST LINE` with SCRIPT for the name of the file, perhaps `-- status: N` (1 if there is
- * none) and `-- arguments: ...`. */
+/* tests/errors: `-- expect: FIRST LINE` with SCRIPT for the name of the file, optionally `-- status: N` (default 1) and
+ * `-- arguments: ...`. */
 static void check_error_script(const char *name) {
     char path[512], arguments[512], expected[2048] = "";
     (void)snprintf(path, sizeof path, "tests/errors/%s", name);
@@ -441,7 +441,7 @@ static void white_row(void *context, uint32_t y, uint8_t *line) {
     memset(line, 255, 3 * 8);
 }
 
-/* A copy of the scene that uses everything, beside the files it needs. */
+/* A copy of the scene that uses every feature, in the folder of the files it needs. */
 static void prepare_everything(char path[512]) {
     const char *folder = test_folder();
     static const char *const names[][2] = {{"tests/scripts/everything.lua", "everything.lua"},
@@ -469,7 +469,7 @@ TEST(a_scene_that_uses_every_function_runs) {
     CHECK_TEXT(listener.files, "everything.png\neverything2.png\nnamed.png\n");
 }
 
-/* Most failures inside Lua are survived by its emergency collection, so the script may also end well. */
+/* Lua survives most of its own failures by an emergency collection, so the script may also succeed. */
 TEST(any_allocation_may_fail_while_every_function_is_used) {
     char path[512];
     struct listener listener = {.renders = 0};

@@ -1,5 +1,5 @@
-/* What scripts rarely do, one short text each: it runs, or it is refused with these words. Beside them scripts of an
- * older Lua, names that do not exist under --lenient, values of -D, texts for the transform order cut anywhere. */
+/* Rare features of scripts, one short text each: it runs, or it is refused with these words. Also scripts of an older
+ * Lua, unknown names under --lenient, values of -D, truncated texts for the transform order. */
 #include "base/fault.h"
 #include "script/order.h"
 #include "script/table.h"
@@ -8,7 +8,7 @@
 
 #include <sys/stat.h>
 
-/* long(x): a table of 41 entries whose length is 2^40, since its border is looked for by doubling. */
+/* long(x): a table of 41 entries whose length is 2^40, since Lua searches its border by doubling. */
 static const char preparation[] =
     "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) ball = gr.sphere('ball') "
     "lamp = gr.light({0, 0, 0}, {1, 1, 1}, {1, 0, 0}) function long(x) local s = {} for k = 0, 40 do s[k + 1] = "
@@ -41,7 +41,7 @@ static const struct corner corners[] = {
     {"coroutine.wrap(module)('three') assert(package.loaded.three)", NULL},
     {"assert(table.foreach({a = 1}, function() return 5 end) == 5)", NULL},
     {"assert(table.foreachi({1, 2}, function(i) if i == 2 then return 6 end end) == 6)", NULL},
-    /* handles and what is none */
+    /* handles and other values */
     {"gr.sphere(io.stdout)", "a userdata"},
     {"gr.sphere(coroutine.create(print))", "a coroutine"},
     {"ball.scale()", "nothing"},
@@ -68,7 +68,7 @@ static const struct corner corners[] = {
     {"gr.mesh{file = 'flag.obj', materials = {a = 5}}", "materials['a'] must be a material, not a number"},
     {"local m = {} for i = 1, 1001 do m['a' .. i] = glass end gr.mesh{file = 'flag.obj', materials = m}",
      "materials has more than 1000 entries"},
-    /* tables that claim to be long: see the preparation */
+    /* tables that pretend to be long: see the preparation */
     {"gr.node{children = long(ball)}", "has too many entries"},
     {"gr.mesh{verts = {{0, 0, 0}}, faces = {long(0)}}", "too many corners"},
     {"gr.height_field{heights = {long(0), long(0)}}", "has too many entries"},
@@ -205,7 +205,7 @@ TEST(values_of_defines_are_numbers_texts_tables_or_the_text_itself) {
     check(&all, &options);
 }
 
-/* Without a library, with one that is not there, with a broken module in it; without the sandbox. */
+/* Without a library, with a missing one, with a broken module in it; without the sandbox. */
 TEST(libraries_that_are_missing_or_broken_are_told) {
     char folder[512], file[600];
     static const struct corner missing = {"require('meshes')", "is not a folder"},
@@ -249,7 +249,7 @@ TEST(a_path_that_is_too_long_is_told) {
     free(path);
 }
 
-/* Every beginning of a text, in memory of exactly its size. */
+/* Every prefix of a text, in memory of exactly its size. */
 TEST(the_transform_order_of_a_text_cut_anywhere_is_found) {
     static const char text[] =
         "-- a comment\n--[==[ long\n ]=] ]== ]==] \t\r\f\v local s = [[a]=]b]] .. 'it\\'s' .. \"two\\\n\" - 1 -[=x\n"

@@ -1,4 +1,4 @@
-/* Which order of transforms the text of a scene asks for (docs/language.md 12.4), and that the orders do what they say.
+/* Which transform order the text of a scene implies (docs/language.md 12.4), and the effect of each order.
  */
 #include "script/order.h"
 #include "tests/unit/script_host.h"
@@ -115,7 +115,7 @@ TEST(neighbours_decide_when_the_scene_says_nothing) {
     expect_file("a.lua", NULL, ORDER_NEW, "");
 }
 
-/* Where the point (1,0,0) of the root's first child comes to lie. */
+/* The world position of the point (1,0,0) of the root's first child. */
 static void expect_point(enum script_order order, const char *text, double x, double y, double z) {
     struct listener listener = {.renders = 0};
     struct script_options options = {.transform_order = order};
@@ -145,7 +145,7 @@ TEST(each_order_composes_as_it_says) {
     expect_point(SCRIPT_ORDER_SEPARATE, twice, -3, 1, 1);
 }
 
-/* Where a node's calls take {0.3, -0.2, 0.9}. */
+/* The image of {0.3, -0.2, 0.9} under a node's calls. */
 static struct vec3 point_after(enum script_order order, const char *calls) {
     char text[1000];
     struct listener listener = {.renders = 0};
@@ -184,7 +184,7 @@ TEST(turns_by_axis_and_by_quaternion_are_turns_about_x_y_and_z_in_every_order) {
             struct vec3 a = point_after(orders[k], same[i][0]), b = point_after(orders[k], same[i][1]);
             CHECK_NEAR(vec3_length(vec3_sub(a, b)), 0, 1e-14);
         }
-    /* (1, 1, 1) and 120 degrees: x to y to z to x. The product of quaternions is the turn by the right one first. */
+    /* (1, 1, 1) and 120 degrees: x to y to z to x. The product of quaternions rotates by the right one first. */
     struct vec3 p = point_after(SCRIPT_ORDER_NEW, "n:rotate_quat(1, 1, 1, 1)");
     CHECK_NEAR(vec3_length(vec3_sub(p, vec3_make(0.9, 0.3, -0.2))), 0, 1e-15);
     struct vec3 one_by_one = point_after(SCRIPT_ORDER_NEW, "n:rotate_quat(1, 2, 3, 4) n:rotate_quat(2, -1, 0.5, 3)");

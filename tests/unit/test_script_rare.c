@@ -1,6 +1,6 @@
-/* The rarest ways through the binding: solids nested deeper than anybody builds, changes by the thousand, a library
- * with modules of every kind, what happens after the end of a script, messages that only look as if they named a place,
- * and every allocation and call to the system that fails on such ways. */
+/* Rare paths through the binding: solids nested very deeply, thousands of changes, a library with modules of every
+ * kind, code that runs after the end of a script, messages that only seem to contain a position, and failures of each
+ * allocation and system call on such paths. */
 #define _GNU_SOURCE
 #include "base/fault.h"
 #include "script/context.h"
@@ -16,7 +16,7 @@ static const char preparation[] =
     "glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 10, 0.5, 0.5, 1.5) ball = gr.sphere('ball') "
     "picture = {node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}}\n";
 
-/* 26 fields that nobody has, so that in any order of Lua's some come after a smaller one. */
+/* 26 unknown fields, so that in any iteration order some come after a smaller one. */
 #define MANY "local t = {} for i = 0, 25 do t[string.char(97 + i) .. '_'] = i end "
 
 static const struct corner corners[] = {
@@ -50,7 +50,7 @@ static const struct corner corners[] = {
     {"gr.image_material(glass, arg_folder .. 'none.png')", "cannot find '/"},
     {"dofile('huge.lua')", "huge.lua"},
     {"require('lua.knot')", NULL},
-    /* places and what looks like one */
+    /* positions in messages and text that resembles one */
     {"error('...' .. (arg_folder .. 'scene.lua'):sub(-56) .. ' x', 0)", "scene.lua x"},
     {"error(arg_folder .. 'scene.luax', 0)", "scene.luax"},
     {"error('[string \"x\"] y', 0)", "] y"},
@@ -123,7 +123,7 @@ TEST(ghosts_stand_in_lists_of_materials_and_behind_forms) {
         check_corner(preparation, &ghosts[i], &lenient);
 }
 
-/* Otherwise the name would be told in messages instead of the node's own. */
+/* Otherwise messages would contain this name instead of the node's own. */
 TEST(no_method_takes_a_text) {
     for (int f = 0; f < function_count(); f++)
         for (int p = 0; p < function_at(f)->parameter_count; p++)
@@ -159,7 +159,7 @@ TEST(a_change_that_fits_nothing_is_told_once_for_all_pictures) {
     CHECK_EQ_INT(listener.messages, 1);
 }
 
-/* coroutine.wrap and error put places in front of one another: one is told, the innermost. */
+/* coroutine.wrap and error each prepend a position: only the innermost is reported. */
 TEST(an_error_that_was_caught_and_raised_again_names_one_place) {
     struct listener listener = {.renders = 0};
     struct error error;
@@ -168,7 +168,7 @@ TEST(an_error_that_was_caught_and_raised_again_names_one_place) {
     CHECK(place && !strstr(place + 1, "scene.lua:") && !strstr(error.text, "scene.lua:3"));
 }
 
-/* What is closed while an error that no script catches is on its way gets nothing more done. */
+/* A __close handler has no effect while an error propagates that scripts cannot catch. */
 TEST(nothing_is_made_after_a_picture_that_failed_for_good) {
     struct listener listener = {.renders = 0};
     struct error error;
@@ -187,9 +187,9 @@ TEST(nothing_is_made_after_a_picture_that_failed_for_good) {
 
 TEST(scripts_end_where_memory_ends_whatever_they_are_doing) {
     static const char *const texts[] = {
-        /* nearly all that is asked for here is a chunk for setfenv */
+        /* nearly all of the memory requested here is a chunk for setfenv */
         "local e, hold = {}, {} local function f() return x end while true do hold = {hold} setfenv(f, e) end",
-        /* a handler that would be called for an error while things are closed */
+        /* a handler that would be called for an error during __close */
         "xpcall(function() local c <close> = setmetatable({}, {__close = function() error('again') end})\n"
         "local t = {} while true do t[#t + 1] = {} end end, function(m) return m end)",
     };
@@ -212,7 +212,7 @@ TEST(warnings_count_as_output_too) {
     CHECK(strstr(error.text, "printed more than its 1 MiB") != NULL);
 }
 
-/* Lua asks again for the same after it has collected its garbage; getting anything else does not undo the refusal. */
+/* Lua repeats the request after it has collected its garbage; success of another request does not undo the refusal. */
 TEST(memory_that_was_refused_is_forgotten_only_when_it_is_got_after_all) {
     struct script_context context = {.limits = {.account = {.limit = 10000}}};
     (void)mem_charge(&context.limits.account);
@@ -224,15 +224,15 @@ TEST(memory_that_was_refused_is_forgotten_only_when_it_is_got_after_all) {
     CHECK(kept && !context.limits.memory_out);
     large = limits_allocate(&context, NULL, 0, 7000);
     CHECK(!limits_allocate(&context, kept, 2000, 8000) && context.limits.memory_out);
-    large = limits_allocate(&context, large, 7000, 50); /* what shrinks is no request */
+    large = limits_allocate(&context, large, 7000, 50); /* shrinking a block is not a request */
     CHECK(large && !context.limits.refused_for_good);
-    void *same_size = limits_allocate(&context, NULL, 0, 8000); /* for somebody else */
+    void *same_size = limits_allocate(&context, NULL, 0, 8000); /* for another caller */
     CHECK(!same_size && context.limits.memory_out);
     CHECK(!limits_allocate(&context, large, 50, 0));
     kept = limits_allocate(&context, kept, 2000, 8000);
     CHECK(kept && context.limits.memory_out); /* too late */
     CHECK(!limits_allocate(&context, kept, 8000, 0));
-    /* Something else was got first. */
+    /* Another request was granted first. */
     context.limits.memory_out = context.limits.refused_for_good = false;
     kept = limits_allocate(&context, NULL, 0, 100);
     CHECK(!limits_allocate(&context, kept, 100, 20000) && context.limits.memory_out);
@@ -283,7 +283,7 @@ TEST(an_empty_name_of_the_library_is_none_where_there_is_no_sandbox) {
     check_corner("", &none, &options);
 }
 
-/* Without the sandbox a chunk may be byte code, which may have no globals to be given others. */
+/* Without the sandbox a chunk may be byte code, possibly without globals that setfenv could replace. */
 TEST(byte_code_without_globals_is_loaded_where_there_is_no_sandbox) {
     static const struct corner all[] = {
         {"local function put(name) local f = assert(io.open(arg_folder .. name, 'wb')) "
@@ -322,7 +322,7 @@ TEST(modules_beside_and_above_are_named_as_people_would_name_them) {
     CHECK(listen_to(&listener, path, &options, &error, NULL));
 }
 
-/* A file that its owner has closed, asked for by somebody who is not root: the reason is the system's own words. */
+/* A file without read permission, opened by a user other than root: the message contains the reason of the system. */
 TEST(what_the_system_refuses_is_told_in_its_words_where_there_is_no_sandbox) {
     const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .no_sandbox = true};
     static const struct corner refused = {"assert(io.open(arg_folder .. 'closed.txt'))",
@@ -398,7 +398,7 @@ TEST(the_transform_order_is_looked_for_in_files_wherever_require_finds_them) {
     CHECK(order_of_scene("scenes/b.lua", "require('tests.scripts.classic')", library).order ==
           order_of_scene("scenes/b.lua", "dofile('tests/scripts/classic.lua')", library).order);
     CHECK(strstr(order_of_scene("missing.lua", NULL, library).reason, "of its neighbour libx.lua") != NULL);
-    /* The 64th file is the last that is looked at. */
+    /* The 64th file is the last one inspected. */
     for (int i = 1; i <= 70; i++) {
         char name[32];
         (void)snprintf(name, sizeof name, "scenes/m%d.lua", i);
@@ -429,8 +429,8 @@ TEST(old_neighbours_are_counted_and_the_first_is_named) {
 /* Failures on demand. */
 #ifdef GRAY_FAULTS
 
-/* Runs the text again and again, whatever fails first after the picture it makes. Own: words of the error that it ends
- * with by itself, or NULL. */
+/* Runs the text repeatedly, with each possible failure after its picture. own: words of the error with which it ends by
+ * itself, or NULL. */
 static void fail_after_picture(const char *text, enum fault_kind kind, const struct script_options *options,
                                const char *own) {
     char whole[4096];

@@ -1,16 +1,16 @@
-/* Shapes at their corners: numbers that are none in every place of what they are built from, solids with any room for
- * crossings, meshes that are nearly the same, quadrics of every axis. */
+/* Corner cases of shapes: NaN and infinity in every parameter, solids with any capacity for crossings, nearly equal
+ * meshes, quadrics of every axis. */
 #include "shape/quadric.h"
 #include "shape/torus.h"
 #include "tests/unit/swept_makers.h"
 
-/* --- numbers that are none --- */
+/* --- NaN and infinity --- */
 
 static double lathe_numbers[] = {0, 0, 1, 0, 1, 1, 0, 2}, prism_numbers[] = {0, 1, 0, 0, 1, 0, 1, 1},
               sweep_numbers[] = {0.1, 0.2, 0, 0, 0, 1, 1, 0}, curve_numbers[] = {0.1, 0.2, 0, 0, 0, 1, 1, 0},
               field_numbers[] = {-1, 0, 1, 0, 1}, blob_numbers[] = {0.5, 0, 0, 0, 1, 0, 0, 1, 1}, patch_numbers[48];
 
-/* Where the count of a shape's numbers stands beside what builds it from them. */
+/* The number of a shape's parameters, and the function that builds it from them. */
 static bool build_lathe(struct arena *arena, struct error *error) {
     return lathe_build(arena, &(struct lathe_input){.points = (const double(*)[2])lathe_numbers, .count = 4}, error);
 }
@@ -77,7 +77,7 @@ TEST(shapes_refuse_every_number_that_is_none_and_every_place_too_far_away) {
         for (int i = 0; i < all[s].count; i++)
             for (size_t b = 0; b < sizeof bad / sizeof bad[0]; b++) {
                 double good = all[s].numbers[i];
-                /* How strong a part of a blob is, and where a prism or the ground ends, may be as large as it likes. */
+                /* The strength of a blob's part, and the ends of a prism or of the ground, may be infinite. */
                 bool fine = fabs(bad[b]) < INFINITY &&
                             ((all[s].numbers == blob_numbers && (i == 8 || i == 0)) ||
                              (all[s].numbers == prism_numbers && i < 2) || (all[s].numbers == field_numbers && i == 0));
@@ -117,7 +117,7 @@ TEST(shapes_refuse_counts_that_make_none) {
     arena_destroy(&arena);
 }
 
-/* A profile whose last point is its first is a loop, as if it were said so. */
+/* A profile whose last point equals its first one is a loop, as with the option. */
 TEST(profiles_that_come_back_to_their_first_point_are_loops) {
     struct arena arena = {0};
     static const double ring[][2] = {{1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}};
@@ -149,9 +149,9 @@ TEST(profiles_that_come_back_to_their_first_point_are_loops) {
     arena_destroy(&arena);
 }
 
-/* --- room for crossings --- */
+/* --- capacity for crossings --- */
 
-/* With whatever room is left, each question is answered as with enough, or says that there is too little. */
+/* With any remaining capacity each query gives the full result or reports that there is too little. */
 static void check_room(const struct geometry *solid, const struct ray *ray, struct geom_scratch *scratch) {
     struct crossing_list list = list_of_geometry(solid, ray, scratch), other;
     struct crossing nearest = {0}, near;
@@ -264,7 +264,7 @@ TEST(meshes_are_the_same_only_where_every_number_is) {
     struct mesh *empty = mesh_create(&none, &error);
     struct vec3 a, b;
     CHECK(empty && mesh_equals_input(empty, &none) && !mesh_open_edge(empty, &a, &b) && !mesh_is_outward(empty));
-    /* Hashes look at everything that may differ. */
+    /* Hashes include everything that may differ. */
     CHECK(mesh_input_hash(&quad) != mesh_input_hash(&two) && mesh_input_hash(&none) != mesh_input_hash(&quad));
     struct mesh *const all[] = {whole, split, uneven, empty};
     for (int i = 0; i < 4; i++)
@@ -273,7 +273,7 @@ TEST(meshes_are_the_same_only_where_every_number_is) {
 
 /* --- quadrics --- */
 
-/* A round tube along each axis, without end: the image goes round it once, and along it without end. */
+/* An infinite round tube along each axis: the image surrounds it once and repeats along it. */
 TEST(tubes_along_every_axis_are_hit_on_their_surface_with_their_gradient) {
     struct test_random random = {23};
     struct geom_scratch scratch;
@@ -310,8 +310,8 @@ TEST(tubes_along_every_axis_are_hit_on_their_surface_with_their_gradient) {
 
 /* --- tori --- */
 
-/* The distance between the surface and the ball is at most `major`; a line that meets a ball of radius minor + major
- * less often than twice may pass both. */
+/* The distance between the surface and the ball is at most `major`; a line with fewer than two crossings with a ball of
+ * radius minor + major may miss both. */
 TEST(a_torus_with_hardly_a_ring_is_a_ball) {
     static const double majors[] = {0, 1e-300, 1e-15, 1e-12, 1e-10, 1e-9, 1e-8, 3e-8, 1e-7, 1e-6};
     struct test_random random = {71};

@@ -165,7 +165,7 @@ TEST(transformed_shapes_are_hit_on_their_surface) {
         double residual = i % 2 ? sphere_residual(vec3_all(0), 1, p) : box_residual(&shape.box, p);
         CHECK_NEAR(residual, 0, 1e-9);
         CHECK_NEAR(vec3_length(vec3_sub(surface.point, p)), 0, 1e-9);
-        /* The normal carried to the world is outward there too: against a ray that enters. */
+        /* The normal points outwards in world space, too: against a ray that enters. */
         struct vec3 n = transform_normal(&world_from_object, surface.normal);
         CHECK(vec3_dot(n, world.direction) < 0);
     }
@@ -196,7 +196,7 @@ TEST(surface_error_bounds_the_distance_from_the_surface) {
     }
 }
 
-/* The sphere's parameters are worked out apart. */
+/* The sphere's parameters are computed independently. */
 static void describe_with_uv(const struct shape *shape, const struct ray *ray, const struct crossing *crossing,
                              struct surface *out) {
     shape_describe(shape, ray, crossing, out);

@@ -1,4 +1,4 @@
-/* Skies beyond the cross: six pictures, a map of the sphere, stops, the clear sky and its sun. */
+/* Skies other than the cross: six pictures, a map of the sphere, colour stops, the clear sky and its sun. */
 #include "image/image.h"
 #include "light/sky.h"
 #include "tests/harness.h"
@@ -98,7 +98,7 @@ static void check_seams(struct image *image) {
 
 TEST(a_map_of_the_sphere_has_no_seam_at_the_back_nor_at_the_poles) {
     check_seams(map_image());
-    /* No width has to be even. */
+    /* The width need not be even. */
     float texels[21 * 9 * 4];
     struct error error = {0};
     struct test_random random = {12};
@@ -113,7 +113,7 @@ TEST(a_sky_is_turned_counterclockwise_seen_from_above_and_made_brighter) {
     turned.intensity = 3;
     turned.turn_sine = 1;
     turned.turn_cosine = 0;
-    /* What stood at -z stands at -x after a quarter turn. */
+    /* A quarter turn moves the picture at -z to -x. */
     struct vec3 a = sky_colour(&sky, vec3_make(0, 0.6, -0.8), 0), b = sky_colour(&turned, vec3_make(-0.8, 0.6, 0), 0);
     CHECK(vec3_max_abs(vec3_sub(vec3_scale(a, 3), b)) < 1e-9);
     image_release(sky.image);
@@ -150,7 +150,7 @@ TEST(the_clear_sky_has_the_zenith_luminance_and_symmetry_of_its_model) {
             struct vec3 d = any_direction(&random), mirrored = {d.x, d.y, -d.z};
             CHECK(vec3_max_abs(vec3_sub(sky_colour(&sky, d, 0), sky_colour(&sky, mirrored, 0))) < 1e-12);
             CHECK(luminance(sky_colour(&sky, d, 0)) <= luminance(sky_colour(&sky, sky.clear.sun, 0)) * 1.3 + 1e-9 ||
-                  d.y < 0.1); /* bright round the sun and at the horizon */
+                  d.y < 0.1); /* bright around the sun and at the horizon */
         }
         struct vec3 away = sky_colour(&sky, vec3_make(-sin(0.8), cos(0.8), 0), 0);
         CHECK(away.z > away.y && away.y > away.x); /* blue */
@@ -167,7 +167,7 @@ TEST(the_sun_stands_where_the_almanac_says) {
     struct vec3 morning = sky_sun(80, 6, 0, 0, 0), equator = sky_sun(80, 12, 0, 0, 0);
     CHECK(morning.x > 0.99 && fabs(morning.y) < 0.05); /* rises in the east */
     CHECK(equator.y > 0.998);
-    /* An hour of the clock is fifteen degrees of longitude; a zone takes them back. */
+    /* An hour of clock time is fifteen degrees of longitude; a time zone compensates them. */
     struct vec3 a = sky_sun(172, 9, 40, 15, 0), b = sky_sun(172, 10, 40, 0, 0), c = sky_sun(172, 11, 40, 15, 2);
     CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-12);
     CHECK(vec3_max_abs(vec3_sub(a, c)) < 1e-12);

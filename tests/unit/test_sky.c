@@ -24,7 +24,7 @@ static void cross_set(struct cross *cross, uint32_t column, uint32_t row, uint32
     t[0] = r, t[1] = g, t[2] = b, t[3] = 255;
 }
 
-/* Takes the texels away. */
+/* Destroys the texels. */
 static struct sky cross_sky(struct cross *cross, bool mirror) {
     struct error error = {0};
     struct sky sky = {0};
@@ -37,11 +37,12 @@ static struct sky cross_sky(struct cross *cross, bool mirror) {
     return sky;
 }
 
-/* Letters, 5 x 7, drawn on the faces; none reads the same mirrored, turned or upside down except by what follows. */
+/* Letters, 5 x 7, drawn on the faces; those that look the same mirrored or turned are told apart by the checks below.
+ */
 struct letter {
     char name;
     uint32_t column, row;
-    struct vec3 view, up; /* somebody who looks at this face and sees it upright */
+    struct vec3 view, up; /* a viewer who looks at this face and sees it upright */
     const char *rows[7];
 };
 
@@ -71,7 +72,7 @@ static void check_letters(bool mirror) {
     for (int k = 0; k < 6; k++) {
         const struct letter *letter = &letters[k];
         struct vec3 view = letter->view, right = vec3_cross(view, letter->up);
-        if (mirror && view.x != 0) /* what is on the left stands on the right */
+        if (mirror && view.x != 0) /* left and right are exchanged */
             view.x = -view.x, right = vec3_cross(view, letter->up);
         char read[7][6] = {{0}};
         for (int y = 0; y < 7; y++) {
@@ -112,7 +113,7 @@ TEST(sky_faces_lie_where_the_contract_says) {
     image_release(sky.image);
 }
 
-/* Every texel of T and B at F's edges carries its column: it must be F's column. */
+/* Every texel of T and B at F's edges has its column as colour: it must be F's column. */
 TEST(sky_top_and_bottom_join_the_front_face) {
     struct cross cross = cross_make(SIZE, SIZE);
     for (uint32_t y = 0; y < SIZE; y++)
@@ -154,7 +155,7 @@ TEST(sky_has_no_seams_at_edges_and_corners) {
     for (uint32_t size = 1; size <= 33; size += 8) {
         struct sky sky = random_sky(size, size, size);
         for (int i = 0; i < 4000; i++) {
-            /* A point on an edge of the cube, or close to a corner, and its neighbours a hair away on both sides. */
+            /* A point on an edge of the cube, or close to a corner, and neighbours at a tiny distance on both sides. */
             double s[3] = {test_uniform(&random, -1, 1) > 0 ? 1 : -1, test_uniform(&random, -1, 1) > 0 ? 1 : -1,
                            i % 4 == 0 ? (i % 8 ? 1 : -1) : test_uniform(&random, -1, 1)};
             int axis = i % 3;

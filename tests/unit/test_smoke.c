@@ -1,5 +1,5 @@
-/* Every demo and every classic scene of the repository, tiny: they render, and what they show is no empty picture. Run
- * under the sanitizers by make test. */
+/* Every demo and every classic scene of the repository in a tiny size: they render, and the pictures are not empty.
+ * make test runs them with sanitizers. */
 #include "tests/harness.h"
 
 #include <dirent.h>
@@ -14,7 +14,7 @@ static int by_name(const void *a, const void *b) {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* The names in a folder that end so, sorted; from malloc. */
+/* The names in a folder with this extension, sorted; from malloc. */
 static int names_in(const char *folder, const char *end, char *names[SCENES]) {
     DIR *all = opendir(folder);
     int count = 0;
@@ -29,12 +29,12 @@ static int names_in(const char *folder, const char *end, char *names[SCENES]) {
     return count;
 }
 
-/* Writes the models that the scenes read: not beside other tests. */
+/* Writes the models that the scenes read: not in parallel with other tests. */
 static bool is_maker(const char *name) {
     return strncmp(name, "make_", 5) == 0;
 }
 
-/* Read by the scenes beside it. */
+/* Required by the scenes in the same folder. */
 static bool is_module(const char *name) {
     return strcmp(name, "studio.lua") == 0;
 }
@@ -93,7 +93,8 @@ TEST(smoke_every_demo_renders_in_small) {
     smoke("data", "demo.lua", false);
 }
 
-/* data/meshes.lua may be called so because no scene beside it asks for the module by that name: it has a second one. */
+/* data/meshes.lua may have this name because no scene in its folder requires the module by that name; the module has a
+ * second name. */
 static bool is_the_one_allowed(const char *folder, const char *scene) {
     char *scenes[SCENES];
     bool allowed = strcmp(folder, "data") == 0 && strcmp(scene, "meshes.lua") == 0;
@@ -111,8 +112,8 @@ static bool is_the_one_allowed(const char *folder, const char *scene) {
     return allowed;
 }
 
-/* The folder of a script is searched before the library: a scene called like a module would take its place in all
- * scenes beside it. */
+/* The folder of a script is searched before the library: a scene named like a module would replace it for all scenes in
+ * the folder. */
 TEST(smoke_no_scene_has_the_name_of_a_library_module) {
     static const char *const folders[] = {"data", "data/classic"};
     char *modules[SCENES], *scenes[SCENES];
@@ -147,7 +148,7 @@ TEST(smoke_scenes_of_light_and_air_render_in_small) {
     smoke("data", "pyramid-fog.lua", false);
 }
 
-/* As drafts, where they know one. */
+/* As drafts, if they support it. */
 TEST(smoke_every_demo_of_the_library_renders_in_small) {
     smoke("data/library", ".lua", false);
 }

@@ -1,4 +1,4 @@
-/* The points of path samples: scrambled (0,2)-sequences, each an unbiased cover of the unit square. */
+/* The points of path samples: scrambled (0,2)-sequences, each point uniform in the unit square. */
 #include "render/sampler.h"
 #include "tests/harness.h"
 
@@ -83,7 +83,7 @@ TEST(the_error_of_a_smooth_mean_falls_faster_than_that_of_random_points) {
     CHECK(error[1] < error[0] / 256); /* sixteen times the points: at least 1 / n^2 */
 }
 
-/* Two dimensions of one sample, and one dimension of two pixels, have nothing to do with each other. */
+/* Two dimensions of one sample, and one dimension of two pixels, are independent. */
 TEST(dimensions_and_pixels_are_independent) {
     enum { PIXELS = 4000 };
     double dimensions = 0, pixels = 0;

@@ -1,6 +1,6 @@
-/* What a picture must show, pixel by pixel, recomputed here from the formulas of the language alone
- * (docs/language.md 2 to 6): a small tracer of its own for spheres with light, mirrors, glass and nested media; images
- * on spheres and cubes; the materials of combined solids. Nothing of src/ but the noise is used. */
+/* Pictures recomputed pixel by pixel from the formulas of the language (docs/language.md 2 to 6): a small independent
+ * tracer for spheres with light, mirrors, glass and nested media; images on spheres and cubes; the materials of
+ * combined solids. It uses nothing of src/ except the noise. */
 #include "math/noise.h"
 #include "tests/harness.h"
 
@@ -63,7 +63,7 @@ static const struct look looks[] = {
     {{.02, .05, .1}, {.9, .95, 1}, 90, .15, .8, 1.5, false}, {{0, .02, .05}, {1, 1, .9}, 50, .1, .85, 1.33, false},
     {{.01, 0, 0}, {1, .9, 1}, 120, .3, .3, 1.7, true},       {{0, 0, 0}, {1, 1, 1}, 10, 0, 1, 1, false},
 };
-/* Glass in glass, a bubble in glass, two that overlap, one that sticks out, mirrors and a ground. */
+/* Glass in glass, a bubble in glass, two overlapping balls, one that protrudes, mirrors and a ground. */
 static const struct ball balls[] = {
     {0, {-2.2, -.3, -1}, .9}, {1, {2.1, .2, -1.5}, 1.1}, {2, {0, 0, 0}, 1.2},     {3, {-1.1, 1.5, .6}, .7},
     {4, {1.1, -1.2, 1}, .6},  {5, {.2, .1, .1}, .5},     {4, {0, -.7, .1}, .25},  {0, {0, -31.8, 0}, 30},
@@ -309,7 +309,7 @@ TEST(an_operand_that_is_shown_elsewhere_keeps_its_own_look_there) {
 
 /* --- images and patterns --- */
 
-/* A picture of w x h texels that are told apart by their colour: red counts columns, green rows. */
+/* An image of w x h texels with distinct colours: red counts columns, green rows. */
 static void write_texels(const char *name, uint32_t w, uint32_t h) {
     char path[600];
     uint8_t *rgb = malloc(3 * (size_t)w * h);
@@ -324,7 +324,7 @@ static void write_texels(const char *name, uint32_t w, uint32_t h) {
     free(rgb);
 }
 
-/* Counts pixels whose texel is not the one at fractions (u, v) of columns and rows; those near an edge are passed over.
+/* Counts pixels whose texel is not the one at fractions (u, v) of columns and rows; those near an edge are skipped.
  */
 static int wrong_texel(const uint8_t *found, double u, double v, uint32_t w, uint32_t h) {
     double x = u * w, y = v * h;
@@ -438,7 +438,7 @@ TEST(images_on_spheres_follow_both_formulas_from_all_around) {
     }
 }
 
-/* In the picture the world's x and y run from -2 to 2 on the plane z = 0. */
+/* The picture shows x and y from -2 to 2 of the plane z = 0. */
 static void check_pattern(const char *name, bool wood, int interpolation, bool turned) {
     struct test_picture p = picture(name);
     int wrong = 0, seen = 0;
@@ -522,7 +522,7 @@ TEST(switches_for_scenes_of_other_programs_do_what_they_say) {
     renders(ONE_PIXEL, "--ambient plain");
     expect_rgb("t.png", 0, 0, .1 + .5 * (.5 * .8 + .2 * phong), .2 + .6 * (.25 * .8 + .4 * phong),
                .3 + .7 * (.125 * .8 + .6 * phong));
-    /* (0, 0, -1) as a point to look at is the same here; from (3, 0, 4) it is not. */
+    /* (0, 0, -1) as a target gives the same view here; from (3, 0, 4) it does not. */
     renders("local r = gr.node('r') r:add_child(gr.nh_sphere(gr.material({1,0,0}, {0,0,0}, 1), {1,2,3}, .1))\n"
             "gr.render(r, 't.png', 3, 3, {3,7,4}, {1,2,3}, {0,1,0}, 5, {1,1,1}, {})\n",
             "--view target -side-tolerance 9 -corner-tolerance 9");
@@ -671,7 +671,7 @@ TEST(every_spelling_of_a_shape_gives_the_same_picture) {
     }
 }
 
-/* Decorators that change different things may change places; two patterns may not. */
+/* Decorators that change different inputs commute; two patterns do not. */
 TEST(decorators_compose_in_any_order) {
     renders(
         "local glass = gr.rr_material({.2,.3,.1}, {1,1,1}, 40, .2, .5, 1.5)\n"

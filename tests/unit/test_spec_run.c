@@ -1,5 +1,5 @@
-/* What the command line and the renderer promise as a whole (docs/language.md 10, 12.3, 13), each recomputed or counted
- * here. */
+/* The promises of the command line and the renderer (docs/language.md 10, 12.3, 13), each recomputed or counted here.
+ */
 #include "tests/harness.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static void renders(const char *scene, const char *arguments) {
     "gr.render(root, 't.png', 117, 83, {0,0,8}, {0,0,-1}, {0,1,0}, 35, {.3,.3,.3}, {gr.light({3,5,6}, {.8,.8,.8}, "    \
     "{1,0,0}), gr.area_light({-5,4,4}, {1,0,0}, {0,1,0}, {.3,.3,.3}, {1,0,0})})\n"
 
-/* Bytes are roundings: the squared distance of two colours lies between these bounds. */
+/* Bytes are rounded: the squared distance of two colours lies between these bounds. */
 static void bounds(const uint8_t *a, const uint8_t *b, double *low, double *high) {
     *low = *high = 0;
     for (int k = 0; k < 3; k++) {
@@ -135,8 +135,8 @@ TEST(bytes_are_255_c_rounded_at_the_half_after_clamping) {
 
 /* --- area lights --- */
 
-/* A post throws a half shadow of a long light on the ground: every pixel sees k of the N x N cells, and where the share
- * is known in closed form, k is within one column of cells of it (a ray never leaves its cell). */
+/* A post casts the penumbra of a long light on the ground: every pixel sees k of the N x N cells, and k differs from
+ * the closed form by at most one column of cells (a ray never leaves its cell). */
 TEST(the_share_of_an_area_light_is_counted_in_cells_and_true_to_one_column) {
     static const int sizes[] = {1, 2, 4, 8, 16};
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
@@ -238,7 +238,7 @@ TEST(three_hundred_pictures_with_one_moving_node_build_the_mesh_once) {
     for (const char *line = result.out; (line = strstr(line, "\"build_seconds\":")); line++, pictures++)
         rest += pictures ? number_after(line, "\"build_seconds\":") : 0;
     CHECK_EQ_INT(pictures, 300);
-    CHECK(rest < 299 * first / 20); /* each of the others takes less than a twentieth */
+    CHECK(rest < 299 * first / 20); /* each of the other renders takes less than a twentieth */
     CHECK(number_after(result.out, "\"triangles\":") == 2 * 199 * 199);
     free(result.out);
     free(result.err);
@@ -366,7 +366,7 @@ TEST_LONG(an_obj_of_a_million_triangles_is_a_picture_in_seconds_and_200_bytes_a_
     double triangles = number_after(result.out, "\"triangles\":"), peak = number_after(result.out, "\"peak_bytes\":");
     CHECK(triangles > 1e6);
     if (!strstr(GRAY_CONFIG, "san"))
-        CHECK(peak < 200 * triangles); /* the whole process, the text it reads included */
+        CHECK(peak < 200 * triangles); /* the complete process, including reading the text */
     CHECK(number_after(result.out, "\"build_seconds\":") < 30);
     free(result.out);
     free(result.err);
@@ -384,7 +384,7 @@ static void make_folder(const char *name) {
     CHECK(mkdir(path, 0777) == 0);
 }
 
-/* In a mesh file of its own each place gets so many triangles as its rank: the count tells which one was read. */
+/* Each folder gets a mesh file with as many triangles as its rank: the count shows which file was read. */
 TEST(files_are_looked_for_beside_the_scene_then_here_then_in_assets_then_by_their_bare_name) {
     static const char *const places[] = {"a/s/m/x.obj", "m/x.obj", "a/s/Assets/m/x.obj", "a/Assets/m/x.obj",
                                          "a/s/x.obj"};

@@ -10,7 +10,7 @@ TEST(stl_text_and_binary_are_closed_solids_again) {
     maker_round(&m);
     struct mesh *wanted = maker_mesh(&m);
     static const char *const names[] = {"solid ball", "made by a program"};
-    for (int kind = 0; kind < 3; kind++) { /* text; binary that calls itself solid; binary */
+    for (int kind = 0; kind < 3; kind++) { /* text; binary that begins with "solid"; binary */
         struct bytes b = {0};
         struct model model;
         struct error error;
@@ -183,7 +183,7 @@ TEST(gzip_that_is_broken_or_grows_beyond_reason_is_refused) {
         CHECK_EQ_INT(mesh_face_count(only_mesh(&model)), 2);
         model_destroy(&model);
     }
-    whole.data[whole.size - 6] ^= 1; /* the check sum */
+    whole.data[whole.size - 6] ^= 1; /* the checksum */
     check_refused("t.obj.gz", whole.data, whole.size, NULL);
     check_changed_anywhere("t.obj.gz", &more, 3000);
     check_failed_allocations("t.obj.gz", &more);

@@ -37,7 +37,8 @@ TEST(light_fades_exponentially_with_the_way_inside_glass) {
     }
 }
 
-/* What a rough mirror reflects of uniform light: the mean over facets of what leaves the surface at once. */
+/* The share of uniform light that a rough mirror reflects: the mean over facets of the light that leaves the surface
+ * directly. */
 static double albedo_of(double cosine, double alpha) {
     enum { N = 64 };
     struct vec3 up = {0, 0, 1}, view = {sqrt(1 - cosine * cosine), 0, cosine};
@@ -52,7 +53,7 @@ static double albedo_of(double cosine, double alpha) {
     return sum / (N * N);
 }
 
-/* Light that meets a second facet is lost, nothing else. */
+/* Only light that meets a second facet is lost. */
 TEST(a_rough_mirror_loses_in_uniform_light_what_its_facets_mask) {
     for (int i = 0; i <= 4; i++) {
         struct stage s;
@@ -88,8 +89,8 @@ TEST(a_rough_mirror_loses_in_uniform_light_what_its_facets_mask) {
     }
 }
 
-/* Polished glass cannot be seen in uniform light; rough glass is darker by what its facets mask, which is not put back
- * (docs/limits.md). */
+/* Polished glass is invisible in uniform light; rough glass is darker by the light that its facets mask, which is not
+ * compensated (docs/limits.md). */
 TEST(glass_in_uniform_light_loses_what_its_facets_mask) {
     static const double left[] = {1, 0.980, 0.833};
     for (int i = 0; i <= 2; i++) {
@@ -108,13 +109,14 @@ TEST(glass_in_uniform_light_loses_what_its_facets_mask) {
         double sum = 0;
         for (uint32_t p = 0; p < 12 * 12; p++)
             sum += stage_pixel(&s, p % 12, p / 12).x / 144;
-        CHECK_NEAR(sum, left[i], i ? 0.01 : 1e-3); /* what is missing of 1 goes round inside more than 100 times */
+        CHECK_NEAR(sum, left[i],
+                   i ? 0.01 : 1e-3); /* the light missing from 1 is reflected inside more than 100 times */
         stage_end(&s);
     }
 }
 
-/* A visible disc over a rough floor, both seen from the axis: the rays that meet the disc are those of facets flatter
- * than half its angle, less what is masked of their light. */
+/* A visible disc over a rough floor, both seen from the axis: the rays that meet the disc are those of facets tilted by
+ * less than half its angle, minus their masked light. */
 TEST(rough_reflection_spreads_as_its_distribution_says) {
     static const double roughness[] = {0.2, 0.4, 0.7};
     for (int i = 0; i < 3; i++) {
@@ -139,7 +141,7 @@ TEST(rough_reflection_spreads_as_its_distribution_says) {
         s.camera = (struct camera){{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, 1e-3};
         s.settings.area_samples = 1;
         s.settings.samples = 1;
-        s.lights[0].include = (const struct node *const[]){NULL}; /* seen, but lights nothing */
+        s.lights[0].include = (const struct node *const[]){NULL}; /* visible, but lights nothing */
         double expected = 0, before = 0;
         for (int k = 1; k <= 1000; k++) {
             double slope = flat * k / 1000, share = slope * slope / (alpha * alpha + slope * slope);

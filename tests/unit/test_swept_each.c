@@ -2,7 +2,7 @@
  * the Bernstein roots below them. */
 #include "tests/unit/swept_makers.h"
 
-/* ---- each shape by itself ---- */
+/* ---- each shape alone ---- */
 
 TEST(lathe_of_a_rectangle_is_a_cylinder_and_of_half_a_circle_a_sphere) {
     struct arena arena = {0};
@@ -44,7 +44,7 @@ TEST(lathe_of_a_rectangle_is_a_cylinder_and_of_half_a_circle_a_sphere) {
     arena_destroy(&arena);
 }
 
-/* The crossings of a polyline lathe by the quadratic of each cone, independently. */
+/* The crossings of a polyline lathe, independently, by the quadratic of each cone. */
 TEST(lathe_of_a_polyline_agrees_with_cones_by_the_quadratic_formula) {
     struct arena arena = {0};
     struct shape shape = make_lathe(&arena, SPLINE_LINEAR, vase, 8, false, false);
@@ -193,7 +193,7 @@ TEST(sweep_of_one_straight_piece_is_a_capsule_or_a_rounded_cone) {
         struct crossing_list list = list_of(&shape, &ray, &scratch);
         wrong += list.count > 2; /* convex */
         for (uint32_t k = 0; k < list.count; k++) {
-            /* The deepest ball at the crossing just touches it: least of |p - c(x)| - r(x) by ternary search. */
+            /* The deepest ball at the crossing just touches it: the minimum of |p - c(x)| - r(x) by ternary search. */
             struct vec3 p = ray_at(&ray, scratch.items[k].t);
             double lo = 0, hi = 1, min = INFINITY;
             for (int n = 0; n < 120; n++) {
@@ -291,8 +291,8 @@ TEST(blob_of_one_ball_is_a_sphere_and_of_one_cylinder_a_capsule) {
     arena_destroy(&arena);
 }
 
-/* A plane one percent of the size inside of each side meets the blob: some line of many in it does; and nothing is
- * outside. */
+/* A plane inside each side of the box, at 1 % of the size, meets the blob, because one of many lines in it does; and
+ * nothing is outside. */
 TEST(blobs_have_boxes_within_a_percent_of_the_tightest) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
@@ -468,7 +468,7 @@ TEST(curve_is_met_where_the_line_passes_nearer_than_half_its_width) {
 
 /* ---- patches ---- */
 
-/* The six sides of a cube bulged into a ball-like thing, each side with its own turn and handedness of parameters. */
+/* The six sides of a cube, inflated almost to a ball, each with its own rotation and handedness of parameters. */
 static void bulged_cube(double (*points)[3]) {
     for (int side = 0; side < 6; side++)
         for (int j = 0; j < 4; j++)

@@ -62,7 +62,7 @@ TEST(swept_shapes_keep_parity_and_place_on_special_lines) {
                 tally.disorder += list.count % 2;
                 for (uint32_t k = 0; k < list.count; k++)
                     tally.disorder += scratch.items[k].enter != (k % 2 == 0) || isnan(scratch.items[k].t);
-                /* Points of the line are told apart where it does not run along a surface. */
+                /* Points of the line are tested where it does not run along a surface. */
                 if (i % 3 == 0 && vec3_max_abs(ray.direction) > 1e-3 && i % 7)
                     check_ray(&shape, &ray, size, 40, false, &scratch, &tally);
             }
@@ -93,7 +93,8 @@ TEST(swept_shapes_have_no_crossings_with_rays_that_are_none) {
     geom_scratch_destroy(&scratch);
 }
 
-/* From a million sizes away the answers are those of a ray that begins nearby, as far as the origin's digits reach. */
+/* From a distance of a million sizes the results are those of a ray that begins nearby, within the precision of the
+ * origin. */
 TEST(swept_shapes_are_crossed_from_far_away_as_from_near) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
@@ -334,7 +335,7 @@ TEST(swept_shapes_have_derivatives_that_follow_their_image_coordinates) {
     geom_scratch_destroy(&scratch);
 }
 
-/* u to the right and v upwards seen from outside, or both turned round, but not one of them. */
+/* u increases to the right and v upwards as seen from outside, or both are reversed, but not only one. */
 TEST(swept_shapes_never_show_pictures_mirrored) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 256));
@@ -399,7 +400,7 @@ TEST(swept_shapes_have_tight_boxes_under_affine_maps) {
                 int axis = side / 2, second = (axis + 1) % 3, third = (axis + 2) % 3;
                 double lo[3] = {box.min.x, box.min.y, box.min.z}, span[3] = {size.x, size.y, size.z};
                 bool reached = false;
-                /* A plane one percent inside must meet the shape: lines in it. */
+                /* A plane 1 % inside the box must meet the shape: tested by lines in it. */
                 for (int n = 0; n < 4000 && !reached; n++) {
                     double o[3], d[3] = {0, 0, 0};
                     o[axis] = lo[axis] + span[axis] * (side % 2 ? 0.99 : 0.01);

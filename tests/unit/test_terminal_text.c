@@ -1,5 +1,5 @@
-/* Lines of standard error that begin with "gray:" are the program's: texts of scenes in any pieces, with any invisible
- * characters and anything that moves a cursor, become lines that do not. */
+/* Only the program's own lines on standard error begin with "gray:": output of scenes, in any fragments, with invisible
+ * characters and cursor movements, never begins so. */
 #include "base/terminal_text.h"
 
 #include "base/error.h"
@@ -37,7 +37,7 @@ static void shown(const char *text, size_t size, const char *wanted) {
     line_guard_take(&guard, text, size);
     line_guard_flush(&guard);
     CHECK_TEXT(page.text, wanted);
-    /* Byte by byte it is the same. */
+    /* Written byte by byte, the result is the same. */
     guard = guard_of(&page);
     for (size_t i = 0; i < size; i++)
         line_guard_take(&guard, text + i, 1);
@@ -84,7 +84,7 @@ TEST(a_scene_begins_no_line_as_the_program_does) {
     shown(many, strlen(many), wanted);
 }
 
-/* What begins a line after the program has written one, or what a flush has put out, is not continued. */
+/* Text at the start of a line after a message of the program, or after a flush, is not a continuation. */
 TEST(what_was_held_back_is_not_completed_later) {
     static const char *const pieces[][2] = {
         {"gra", "y: x"}, {"g", "ray: x"}, {"gray", ":"}, {"\xef\xbb", "\xbfgray: x"}, {"g\xe2\x80\x8b", "ray: x"}};
@@ -113,7 +113,7 @@ TEST(what_was_held_back_is_not_completed_later) {
     CHECK(!guard.open);
 }
 
-/* The letters of a line that are seen, by a list of its own. */
+/* The visible letters of a line, by an independent list. */
 static bool looks_like_the_program(const char *line, size_t size) {
     static const char *const unseen[] = {"\xe2\x80\x8b", "\xef\xbb\xbf", "\xcc\x81", "\xf3\xa0\x81\xa7", "\xc2\xad"};
     char seen[8] = "";
@@ -186,7 +186,7 @@ TEST(no_random_text_in_random_pieces_looks_like_the_program) {
             double what = test_uniform(&random, 0, 1);
             if (what < 0.05)
                 line_guard_flush(&guard);
-            else if (what < 0.1) { /* a line of the program, which ends one that is open */
+            else if (what < 0.1) { /* a line of the program, which ends an open line */
                 put(&page, guard.open ? "\nP\n" : "P\n", guard.open ? 3 : 2);
                 line_guard_new_line(&guard);
             }

@@ -1,5 +1,5 @@
-/* Texts of strangers on their way to a terminal and into JSON: well-formed UTF-8 stays, byte by byte (RFC 3629); what
- * could steer a terminal, and what is no UTF-8, does not. */
+/* Untrusted text for a terminal and for JSON: well-formed UTF-8 is unchanged, byte by byte (RFC 3629); terminal
+ * controls and invalid UTF-8 are escaped. */
 #include "session/text.h"
 #include "tests/harness.h"
 
@@ -35,7 +35,7 @@ TEST(well_formed_utf8_of_every_length_stays) {
     expect(text_print_json, "\xC3\xA4 \xE2\x82\xAC \xF4\x8F\xBF\xBF", "\"\xC3\xA4 \xE2\x82\xAC \xF4\x8F\xBF\xBF\"");
 }
 
-/* Overlong forms, surrogates, beyond U+10FFFF, continuations that are none or stand alone, a text that ends early. */
+/* Overlong forms, surrogates, beyond U+10FFFF, missing or lone continuation bytes, a truncated text. */
 TEST(bytes_that_are_no_utf8_become_one_replacement_each) {
     static const struct {
         const char *text, *json;
@@ -50,7 +50,7 @@ TEST(bytes_that_are_no_utf8_become_one_replacement_each) {
                {"\x80", "\"\\ufffd\""}};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         expect(text_print_json, all[i].text, all[i].json);
-    /* On a terminal lone bytes that are no control stay what they are, as in the file system they come from. */
+    /* On a terminal lone bytes that are not controls are unchanged, as in the file names they come from. */
     expect(text_print_line, "\xC3x\xFF", "\xC3x\xFF\n");
 }
 

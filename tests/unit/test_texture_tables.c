@@ -1,4 +1,4 @@
-/* The tables of textures and bumps of a world: what materials say at a hit by index is what the authored trees say. */
+/* The tables of textures and bumps of a world: at a hit, materials by index give the values of the authored trees. */
 #include "material/material_inputs.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
@@ -10,7 +10,7 @@ enum { MATERIALS = 24, TEXTURES = 40 };
 struct authored_materials {
     struct stage stage;
     struct image *image;
-    const struct texture *textures[TEXTURES]; /* all but what materials make of them */
+    const struct texture *textures[TEXTURES]; /* all kinds except those that materials make */
     uint32_t texture_count;
     struct material *materials[MATERIALS];
     struct node *nodes[MATERIALS];
@@ -26,7 +26,7 @@ static const struct texture *any_texture(struct authored_materials *a, struct te
     return a->textures[(uint32_t)test_uniform(random, 0, a->texture_count)];
 }
 
-/* One of several, over parts that are there already, so that trees share parts. */
+/* One of several textures over existing parts, so that trees share parts. */
 static struct texture any_over_any(struct authored_materials *a, struct test_random *random) {
     struct texture_image image = {.image = a->image, .mapping = MAPPING_UV};
     const struct texture *first = any_texture(a, random), *second = any_texture(a, random);
@@ -68,7 +68,7 @@ static void make_materials(struct authored_materials *a, struct test_random *ran
         CHECK(!derived || material_add_bump(m, &bump, arena, &s->error));
         a->materials[i] = m;
         a->nodes[i] = stage_cube(s, s->root, m);
-        /* A torus shows images as they were asked for. */
+        /* A torus shows images with the mapping that was requested. */
         a->nodes[i]->shape = (struct shape){.kind = SHAPE_TORUS, .torus = {1, 0.2}};
     }
 }
@@ -134,7 +134,7 @@ TEST(materials_of_a_world_read_from_its_tables_what_the_authored_ones_read_from_
     CHECK_EQ_INT(world->material_count, MATERIALS);
     CHECK_EQ_INT(world->bump_count, MATERIALS / 2);
     check_as_authored(world, &random);
-    for (int i = 0; i < MATERIALS; i += 2) /* colours change, what is read does not */
+    for (int i = 0; i < MATERIALS; i += 2) /* colours change, the kinds of inputs do not */
         a.materials[i]->phong.kd = vec3_make(0.5, 0.25, 1);
     world_update_materials(world);
     check_as_authored(world, &random);

@@ -16,7 +16,7 @@
 struct palette {
     struct arena arena;
     struct error error;
-    struct image *image; /* 2 x 2, one colour with alpha 0.4: (10, 20, 30) of 255 where it counts */
+    struct image *image; /* 2 x 2, one colour with alpha 0.4: (10, 20, 30) of 255 */
 };
 
 static void palette_init(struct palette *p) {
@@ -80,7 +80,7 @@ static bool same(struct vec3 a, struct vec3 b) {
 
 /* --- every kind --- */
 
-/* One texture of the kind, and what it is at the hit by its definition. */
+/* One texture of the kind, and its value at the hit by definition. */
 static const struct texture *make(struct palette *p, enum texture_kind kind, const struct hit *hit,
                                   struct vec3 *wanted) {
     struct vec3 at = hit->pattern_point;
@@ -90,7 +90,7 @@ static const struct texture *make(struct palette *p, enum texture_kind kind, con
     case TEXTURE_CONSTANT:
         *wanted = vec3_make(0.1, 0.2, 0.7);
         return colour(p, 0.1, 0.2, 0.7);
-    case TEXTURE_PARAMETER: /* no material is there */
+    case TEXTURE_PARAMETER: /* there is no material */
         *wanted = vec3_all(1);
         return texture_parameter(INPUT_KD);
     case TEXTURE_VERTEX_COLOUR:
@@ -173,7 +173,7 @@ TEST(a_shared_texture_is_what_it_is_alone) {
             CHECK(same(texture_read_colour(&shared, &reader), texture_colour(&shared, &hit)));
             CHECK(texture_read_scalar(&shared, &reader) == texture_scalar(&shared, &hit));
         }
-        CHECK_EQ_INT(reader.count, 2); /* the colour and the number */
+        CHECK_EQ_INT(reader.count, 2); /* the colour and the scalar */
     }
     palette_destroy(&p);
 }
@@ -192,7 +192,7 @@ TEST(every_kind_stays_below_its_bound_and_constants_are_their_average) {
             struct vec3 average = texture_estimate(texture, NULL, NULL, TEXTURE_AVERAGE);
             CHECK(value.x <= bound.x + 1e-15 && value.y <= bound.y + 1e-15 && value.z <= bound.z + 1e-15);
             CHECK(average.x <= bound.x + 1e-15 && average.y <= bound.y + 1e-15 && average.z <= bound.z + 1e-15);
-            if (texture->kind == TEXTURE_CONSTANT || texture->kind == TEXTURE_IMAGE) /* the image is even */
+            if (texture->kind == TEXTURE_CONSTANT || texture->kind == TEXTURE_IMAGE) /* the image is uniform */
                 CHECK_NEAR(vec3_length(vec3_sub(average, value)), 0, 1e-14);
         }
     palette_destroy(&p);
@@ -222,7 +222,7 @@ TEST(alpha_of_an_image_covers_is_ignored_darkens_is_undone_or_is_read_alone) {
         struct texture over = texture_image(&image, white);
         CHECK_NEAR(texture_colour(&over, &hit).x, wanted[alpha], 1e-15);
         struct hit bare = hit;
-        bare.has_uv = false; /* the surface has no coordinates: what is below */
+        bare.has_uv = false; /* the surface has no coordinates: the texture below is used */
         CHECK(same(texture_colour(&over, &bare), vec3_all(1)));
     }
     palette_destroy(&p);
@@ -344,7 +344,7 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
             for (int i = 0; i < (is_colour ? 3 : 1); i++)
                 CHECK(after[i] == (other == input ? 0.5 : 1) * before[i]);
         }
-        base.phong.shininess += 1; /* numbers of the base go on to count */
+        base.phong.shininess += 1; /* later changes of the base's numbers count */
         material_inputs_at(&over, &hit, &look);
         CHECK(look.shininess == base.phong.shininess * (input == INPUT_SHININESS ? 0.5 : 1));
         material_inputs_at(&base, &hit, &plain);
@@ -352,7 +352,7 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
     palette_destroy(&p);
 }
 
-/* What the chain of decorators did, link after link. */
+/* The result of the chain of decorators, link by link. */
 TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
     struct palette p;
     struct test_random random = {17};
@@ -420,9 +420,9 @@ TEST(metalness_moves_kd_to_ks_and_loses_nothing) {
     palette_destroy(&p);
 }
 
-/* --- relief --- */
+/* --- bump maps --- */
 
-/* Rises by 1/255 a texel along u. */
+/* Rises by 1/255 per texel along u. */
 static struct image *ramp(struct error *error) {
     static uint8_t texels[256 * 4];
     for (int i = 0; i < 256; i++) {
@@ -532,15 +532,15 @@ TEST(mappings_become_those_of_the_shape_that_shows_them) {
         image.mapping = texture_mapping_on(mappings[asked], LAYOUT_SPHERE);
         CHECK(texture_coordinates(&image, &ball, &at));
         double turn = atan2(n.z, n.x) / 6.283185307179586;
-        if (image.mapping != MAPPING_CUBE) { /* from the centre, wherever it is: half a turn apart */
+        if (image.mapping != MAPPING_CUBE) { /* from the centre at any position: half a turn apart */
             CHECK_NEAR(at.u, mappings[asked] == MAPPING_UV ? 0.5 + turn : turn, 1e-15);
             CHECK_NEAR(at.v, acos(n.y) / 3.141592653589793, 1e-15);
         }
         image.mapping = texture_mapping_on(mappings[asked], LAYOUT_FACES);
         CHECK(texture_coordinates(&image, &box, &at));
-        if (image.mapping != MAPPING_SPHERE) /* of the face, from above */
+        if (image.mapping != MAPPING_SPHERE) /* of the face, from the top */
             CHECK(at.u == 0.25 && at.v == 0.125 && at.wrap_u == IMAGE_CLAMP);
-        /* Once more changes nothing. */
+        /* A second call changes nothing. */
         for (int layout = 0; layout < SURFACE_LAYOUTS; layout++) {
             enum texture_mapping on = texture_mapping_on(mappings[asked], (enum surface_layout)layout);
             CHECK(texture_mapping_on(on, (enum surface_layout)layout) == on);
@@ -549,7 +549,7 @@ TEST(mappings_become_those_of_the_shape_that_shows_them) {
     palette_destroy(&p);
 }
 
-/* Images of other mappings below each kind of texture, found whichever way the tree goes. */
+/* Images with other mappings below each kind of texture are found in every branch of the tree. */
 TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     struct palette p;
     palette_init(&p);
@@ -576,13 +576,13 @@ TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     const struct texture *ratio = copy->mix.ratio.authored, *product = copy->mix.a.authored;
     CHECK(copy == on->bump.authored->texture.authored && ratio == product->multiply.a.authored && ratio->shared);
     CHECK(ratio->image.lookup.mapping == MAPPING_BALL && image->image.lookup.mapping == MAPPING_BY_SHAPE);
-    /* Without coordinates the original shows what is below its image; the copy shows the image, which is even. */
+    /* Without coordinates the original shows what is below its image; the copy shows the image, which is uniform. */
     struct surface_inputs bare, shown, flat;
     material_inputs_at(&covered, &ball, &bare);
     material_inputs_at(on->base, &ball, &shown);
     material_inputs_at(&covered, &square, &flat);
     CHECK(!same(bare.kd, shown.kd) && same(shown.kd, flat.kd));
-    base.phong.kd = vec3_scale(base.phong.kd, 2); /* what changes of the base later reaches copies */
+    base.phong.kd = vec3_scale(base.phong.kd, 2); /* later changes of the base reach copies */
     material_inputs_at(on->base, &ball, &bare);
     CHECK(same(bare.kd, vec3_scale(shown.kd, 2)));
     palette_destroy(&p);
@@ -641,14 +641,14 @@ static void check_equal(const char *first, const char *second) {
     free(b);
 }
 
-/* What a script writes for a texture of the kind; NULL: scripts make none. */
+/* The Lua expression for a texture of the kind; NULL: scripts cannot make one. */
 static const char *in_words(enum texture_kind kind) {
     switch (kind) {
     case TEXTURE_CONSTANT:
         return "{.2, .4, .6}";
     case TEXTURE_PARAMETER:
     case TEXTURE_VERTEX_COLOUR:
-    case TEXTURE_MAP: /* of inputs that are shares */
+    case TEXTURE_MAP: /* for inputs that are fractions */
         return NULL;
     case TEXTURE_IMAGE:
         return "gr.texture('a.png')";

@@ -1,5 +1,6 @@
-/* Files of tiles with right checks and wrong contents: each of them is refused with its reason. What tells two pictures
- * apart; the keeper of a checkpoint, and what it does when memory, the disc or somebody else is in the way. */
+/* Tile files with correct checksums and wrong contents: each is refused with its reason. The data that distinguish two
+ * pictures; the writer of checkpoints, and its behaviour without memory, without disk space and with concurrent
+ * changes. */
 #include "base/fault.h"
 #include "base/hash.h"
 #include "output/checkpoint.h"
@@ -15,7 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { KEY = 32 + 32, SIDE = 40, TILES = 4, RECORDS = 8 }; /* 40 x 40 pixels: 2 x 2 tiles of 32 */
+enum { KEY = 32 + 32, SIDE = 40, TILES = 4, RECORDS = 8 }; /* 40 x 40 pixels: 2 x 2 tiles of 32 pixels */
 
 /* A file under construction. */
 struct maker {
@@ -72,7 +73,7 @@ static void refused(struct maker *m, const char *words) {
     free(m->bytes);
 }
 
-/* A done picture: number, key, digest, name. */
+/* A finished picture: number, key, digest, name. */
 static void done_payload(struct maker *p, const char *name, size_t length) {
     static const uint8_t zeros[KEY + 16];
     *p = (struct maker){0};
@@ -81,7 +82,7 @@ static void done_payload(struct maker *p, const char *name, size_t length) {
     add(p, name, length);
 }
 
-/* The numbers of a picture, as they stand in its record. */
+/* The numbers of a picture in the order of its record. */
 struct numbers {
     uint32_t number, full_width, full_height, x0, y0, width, height;
     double exposure;
@@ -300,7 +301,7 @@ TEST(pictures_that_do_not_belong_together_are_told_apart_by_everything) {
     DIFFERS(deep = true, "its tone settings differ");
 }
 
-/* A film with half of its tiles done, as a checkpoint would keep them. */
+/* A film with half of its tiles done, as in a checkpoint. */
 static struct film half_film(void) {
     struct film film = {.full_width = SIDE, .full_height = SIDE};
     struct error error;
@@ -312,7 +313,7 @@ static struct film half_film(void) {
     return film;
 }
 
-/* Once one of them has failed, the next try is as it should be. */
+/* After a failure the next try succeeds. */
 TEST(any_allocation_or_call_may_fail_while_tiles_are_written_and_read) {
 #ifndef GRAY_FAULTS
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
@@ -343,7 +344,7 @@ static struct options options_for(const char *path, bool resume) {
     return (struct options){.checkpoint = path, .resume = resume, .checkpoint_every = 0};
 }
 
-/* One at a time; the names of these tests are anywhere. */
+/* One test at a time; the names of these tests need not be related. */
 static const struct picture_files *files_for(const struct options *options) {
     static struct picture_files files;
     files = (struct picture_files){.options = options};
@@ -385,7 +386,7 @@ TEST(a_checkpoint_reports_names_that_are_too_long_and_files_that_are_damaged) {
     test_write_text(path, "GRAYTILE and no more");
     options = options_for(path, true);
     checkpoint_init(&checkpoint, &options, files_for(&options));
-    for (int i = 0; i < 2; i++) { /* said again for every picture */
+    for (int i = 0; i < 2; i++) { /* repeated for every picture */
         error = (struct error){0};
         CHECK(!checkpoint_open(&checkpoint, "a.png", notice, &error));
         CHECK(strstr(error.text, "broken.tiles: is ") != NULL);
@@ -394,7 +395,7 @@ TEST(a_checkpoint_reports_names_that_are_too_long_and_files_that_are_damaged) {
     CHECK(access(path, F_OK) == 0); /* not ours */
 }
 
-/* A run that was stopped in its second picture, and what goes on from there. */
+/* A run that was stopped in its second picture, and its continuation. */
 static void leave_checkpoint(const char *path, const char *first, struct film *film) {
     const struct tile_picture picture = some_picture();
     struct tile_picture second = picture;
@@ -412,7 +413,7 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
     test_write_text(first, "a picture");
     CHECK(checkpoint_note_written(&checkpoint, 1, &picture.key, first, &error));
     CHECK(checkpoint_note_written(&checkpoint, 1, &picture.key, "/nothing/there.png",
-                                  &error)); /* as a pipe is: not kept */
+                                  &error)); /* like a pipe: not kept */
     CHECK(checkpoint_has_written(&checkpoint, 2, &picture.key, "b.png", &written, &error) && !written);
     CHECK(checkpoint_update(&checkpoint, &second, film, true, &tiles, &error));
     CHECK_EQ_INT(tiles, 2);
@@ -466,10 +467,10 @@ TEST(a_checkpoint_resumes_only_the_same_picture) {
                 CHECK(strstr(error.text,
                              what == 5 ? "it is another part of the picture" : "it was made with different options"));
         }
-        /* Until the run has come as far as the one before, the file is not written again. */
+        /* The file is not written again until the run has reached the state of the previous one. */
         CHECK(checkpoint_update(&checkpoint, &second, &film, true, &tiles, &error));
         CHECK(checkpoint_finish(&checkpoint, what == 7, &error));
-        CHECK((access(path, F_OK) == 0) == (what != 7)); /* all is written: the file goes */
+        CHECK((access(path, F_OK) == 0) == (what != 7)); /* all pictures are written: the file is removed */
     }
     free(film.pixels);
     free(back.pixels);
@@ -507,7 +508,7 @@ TEST(a_checkpoint_that_cannot_be_written_is_reported_once_and_on_request) {
     CHECK(checkpoint_open(&checkpoint, "a.png", notice, &error));
     CHECK(checkpoint_has_written(&checkpoint, 1, &picture.key, "a.png", &written, &error));
     CHECK(!checkpoint_update(&checkpoint, &picture, &film, false, &tiles, &error));
-    checkpoint.took = checkpoint.written_at = 0; /* as if long ago */
+    checkpoint.took = checkpoint.written_at = 0; /* as if written long ago */
     CHECK(checkpoint_update(&checkpoint, &picture, &film, false, &tiles, &error));
     CHECK(!checkpoint_update(&checkpoint, &picture, &film, true, &tiles, &error));
     CHECK_EQ_INT(tiles, 77);

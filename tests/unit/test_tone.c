@@ -1,4 +1,4 @@
-/* From light to files: curves, 16-bit PNG, PFM, Radiance HDR. */
+/* Output values: transfer curves, 16-bit PNG, PFM, Radiance HDR. */
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/image.h"
@@ -80,7 +80,7 @@ TEST(pfm_holds_the_very_floats_from_the_bottom_up) {
     free(file);
 }
 
-/* A reader of its own, by the format's description. */
+/* An independent reader, from the format's description. */
 static void read_hdr(const uint8_t *data, size_t size, uint32_t width, uint8_t *pixels) {
     size_t at = 0;
     for (uint32_t y = 0; y < H; y++) {

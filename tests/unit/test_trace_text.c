@@ -1,5 +1,5 @@
-/* The story of pixels and the dump of a scene in words: over a scene with one of everything the words for every kind of
- * thing come up, and the bytes that the story ends with are those of the picture. */
+/* Pixel traces and scene dumps as text: a scene with one object of every kind produces the words for every kind, and
+ * the bytes at the end of a trace are those of the picture. */
 #include "tests/harness.h"
 
 #include <stdio.h>
@@ -13,7 +13,7 @@ static const char scene[] =
     /* a rough mirror with light of its own */
     "put(gr.sphere{name = 'rough', radius = 0.8, material = gr.rr_material{kd = {0.2, 0.2, 0.2}, ks = {1, 1, 1}, "
     "shininess = 9, reflect = 0.6, refract = 0, ior = 1.3, roughness = 0.3, emission = {0.1, 0, 0}}})\n"
-    /* glass round glass */
+    /* glass around glass */
     "local glass = gr.rr_material({0, 0, 0}, {1, 1, 1}, 50, 0.3, 0.9, 1.5)\n"
     "put(gr.sphere{name = 'shell', radius = 0.9, material = gr.difresnel_material(glass)}):add_child(gr.sphere{name = "
     "'core', radius = 0.6, material = gr.rr_material({0, 0, 0}, {1, 1, 1}, 50, 0, 0.9, 1.2)})\n"
@@ -24,7 +24,7 @@ static const char scene[] =
     /* a combined solid */
     "put(gr.difference('cut', gr.sphere{material = plain, radius = 0.9}, gr.cube{corner = {0, 0, 0}, material = "
     "plain}))\n"
-    /* a mesh of a file: names of materials, coordinates, normals between those of its corners */
+    /* a mesh from a file: names of materials, coordinates, interpolated normals */
     "put(gr.mesh{name = 'file', file = 'roof.obj', smooth = 180})\n"
     /* holes, and a decorator that changes nothing */
     "put(gr.rectangle{name = 'lace', corner = {-0.8, -0.8, 0}, along = {1.6, 0, 0}, up = {0, 1.6, 0}, material = "
@@ -87,7 +87,7 @@ static void says(const char *told, const char *const *words, size_t count) {
 }
 #define SAYS(told, words) says(told, words, sizeof(words) / sizeof((words)[0]))
 
-/* The stories of two rows of pixels, and that each ends with the bytes of the picture. Free it. */
+/* The traces of two rows of pixels; checks that each ends with the bytes of the picture. The caller frees the text. */
 static char *print_trace(const char *options) {
     enum { WIDTH = 64 };
     char line[4096], path[600];

@@ -1,4 +1,4 @@
-/* Flattening, paths, lists of lights, picking and bounds beside a plain recursion over the same graph: random graphs
+/* Flattening, paths, lists of lights, picking and bounds against a simple recursion over the same graph: random graphs
  * with placements, shared nodes, combined, clipped and bounded ones. */
 #include "inspect/pick.h"
 #include "scene/node_bounds.h"
@@ -13,7 +13,7 @@
 
 enum { NODES = 1000, PATHS = 6000, PATH_TEXT = 400, DEEP = 40 };
 
-/* What one path ends in, in the order of the traversal. */
+/* The end of one path, in the order of the traversal. */
 struct expected {
     const struct node *node;
     char text[PATH_TEXT];
@@ -67,7 +67,7 @@ static struct node *solid(struct forest *f, int depth) {
     return keep(f, node);
 }
 
-/* A bound that holds everything: what it says is true. */
+/* A bound that contains everything: its claim is true. */
 static struct node *large_ball(struct forest *f) {
     struct node *node = scene_node(&f->stage.scene, NODE_GEOMETRY, "ball", &f->stage.error);
     node->shape = (struct shape){.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 100}};
@@ -77,7 +77,7 @@ static struct node *large_ball(struct forest *f) {
 static struct node *grow(struct forest *f, int depth) {
     struct stage *s = &f->stage;
     double what = pick(f, 0, 1);
-    if (f->count > 4 && what < 0.15) /* shared with another place */
+    if (f->count > 4 && what < 0.15) /* shared with another parent */
         return f->nodes[(uint32_t)pick(f, 0, f->count - 0.01)];
     if (depth == 0 || what < 0.3)
         return shape(f);
@@ -101,7 +101,7 @@ static struct node *grow(struct forest *f, int depth) {
     return keep(f, node);
 }
 
-/* The plain recursion. */
+/* The simple recursion. */
 static void expect(struct forest *f, const struct node *node, const struct transform *above, const char *path,
                    bool listed) {
     char text[PATH_TEXT], below[PATH_TEXT];
@@ -165,7 +165,7 @@ static double difference(const struct affine *a, const struct affine *b) {
     return largest;
 }
 
-/* Solids may be empty, or fall apart: then a path has no primitive, or several in a row. */
+/* Solids may be empty or consist of disjoint parts: then a path has no primitive, or several in a row. */
 static void check_forest(struct forest *f, uint32_t *primitive, uint32_t *shared) {
     struct world *world = &f->stage.world;
     static char texts[PATHS][PATH_TEXT];
@@ -178,7 +178,7 @@ static void check_forest(struct forest *f, uint32_t *primitive, uint32_t *shared
     for (uint32_t i = 0; i < f->expected_count; i++) {
         const struct expected *e = &f->expected[i];
         uint32_t parts = world_primitives_of(world, e->node, next);
-        /* An empty solid before the same node on another path has taken no primitive: the texts tell them apart. */
+        /* An empty solid followed by the same node on another path has no primitive: the texts distinguish them. */
         if (parts == 0 || (e->node->kind == NODE_CSG && strcmp(texts[next], e->text) != 0))
             continue;
         for (uint32_t k = next; k < next + parts; k++) {

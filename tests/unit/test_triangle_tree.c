@@ -1,5 +1,5 @@
-/* The binary hierarchies that an index is cut from: reinsertion keeps them whole and makes them cheaper, the cut into
- * nodes of eight children is the cheapest there is, and no set of triangles makes them deeper than a search allows. */
+/* The binary hierarchies from which an index is made: reinsertion keeps them valid and makes them cheaper, the collapse
+ * into nodes of eight children is optimal, and no set of triangles makes them deeper than the traversal allows. */
 #include "accel/triangle_tree.h"
 
 #include "base/mem.h"
@@ -21,7 +21,7 @@ static struct reference box_at(struct test_random *random, float spread, float s
     return r;
 }
 
-/* Dust; sheets; a heap of small ones among large ones (a statue in a stadium); all in one place. */
+/* Tiny triangles; sheets; a cluster of small ones among large ones (a statue in a stadium); all at one point. */
 enum mix { DUST, SHEETS, STATUE, ONE_PLACE, MIXES };
 
 static void fill(struct reference *references, uint32_t count, enum mix mix, struct test_random *random) {
@@ -51,7 +51,8 @@ static double surface(const struct tree *tree) {
     return sum;
 }
 
-/* Every box is that of its children, every number theirs; how many leaves; marks what is in them. */
+/* Every box is that of its children, every count the sum of theirs. Returns the number of leaves; marks their
+ * triangles. */
 static uint32_t check_whole(const struct tree *tree, const struct reference *references, uint32_t number,
                             uint8_t *seen) {
     const struct branch *b = &tree->branches[number];
@@ -114,12 +115,12 @@ TEST(reinsertion_is_the_same_every_time) {
     free(again);
 }
 
-/* --- the cut, beside all cuts there are --- */
+/* --- the collapse against all possible ones --- */
 
-/* As the head of triangle_tree.c says it: a node costs its surface, a block twice that. */
+/* As in triangle_tree.c: a node costs its surface area, a block twice that. */
 static double cheapest(const struct tree *tree, uint32_t number);
 
-/* The least sum over all ways to part what is in `open` (some of it for good) into at most WIDTH parts. */
+/* The minimal sum over all divisions of `open` (some nodes of it are final) into at most WIDTH parts. */
 static double cheapest_parts(const struct tree *tree, const uint32_t *open, int count, int settled, double sum) {
     if (count > WIDTH)
         return INFINITY;
@@ -175,7 +176,8 @@ TEST(the_cut_into_nodes_of_eight_children_is_the_cheapest_of_all) {
     CHECK(nodes > 30);
 }
 
-/* Each triangle half as large as the one before, all with a corner at the origin: every split parts one from the rest.
+/* Each triangle is half as large as the previous one, all with a corner at the origin: every split separates one from
+ * the rest.
  */
 TEST(triangles_in_one_another_down_to_the_smallest_are_searched_like_all_others) {
     enum { NESTED = 900 };

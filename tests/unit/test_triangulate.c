@@ -43,7 +43,7 @@ static double polygon_area(const struct polygon *p) {
     return sum;
 }
 
-/* Areas are those of the polygon's own winding and add up: so the triangles neither overlap nor leave a hole. */
+/* Areas have the sign of the polygon's winding and add up: so the triangles neither overlap nor leave a hole. */
 static void check_cover(const struct polygon *p, const char *what) {
     uint32_t(*triangles)[3] = malloc(p->count * sizeof *triangles);
     struct triangulate_scratch scratch = {0};
@@ -68,7 +68,7 @@ static void check_cover(const struct polygon *p, const char *what) {
     triangulate_scratch_destroy(&scratch);
 }
 
-/* Also turned over and started at other corners. */
+/* Also reversed and starting at other corners. */
 static void check_turns(struct polygon *p, const char *what) {
     check_cover(p, what);
     struct polygon q = {0};
@@ -108,7 +108,7 @@ TEST(triangles_of_concave_polygons_cover_them_once) {
         add(&p, i + 1, i % 2 ? 0.5 : 3);
     add(&p, 50, 10), add(&p, 0, 10);
     check_turns(&p, "saw");
-    /* A full turn too many must not pass as convex. */
+    /* An outline with an additional full turn must not count as convex. */
     for (int i = 0; i < 14; i++)
         add(&p, (3 - 0.1 * i) * cos(i * 0.8), (3 - 0.1 * i) * sin(i * 0.8));
     uint32_t triangles[12][3];

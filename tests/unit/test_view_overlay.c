@@ -44,7 +44,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
         int seen = 0;
         for (uint32_t y = 0; y < HEIGHT; y++) {
             for (uint32_t x = 0; x < WIDTH; x++) {
-                /* Distances of the line to the centres, and which is met first. */
+                /* Distances of the line to the centres, and the first hit. */
                 double half = tan(17.5 * M_PI / 180), px = (x + 0.5 - WIDTH / 2.0) / (HEIGHT / 2.0) * half;
                 double py = (HEIGHT / 2.0 - y - 0.5) / (HEIGHT / 2.0) * half;
                 struct vec3 d = vec3_normalize(vec3_make(px, py, -1)), a = {0.5, 0, -6}, b = {-0.4, 0.2, -8};
@@ -59,7 +59,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
             }
         }
         CHECK(seen > 100);
-        CHECK(overlay.outline.x1 - overlay.outline.x0 < 40); /* not all of the picture was asked */
+        CHECK(overlay.outline.x1 - overlay.outline.x0 < 40); /* only a part of the picture was requested */
     }
     const struct view_overlay_request nobody = {.outline = true, .serial = 12345};
     struct view_overlay none;
@@ -89,7 +89,7 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
     struct view_overlay_buffers place = {.shows = shows};
     struct picked picked;
     struct view_overlay overlay;
-    /* The middle is in the hollow; its outline is where a click finds it. */
+    /* The middle is in the hollow; a click on its outline selects it. */
     for (int32_t down = 0; down <= 1; down++) {
         int seen = 0;
         CHECK(pick_at(&job, s.root, (struct pick_query){WIDTH / 2.0, HEIGHT / 2.0, -down}, &picked, &s.error));

@@ -1,5 +1,5 @@
-/* Watching: which changes count, and the program that renders again. The program's signs are its files and what it
- * says; nothing depends on how fast it is. */
+/* Watching: which changes count, and the program that renders again. The tests observe the program's files and
+ * messages; nothing depends on its speed. */
 #define _GNU_SOURCE
 #include "base/mem.h"
 #include "host/file_watch.h"
@@ -37,7 +37,7 @@ static void watch_files(struct output_of_tests *t, const char *const *names) {
     }
 }
 
-/* After a quiet second. */
+/* After a second without changes. */
 static bool changed(struct output_of_tests *t) {
     watch_read(&t->watch, t->now);
     t->now += 1;
@@ -79,7 +79,7 @@ TEST(watch_sees_files_that_are_renamed_over_and_files_behind_links) {
     test_write_text(at("far/real.lua"), "2");
     CHECK(changed(&t));
     CHECK(!changed(&t));
-    /* A folder that is replaced as a whole. */
+    /* A folder that is replaced completely. */
     (void)snprintf(line, sizeof line, "cd '%s' && mv far old && mkdir far && echo 3 >far/real.lua", test_folder());
     CHECK(system(line) == 0);
     CHECK(changed(&t));
@@ -150,7 +150,7 @@ static int count_of(const char *word) {
     return count;
 }
 
-/* Until standard error tells `word` so often; the harness ends what takes too long. */
+/* Waits until standard error contains `word` this many times; the harness ends a test that takes too long. */
 static void wait_for(const char *word, int times) {
     const struct timespec pause = {0, 5000000};
     for (int i = 0; i < 4000 && count_of(word) < times; i++)
@@ -192,7 +192,7 @@ TEST(watching_renders_again_keeps_the_old_picture_on_an_error_and_recovers) {
     wait_for(waiting, 1);
     uint32_t red = middle();
     CHECK((red >> 16) > (red & 255));
-    /* As editors do it: a new file, renamed over the old one. */
+    /* Like editors: a new file, renamed over the old one. */
     test_write_text(at("colour.new"), "return {0.1, 0.1, 0.8}\n");
     CHECK(rename(at("colour.new"), at("colour.lua")) == 0);
     wait_for(waiting, 2);
@@ -228,7 +228,7 @@ TEST(watching_reads_a_mesh_again_that_has_changed_and_finds_one_that_was_missing
 TEST(watching_stops_a_picture_whose_scene_has_changed) {
     test_write_text(at("scene.lua"), "gr.render(gr.node('nothing'), 'out.png', 1500, 1500, {0, 0, 6}, {0, 0, -1}, "
                                      "{0, 1, 0}, 40, {0.2, 0.2, 0.2}, {})\n");
-    /* Minutes of work, of which nobody waits for the end. */
+    /* Minutes of work that is never finished. */
     pid_t child = start("--watch -full -ss 64 --progress=none --verbose scene.lua");
     wait_for("confine", 1);
     const struct timespec pause = {0, 100000000};

@@ -1,5 +1,5 @@
-/* The window: walking by quaternions, what is rendered next while people look, and, where there are a display without a
- * screen (Xvfb) and something that presses keys (xdotool), the program itself. */
+/* The window: camera flights by quaternions, the choice of the next pass, and the program itself if a virtual display
+ * (Xvfb) and a tool that presses keys (xdotool) are installed. */
 #define _GNU_SOURCE
 #include "base/mem.h"
 #include "render/render.h"
@@ -51,7 +51,7 @@ TEST(fly_camera_looks_straight_up_and_over_without_trouble) {
     const struct camera camera = {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90};
     const struct box bounds = {{-1, -1, -1}, {1, 1, 1}};
     fly_camera_begin(&fly_camera, &camera, &bounds);
-    for (int i = 1; i <= 36; i++) { /* ten degrees a step, once round */
+    for (int i = 1; i <= 36; i++) { /* ten degrees per step, one full turn */
         fly_camera_turn(&fly_camera, 0, -10.0 / 90);
         double a = i * 10 * M_PI / 180;
         CHECK_NEAR(apart(fly_camera_current(&fly_camera).view, vec3_make(0, sin(a), -cos(a))), 0, 1e-12);
@@ -104,7 +104,7 @@ TEST(fly_camera_levels_the_horizon_and_keeps_where_it_looks) {
     CHECK_NEAR(apart(fly_camera.pose.position, layout), 0, 0);
 }
 
-/* A window without a screen: the test says what people do. */
+/* A window without a screen: the test supplies the user's input. */
 struct fake {
     struct window_event queue[16];
     int count, shown;
@@ -167,7 +167,7 @@ static void print_news(struct table *t, const struct preview_reply *reply) {
     viewer_take_reply(&t->viewer, reply, t->now);
 }
 
-/* The child has built the world: the first order is the coarsest pass. */
+/* The child has built the world: the first request is the coarsest pass. */
 static void build(struct table *t) {
     struct preview_reply reply = {.kind = REPLY_BUILT, .light_count = 1, .world_from_root = affine_identity()};
     reply.report.bounds = (struct box){{-1, -1, -1}, {1, 1, 1}};
@@ -205,7 +205,7 @@ static void end(struct table *t) {
     mem_free(t->block);
 }
 
-/* The child has finished the pass, in so many seconds. */
+/* The child has finished the pass in this many seconds. */
 static void finish_pass(struct table *t, double seconds, bool stopped) {
     const struct picture_report report = {.threads = 2, .bounds = {{-1, -1, -1}, {1, 1, 1}}, .stopped = stopped};
     t->now += seconds;
@@ -214,7 +214,7 @@ static void finish_pass(struct table *t, double seconds, bool stopped) {
     print_news(t, &(struct preview_reply){.kind = REPLY_PASS, .report = report});
 }
 
-/* To the script's picture, whole. */
+/* Up to the script's complete picture. */
 static void go_to_the_end(struct table *t) {
     finish_pass(t, 0.02, false);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
@@ -253,7 +253,7 @@ TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
     begin(&t);
     go_to_the_end(&t);
     key(&t.fake, WINDOW_ARROW_UP, true);
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has gone by yet */
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* no time has passed yet */
     for (int i = 0; i < 5; i++) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         CHECK(t.viewer.pass.view.plain && t.viewer.pass.view.divide > 1 && !t.viewer.pass.view.own);
@@ -266,7 +266,7 @@ TEST(window_renders_coarse_passes_while_the_camera_moves_and_refines_after) {
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
         finish_pass(&t, 0.03, false);
     }
-    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* where somebody has walked to is not the script's picture */
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING); /* a view that the user has moved is not the script's picture */
     end(&t);
 }
 
@@ -372,11 +372,11 @@ TEST(window_of_the_program_makes_the_picture_of_the_program_without) {
           "sh wait.sh \"test -s out-view1.png -a -s out-view2.lua\" || exit 7; xdotool key q; wait $pid' && "
           "cmp out.png whole.png && ! cmp -s out-view1.png whole.png",
           0);
-    /* Somewhere else: required by the scene it gives the picture that was saved there. */
+    /* A file saved at another position: required by the scene, it gives the picture that was saved there. */
     gives("{ echo \"require 'out-view2'\"; cat scene.lua; } >again.lua; $gray again.lua -o again.png && "
           "cmp again.png out-view1.png",
           0);
-    /* The camera that was recorded before anybody walked is the script's, in every digit. */
+    /* A camera saved before any movement is the script's, in every digit. */
     gives("sed -e \"s/{0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40/c.eye, c.view, c.up, c.fov/\" -e \"1i local c = "
           "dofile('out-view1.lua')\" scene.lua >again.lua; $gray again.lua -o again.png && cmp again.png whole.png",
           0);
@@ -408,7 +408,7 @@ TEST(window_that_watches_shows_errors_keeps_the_camera_and_recovers) {
     gives("$gray scene.lua -o whole.png && cmp out.png whole.png", 0);
 }
 
-/* What lies over the picture. */
+/* Overlays on the picture. */
 
 static struct window_event mouse(enum window_event_kind kind, double x, double y) {
     return (struct window_event){.kind = kind, .button = WINDOW_LEFT, .x = x, .y = y};
@@ -427,7 +427,7 @@ TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) 
     click(&t, 10, 6); /* Render */
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.pass.view.divide == 16 && t.viewer.pass.view.own && !t.viewer.input.pressed);
-    /* Pressed on a button and let go elsewhere: not used. */
+    /* Pressed on a button and released elsewhere: no click. */
     t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 60, 6);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_MOVE, 200, 200);
@@ -448,7 +448,7 @@ TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 1600, .y = 700, .density = 2};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 300 && layout->top == 0 && layout->shown_width == 1000 && layout->shown_height == 700);
-    CHECK_EQ_INT(t.viewer.display.panel.canvas.scale, 2); /* letters as large as before to the eye */
+    CHECK_EQ_INT(t.viewer.display.panel.canvas.scale, 2); /* letters of the same visible size as before */
     CHECK(t.viewer.display.panel.canvas.width == 1600 && t.viewer.display.panel.canvas.height == 700);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 50, .y = 90, .density = 1};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
@@ -502,7 +502,7 @@ TEST(window_shows_how_far_building_is_and_errors) {
     (void)step(&t);
     key(&t.fake, 'r', true); /* there is nothing to render */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    key(&t.fake, 's', true); /* but what is shown can be kept */
+    key(&t.fake, 's', true); /* but the displayed picture can be saved */
     CHECK_EQ_INT(step(&t), VIEWER_SAVE_IMAGE);
     end(&t);
 }
@@ -540,7 +540,7 @@ TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
     panel.mouse_x = 30;
     panel.mouse_y = 5;
     panel_begin(&panel);
-    CHECK(!panel_slider(&panel, &slider, &value)); /* the mouse is on it, no button is down */
+    CHECK(!panel_slider(&panel, &slider, &value)); /* the mouse is over it, no button is pressed */
     panel_end(&panel);
     panel.down = panel.pressed = true;
     panel_begin(&panel);
@@ -583,12 +583,12 @@ static const struct picked a_ball = {
     .corners = {{-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {-1, 1, 1}, {1, 1, 1}},
     .world_from_parent = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
 
-/* So large that what is told about a selection leaves the middle free. */
+/* So large that the text about a selection leaves the middle free. */
 static void enlarge(struct table *t) {
     t->fake.queue[t->fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 800, .y = 560, .density = 1};
 }
 
-/* Clicks into the middle of the picture, and lets the child answer. */
+/* Clicks in the middle of the picture and processes the child's answer. */
 static void pick_ball(struct table *t) {
     click(t, 400, 280);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
@@ -737,7 +737,7 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
           t.viewer.command.more);
     CHECK(t.viewer.command.change.added == ADDED_SPHERE && t.viewer.command.change.serial == 0);
     print_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
-    take_change(&t); /* and its place */
+    take_change(&t); /* and its position */
     CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.change.serial == UINT32_MAX &&
           !t.viewer.command.more);
     CHECK(t.viewer.edit.tool == TOOL_MOVE && t.viewer.edit.selection.picked.serial == UINT32_MAX);
@@ -794,13 +794,13 @@ TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     go_to_the_end(&t);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_PRESS, 400, 280);
     t.fake.queue[t.fake.count++] = mouse(WINDOW_RELEASE, 400, 280);
-    t.fake.queue[1].control = true; /* as far down as it goes */
+    t.fake.queue[1].control = true; /* scrolled to the end */
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     CHECK(t.viewer.command.kind == COMMAND_PICK && t.viewer.command.up < -1000);
     reply.picked.up = -1;
     reply.picked.levels = 2;
     print_news(&t, &reply);
-    key(&t.fake, WINDOW_PAGE_DOWN, true); /* there is nothing below */
+    key(&t.fake, WINDOW_PAGE_DOWN, true); /* there are no lines below */
     key(&t.fake, WINDOW_PAGE_UP, true);
     do
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
@@ -858,7 +858,7 @@ TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_key
     CHECK_NEAR(change->numbers[TURN_AT], -1, 1e-9);
     CHECK_NEAR(change->numbers[TURN_AT + 4], 1, 1e-9);
     CHECK_NEAR(viewer_light(&t.viewer, 70)->direction.z, 1, 1e-9);
-    viewer_add_node(&t.viewer, ADDED_COPY); /* with what was changed of it */
+    viewer_add_node(&t.viewer, ADDED_COPY); /* with its changed numbers */
     CHECK(t.viewer.edit.selection.light == 71 && t.viewer.lights.count == 71 && t.viewer.edit.tool == TOOL_TURN);
     const struct change *copy = &t.viewer.edit.steps.steps[t.viewer.edit.steps.count - 2].after;
     CHECK(copy->kind == CHANGE_ADD_LIGHT && copy->source == 70);
@@ -881,10 +881,10 @@ TEST(window_shows_the_trace_of_the_pixel_under_the_mouse) {
     print_news(&t, &(struct preview_reply){.kind = REPLY_PIXEL_TRACE});
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_TEXT(t.viewer.trace.text, "one line\nanother\n");
-    key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: from the beginning */
+    key(&t.fake, WINDOW_PAGE_DOWN, true); /* past its end: it starts again */
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK_EQ_INT(t.viewer.trace.line, 0);
-    for (int i = 0; i < 5000; i++) /* more than there is room for */
+    for (int i = 0; i < 5000; i++) /* more than fits */
         viewer_add_pixel_trace(&t.viewer, "a line of some length\n");
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     key(&t.fake, WINDOW_ESCAPE, true);
@@ -905,7 +905,7 @@ TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_
     CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
     finish_pass(&t, 0.001, true);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
-    CHECK(t.viewer.command.view.exposure == 0.25 && !t.viewer.command.view.plain); /* nothing coarse in between */
+    CHECK(t.viewer.command.view.exposure == 0.25 && !t.viewer.command.view.plain); /* no coarse pass in between */
     finish_pass(&t, 1, false);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     key(&t.fake, '-', true);
@@ -980,7 +980,7 @@ TEST(window_that_is_resized_and_looked_about_in_shows_the_same_picture_at_home) 
           0);
 }
 
-/* X11 has no other units than pixels. */
+/* The only unit of X11 is the pixel. */
 TEST(window_on_a_screen_of_high_density_has_larger_letters) {
     need_display();
     gives("xvfb-run -a -s '-screen 0 900x700x24' sh -c 'for density in 1 2; do rm -f out.png; "

@@ -1,6 +1,6 @@
-/* Changing things in the real window (under Xvfb, driven by xdotool): what is on the screen is what the file of changes
- * gives without a window, byte for byte; undone it is the script's picture. No time decides: what was saved is compared
- * again and again until it is right, or long over. */
+/* Edits in the real window (under Xvfb, driven by xdotool): the screen shows what the saved changes give without a
+ * window, byte for byte; after undo it shows the script's picture. The tests do not depend on time: saved pictures are
+ * compared repeatedly until they are right or a long limit has passed. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -8,9 +8,9 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
-/* `finds NAME`: S is pressed until a picture that was saved has the bytes of NAME. `changes N`: C writes the N-th file
- * of changes, and what it gives is again.png. `until_says PATTERN STEPS MEND`: steps again and again (what was clicked
- * is known some time later) until a file of changes says so; n is its number. `drag DX DY`: with the left button, from
+/* `finds NAME`: S is pressed until a saved picture has the bytes of NAME. `changes N`: C writes the N-th file of
+ * changes, and again.png is its picture. `until_says PATTERN STEPS MEND`: repeats the steps (the answer to a click
+ * takes time) until a file of changes contains the pattern; n is its number. `drag DX DY`: with the left button, from
  * the middle of the picture. */
 static const char helpers[] =
     "titled() { for i in $(seq 400); do xdotool search --name \"$1\" >/dev/null && return 0; sleep 0.05; done; "
@@ -50,7 +50,7 @@ static int shell(const char *line) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* Runs the steps (after the helpers) with the window of the scene. */
+/* Runs the steps, which may call the helpers, with the window of the scene. */
 static void drive(const char *scene, const char *steps) {
     test_need_window();
     char *script = NULL, path[4096];
@@ -102,7 +102,7 @@ TEST(window_that_gives_a_shape_a_material_saves_what_gives_the_same_bytes) {
 }
 
 TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
-    /* A ball is taken out of a larger one: what Ctrl-click finds in the middle is the hollow. */
+    /* A ball is subtracted from a larger one: Ctrl-click in the middle selects the hollow. */
     drive(
         "local function m(r, g, b) return gr.material({r, g, b}, {0.4, 0.4, 0.4}, 20) end\nlocal r = gr.node('root')\n"
         "local a, b = gr.geometry('a', gr.sphere(m(0.8, 0.2, 0.1))), gr.geometry('b', gr.sphere(m(0.1, 0.8, 0.1)))\n"
@@ -115,7 +115,7 @@ TEST(window_that_changes_operands_of_a_solid_saves_what_gives_the_same_bytes) {
         "n=$((n + 1)); changes $n; finds again.png; cmp -s again.png first.png && exit 4\n"
         "grep -q \"'cut'\\|'a'\" out-changes$n.lua && exit 3\n"
         "for i in $(seq 9); do xdotool key ctrl+z; done; finds first.png\n"
-        /* Without it; and without the whole. */
+        /* Without the hollow; and without the whole solid. */
         "until_says \"change_delete('b'\" 'pick; xdotool key Delete sleep 0.2' 'xdotool key ctrl+z'\n"
         "n=$((n + 1)); changes $n; finds again.png; cmp -s again.png first.png && exit 2; xdotool key ctrl+z\n"
         "until_says \"change_delete('cut'\" 'pick; xdotool key Prior sleep 0.5 key Delete sleep 0.2' "
@@ -128,7 +128,7 @@ TEST(window_that_turns_a_sky_turns_what_is_seen_behind_and_saves_what_gives_the_
           "local s = gr.clear_sky{sun={0.6, 0.5, 1}, intensity=0.05}\n"
           "gr.render{node=r, file='out.png', width=320, height=240, eye={0, 1, 6}, view={0, -0.15, -1}, up={0, 1, 0}, "
           "fov=40, ambient={0, 0, 0}, background=s, lights={gr.sky_light{sky=s, samples=1}}}\n",
-          "xdotool key period key t; drag 70 -20\n" /* also upwards, which is not heard */
+          "xdotool key period key t; drag 70 -20\n" /* also upwards, which has no effect */
           "changes 1; finds again.png; cmp -s again.png first.png && exit 4\n"
           "says 'change_light(1, {0, 0, 0}, {1, 1, 1}, {0[.][0-9]*, 0, 0[.][0-9]*, 0, 1, 0, '\n"
           "xdotool key ctrl+z; finds first.png\n");

@@ -1,5 +1,5 @@
-/* The parts of the window that know no window, where they end: paper that is drawn over its edges, walks that look
- * anywhere, steps and watched files without memory. */
+/* Corner cases of the window's parts that need no window: drawing beyond the edges of a canvas, cameras in any
+ * direction, edit steps and watched files without memory. */
 #include "base/fault.h"
 #include "host/file_watch.h"
 #include "tests/harness.h"
@@ -44,7 +44,7 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
     }
     for (int i = 0; i < AROUND; i++)
         CHECK(block[i] == 77 && block[AROUND + ROOM + i] == 77);
-    /* What is no place draws nothing, what has no length draws a dot. */
+    /* An invalid position draws nothing, a line of length 0 draws a dot. */
     canvas_clear(&canvas);
     for (int k = 0; k < 4; k++)
         for (int bad = 0; bad < 3; bad++) {
@@ -55,7 +55,7 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
     CHECK_EQ_INT(inked(&canvas), 0);
     canvas_line(&canvas, 7, 8, 7, 8, colour);
     CHECK(inked(&canvas) >= 1 && inked(&canvas) <= 9);
-    /* Letters that are none look like the question mark, one for each character. */
+    /* Unknown characters look like question marks, one for each character. */
     CHECK_EQ_INT(canvas_text_width(&canvas, "\xC3\xA4\xE2\x82\xAC\x7f"), canvas_text_width(&canvas, "???"));
     static uint8_t other[ROOM];
     const struct canvas second = {other, WIDTH, HEIGHT, 1};
@@ -66,7 +66,7 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
     CHECK(memcmp(canvas.rgba, other, ROOM) == 0);
 }
 
-/* Whatever it looks at, also straight up and with an up that is no direction across. */
+/* For any view direction, also straight up and with an up vector parallel to it. */
 TEST(the_fly_camera_begins_where_the_camera_looks) {
     const struct box box = {{-1, -1, -1}, {1, 1, 1}}, endless = {{-INFINITY, -1, -1}, {1, 1, 1}},
                      nothing = {{1, 1, 1}, {-1, -1, -1}}, above = {{-1, -1, -1}, {1, INFINITY, 1}};

@@ -1,4 +1,4 @@
-/* Pictures of the window with the demo that is made for it, kept below build/window to be looked at. */
+/* Pictures of the window with the demo for it, kept below build/window for inspection. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How many pixels differ, of a share of all. */
+/* The share of pixels that differ. */
 static double difference(const struct test_picture *a, const struct test_picture *b) {
     size_t count = (size_t)a->width * a->height, other = 0;
     CHECK(a->width == b->width && a->height == b->height);
@@ -32,7 +32,7 @@ TEST_LONG(window_pictures_of_the_demo_are_made_and_kept) {
         if (!pictures[i].rgb)
             return;
     }
-    /* Each shows something else than the one when all was done: from the outline of a ball to a page of text. */
+    /* Each differs from the finished picture: from the outline of a ball to a page of text. */
     for (int i = 2; i < COUNT; i++)
         CHECK(difference(&pictures[1], &pictures[i]) > 0.005);
     for (int i = 0; i < COUNT; i++)

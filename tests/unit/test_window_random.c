@@ -1,7 +1,7 @@
-/* People who press everything: the whole program, supervisor and confined child, under a window without a screen that
- * tells random events (keys, tools, lines and outlines, stops, sizes), while the scene's file changes under it.
- * GRAY_RANDOM_SECONDS says how long the long test goes on (an hour); GRAY_RANDOM_SEED repeats one. Nothing may crash,
- * leak, hang or be told as a broken protocol. */
+/* Random users: the whole program, supervisor and confined child, under a simulated window that sends random events
+ * (keys, tools, overlays, stops, sizes) while the scene's file changes. GRAY_RANDOM_SECONDS is the duration of the long
+ * test (default: an hour); GRAY_RANDOM_SEED repeats one. The program must not crash, leak, hang or report a broken
+ * protocol. */
 #define _GNU_SOURCE
 #include "host/supervisor.h"
 #include "tests/harness.h"
@@ -37,7 +37,7 @@ static const char scene_head[] =
     "r:add_child(gr.mesh('tetra', {{0, 2, 0}, {1, 3, 0}, {-1, 3, 0}, {0, 2.5, 1}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, "
     "{0, 2, 3}}))\n";
 
-/* One of some scenes: good ones with one and two pictures, and two kinds of bad ones. */
+/* One of several scenes: valid ones with one and two pictures, and two kinds of invalid ones. */
 static void write_scene(struct crowd *crowd) {
     static const char *const tails[] = {
         ("gr.render(r, 'out.png', 160, 120, {0, 1, 7}, {0, -0.1, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {gr.light({4, 5, "
@@ -62,7 +62,7 @@ static bool crowd_open(void *context, uint32_t width, uint32_t height, const cha
     return crowd->open = true;
 }
 
-/* Every byte that is to be shown can be read. */
+/* Every byte to be displayed is readable. */
 static void crowd_show(void *context, const struct window_content *frame) {
     struct crowd *crowd = context;
     unsigned sum = 0;
@@ -194,7 +194,7 @@ static void crowd_close(void *context) {
     crowd->open = false;
 }
 
-/* One sitting, of so many questions for events. Returns how many frames were shown. */
+/* One session with this many polls for events. Returns the number of displayed frames. */
 static int sit(uint64_t seed, int polls) {
     struct crowd crowd = {.random = {seed}, .polls_left = polls};
     const struct window_driver driver = {&crowd,      crowd_open, crowd_show,    crowd_poll,
@@ -222,7 +222,7 @@ static uint64_t first_seed(uint64_t otherwise) {
 
 static void enter_folder(void) {
     CHECK(chdir(test_folder()) == 0);
-    /* What goes wrong in scenes is told in a file, not between the lines of the tests. */
+    /* Errors of scenes go to a file, not between the lines of the tests. */
     CHECK(freopen("/dev/null", "w", stderr) != NULL);
 }
 
@@ -244,7 +244,7 @@ TEST_LONG(window_survives_an_hour_of_random_events) {
         frames += sit(seed, 1500);
         sittings++;
     }
-    if (log) /* what passes is not printed */
+    if (log) /* output of passing runs is not printed */
         (void)fprintf(log, "%.0f s: %ld sittings of up to 1500 questions for events, %ld frames shown\n", seconds,
                       sittings, frames);
     CHECK(!log || fclose(log) == 0);

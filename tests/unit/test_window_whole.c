@@ -1,6 +1,6 @@
-/* The whole program under a window without a screen, in which somebody waits for words in the title and then does
- * something: Stop (what is rendered or built ends, what is shown stays, and it goes on when somebody wants it; when
- * exactly a stop comes is not known, so several moments are tried), lines over the picture, outlines. */
+/* The whole program under a simulated window whose user waits for words in the title and then acts: Stop (rendering or
+ * building ends, the picture stays, and work continues on request; the exact moment of a stop is unknown, so several
+ * are tried), overlay lines, outlines. */
 #define _GNU_SOURCE
 #include "host/supervisor.h"
 #include "tests/harness.h"
@@ -13,21 +13,21 @@
 
 enum { WIDE = 640, HIGH = 480 };
 
-/* Somebody who waits for words in the title, and then does something. */
+/* A user who waits for words in the title and then acts. */
 struct deed {
     const char *title; /* NULL: at once */
     struct window_event event;
-    int pause; /* questions for events before it; one every few milliseconds */
+    int pause; /* polls for events before it; one every few milliseconds */
 };
 
-#define SETTLED "ready or stopped" /* a stop that came too late is one, too */
+#define SETTLED "ready or stopped" /* a stop that came too late counts, too */
 
 struct person {
     const struct deed *deeds;
     int at, waited;
     bool open, size_sent;
     char title[1024];
-    uint8_t *over; /* what lay over the picture last: of the whole window */
+    uint8_t *over; /* the last overlay, of the whole window */
 };
 
 static bool person_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
@@ -78,7 +78,7 @@ static void person_close(void *context) {
     person->open = false;
 }
 
-/* Many things, so that building takes a while even on a fast machine. */
+/* Many objects, so that building takes a while even on a fast machine. */
 static const char scene[] =
     "local red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)\n"
     "local r = gr.node('root')\n"
@@ -129,7 +129,7 @@ static bool same_files(const char *one, const char *other) {
 
 TEST(window_goes_on_after_a_stop_to_the_picture_of_one_that_was_never_stopped) {
     const struct deed plain[] = {{"ready", KEY('s'), 0}, {NULL, KEY('q'), 0}};
-    /* In the first building, in a pass, and by Esc. */
+    /* During the first build, during a pass, and with Esc. */
     const struct deed stopped[] = {{NULL, KEY('x'), 0},    {SETTLED, KEY('r'), 0},        {NULL, KEY('x'), 2},
                                    {SETTLED, KEY('r'), 0}, {NULL, KEY(WINDOW_ESCAPE), 5}, {SETTLED, KEY('r'), 0},
                                    {NULL, KEY('x'), 0},    {"stopped", KEY('x'), 0},      {"ready", KEY('s'), 0},
@@ -154,7 +154,7 @@ TEST(window_stops_building_after_an_edit_and_goes_on_with_it_or_without) {
         const struct window_event again = {.kind = WINDOW_KEY, .key = 'y', .down = true, .control = true};
         const struct deed round[ROUND] = {
             {NULL, KEY('x'), 3 * i},               /* the world without the ball */
-            {SETTLED, undo, 0},                    /* goes on, to the one with it */
+            {SETTLED, undo, 0},                    /* continues with the ball */
             {NULL, KEY(WINDOW_ESCAPE), 3 * i + 1}, /* stopped, too */
             {SETTLED, KEY('x'), 0},
             {"ready", KEY('s'), 0},
@@ -189,7 +189,7 @@ TEST(window_shows_and_saves_the_lines_that_overlay_draws) {
     picture_without_window("grid", "grid.png");
     CHECK(same_files("out-view1.png", "boxes.png") && same_files("out-view2.png", "grid.png"));
     CHECK(same_files("out-view3.png", "out.png") && !same_files("out.png", "boxes.png"));
-    /* Asked for on the command line, they are part of the script's picture. */
+    /* Requested on the command line, they are part of the script's picture. */
     CHECK_EQ_INT(viewer_over(nothing, "boxes", NULL), 0);
     CHECK(same_files("out.png", "boxes.png"));
 }
@@ -200,7 +200,8 @@ TEST(window_outlines_what_is_picked_by_its_silhouette) {
     const struct window_event release = {.kind = WINDOW_RELEASE, AT_THE_BALL};
     const struct deed deeds[] = {{"ready", press, 0}, {NULL, release, 0}, {"ready", KEY('x'), 0}, {NULL, KEY('q'), 20}};
     CHECK_EQ_INT(viewer_over(deeds, "none", over), 0);
-    /* A ball of radius 1 that is 6 away, under 40 degrees for 480 pixels; pixels of the picture are 10 wide. */
+    /* A ball of radius 1 at distance 6, with a field of view of 40 degrees for 480 pixels; a pixel of the picture is 10
+     * wide. */
     double radius = HIGH / 2.0 * tan(asin(1.0 / 6)) / tan(20 * M_PI / 180);
     bool turns[36] = {false};
     const uint8_t colour[4] = {255, 190, 60, 255};

@@ -1,4 +1,4 @@
-/* The world beside brute force, and what flattening promises. */
+/* The world against brute force, and the guarantees of flattening. */
 #include "tests/harness.h"
 
 #include "shape/planar.h"
@@ -43,7 +43,7 @@ static struct node *random_solid(struct stage *s, struct shape_makers *makers, s
     return node;
 }
 
-/* A shape of any kind, closed or not; as many of one kind as of another. */
+/* A shape of any kind, closed or not; all kinds equally often. */
 static struct node *random_shape(struct stage *s, struct shape_makers *makers, struct test_random *random) {
     int kind = (int)test_uniform(random, 0, GEOMETRY_KIND_COUNT - 0.001);
     if (kind == SHAPE_KIND_COUNT) /* a CSG solid */
@@ -185,7 +185,7 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
     CHECK(partly > 1000);
 }
 
-/* Cylinders, cones from either side of their tip, both kinds of hyperboloid, discs, ellipsoids. */
+/* Cylinders, cones on either side of their tip, both kinds of hyperboloid, discs, ellipsoids. */
 static struct node *random_convex_or_not(struct stage *s, struct test_random *random) {
     struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "shape", &s->error);
     struct revolved_quadric conics[] = {
@@ -205,7 +205,7 @@ static struct node *random_convex_or_not(struct stage *s, struct test_random *ra
     return node;
 }
 
-/* Rays that leave a surface and are told to pass its primitive by. */
+/* Rays that leave a surface and skip its primitive. */
 TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
     struct test_random random = {77};
     int told = 0, met_others = 0;
@@ -262,7 +262,7 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
     CHECK(told > 10000 && met_others > 2000);
 }
 
-/* Camera rays of a few pixels, rays along an axis, and rays that go all round, which must fall to single ones. */
+/* Camera rays of a few pixels, rays along an axis, and rays in all directions, which must be traced one by one. */
 static struct ray_packet random_packet(struct test_random *random, double spread, int form) {
     struct ray first = random_ray(random, spread);
     struct ray_packet packet = {.origin = first.origin, .count = 1 + (uint32_t)test_uniform(random, 0, 64)};
@@ -326,7 +326,8 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
     CHECK(hits > 10000);
 }
 
-/* Lights and scales near the end of the numbers make such rays. What they meet nobody can say, but it is in the world.
+/* Lights and scales near the limits of double make such rays. Their hits are not defined, but they must be in the
+ * world.
  */
 TEST(rays_that_are_not_finite_meet_only_what_is_there) {
     static const double odd[] = {NAN, INFINITY, -INFINITY, DBL_MAX, -DBL_MAX, 0, 1, DBL_MIN};
@@ -384,7 +385,7 @@ TEST(world_refuses_a_tree_that_doubles_sixty_times) {
     }
     CHECK(!stage_build(&s, group, ACCEL_GRID));
     CHECK(strstr(s.error.text, "more than 268435456 primitives") != NULL);
-    CHECK(stage_build(&s, empty, ACCEL_GRID)); /* 2^60 paths, but nothing to place on any */
+    CHECK(stage_build(&s, empty, ACCEL_GRID)); /* 2^60 paths without any shape */
     CHECK_EQ_INT(s.world.primitive_count, 0);
     stage_end(&s);
 }

@@ -1,4 +1,5 @@
-/* All light of a world: samples of lights, and of directions that meet them, agree for emitters of every kind. */
+/* All light of a world: for emitters of every kind, samples of lights agree with samples of directions that hit them.
+ */
 #include "base/random.h"
 #include "material/classic.h"
 #include "tests/harness.h"
@@ -57,7 +58,8 @@ static struct vec3 direction_of(struct sample2 place) {
     return vec3_make(level * cos(2 * pi * place.x), y, level * sin(2 * pi * place.x));
 }
 
-/* What one sample of the lights brings, times |cosine|; *density: that of its direction, chosen light included. */
+/* The light of one sample of the lights, times |cosine|; *density: that of its direction, including the choice of the
+ * light. */
 static struct vec3 of_lights(struct room *r, const struct light_receiver *at, uint64_t i, double *density,
                              bool *is_delta) {
     struct world_light_sample sample;
@@ -104,8 +106,8 @@ static void estimate_end(struct estimate *e, double n) {
 
 static int compared;
 
-/* Light on a point by scattered rays alone (uniform over the sphere), and by both kinds of samples with the balance
- * heuristic; green. Deltas are left out: no scattered ray meets them. */
+/* Light at a point by scattered rays alone (uniform over the sphere), and by both kinds of samples with the balance
+ * heuristic; green channel. Delta lights are left out: no scattered ray hits them. */
 static void compare(struct room *r, const struct light_receiver *at, uint64_t n, double tolerance) {
     struct estimate alone = {0, 0}, both = {0, 0};
     int hits = 0;
@@ -151,7 +153,7 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
     }
     estimate_end(&alone, (double)n);
     estimate_end(&both, (double)n);
-    if (hits < 20) /* hidden, or too small to be met by chance */
+    if (hits < 20) /* hidden, or too small to be hit by chance */
         return;
     CHECK_NEAR(both.mean, alone.mean, 4.5 * (both.error + alone.error));
     CHECK(both.error <= tolerance * alone.error);
@@ -237,7 +239,7 @@ TEST(lamps_and_skies_are_sampled_as_scattered_rays_meet_them) {
     }
 }
 
-/* A white floor: what arrives is E / pi = I f cos, for one light by its own samples. */
+/* A white floor: the arriving light is E / pi = I f cos, for one light by its own samples. */
 TEST(lights_without_emission_give_what_the_classic_language_says) {
     static const struct {
         enum light_attenuation attenuation;
@@ -277,8 +279,8 @@ TEST(lights_without_emission_give_what_the_classic_language_says) {
     }
 }
 
-/* gr.mesh_light over an emitting mesh says how it is sampled, with its own emission what it lights with; either way
- * there is one light. */
+/* gr.mesh_light over an emitting mesh controls its sampling and, with its own emission, its light; in both cases there
+ * is one light. */
 static struct node *tetrahedron(struct room *r, const struct material *material) {
     static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     static const uint32_t start[] = {0, 3, 6, 9, 12}, index[] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
@@ -331,7 +333,7 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
     CHECK_NEAR(lit[3], 2.5 * lit[0], 1e-9);
 }
 
-/* A sheet that lets through a part of the light, in front of a light with a sampler, one with a bound, and a lamp. */
+/* A partly transparent sheet in front of an emitting sphere, an emitting cube and a lamp. */
 TEST(holes_let_through_what_their_opacity_leaves) {
     static const double opacities[] = {0, 0.25, 0.75, 1};
     double lit[3][5];

@@ -1,5 +1,5 @@
-/* Values that are right one by one and wrong together, or right and rarely asked for: each call of the first table is
- * refused with its words, with the line and the function; each of the second runs, and runs out of memory cleanly. */
+/* Values that are valid alone and wrong together, or valid and rarely used: each call of the first table is refused
+ * with its message, line and function; each of the second table runs, also with failing allocations. */
 #include "base/fault.h"
 #include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
@@ -190,7 +190,7 @@ static const struct wrong wrongs[] = {
      "target_to needs target"},
 };
 
-/* Rarely asked for, and right. */
+/* Rarely used and valid. */
 static const char *const rights[] = {
     "gr.mesh{verts = verts, faces = faces, materials = {glass, glass}, face_materials = {1, 2, 1, 2}}",
     "gr.mesh{verts = verts, faces = faces, smooth = 60, weld = true, flip = true}",
