@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs what is missing, builds, renders every demo and writes gallery/index.html, screenshot01.png and screenshot02.png.
-# Goes on after a failure; at the end names what failed and exits with 1.
-# A scene tells about itself in comments of its first lines:
-#   -- TITLE: what the gallery calls it         -- OPTIONS: words for the command line
+# Continues after a failure; at the end it lists the failures and exits with 1.
+# A scene describes itself in comments of its first lines:
+#   -- TITLE: its name in the gallery           -- OPTIONS: words for the command line
 cd "$(dirname "$0")" || exit 1
 gallery=gallery
 limit=${GRAY_SCENE_LIMIT:-300} # seconds for one scene
@@ -22,7 +22,7 @@ as_html() {
     sed -e 's/&/\&amp;/g' -e 's/</\&lt;/g' -e 's/>/\&gt;/g' -e 's/"/\&quot;/g'
 }
 
-# Renders a scene into gallery/NAME-01.png ...; one picture alone is called gallery/NAME.png.
+# Renders a scene into gallery/NAME-01.png ...; a single picture is called gallery/NAME.png.
 render() { # render SCRIPT NAME
     script=$1
     name=$2
@@ -76,7 +76,7 @@ section() { # section TITLE CLASS SCRIPT...
     echo "<h2>$heading</h2><div class=\"$class\">" >>"$gallery/body.html"
     for script in "$@"; do
         [ -f "$script" ] || continue
-        case $script in */make_*) continue ;; esac # writes models, is no scene
+        case $script in */make_*) continue ;; esac # writes models, is not a scene
         base=$(basename "$script" .lua)
         [ "$class" = small ] && base="classic-$base"
         render "$script" "$base"

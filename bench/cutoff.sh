@@ -1,8 +1,10 @@
 #!/bin/sh
-# What the cut-off by contribution changes: every demo and classic scene with CUTOFF (default: the program's own) and with
-# `--cutoff 0`, the largest change of an 8-bit value and how many values change. Arguments: scripts (default: all of data/);
-# GRAY: the program; SIZE: of the pictures (default 160x120); LEVELS: the most that may change (default 1). Needs ImageMagick.
-# Exit status 1: a scene changes by more. Without ImageMagick nothing is measured, and that is said.
+# The effect of the cut-off by contribution: renders every demo and classic scene with CUTOFF (default: the program's)
+# and with
+# `--cutoff 0` and prints the largest change of an 8-bit value and the number of changed values. Arguments: scripts
+# (default: all of data/); GRAY: the program; SIZE: of the pictures (default 160x120); LEVELS: the largest allowed
+# change (default 1). Needs ImageMagick. Exit status 1: a scene changes by more. Without ImageMagick it prints a message
+# and measures nothing.
 cd "$(dirname "$0")/.." || exit 1
 here=$(pwd)
 gray=${GRAY:-$here/gray}
@@ -31,7 +33,7 @@ for script in "$@"; do
         [ -f "$picture" ] || continue
         pictures=$((pictures + 1))
         name=$(basename "$picture")
-        # Level and count of all values that differ, of the histogram of differences.
+        # Level and count of all values that differ, from the histogram of differences.
         found=$(convert "$picture" "$folder/cut/$name" -depth 8 -compose difference -composite -alpha off -depth 8 rgb:- |
             od -An -v -tu1 -w3 | awk '{ for (i = 1; i <= NF; i++) if ($i > 0) { n++; if ($i > most) most = $i } } END { print most + 0, n + 0 }')
         most=${found% *}

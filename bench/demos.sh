@@ -1,6 +1,6 @@
 #!/bin/sh
-# Times every demo: seconds to build and render (median of RUNS, default 3), rays by kind in millions, millions of rays per
-# second in all. Arguments: scripts (default: data/*demo.lua); GRAY: the program; OPTIONS: more options for it.
+# Times every demo: seconds to build and render (median of RUNS, default 3), millions of rays by kind, total millions of
+# rays per second. Arguments: scripts (default: data/*demo.lua); GRAY: the program; OPTIONS: more options for it.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}
 runs=${RUNS:-3}

@@ -1,5 +1,5 @@
-/* How fast mesh files become meshes: reads every file named on the command line three times, tells the best by the
- * clock and the best by the processor's time, which other programs on the machine change less. */
+/* The speed of the mesh readers: reads every file named on the command line three times and prints the best wall-clock
+ * time and the best processor time, which depends less on other programs. */
 #include "base/error.h"
 #include "formats/model.h"
 
@@ -57,7 +57,7 @@ static void write_ply(const struct mesh *mesh, FILE *file) {
     }
 }
 
-/* The first mesh of a file, of triangles, in binary: shells cannot write that. */
+/* Writes the first mesh of a file as binary triangles, which a shell script cannot do. */
 static int convert(const char *from, const char *to, void (*write)(const struct mesh *, FILE *)) {
     struct model model;
     struct error error = {0};

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Mesh files: MB/s of our readers on a million triangles in every format, beside Assimp and tinyobjloader where their
-# headers are there (Debian: libassimp-dev, libtinyobjloader-dev). Leaves nothing behind but build/bench.
+# Mesh files: MB/s of our readers on a million triangles in every format, compared with Assimp and tinyobjloader if
+# their headers are installed (Debian: libassimp-dev, libtinyobjloader-dev). Writes only below build/bench.
 cd "$(dirname "$0")/.." || exit 1
 out=${BUILD:-build/release}/bench
 mkdir -p "$out"

@@ -1,4 +1,4 @@
-// The same files through Assimp and tinyobjloader, whichever the compiler finds: reading and, as we do, triangulating.
+// The same files with Assimp and tinyobjloader, whichever are installed: reading and, as in gray, triangulating.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -19,7 +19,7 @@ static double now(clockid_t clock) {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-// The best of the rounds by the clock and by the processor's time.
+// The best wall-clock time and the best processor time of the rounds.
 struct Best {
     double clock = 1e9, work = 1e9, clock_start = 0, work_start = 0;
     void start() {
@@ -61,7 +61,7 @@ int main(int count, char **paths) {
         }
 #endif
 #ifdef PEER_ASSIMP
-        // STL repeats every corner: like us, it makes one vertex of those in one place.
+        // STL repeats every corner: like gray, Assimp joins equal vertices.
         unsigned work =
             aiProcess_Triangulate | (std::strstr(path, ".stl") ? unsigned(aiProcess_JoinIdenticalVertices) : 0);
         Best best;

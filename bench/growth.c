@@ -1,6 +1,6 @@
-/* What a ray costs as scenes grow: meshes from 10 to 10 million triangles, from 1 to 10 million instances of a mesh, a
- * mesh in a stadium beside the same mesh alone. Times of rays are processor time of one thread, the best of several
- * rounds; building uses all threads that are asked for.
+/* The cost of a ray in growing scenes: meshes from 10 to 10 million triangles, from 1 to 10 million instances of a
+ * mesh, a mesh in a stadium beside the same mesh alone. Ray times are processor time of one thread, the best of several
+ * rounds; building uses the given number of threads.
  *
  *   growth [--most N] [--threads N] [--models FOLDER] [--svg FILE] [triangles] [instances] [stadium] */
 #include "base/isa.h"
@@ -89,7 +89,7 @@ static void camera_rays(const struct bench_scene *scene, struct ray *rays) {
     }
 }
 
-/* From anywhere in the box to anywhere in it. */
+/* From a random point in the box to another. */
 static void chords(const struct box *box, struct ray *rays) {
     dice = 1;
     for (int i = 0; i < SIDE * SIDE; i++) {
@@ -103,7 +103,7 @@ static void chords(const struct box *box, struct ray *rays) {
     }
 }
 
-/* Nanoseconds a ray through the world; tests and steps of one round when wanted. */
+/* Nanoseconds per ray through the world; optionally the tests and node visits of one round. */
 static double trace(const struct world *world, const struct ray *rays, int count, struct world_scratch *scratch,
                     struct row *row) {
     double best = INFINITY;
@@ -124,7 +124,7 @@ static double trace(const struct world *world, const struct ray *rays, int count
     return best;
 }
 
-/* The same in packets, as the renderer sends its camera rays. */
+/* The same in packets, as the renderer traces camera rays. */
 static double trace_together(const struct world *world, const struct ray *rays, int count,
                              struct world_scratch *scratch) {
     static struct ray_packet packet;
@@ -147,7 +147,7 @@ static double trace_together(const struct world *world, const struct ray *rays, 
     return 1e9 * (seconds(CLOCK_THREAD_CPUTIME_ID) - start) / fmax(count, 1);
 }
 
-/* A world of meshes, each placed once or many times. */
+/* A world of meshes with one or many instances each. */
 struct stand {
     struct assets assets;
     struct scene scene;
@@ -315,7 +315,7 @@ static void stadium(struct bench *bench, const char *name, const struct bench_sc
     }
     camera_rays(&scene, rays);
     count = keep_those_that_meet(&stands[0].world, rays, SIDE * SIDE, 0, own, &scratch[0]);
-    /* In turns, so that all three see the same machine. */
+    /* Interleaved, so that all three run under the same conditions. */
     for (int again = 0; again < 30; again++) {
         for (int kind = 0; kind < 3; kind++) {
             ns[kind] = fmin(ns[kind], trace(&stands[kind].world, rays, count, &scratch[kind], NULL));

@@ -1,14 +1,15 @@
 #!/bin/sh
-# How the cost of a ray grows with the scene (see the top of growth.c), how a picture goes with the number of threads, and
-# how with the size of the tiles. Arguments: those of growth.c; or `threads` or `tiles` for these tables alone.
-# MODELS: the folder with the OBJ files (default ../shared/models). MOST: the largest number of things (default 10 million).
+# The cost of a ray as the scene grows (see the top of growth.c), the time of a picture by the number of threads, and
+# by the size of the tiles. Arguments: those of growth.c; or `threads` or `tiles` for these tables alone.
+# MODELS: the folder with the OBJ files (default ../shared/models). MOST: the largest number of objects (default 10
+# million).
 cd "$(dirname "$0")/.." || exit 1
 BUILD=${BUILD:-build/release}
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 scene=${SCENE:-data/04demo.lua}
 
-# seconds of the clock and of the processor that the picture took; the best of three
+# wall-clock and processor seconds of the picture; the best of three
 seconds_of() {
     for round in 1 2 3; do
         "$1" -q --size 640x480 -j "$2" --stats=json -o "$3-%d.png" "$scene" |
@@ -30,8 +31,8 @@ threads_table() {
     done
 }
 
-# A tile samples the rim of one pixel round it once more: (side + 2)^2 over side^2 of the first pass. Every size is a program of
-# its own.
+# A tile also samples a rim of one pixel around it: (side + 2)^2 / side^2 of the first pass. Every size needs a separate
+# build of the program.
 tiles_table() {
     echo "tile side   wall s, 1 thread   work s   wall s, ${MANY:-8} threads   work s   ($scene, 640 x 480)"
     for side in 8 16 32 64 128; do
@@ -41,7 +42,7 @@ tiles_table() {
         cmp -s "$folder/side-8-1.png" "$folder/side-$side-1.png" || echo "        another picture with tiles of $side"
         cmp -s "$folder/side-8-1.png" "$folder/many-$side-1.png" || echo "        another picture with tiles of $side"
     done
-    make -s BUILD="$BUILD" all # the link to the program leads back to it
+    make -s BUILD="$BUILD" all # the link to the program points back to it
 }
 
 case $1 in

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Counts the instructions of eight scenes with two programs (valgrind's callgrind) and prints their ratio: a measure that
-# the noise of a shared machine does not reach.
+# Counts the instructions of eight scenes with two programs (valgrind's callgrind) and prints their ratio: a measure
+# that does not depend on the load of the machine.
 #   bench/instructions.sh OLD NEW [SCENE...]
-# One thread, one process, small pictures, --isa avx2 (valgrind has no AVX-512). A count holds everything: reading,
+# One thread, one process, small pictures, --isa avx2 (valgrind has no AVX-512). A count includes everything: reading,
 # building, rendering, writing. Repeated counts agree to about 0.01 %.
 [ $# -ge 2 ] || { sed -n '2,6p' "$0" >&2; exit 2; }
 old=$(realpath "$1") && new=$(realpath "$2") || exit 2
@@ -13,7 +13,7 @@ command -v valgrind >/dev/null 2>&1 || { echo "valgrind is not installed: left o
     tests/pictures/glass.lua tests/pictures/materials.lua tests/pictures/caustics.lua
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-# Beside this tree's library of Lua files, wherever the programs come from.
+# Uses the Lua library of this tree, wherever the programs come from.
 mkdir -p build/old build/new && cp "$old" build/old/gray && cp "$new" build/new/gray || exit 1
 old=build/old/gray
 new=build/new/gray

@@ -1,6 +1,6 @@
-/* How far a few shadow rays are off: lamps of each kind over a floor, with nothing, an edge or a ball in the way, by
- * the places of the samples (independent, in cells, in cells with stratified rows and columns) and, for a rectangle, by
- * area or by solid angle. Prints a table for docs/light.md: root mean square of the relative error over many keys. */
+/* The error of a few shadow rays: lamps of each kind over a floor, with no occluder, an edge or a ball, for several
+ * sample patterns (independent, in cells, in cells with stratified rows and columns) and, for a rectangle, by area or
+ * by solid angle. Prints a table for docs/light.md: root mean square of the relative error over many keys. */
 #include "light/light.h"
 
 #include <math.h>
@@ -57,7 +57,7 @@ static double error_of(const struct light *light, enum pattern pattern, int bloc
 static struct light lamp(int kind, double height) {
     struct light light = {.emits = true, .colour = {1, 1, 1}, .position = {0.2, height, 0.1}, .radius = 0.5};
     light.direction = (struct vec3){0, -1, 0};
-    /* Kind 3 is the rectangle with edges a little off the right angle, which is sampled by area. */
+    /* Kind 3 is a slightly skewed rectangle, which is sampled by area. */
     light.kind = kind == 1 ? LIGHT_DISC : kind == 2 ? LIGHT_SPHERE : LIGHT_PARALLELOGRAM;
     light.edge1 = (struct vec3){1, 0, 0};
     light.edge2 = (struct vec3){kind == 3 ? 1e-6 : 0, 0, 1};

@@ -1,8 +1,8 @@
 #!/bin/sh
-# What caustics cost. For each scene, in seconds of one thread: tracing a million photons and making their map (best of
-# RUNS, default 3), and the picture without photons and what gathering adds to it. A scene takes the number of photons
-# from the global PHOTONS; 0 is none. Arguments: scripts (default: bench/photons.lua, data/07demo.lua); GRAY: the
-# program; PHOTONS: traced (default 1000000); SIZE: of the pictures (default 320x240); OPTIONS: more options.
+# The cost of caustics. For each scene, in seconds of one thread: tracing a million photons and building their map (best
+# of RUNS, default 3), the picture without photons, and the time that gathering adds. A scene takes the number of
+# photons from the global PHOTONS; 0 is none. Arguments: scripts (default: bench/photons.lua, data/07demo.lua); GRAY:
+# the program; PHOTONS: traced (default 1000000); SIZE: of the pictures (default 320x240); OPTIONS: more options.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}
 size=${SIZE:-320x240}
@@ -10,7 +10,7 @@ photons=${PHOTONS:-1000000}
 [ $# -gt 0 ] || set -- bench/photons.lua data/07demo.lua
 picture=$(mktemp) || exit 1
 trap 'rm -f "$picture"' EXIT
-# The least render, photon and map seconds of some runs: script, photons.
+# The minimum render, photon and map seconds of several runs: script, photons.
 measure() {
     i=0
     while [ $i -lt "${RUNS:-3}" ]; do

@@ -1,12 +1,13 @@
 #!/bin/sh
-# How soon the time left settles: every demo with --progress=json on one thread. For each picture the worst error in percent,
-# from a third of its time on, by the program's processor time, so that other work of the machine does not stretch it:
-#   whole   of the whole time that is foretold (so far and left together);
-#   left    of the time left, of itself, until LEAST of the whole (default 0.05) is left;
+# The accuracy of the time left: renders every demo with --progress=json on one thread. For each picture, the worst
+# error in percent after a third of its time, in the program's processor time, which other programs do not change:
+#   whole   of the predicted total time (elapsed and left);
+#   left    of the time left, relative to itself, until LEAST of the total (default 0.05) is left;
 #   to end  the same until the last line that is printed;
-#   clock   like left, by the clock of the wall and the number that people see.
-# Why not to the end: 5 % of a picture are a few dozen tiles, and of a minute 3 s; then it is over before it matters.
-# Scenes are drawn in a size that takes seconds. OPTIONS: more words for gray; SCENES: the scripts; RUNS: medians of so many.
+#   clock   like left, by wall-clock time and the number on the screen.
+# The last 5 % are left out because they are a few dozen tiles, or 3 s of a minute: too short to matter.
+# The size of the scenes makes them take seconds. OPTIONS: more options for gray; SCENES: the scripts; RUNS: how many
+# runs a median has.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}
 out=${OUT:-build/bench}

@@ -1,17 +1,17 @@
 /* The same rays through gray's mesh kernel and through Embree, interleaved in one process, on one thread or more:
  * camera rays 1024 x 1024, shadow rays from their hits to a point light, cosine-distributed bounces from there (fixed
- * seed). The bounces go once more through a world that holds the mesh, with everything about their hits: one by one and
- * as batches (world_nearest_batch). Every number is thread CPU time, the median of the repetitions; ratios are gray's
- * speed over Embree's, each from two runs side by side. Camera rays go through gray's packets of 64 and Embree's of 16
- * (coherent flag), too. Embree is optional: build with -DHAVE_EMBREE and -lembree3.
+ * seed). The bounces are also traced through a world with the mesh, including the description of their hits: one by one
+ * and as batches (world_nearest_batch). Every number is thread CPU time, the median of the repetitions; ratios are
+ * gray's speed divided by Embree's, each from two interleaved runs. Camera rays are also traced in gray's packets of 64
+ * and Embree's of 16 (coherent flag). Embree is optional: build with -DHAVE_EMBREE and -lembree3.
  *
  *   rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--threads N] [--json] [--isa NAME] [SCENE ...]
  *
- * With --threads the rays are dealt to so many threads in turns of 4096, and a time is that of the thread that takes
- * longest; structures are built by as many threads, and that time is by the clock of the wall.
+ * With --threads the rays are distributed to that many threads in blocks of 4096, and a time is that of the slowest
+ * thread; the structures are built by as many threads, and that time is wall-clock time.
  *
- * SCENE is a part of a scene's name; without one all are run. Meshes that are not in FOLDER are skipped, and said to
- * be. A disagreement is a ray where one kernel hits and the other does not, or the t differ by more than 1e-4 of their
+ * SCENE is a part of a scene's name; without one all are run. Meshes that are not in FOLDER are skipped with a message.
+ * A disagreement is a ray where one kernel hits and the other does not, or the t differ by more than 1e-4 of their
  * size; both test in different precision, so rays past edges may differ: --explain lists the first few with the
  * distance to the nearest edge of the triangle in barycentric units. */
 #include "base/isa.h"
@@ -59,7 +59,7 @@ struct result {
     uint32_t triangles;
     double build[2], memory[2]; /* gray, Embree: seconds and bytes */
     double speed[2][KINDS], packet_speed[2], ratio[KINDS], packet_ratio;
-    double world_speed[2], batch_ratio; /* of bounces, one by one and in batches */
+    double world_speed[2], batch_ratio; /* for bounces, one by one and in batches */
     uint64_t rays[KINDS], disagreements[KINDS];
 };
 
@@ -146,7 +146,7 @@ static void gray_trace(const struct mesh *mesh, const struct bench_ray *rays, st
     }
 }
 
-/* Packets of one tile; the answers must be those of single rays to the bit. */
+/* Packets of one tile; the results must equal those of single rays to the bit. */
 static void gray_trace64(const struct mesh *mesh, const struct bench_ray *rays, struct bench_hit *hits, uint64_t count,
                          struct geom_scratch *scratch) {
     struct ray_packet packet = {.t_min = 0};
@@ -312,7 +312,7 @@ static void camera_rays(const struct bench_scene *scene, uint32_t size, struct b
         }
 }
 
-/* From where the camera rays hit, a little above the surface. */
+/* From the hits of the camera rays, slightly above the surface. */
 static void secondary_rays(const struct bench_scene *scene, const struct mesh *mesh, const struct bench_ray *camera,
                            const struct bench_hit *hits, uint64_t count, struct bench_ray *shadow,
                            struct bench_ray *bounce, uint64_t *made) {
@@ -405,7 +405,7 @@ static void *trace_share(void *argument) {
 #if defined(HAVE_EMBREE)
     unsigned mode = _mm_getcsr();
     if (work->tracer >= EMBREE_ALONE)
-        _mm_setcsr(mode | 0x8040); /* Embree wants denormals flushed */
+        _mm_setcsr(mode | 0x8040); /* Embree requires denormals to be flushed */
 #endif
     double start = cpu_seconds();
     for (uint64_t from = turn * (uint64_t)share->number; from < work->count; from += turn * (uint64_t)share->threads)
@@ -417,7 +417,7 @@ static void *trace_share(void *argument) {
     return NULL;
 }
 
-/* Seconds of the thread that takes longest. */
+/* Seconds of the slowest thread. */
 static double trace(const struct work *work, struct share *shares, int threads) {
     pthread_t thread[MAX_THREADS];
     double longest = 0;
@@ -472,7 +472,7 @@ static void batches_end(struct batches *b) {
     pool_destroy(b->pool);
 }
 
-/* Seconds of all rays one by one, and in batches; the answers must be the same to the bit. */
+/* Seconds of all rays one by one and in batches; the results must be the same to the bit. */
 static void trace_batches(struct batches *b, const struct bench_ray *source, uint64_t total, double seconds[2]) {
     enum { BATCH = 1 << 14 };
     static struct ray rays[BATCH];

@@ -1,4 +1,4 @@
-/* Scenes made by rule, and a reader of plain OBJ files; see rays_scenes.h. */
+/* Procedural scenes, and a reader of simple OBJ files; see rays_scenes.h. */
 #include "bench/rays_scenes.h"
 
 #include <math.h>
@@ -241,7 +241,7 @@ void bench_subdivide(struct bench_scene *s, int levels) {
     }
 }
 
-/* Stands a copy of a mesh with the largest extent `size` on the point (x, y, z). */
+/* Adds a copy of a mesh with the largest extent `size` that stands on the point (x, y, z). */
 static void place(struct bench_scene *s, const struct bench_scene *mesh, double x, double y, double z, double size) {
     float lo[3], hi[3];
     bounds(mesh, lo, hi);
@@ -354,7 +354,7 @@ void bench_world(struct bench_scene *s, uint64_t seed) {
                 add_vertex(s, p[0] + 0.03 * each, centre[1], p[2] + 0.02 * each);
                 add_vertex(s, p[0] + lean, centre[1] + each, p[2] - lean);
                 add_triangle(s, v, v + 1, v + 2);
-            } else if (kind == 2) { /* leaves any way up */
+            } else if (kind == 2) { /* leaves in any orientation */
                 uint32_t v = 0;
                 for (int j = 0; j < 3; j++)
                     v = add_vertex(s, p[0] + each * roll(&dice, -0.3, 0.3), p[1] + each * roll(&dice, -0.3, 0.3),

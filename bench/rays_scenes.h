@@ -16,14 +16,15 @@ struct bench_scene {
 };
 
 void bench_scene_free(struct bench_scene *scene);
-/* Reads v and f lines of an OBJ file; polygons become fans. False: cannot be read. Camera and light are left alone. */
+/* Reads v and f lines of an OBJ file; polygons become fans. False: it cannot be read. Camera and light are unchanged.
+ */
 bool bench_load_obj(struct bench_scene *scene, const char *path);
-/* A camera in front and above, a light beside it, from the bounding box. */
+/* Sets a camera in front and above, and a light beside it, from the bounding box. */
 void bench_default_view(struct bench_scene *scene);
 
 void bench_sierpinski(struct bench_scene *scene, int depth);
 void bench_terrain(struct bench_scene *scene, int side);
-/* Every triangle into four, `levels` times, then shaken a little. */
+/* Divides every triangle into four, `levels` times, then displaces the vertices slightly. */
 void bench_subdivide(struct bench_scene *scene, int levels);
 /* A mesh one unit high in a bowl two hundred units wide. */
 void bench_stadium(struct bench_scene *scene, const struct bench_scene *mesh);

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Whole pictures against POV-Ray on the paired scenes of bench/pov: the trace alone, without reading and building, one thread
-# each (THREADS), both at their adaptive anti-aliasing with 9 samples for a marked pixel, both without the rays that change a pixel by less than 1/255
-# (POV-Ray's adc_bailout, --cutoff); runs interleaved, medians of RUNS
-# (default 3). User is the processor time that each program tells of its own trace, wall what the clock says; memory is the
-# peak of each process. ksmp is thousands of samples. Pictures go to OUT (default build/bench), side by side in
-# OUT/scenes.html. MODELS: the folder with stanford-bunny.obj (default ../shared/models). Arguments: scenes (default: all).
+# Complete pictures against POV-Ray on the paired scenes of bench/pov: only the trace, without reading and building, one
+# thread each (THREADS), both at their adaptive anti-aliasing with 9 samples for a marked pixel, both without rays that
+# change a pixel by less than 1/255 (POV-Ray's adc_bailout, --cutoff); runs interleaved, medians of RUNS (default 3).
+# User is the processor time that each program reports for its trace, wall is elapsed time; memory is the peak of
+# each process. ksmp is thousands of samples. Pictures go to OUT (default build/bench), side by side in OUT/scenes.html.
+# MODELS: the folder with stanford-bunny.obj (default ../shared/models). Arguments: scenes (default: all).
 cd "$(dirname "$0")/.." || exit 1
 here=$(pwd)
 gray=${GRAY:-$here/gray}
@@ -18,15 +18,15 @@ mkdir -p "$out" && cd "$out" || exit 1
 [ $# -gt 0 ] || set -- primitives solids bunny
 [ -x /usr/bin/time ] && timer=/usr/bin/time || timer=
 
-# Runs a program; the kilobytes of its peak go to memory.kb where GNU time is installed.
+# Runs a program; its peak memory in kilobytes goes to memory.kb if GNU time is installed.
 measured() {
     if [ -n "$timer" ]; then "$timer" -f %M -o memory.kb "$@"; else echo 0 >memory.kb && "$@"; fi
 }
 
 median() { sort -n | awk '{ v[NR] = $1 } END { print NR ? v[int((NR + 1) / 2)] : "-" }'; }
 
-# POV-Ray tells wall and processor seconds of its trace on stderr. Its file is written without gamma, as gray's is; the
-# anti-aliasing compares by its own gamma all the same.
+# POV-Ray prints wall and processor seconds of its trace on stderr. Its file is written without gamma, like gray's; its
+# anti-aliasing nevertheless compares colours with its own gamma.
 pov_once() {
     measured povray +I"$here/bench/pov/$1.pov" +L"$out" +O"$out/$1-pov.png" +W640 +H480 -D -V +WT"$threads" +FN File_Gamma=1.0 \
         +A0.05 +AM1 +R3 -J 2>"$1.log" >/dev/null
@@ -49,7 +49,7 @@ gray_once() {
 
 column() { cut -d ' ' -f "$2" "$1" | median; }
 
-# A line of the page that shows both pictures beside each other, gray's on the left.
+# A row of the page with both pictures side by side, gray's on the left.
 show() {
     printf '<h2>%s</h2><pre>%s</pre><p><img src="%s-gray.png" alt="gray"> <img src="%s-pov.png" alt="POV-Ray"></p>\n' "$1" "$2" "$1" "$1" >>scenes.html
 }

@@ -1,18 +1,18 @@
-/* What one ray costs against one shape, and against solids that are combined of many: shape_nearest from random places
- * around to random points of the shape's box, in nanoseconds of CPU time, the least of several rounds; and the share of
- * rays that hit.
+/* The cost of one ray against one shape, and against CSG solids of many: shape_nearest from random points around the
+ * shape to random points of its box, in nanoseconds of CPU time, the minimum of several rounds; and the share of rays
+ * that hit.
  *
  *   shapes [NAME ...]        NAME is a part of a shape's name; without one all are measured */
 #include "base/arena.h"
 #include "csg/csg.h"
-#include "shape/shape.h"
 #include "shape/blob.h"
-#include "shape/revolved_quadric.h"
 #include "shape/curve.h"
-#include "shape/planar.h"
 #include "shape/height_field.h"
 #include "shape/lathe.h"
+#include "shape/planar.h"
 #include "shape/prism.h"
+#include "shape/revolved_quadric.h"
+#include "shape/shape.h"
 #include "shape/sweep.h"
 
 #include <stdio.h>
@@ -66,8 +66,8 @@ static void measure(const char *name, const struct shape *shape, struct geom_scr
 
 /* ---- combined solids ---- */
 
-/* What is set against the cost of a solid: all its leaves, each asked for its crossings in its own space as if it were
- * placed alone. `boxes`: only those whose box the ray meets, which is asked first. */
+/* The reference for the cost of a solid: the crossings of all its leaves, each in its own space as if it were a
+ * separate primitive. `boxes`: only leaves whose box the ray hits, including the test of the boxes. */
 static double leaves_cost(const struct csg *csg, const struct ray *rays, const struct box *boxes,
                           struct geom_scratch *scratch) {
     double best = INFINITY;
@@ -247,12 +247,16 @@ int main(int argc, char **argv) {
         {"sphere", {.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}}},
         {"box", {.kind = SHAPE_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}}},
         {"ellipsoid", {.kind = SHAPE_ELLIPSOID, .ellipsoid = {{0, 0, 0}, {1, 0.5, 0.7}}}},
-        {"cylinder", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_cylinder(low, up, 1, false)}},
-        {"open cylinder", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_cylinder(low, up, 1, true)}},
+        {"cylinder",
+         {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_cylinder(low, up, 1, false)}},
+        {"open cylinder",
+         {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_cylinder(low, up, 1, true)}},
         {"cone", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_frustum(zero, 0, up, 1, false)}},
         {"paraboloid", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_paraboloid(1, 1, false)}},
-        {"hyperboloid of one sheet", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_one_sheet(0.5, 1, -1, 1, false)}},
-        {"hyperboloid of two sheets", {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_two_sheets(0.5, 1, 1, false)}},
+        {"hyperboloid of one sheet",
+         {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_one_sheet(0.5, 1, -1, 1, false)}},
+        {"hyperboloid of two sheets",
+         {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = revolved_quadric_two_sheets(0.5, 1, 1, false)}},
         {"quadric", {.kind = SHAPE_QUADRIC, .quadric = &saddle}},
         {"torus", {.kind = SHAPE_TORUS, .torus = {1, 0.4}}},
         {"superellipsoid 0.3, 0.3", {.kind = SHAPE_SUPERELLIPSOID, .superellipsoid = {0.3, 0.3}}},

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Two threads against one, whole pictures: RUNS runs of each (default 5) in turns, medians.
-#   program  by the clock, from the start of the program to its end: with the script, which has one thread
-#   picture  by the clock, building, rendering and writing
-#   work     processor time of the picture on two threads, of that on one: what threads add
-#   idle     time that threads waited for the last tile, of the time of rendering
-#   foretold by the shares of processor time: building and writing as if they had one thread, rendering on two; less idle
-# A machine that does something else, too, spoils the first two; the others much less.
+# Complete pictures with two threads and with one: RUNS runs of each (default 5), interleaved; medians.
+#   program  wall-clock time of the whole program, including the script, which runs on one thread
+#   picture  wall-clock time of building, rendering and writing
+#   work     processor time of the picture on two threads relative to one: the overhead of threads
+#   idle     the share of render time in which threads waited for the last tile
+#   foretold from processor times: building and writing on one thread, rendering on two, minus idle
+# Other programs on the machine change the first two numbers; the others much less.
 # Arguments: scripts (default: demos 01, 03, 05, 06, 14 and those of bench/pov). THREADS: instead of 2. MODELS: as in scenes.sh.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}

@@ -1,14 +1,14 @@
 #!/bin/sh
 # Carries the current branch onto main (or the branch given): tools/carry.sh [main]
-# Where the other branch only changed things this is a rebase. Commits of it that rename (a line "Renames: MAP", see
+# This is a rebase if the other branch has no commits that rename. Commits of it that rename (a line "Renames: MAP", see
 # tools/rename.sh) do not rebase: the branch is put onto the commit before, the map is run on each of its own commits,
-# and these are put on top of the renaming one. Own commits that rename are made anew by their map, never merged.
+# and they are put on top of the renaming one. Own commits that rename are made again from their map, never merged.
 # After a conflict: resolve it, `git rebase --continue`, and run this again.
 maps_of() {
     git log -1 --format='%(trailers:key=Renames,valueonly)' "$1" | grep .
 }
 
-# Runs the maps of commit $1 in the present folder, with the maps and the tool as that commit has them.
+# Runs the maps of commit $1 in the current folder, with the maps and the tool of that commit.
 rename_as() {
     tool=$(mktemp -d) || return 1
     for map in $(maps_of "$1"); do
@@ -24,7 +24,7 @@ rename_as() {
 }
 
 case $1 in
---todo) # git's list of commits to pick: own renaming ones are made anew
+--todo) # git's list of commits to pick: own renaming ones are made again
     while read -r verb commit rest; do
         if [ "$verb" = pick ] && [ -n "$(maps_of "$commit")" ]; then
             echo "exec sh '$CARRY' --redo $commit"
@@ -49,7 +49,7 @@ work=$(mktemp -d) || exit 1
 trap 'git worktree remove --force "$work/tree" 2>/dev/null; rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 cp "$0" "$work/carry.sh"
-# The list of commits is edited by a copy that stays if a conflict ends this.
+# A copy of this script edits the list of commits; it stays if a conflict ends this one.
 CARRY=$(git rev-parse --git-path carry.sh)
 case $CARRY in /*) ;; *) CARRY=$top/$CARRY ;; esac
 export CARRY
@@ -62,7 +62,7 @@ rebase_to() {
     exit 1
 }
 
-# The tree that the maps of commit $1 make of commit $2.
+# The tree that the maps of commit $1 make from commit $2.
 tree_of() {
     [ -d "$work/tree" ] || git worktree add -q --detach "$work/tree" "$2" || return 1
     (cd "$work/tree" && git checkout -q --detach "$2" && rename_as "$1" && git add -A && git write-tree && git reset -q --hard) |

@@ -18,7 +18,7 @@ import sys
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 with open(os.path.join(ROOT, "Makefile")) as makefile:
     MODULES = re.search(r"^MODULES = (.*)$", makefile.read(), re.MULTILINE).group(1).split()
-# What must be reached whole; everything else counts for the totals only.
+# Modules that must be covered completely; all others count only for the totals.
 MARKS = {
     "binding": r"src/script/",
     "sandbox": r"src/host/confine\.c|src/base/path_policy\.c|src/script/(sandbox|limits|protect|files|streams)\.c",
@@ -27,7 +27,7 @@ MARKS = {
 }
 ALL_LINES, ALL_BRANCHES = 95.0, 90.0
 NOT_COUNTED = re.compile(r"\b(assert|UNREACHABLE|MAY_FAIL|MAY_GIVE_NULL)\(")
-# What tells an error and always answers false; what is assigned on the way.
+# Functions that report an error and always return false; variables assigned at the same time.
 TELLS = re.compile(r"(error_\w+|wrong|refuse|tell|no_memory|\w*fail\w*)\(")
 ASSIGNS = re.compile(r"\(.* = true\)")
 FAULT = ("MAY_FAIL", "MAY_GIVE_NULL")
@@ -63,13 +63,13 @@ class Source:
         self.silent, self.silent_lines = [], set()
         for match in NOT_COUNTED.finditer(self.text):
             end = closing(self.text, match.end() - 1)
-            if match.group(1) in FAULT:  # its argument is counted, its own question is not
+            if match.group(1) in FAULT:  # its argument is counted, its own condition is not
                 self.silent.append((match.start(), match.end()))
                 continue
             self.silent.append((match.start(), end))
             if match.group(1) == "UNREACHABLE":
                 self.silent_lines.update(range(self.line(match.start()), self.line(end) + 1))
-                # The cases that lead there and nowhere else.
+                # The cases that lead only there.
                 cases = re.search(r"(case \w+:\s*)+(break;\s*\}\s*)?\Z", self.text[:match.start()])
                 if cases:
                     self.silent.append(cases.span())
@@ -137,7 +137,7 @@ def read(folder, root):
             current.lines[int(line)] = int(count)
     for function in json.load(open(os.path.join(folder, "export.json")))["data"][0]["functions"]:
         names = function["filenames"]
-        # A region of kind 1 tells where the text of another "file" of the function (a macro) was put in.
+        # A region of kind 1 gives the place where the text of another "file" of the function (a macro) was expanded.
         site = {r[6]: r for r in function["regions"] if r[7] == 1}
         for b in function["branches"]:
             place, inner = b[:4], None
@@ -150,7 +150,7 @@ def read(folder, root):
                 continue
             pair = file.branches.setdefault((*place, inner), [0, 0])
             for side in (0, 1):
-                # A difference of counters may come out below 0 where a process ended in the middle.
+                # A difference of counters may be negative if a process ended in between.
                 count = b[4 + side]
                 pair[side] += count if 0 < count < 1 << 62 else 0
     for file in files.values():
@@ -160,7 +160,7 @@ def read(folder, root):
                 pair[0] = pair[0] or pair[1]
             if ASSIGNS.fullmatch(text):
                 pair[1] = pair[0] or pair[1]
-            # Reached, and neither outcome counted: the compiler knew the answer.
+            # Reached with neither outcome counted: the compiler knew the result.
             if pair == [0, 0] and file.lines.get(key[0], 0) > 0 and is_known(file.source, key):
                 del file.branches[key]
     return files

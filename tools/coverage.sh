@@ -1,13 +1,13 @@
 #!/bin/sh
-# make coverage: builds with clang's counters, runs the tests (all fast ones, or those that the words match) and tells in
-# build/coverage what they reach; a whole run also renews the tables of docs/coverage.md.
+# make coverage: builds with clang's counters, runs the tests (all fast ones, or those that the words match) and reports
+# in build/coverage what they cover; a complete run also updates the tables of docs/coverage.md.
 cd "$(dirname "$0")/.." || exit 1
 command -v clang >/dev/null && command -v llvm-cov >/dev/null && command -v llvm-profdata >/dev/null ||
     { echo "make coverage needs clang and llvm" >&2; exit 1; }
 jobs=$(nproc 2>/dev/null || echo 2)
 to=build/coverage
 make -s -j"$jobs" config=coverage build-tests all || exit 1
-# Every call begins at nothing, unless GRAY_COVERAGE_ADD asks to add to what is there.
+# Every call starts from zero, unless GRAY_COVERAGE_ADD adds to existing results.
 [ -n "$GRAY_COVERAGE_ADD" ] || rm -rf $to/raw
 GRAY_TEST_BINARY=$to/gray $to/tests/run -j "$jobs" "$@" >$to/test.log 2>&1
 grep -vE '^ok ' $to/test.log | grep -A3 -E '^FAILED|passed,'

@@ -1,7 +1,8 @@
 #!/bin/sh
 # tools/fuzz.sh libfuzzer|afl SECONDS TARGET...: runs fuzz targets (tests/fuzz/fuzz_TARGET.c) one after the other. make fuzz and
-# make fuzz-afl build them first. What is found is kept in build/fuzz/corpus and helps the next run of either; an input that
-# fails is left under build/fuzz/TARGET-..., and becomes a test when it is copied into tests/fuzz/found/TARGET.
+# make fuzz-afl build them first. New inputs are kept in build/fuzz/corpus and used by the next run of either fuzzer; an
+# input that fails is left under build/fuzz/TARGET-..., and becomes a test when it is copied into
+# tests/fuzz/found/TARGET.
 cd "$(dirname "$0")/.." || exit 1
 root=$PWD
 with=$1 seconds=$2
@@ -11,8 +12,8 @@ mkdir -p build/fuzz
 export ASAN_OPTIONS="allocator_may_return_null=1:detect_leaks=1:abort_on_error=1:symbolize=${FUZZ_SYMBOLS:-1}:$ASAN_OPTIONS"
 export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1:$UBSAN_OPTIONS"
 
-# Seconds of processor time of all processes that this shell has waited for (not in a shell of its own: that has none).
-clock=build/fuzz/clock.$$ # two runs at once do not disturb each other
+# Seconds of processor time of all processes that this shell has waited for (not in a subshell, which has none).
+clock=build/fuzz/clock.$$ # two simultaneous runs do not interfere
 processor() {
     times >"$clock"
     tail -n 1 "$clock" | awk '{ split($1, u, /[ms]/); split($2, s, /[ms]/); print u[1] * 60 + u[2] + s[1] * 60 + s[2] }' >"$1"

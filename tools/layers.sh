@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints every include that points against the order of modules (docs/architecture.md), every circle of headers that include one
-# another, and every use of files or memory outside the one module that owns them; fails when there is any.
+# Prints every include that points against the order of modules (docs/architecture.md), every cycle of headers that
+# include one another, and every use of files or memory outside the module that owns them; fails if there is any.
 cd "$(dirname "$0")/.." || exit 1
 modules=$(sed -n 's/^MODULES = //p' Makefile) # in their order
 bad=$(mktemp) || exit 1
@@ -32,7 +32,7 @@ grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.c src/*/*.h 2>
     fi
 done
 
-# Headers in an order in which each stands before those that it includes; tsort names the circles.
+# Headers in an order in which each precedes those that it includes; tsort prints the cycles.
 grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.h 2>/dev/null |
     sed -E 's|^src/([^:]*):[^"]*"([^"]*)".*|\1 \2|' | tsort 2>&1 >/dev/null | grep -v 'contains a loop' |
     sed 's|^tsort: \(.*\)|src/\1: includes itself by way of the other headers named here|' >>"$bad"

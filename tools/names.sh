@@ -43,7 +43,7 @@ function look(word, kind, low, n, i, part) {
     if (line ~ /^[ \t]*#[ \t]*include/) next
     if (line ~ /["\/\047]/) {
         gsub(/\\./, "", line)
-        # Whatever begins first: a string, a character, a comment.
+        # Takes whichever begins first: a string, a character constant or a comment.
         out = ""
         while (match(line, /"[^"]*"|\047[^\047]*\047|\/\*|\/\//)) {
             token = substr(line, RSTART, 2)

@@ -1,6 +1,7 @@
 #!/bin/bash
-# tools/one_hash.sh [PROGRAM [SCENE]]: makes one picture in every way that must not matter, and prints a table of what was
-# tried and the hash of the bytes; fails when there are two hashes. What this machine cannot do is told and left out.
+# tools/one_hash.sh [PROGRAM [SCENE]]: renders one picture under every condition that must not matter, and prints a
+# table of the conditions and the hashes of the files; fails if two hashes differ. Conditions that this machine does not
+# support are skipped with a message.
 gray=$(realpath "${1:-build/release/gray}") || exit 2
 scene=$(realpath "${2:-$(dirname "$0")/../tests/scripts/one_hash.lua}") || exit 2
 folder=$(mktemp -d) || exit 2
@@ -22,7 +23,7 @@ row() {
     printf '| %-58s | %4d | %s |\n' "$what" "$#" "${different:-$first}"
 }
 
-# hashes "OPTIONS" ...: a run for each list of options.
+# hashes "OPTIONS" ...: one run for each list of options.
 hashes() {
     for options in "$@"; do
         rm -f out.png

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Renders every scene of the repository in small, in several ways, and compares the files with recorded hashes: the
-# measure of a change that must not change pictures.
-#   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), names what differs; status 1 if anything does
-#   tools/picture_hashes.sh record [DIR]   renders, and writes into tests/picture_hashes.txt what was rendered
+# Renders every scene of the repository in a small size, in several ways, and compares the files with recorded hashes:
+# the check for a change that must not change pictures.
+#   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are
+#   any tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
 # WAYS="default j1 bvh base" chooses among the ways; ONLY="word ..." scenes whose path holds one of the words.
 # The hashes are of whole PNG files, so they hold for one version of zlib; tools/picture_difference.py OLD NEW shows by
 # how many levels the pictures of two folders differ.
@@ -35,7 +35,7 @@ wanted() { # wanted PATH
     return 1
 }
 
-# Scenes read their own files only; what they print is part of the list, too.
+# Scenes read only their own files; their output is part of the list, too.
 render() { # render NAME SCENE OPTION...
     name=$1
     scene=$2
@@ -50,7 +50,7 @@ scenes=$(ls data/*.lua data/csg/*.lua data/library/show_*.lua data/classic/*.lua
 for scene in $scenes; do
     wanted "$scene" || continue
     base=$(echo "${scene%.lua}" | tr / -)
-    # The options of the first lines, without those that choose another size.
+    # The options of the first lines, without those that set another size.
     options=$(head -n 20 "$scene" | sed -n 's/^-- *OPTIONS: *//p' | head -n 1)
     for way in $ways; do
         # shellcheck disable=SC2046,SC2086
@@ -78,14 +78,14 @@ done
     esac
 done) | sort -k 2 >"$folder/hashes"
 if [ "$action" = record ]; then
-    # What was not rendered keeps its line.
+    # Scenes that were not rendered keep their lines.
     [ -n "${ONLY:-}${WAYS:-}" ] && join -1 2 -2 2 -v 1 -o 1.1,1.2 "$list" "$folder/hashes" | sed 's/ /  /' >"$folder/kept"
     cat "$folder/hashes" "$folder/kept" 2>/dev/null | sort -k 2 >"$list.new"
     mv "$list.new" "$list"
     echo "$(wc -l <"$list") files recorded in $list"
     exit 0
 fi
-# Only what was rendered counts.
+# Only rendered scenes count.
 join -1 2 -2 2 -a 2 -e missing -o 0,1.1,2.1 "$list" "$folder/hashes" >"$folder/joined"
 different=$(awk '$2 != $3 { print "   " $1 ($2 == "missing" ? " (not in the list)" : "") }' "$folder/joined")
 count=$(wc -l <"$folder/joined")

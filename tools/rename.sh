@@ -1,10 +1,12 @@
 #!/bin/sh
-# Renames files and identifiers in the whole tree as maps say, and nothing else; with --commit it makes the commit, too.
+# Renames files and identifiers in the whole tree by maps, and changes nothing else; with --commit it also makes the
+# commit.
 #   tools/rename.sh [-f] MAP...                              changes the working tree
-#   tools/rename.sh --commit "area: Sentence" MAP...         the tree is clean but for the maps
-# A commit that renames has only what this script does and its map, and a line "Renames: MAP" at the end of its message:
-# tools/carry.sh then carries branches over it. The same map on the same tree gives the same bytes, twice is as once.
-# -f accepts new names that exist already. RENAME_LIST=1 lists every identifier.
+#   tools/rename.sh --commit "area: Sentence" MAP...         the tree is clean except for the maps
+# A commit that renames contains only the changes of this script and its map, and a line "Renames: MAP" at the end of
+# its message: tools/carry.sh then carries branches over it. The same map on the same tree gives the same bytes; a
+# second run changes nothing.
+# -f accepts new names that already exist. RENAME_LIST=1 lists every identifier.
 #
 # Lines of a map (tools/renames/NN-subject.map); @GLOB,GLOB behind the first word limits a line to these paths:
 #   file OLD NEW          moves a file or a folder; includes, guards and mentions of it follow
@@ -12,8 +14,8 @@
 #                         comment that it opened with heads its part
 #   word OLD NEW [merge]  an identifier; one * stands for the rest of it: word reach_* path_policy_*
 #   tag OLD NEW [merge]   the same, only behind struct, enum or union
-#   part OLD NEW [merge]  a component of identifiers between underscores, names of tests aside; capitals stay capitals
-#   keep NAME             an identifier (or pattern) that the lines above leave alone
+#   part OLD NEW [merge]  a component of identifiers between underscores, except in names of tests; capitals stay
+#   capitals keep NAME             an identifier (or pattern) that the lines above leave alone
 #   comment OLD NEW       a word in comments of C code
 #   text "OLD" "NEW"      any text, strings included
 # Identifiers are renamed in C code, not in strings; in comments and documents where they have an underscore, a

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Installs what the build needs and what is missing, from the Debian archive the machine is set up with; says so first.
-# Nothing is done when everything is there. Elsewhere than on Debian and its relatives: names what to install by hand.
+# Installs missing packages that the build needs, from the Debian archive of the machine; announces it first.
+# Does nothing if everything is installed. On systems not derived from Debian it lists what to install by hand.
 # Usage: tools/setup.sh [--check | --tests]
 #   --check   only prints what is missing (exit status 1)
-#   --tests   also installs what some tests need and others do without (clang); where that fails, those are skipped
+#   --tests   also installs what only some tests need (clang); if that fails, they are skipped
 set -u
 missing=""
-need() { # need PACKAGE COMMAND...: the command tells whether it is there
+need() { # need PACKAGE COMMAND...: the command shows whether it is installed
     package=$1
     shift
     "$@" >/dev/null 2>&1 || missing="$missing $package"
@@ -32,7 +32,7 @@ need liblua5.4-dev have_lua
 need libpng-dev pkg-config --exists libpng
 need zlib1g-dev pkg-config --exists zlib
 
-# Optional packages: never a question for a password, no long wait for a network, no failure.
+# Optional packages: never asks for a password, never waits long for a network, never fails.
 install_optional() { # install_optional PACKAGE
     without="tests that need it are skipped"
     as_root=

@@ -1,7 +1,7 @@
 #!/bin/sh
-# make test, make test-long: tools/test_steps.sh in a session of its own, which one signal reaches as a whole. This process
-# only waits for it. Ctrl-C, SIGTERM and SIGHUP are passed on; when this process or make is gone for another reason, the
-# session ends by itself.
+# make test, make test-long: runs tools/test_steps.sh in a separate session, so that one signal reaches all of it. This
+# process only waits for it. Ctrl-C, SIGTERM and SIGHUP are passed on; if this process or make ends for another reason,
+# the session ends by itself.
 cd "$(dirname "$0")/.." || exit 1
 . tools/test_session.sh
 tools/setup.sh --tests || exit 1

@@ -1,6 +1,6 @@
 # Read by tools/test.sh and the watchdog of tools/test_steps.sh.
 
-# Ends the process group $1 except process $2, by force what has not ended after some seconds.
+# Ends the process group $1 except process $2, with SIGKILL what has not ended after some seconds.
 end_group() {
     rounds=0
     kill -s TERM -- "-$1" 2>/dev/null

@@ -1,13 +1,13 @@
 #!/bin/sh
 # tools/test_steps.sh PID PARENT [--long [NAME ...]]: what make test does. Checks the layers, reads all sources with clang,
 # builds and runs the tests of the release build, then a smoke of the same tests under the address and undefined
-# sanitizers. Warnings are errors, unless WERROR is set and empty. --long: everything else. Ends with one line
-# "N passed, N failed, N skipped". A line at least every GRAY_TEST_PROGRESS seconds (15) says what is under way.
-# Leads a session, which ends when process PID (tools/test.sh) is gone, or has lost its parent PARENT (unless empty).
+# sanitizers. Warnings are errors, unless WERROR is set and empty. --long: all other tests. Ends with one line
+# "N passed, N failed, N skipped". A line at least every GRAY_TEST_PROGRESS seconds (15) reports the current step.
+# Leads a session, which ends when process PID (tools/test.sh) has ended or has lost its parent PARENT (unless empty).
 interval=${GRAY_TEST_PROGRESS:-15}
 
-# Twice a second: are this process and the other one there? A process that has ended but was not waited for (Z) is not.
-# Else the whole session is ended.
+# Twice a second: do this process and the other one exist? A zombie (Z) does not count.
+# If not, end the whole session.
 sh -c '
 there() {
     read -r _ _ state parent _ 2>/dev/null <"/proc/$1/stat" && [ "$state" != Z ] && [ "$parent" = "${2:-$parent}" ]
@@ -23,14 +23,14 @@ end_group "$3" $$
 kill -s KILL 0' test-watchdog "$1" "$2" $$ >/dev/null 2>&1 </dev/null &
 watchdog=$!
 
-# finish STATUS: the end of this process.
+# finish STATUS: ends this process.
 finish() {
     kill "$watchdog"
     wait 2>/dev/null
     exit "$1"
 }
 
-# step WHAT COMMAND ...: runs a command that does not say how far it is.
+# step WHAT COMMAND ...: runs a command without progress output.
 step() {
     what=$1
     shift
@@ -63,7 +63,7 @@ build() {
     step "building $1" make -s -j"$jobs" config="$1" WERROR="${WERROR-1}" build-tests all || { echo "the $1 build failed" >&2; finish 1; }
 }
 
-# Runs a test binary, which shows what did not pass and how far it is; adds its closing counts up.
+# Runs a test binary, which prints failures and progress; adds up its final counts.
 run() {
     config=$1
     shift

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Makes the pictures of the window in docs/window, or the folder that is given: the program under a display without a
-# screen (Xvfb), keys and mouse by xdotool, pictures by ImageMagick. Waits for signs in the window's title, not for times.
+# Makes the pictures of the window in docs/window or the given folder: the program on a virtual
+# display (Xvfb), keys and mouse by xdotool, pictures by ImageMagick. Waits for changes of the window's title, not for
+# times.
 cd "$(dirname "$0")/.." || exit 1
 gray=$PWD/build/release/gray
 [ "$1" = inside ] && out=$2 || out=${1:-$PWD/docs/window}

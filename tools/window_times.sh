@@ -1,7 +1,7 @@
 #!/bin/sh
-# How fast the window is: for each demo (words like 05; else a list of them) when something true is on the screen after
-# the world is built, how long a stop takes (ten times, at moments spread over half a second), and closing the window.
-# Under a display without a screen (Xvfb), keys by xdotool; the program itself tells the times (--verbose).
+# How fast the window is: for each demo (words like 05; else a list of them) when the first correct pixels are on the
+# screen after the build of the world, how long a stop takes (ten times, at moments spread over half a second), and
+# closing the window. On a virtual display (Xvfb), keys by xdotool; the program itself reports the times (--verbose).
 cd "$(dirname "$0")/.." || exit 1
 if [ "$1" != inside ]; then
     for tool in Xvfb xvfb-run xdotool; do
@@ -15,7 +15,7 @@ gray=$PWD/build/release/gray
 export SDL_RENDER_DRIVER=software SDL_FRAMEBUFFER_ACCELERATION=0
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-said() { # waits until the file has so many lines with the word
+said() { # waits until the file has this many lines with the word
     for i in $(seq 400); do
         [ "$(grep -c "$1" "$work/said")" -ge "$2" ] && return 0
         sleep 0.05

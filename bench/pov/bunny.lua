@@ -1,5 +1,5 @@
--- Twin of bunny.pov. MODEL is the OBJ file (-D MODEL=...); with the global EXPORT (-D EXPORT=mesh.inc) nothing is rendered:
--- the mesh is printed in POV-Ray's language instead, with the same area-weighted vertex normals.
+-- Twin of bunny.pov. MODEL is the OBJ file (-D MODEL=...); with the global EXPORT (-D EXPORT=mesh.inc) it does not
+-- render: it prints the mesh in POV-Ray's language, with the same area-weighted vertex normals.
 local verts, faces = require('readobj')(MODEL)
 local low, high = {math.huge, math.huge, math.huge}, {-math.huge, -math.huge, -math.huge}
 for _, v in ipairs(verts) do

@@ -1,8 +1,9 @@
--- Twin of primitives.pov: the same solids, lamps and camera, z turned round; materials as alike as both languages allow.
--- Rendered with limits of 8 and 8 and --cutoff 0.0039: POV-Ray counts to 8 and drops rays of less than 1/255 weight (adc_bailout).
+-- Twin of primitives.pov: the same solids, lamps and camera with z reversed; materials as similar as both languages
+-- allow. Rendered with limits of 8 and 8 and --cutoff 0.0039: POV-Ray counts to 8 and drops rays of less than 1/255
+-- weight (adc_bailout).
 local ambient = 0.08
 
--- diffuse * colour, a highlight, and a mirror of its own weight: ks filters both, so reflect is taken relative to it.
+-- diffuse * colour, a highlight, and a mirror with a separate weight: ks filters both, so reflect is relative to it.
 local function finish(colour, diffuse, phong, size, reflection)
     local kd = {colour[1] * diffuse, colour[2] * diffuse, colour[3] * diffuse}
     return gr.rr_material(kd, {phong, phong, phong}, size, reflection / phong, 0, 1)
