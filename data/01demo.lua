@@ -1,5 +1,5 @@
 -- TITLE: Adaptive anti-aliasing
--- Fans of thin bars, a lattice of small spheres and a floor that runs to the horizon: everything that shows stair-steps.
+-- Fans of thin bars, a lattice of small spheres and a floor that runs to the horizon: everything that shows aliasing.
 -- Author: gray project
 --
 -- `gray 01demo.lua -ss 5 -write-aa-targets red_ -write-pre-aa raw_` also writes red_01demo.png, the first pass with the
@@ -13,7 +13,7 @@ local ink = gr.material({ .10, .10, .12 }, { 0, 0, 0 }, 1)
 local paper = gr.material({ .90, .88, .82 }, { 0, 0, 0 }, 1)
 root:add_child(stage.checkers('floor', ink, paper, -16, -60, 16, 4, 1))
 
--- two fans of bars, one sharp against the sky, one low in contrast
+-- two fans of bars, one with high contrast against the sky, one with low contrast
 local function fan(name, count, length, material, x, y, z)
     local bar = gr.geometry(name .. ' bar', gr.cube(material))
     bar:translate(-.5, 0, -.5)

@@ -1,6 +1,6 @@
 -- TITLE: Reflection and refraction
--- A mirror ball, clear and coloured glass, a glass shell, a bubble of air in a block, and a floor that mirrors faintly.
--- Author: gray project
+-- A mirror ball, clear and coloured glass, a glass shell, a bubble of air in a block, and a floor with a faint
+-- reflection. Author: gray project
 
 local stage = require 'stage'
 local polyhedra = require 'polyhedra'

@@ -15,7 +15,7 @@ local blue = gr.material({ .16, .32, .60 }, { .5, .5, .5 }, 60)
 local clay = gr.material({ .70, .36, .20 }, { .3, .3, .3 }, 30)
 local floor = gr.material({ .70, .70, .66 }, { 0, 0, 0 }, 1)
 
---- A pot on a knot, as fine as asked for.
+--- A pot on a knot, with the given resolution.
 local function scene(fine)
     local root = gr.node('root')
     root:add_child(stage.box('floor', floor, { -8, -.5, -8 }, { 8, 0, 5 }))

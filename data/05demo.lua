@@ -30,7 +30,7 @@ checker:rotate('y', 32)
 checker:translate(-2.1, .001, -.9)
 root:add_child(checker)
 
--- the formula shows the image mirrored from outside; flip_u turns it
+-- by its formula the image appears mirrored from outside; flip_u reverses it
 local globe = gr.geometry('globe', gr.sphere(gr.td_sphere_material { material = plain, png = folder .. 'earth.png', flip_u = true }))
 globe:rotate('y', 130)
 globe:rotate('z', -23)

@@ -1,6 +1,6 @@
 -- TITLE: Caustics
--- Light that glass, gold and water throw: a clear ball, a gold ring with its nephroid, a green bottle, the floor of a pool.
--- Author: gray project
+-- Light focused by glass, gold and water: a clear ball, a gold ring with its nephroid, a green bottle, the floor of a
+-- pool. Author: gray project
 
 local stage = require 'stage'
 
@@ -40,7 +40,8 @@ for i = 0, math.floor((right - left) / size) do
 end
 root:add_child(tiles)
 
--- Water: waves of many directions, the short ones low. It reaches a little into the walls, so that it has no sides.
+-- Water: waves of many directions, the short ones low. It extends slightly into the walls, so that its sides are
+-- hidden.
 local waves = {}
 for k = 1, 14 do
     local length, angle = random(.42, 1.5), random(0, 2 * pi)

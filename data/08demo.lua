@@ -1,5 +1,5 @@
 -- TITLE: Soft shadows
--- Three area lights of different size and colour; the farther a thing stands from the floor, the softer its shadow.
+-- Three area lights of different size and colour; the farther an object is from the floor, the softer its shadow.
 -- Author: gray project
 
 local stage = require 'stage'
@@ -20,7 +20,7 @@ end
 root:add_child(stage.ball('ball', gr.material({ .70, .20, .16 }, { .5, .5, .5 }, 60), { 1.25, .75, -.55 }, .75))
 root:add_child(stage.ball('floating', gr.material({ .20, .42, .62 }, { .5, .5, .5 }, 60), { -.45, 1.9, .5 }, .30))
 
--- a cage: the edges of an icosahedron as thin bars would be meshes; here the faces float apart
+-- a cage: the faces of an icosahedron, separated from each other
 local verts, faces = polyhedra.icosahedron()
 local apart_verts, apart_faces = {}, {}
 for _, face in ipairs(faces) do
@@ -31,7 +31,7 @@ for _, face in ipairs(faces) do
         apart_verts[n + i] = { p[1] * .62 + x * .42, p[2] * .62 + y * .42, p[3] * .62 + z * .42 }
     end
     apart_faces[#apart_faces + 1] = { n, n + 1, n + 2 }
-    -- the back, a hair's breadth away, so that both sides have an outside
+    -- the back, at a tiny distance, so that both sides have an outside
     for i, index in ipairs(face) do
         local p = verts[index + 1]
         apart_verts[n + 3 + i] = { p[1] * .62 + x * .405, p[2] * .62 + y * .405, p[3] * .62 + z * .405 }

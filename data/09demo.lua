@@ -46,7 +46,7 @@ cube:rotate('y', -28)
 cube:translate(-2.5, .582, .9)
 root:add_child(cube)
 
--- a drilled sphere within a drilled cube, as turners make them
+-- a drilled sphere inside a drilled cube
 local function drilled(solid, material, width)
     local drills = {}
     for _, axis in ipairs { 'x', 'y', 'z' } do
@@ -74,7 +74,7 @@ lens:rotate('y', 22)
 lens:translate(.55, .80, 1.7)
 root:add_child(lens)
 
--- an apple with a bite, the teeth marks left as they are
+-- an apple with a bite and tooth marks
 local bites = {}
 for k = -2, 2 do bites[#bites + 1] = ball('tooth', ivory, { .80 + .06 * math.abs(k), .10 + .22 * k, .42 - .04 * k * k }, .34) end
 local apple = gr.csg_difference('apple',

@@ -1,6 +1,6 @@
 -- TITLE: Skybox
--- An evening lake all round, seen directly and in mirrors; the second picture has letters on the six faces of the sky.
--- Author: gray project
+-- A lake in the evening on all sides, seen directly and in mirrors; the second picture has letters on the six faces of
+-- the sky. Author: gray project
 
 local stage = require 'stage'
 local knot = require 'knot'

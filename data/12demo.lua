@@ -1,7 +1,7 @@
 -- TITLE: A place to walk through
--- A cloister round a pool: `gray -gui data/12demo.lua`, Space, then W A S D, E and Q for up and down, and the mouse.
--- The window shows the picture while it is made, coarse first; what is sampled again is red. V writes the camera.
--- Author: gray project
+-- A cloister around a pool: `gray -gui data/12demo.lua`, Space, then W A S D, E and Q for up and down, and the mouse.
+-- The window shows the picture while it is made, coarse first; pixels that are sampled again are red. V saves the
+-- camera. Author: gray project
 
 local stage = require 'stage'
 
@@ -36,7 +36,7 @@ for i = -2, 2 do
     end
 end
 
--- Roof beams over the walk, and the wall round it.
+-- Roof beams over the walk, and the wall around it.
 for _, b in ipairs { { -8, -8, 8, -4.1 }, { -8, 4.1, 8, 8 }, { -8, -4.1, -4.1, 4.1 }, { 4.1, -4.1, 8, 4.1 } } do
     root:add_child(stage.box('roof', stone, { b[1], 2.8, b[2] }, { b[3], 3.1, b[4] }))
 end
@@ -44,7 +44,7 @@ for _, b in ipairs { { -8.3, -8.3, 8.3, -8 }, { -8.3, 8, 8.3, 8.3 }, { -8.3, -8,
     root:add_child(stage.box('wall', pale, { b[1], 0, b[2] }, { b[3], 3.1, b[4] }))
 end
 
--- What stands in the pool.
+-- The objects in the pool.
 root:add_child(stage.box('plinth', stone, { -.5, 0, -.5 }, { .5, .9, .5 }))
 local ring = gr.torus('ring', 1, .16)
 ring:set_material(brass)

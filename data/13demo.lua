@@ -1,13 +1,13 @@
 -- TITLE: Fresnel
--- Dielectrics whose mirroring depends on the angle: balls of rising index over dark water, a block of glass, a bubble.
--- Author: gray project
+-- Dielectrics whose reflectance depends on the angle: balls of rising index over dark water, a block of glass, a
+-- bubble. Author: gray project
 
 local stage = require 'stage'
 local polyhedra = require 'polyhedra'
 
 local root = gr.node('root')
 
--- water: seen steeply one looks into it, seen flat it is a mirror
+-- water: transparent at steep angles, a mirror at grazing angles
 local water = gr.difresnel_material(gr.rr_material({ 0, .004, .006 }, { .93, .97, .97 }, 300, 0, 1, 1.33))
 root:add_child(stage.box('water', water, { -30, -1.5, -60 }, { 30, 0, 12 }))
 local bed = stage.checkers('bed', gr.material({ .34, .42, .36 }, { 0, 0, 0 }, 1), gr.material({ .62, .64, .52 }, { 0, 0, 0 }, 1),
@@ -31,7 +31,7 @@ local block = stage.box('block', green, { -.55, 0, -.55 }, { .55, 1.5, .55 })
 block:rotate('y', 35)
 block:translate(2.2, .08, -2.6)
 root:add_child(block)
--- hardly any difference to air: visible at the rim alone
+-- almost the index of air: visible only at the rim
 root:add_child(stage.ball('soap bubble', gr.difresnel_material(gr.rr_material({ 0, 0, 0 }, { 1, .97, 1 }, 300, 0, 1, 1.03)), { .1, 1.35, -3 }, 1.1))
 root:add_child(stage.ball('red', gr.material({ .75, .14, .10 }, { .4, .4, .4 }, 50), { -.9, .32, -1.7 }, .3))
 root:add_child(stage.ball('blue', gr.material({ .12, .25, .60 }, { .4, .4, .4 }, 50), { .85, .32, -1.5 }, .3))

@@ -1,6 +1,6 @@
 -- TITLE: Final scene, revised
 -- The room again, nearer the table: crystal, a tumbler, oranges in a bowl, a brass knot in the corner; the mirror shows
--- what stands on the wall beside the onlooker.
+-- the objects on the wall beside the camera.
 -- Author: gray project
 
 local room = require 'room'

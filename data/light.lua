@@ -2,7 +2,7 @@
 -- OPTIONS: -ss 5
 -- Author: gray project
 --
--- Three balls roll and spin while the shutter is open, with their shadows and with what mirrors show of them. A ring of
+-- Three balls roll and spin while the shutter is open, with their shadows and mirror images. A ring of
 -- light (a mesh that emits) and a clear evening sky are the lamps. After the picture of 1984 by Thomas Porter.
 
 local stage = require 'stage'
@@ -27,7 +27,7 @@ local function varnish(colour)
     return gr.rr_material(colour, { .9, .9, .9 }, 300, .12, 0, 1)
 end
 
---- A ball with a white belt round it, so that one sees it spin.
+--- A ball with a white belt, so that its spin is visible.
 local function ball(name, colour, belt)
     local solid = gr.sphere { name = name, material = varnish(colour), radius = radius }
     if not belt then
@@ -44,14 +44,14 @@ local function ball(name, colour, belt)
     return whole
 end
 
---- Puts a ball on the table, turned; with a way it rolls along it while the shutter is open.
+--- Puts a rotated ball on the table; with a displacement it rolls along it while the shutter is open.
 local function place(what, x, z, turn, way)
     what:rotate('x', turn[1]):rotate('y', turn[2]):translate(x, radius, z)
     if way then
         local length = math.sqrt(way[1] ^ 2 + way[2] ^ 2)
         local there = gr.node('there')
         there:rotate('x', turn[1]):rotate('y', turn[2])
-        -- rolling about the level axis at right angles to the way
+        -- rolling about the horizontal axis perpendicular to the displacement
         local heading = math.deg(math.atan(way[1], way[2]))
         there:rotate('y', -heading):rotate('x', math.deg(length / radius)):rotate('y', heading)
         there:translate(x + way[1], radius, z + way[2])

@@ -1,12 +1,12 @@
 -- TITLE: Mesh files
--- OBJ with MTL, PLY, STL and glTF; materials by part, crease angles, placing by bounds. The files are made by models/make.lua.
--- Author: gray project
+-- OBJ with MTL, PLY, STL and glTF; materials by part, crease angles, placing by bounds. models/make.lua makes the
+-- files. Author: gray project
 
 local scene = gr.node('scene')
 local stone = gr.material({ .58, .56, .52 }, { .1, .1, .1 }, 20)
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material({ .58, .60, .62 }, { 0, 0, 0 }, 1) })
 
---- Puts a model upright on a round pedestal: as large as `size` allows, its middle over the pedestal's.
+--- Puts a model upright on a round pedestal, scaled to `size` and centred.
 local function exhibit(model, size, x, z, turn)
     model:rotate('y', turn or 0)
     local low, high = model:bounds()
@@ -22,11 +22,11 @@ local gold = gr.rr_material({ .42, .28, .08 }, { .55, .42, .2 }, 80, .35, 0, 1)
 local steel = gr.rr_material({ .34, .36, .40 }, { .45, .46, .5 }, 70, .25, 0, 1)
 local ivory = gr.material { kd = { .72, .66, .52 }, ks = { .2, .2, .2 }, shininess = 40, two_sided = true }
 
--- the same file as it is, and with two of its parts in other materials
+-- the same file unchanged, and with other materials for two of its parts
 exhibit(gr.mesh { file = 'models/rocket.obj', smooth = 40 }, 3.3, -4.3, -.6, 20)
 exhibit(gr.mesh { file = 'models/rocket.obj', smooth = 40, materials = { hull = gold, fins = steel } }, 3.3, -1.6, -1.6, -10)
 
--- STL has no normals: smooth all over would round the teeth, a crease angle keeps their edges
+-- STL has no normals: smooth normals everywhere would round the teeth; a crease angle keeps their edges
 exhibit(gr.mesh { file = 'models/gear.stl', material = steel, smooth = 25 }, 2, 1.1, -1.6, 25)
 exhibit(gr.mesh { file = 'models/gear.stl', material = ivory, smooth = 180 }:rotate('x', -50), 2, 3.8, -.6, -35)
 

@@ -1,6 +1,6 @@
 -- TITLE: A pyramid in the fog
--- Mirror balls in a pyramid, more of them behind, and ground fog: what the balls mirror fades over the whole way.
--- With --cutoff 0.002 the rays that the fog has already swallowed are not followed.
+-- Mirror balls in a pyramid, more of them behind, and ground fog: reflections are attenuated over the whole path.
+-- With --cutoff 0.002, rays that the fog has almost absorbed are not followed.
 -- Author: gray project
 
 local stage = require 'stage'
@@ -15,7 +15,7 @@ local metals = {
     gr.rr_material({ .08, .03, .02 }, { .86, .46, .36 }, 200, .80, 0, 1),
 }
 
--- `rows` layers of balls of radius r, each ball in the hollow of four
+-- `rows` layers of balls of radius r, each ball on top of four others
 local function pyramid(x, z, rows, r)
     local step, rise = 2 * r, r * math.sqrt(2)
     for layer = 0, rows - 1 do

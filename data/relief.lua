@@ -1,5 +1,5 @@
 -- TITLE: Relief by pictures
--- Bump maps and a normal map on shapes with uv; leaves cut out of cards by a picture of opacity.
+-- Bump maps and a normal map on shapes with uv; leaves cut out of cards by an opacity map.
 -- Author: gray project
 
 local folder = '../textures/'
@@ -20,7 +20,7 @@ scene:add_child(gr.rectangle { corner = { -7, 0, -3.4 }, along = { 14, 0, 0 }, u
 scene:add_child(gr.rectangle { corner = { -7, 0, 6 }, along = { 14, 0, 0 }, up = { 0, 0, -9.4 }, material = clay { .55, .50, .40 } }
     :set_bump(weave({ 9, 6 }, .8)))
 
--- the same picture round everything that has coordinates
+-- the same image on all shapes with texture coordinates
 local shapes = {
     { gr.sphere {}, { 6, 3 }, { .75, .72, .66 } },
     { gr.cylinder { from = { 0, -1, 0 }, to = { 0, 1, 0 }, radius = .8 }, { 4, 1 }, { .45, .58, .66 } },

@@ -1,9 +1,9 @@
 -- The room of the two final scenes: a table with tea things before a window, a mirror in a carved frame, a lamp.
 -- Author: gray project
 --
--- Units are metres, y is up. The room is built as one sees it, looking along -z with the window wall at z = -2.2; at the
--- end the whole room is turned half round, so that the window looks at the evening sun of the sky picture (its +z face).
--- Nothing touches exactly: what stands on something sinks into it by a fraction of a millimetre.
+-- Units are metres, y is up. The room is built for a view along -z, with the window wall at z = -2.2; at the
+-- end the whole room is rotated by 180 degrees, so that the window faces the evening sun of the sky image (its +z
+-- face). No surfaces coincide: objects sink into their support by a fraction of a millimetre.
 
 local meshes = require 'mesh_tools'
 local lathe = require 'lathe'
@@ -17,7 +17,7 @@ local M = {}
 
 local sin, cos, pi, sqrt = math.sin, math.cos, math.pi, math.sqrt
 
---- Positions and directions of the finished scene from those of the room as built.
+--- Converts positions and directions of the room as built to those of the finished scene.
 function M.place(p) return { -p[1], p[2], -p[3] } end
 
 local function box(name, material, low, high)
@@ -229,7 +229,7 @@ local function window(m)
     all:add_child(gr.csg_difference('window frame', sash, panes))
     all:add_child(box('glass', m.glass, { w.x0 + .01, w.y0 + .01, z - .003 }, { w.x1 - .01, w.y1 - .01, z + .003 }))
     all:add_child(box('sill', m.white, { w.x0 - .10, w.y0 - .035, M.back - .09 }, { w.x1 + .10, w.y0 + .004, M.back + .055 }))
-    -- casing round the hole
+    -- casing around the hole
     all:add_child(box('casing', m.white, { w.x0 - .085, w.y1 - .001, M.back - .01 }, { w.x1 + .085, w.y1 + .10, M.back + .022 }))
     for _, x in ipairs { w.x0 - .08, w.x1 - .001 } do
         all:add_child(box('casing', m.white, { x, w.y0 - .02, M.back - .01 }, { x + .081, w.y1 + .001, M.back + .0215 }))
@@ -275,7 +275,7 @@ local function window(m)
     return all
 end
 
---- Hills and a line of firs outside. Only the ambient light reaches them, so their colours allow for it.
+--- Hills and a line of firs outside. Only the ambient light reaches them, so their colours are brighter.
 local function outside(ambient)
     local all = gr.node('outside')
     local layers = {
@@ -326,7 +326,7 @@ local function table_top(m)
     for _, p in ipairs(edge) do profile[#profile + 1] = p end
     profile[#profile + 1] = { r - .016, y }
     profile[#profile + 1] = { 0, y }
-    -- veins follow the y of object space, so the top is made standing and laid down
+    -- veins follow the y axis of object space, so the top is made upright and then rotated
     local top = smooth('marble top', m.marble, meshes.rotate({ lathe.turn(profile, 160) }, 'z', 72))
     top:rotate('z', -72)
     top:rotate('y', -35)
@@ -398,7 +398,8 @@ local function table_base(m, fine)
     return base
 end
 
--- Things on the table -------------------------------------------------------------------------------------------------
+-- Objects on the table
+-- -------------------------------------------------------------------------------------------------
 
 local function tea_set(m)
     local all = gr.node('tea set')
@@ -507,7 +508,8 @@ local function vase(m)
     return all
 end
 
--- Things in the room --------------------------------------------------------------------------------------------------
+-- Objects in the room
+-- --------------------------------------------------------------------------------------------------
 
 local function mirror(m, along, across)
     local all = gr.node('mirror')
@@ -593,7 +595,8 @@ local function lamp(m)
 end
 
 --- Everything, ready to render.
----@param options table  eye: where the onlooker stands; fine: factor for the carving (1); extras: the revised scene's additions
+---@param options table  eye: position of the camera; fine: factor for the carving (1); extras: the revised scene's
+---additions
 ---@return any root
 ---@return table lights
 function M.build(options)
@@ -632,7 +635,7 @@ function M.build(options)
             { 1.15, .92, .66 }, { .6, .12, .12 }),
         -- the lamp over the table
         area({ -.12, 1.80, -.12 }, { .24, 0, 0 }, { 0, 0, .24 }, { 1.0, .84, .60 }, { .55, .1, .25 }),
-        -- a weak light at the onlooker's eye, whose shadows hide behind the things that cast them
+        -- a weak light at the camera, whose shadows are hidden behind the objects that cast them
         gr.light(M.place(options.eye), { .50, .48, .46 }, { 1, .03, .01 }),
     }
     return root, lights

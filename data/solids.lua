@@ -1,6 +1,6 @@
 -- TITLE: Every shape, with its name
--- Forty of them on stairs: flat ones, quadrics, tori, superellipsoids, turned, drawn out and swept ones, fields, blobs, hair,
--- patches and meshes. The ground is the plane without end.
+-- Forty of them on stairs: flat ones, quadrics, tori, superellipsoids, surfaces of revolution, prisms, sweeps, height
+-- fields, blobs, hair, patches and meshes. The ground is an infinite plane.
 -- Author: gray project
 
 local colour, knot, noise, polyhedra, text = require 'colour', require 'knot', require 'noise', require 'polyhedra', require 'text'
@@ -27,7 +27,7 @@ local function star(tips, far, near)
     return points
 end
 
---- A star with a round hole, as the polygon takes it.
+--- A star with a round hole, as outlines of a polygon.
 local star_points, star_outlines = {}, {{}, {}}
 for _, p in ipairs(star(7, 0.95, 0.58)) do
     star_points[#star_points + 1] = {p[1], p[2], 0}
@@ -68,7 +68,7 @@ local function hair(m)
     return tuft
 end
 
--- Each: its word and how to make it, standing on y = 0 and about 1.7 high.
+-- Each entry: its name and its maker; the shape stands on y = 0 and is about 1.7 high.
 local show = {
     {
         {'sphere', function(m) return gr.sphere {centre = {0, 0.85, 0}, radius = 0.85, material = m} end},
@@ -203,7 +203,7 @@ for r, row in ipairs(show) do
         place:add_child(entry[2](m))
         place:translate(2.5 * k - 11.25, y, z - 0.15)
         scene:add_child(place)
-        -- its name on the riser; every word is drawn once
+        -- its name on the riser; every name is rendered once
         words[entry[1]] = words[entry[1]] or gr.vn_mesh(ink, text.mesh(entry[1], {size = 0.38, depth = 0.05, align = 'centre', tolerance = 0.004}))
         scene:add_child(gr.node {name = 'word', children = {words[entry[1]]}}:translate(2.5 * k - 11.25, y - 0.38, z + 1.24))
     end

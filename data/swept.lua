@@ -42,7 +42,7 @@ local land = gr.height_field {
 land:translate(-0.5, 0, -0.5):scale(56, 11, 24):translate(0, -4.2, -26)
 scene:add_child(land)
 
--- A vase of a spline profile with a wall, cut open to show it; its cut face is the knife's.
+-- A vase of a spline profile with a wall, cut open to show it; the cut face has the material of the cutter.
 local profile = {{0, 0}, {0.75, 0}, {0.85, 0.12}, {1.15, 0.9}, {1.05, 1.7}, {0.5, 2.4}, {0.45, 2.75}, {0.72, 3.1},
     {0.62, 3.1}, {0.36, 2.75}, {0.40, 2.4}, {0.92, 1.7}, {1.02, 0.95}, {0.72, 0.25}, {0, 0.18}}
 local cut = gr.difference('cut vase',
@@ -115,7 +115,7 @@ local gear = gr.difference('gear',
 gear:rotate('y', 14):rotate('x', 62):translate(4.7, 1.16, -0.2)
 scene:add_child(gear)
 
--- A blob: the crown that a drop makes in a liquid, of rods and balls; the last ball takes away.
+-- A blob: the crown of a drop in a liquid, of rods and balls; the last ball is subtracted.
 local balls, rods = {}, {}
 for k = 0, 11 do
     local a, b, tall = k * pi / 6, (k + 1) * pi / 6, 0.85 + 0.2 * sin(k * 2.4)

@@ -1,9 +1,10 @@
 -- archimedean: the thirteen Archimedean solids, prisms and antiprisms.
 -- Idea: the corners are closed forms (all even or all permutations of a few coordinates with all signs, or only those
--- with an even number of plus signs); edges join those that are nearest to each other, and the faces are found by walking
--- round each corner. Source: H. S. M. Coxeter, M. S. Longuet-Higgins, J. C. P. Miller, "Uniform Polyhedra",
--- Phil. Trans. R. Soc. A 246, 1954; the snub solids' constants are the real roots of t^3 = t^2 + t + 1 and x^3 = 2 x + phi.
--- Invariant: corners on the unit sphere, edges of one length, faces counter-clockwise seen from outside.
+-- with an even number of plus signs); edges join those that are nearest to each other, and the faces are found by
+-- following the edges around each corner. Source: H. S. M. Coxeter, M. S. Longuet-Higgins, J. C. P. Miller, "Uniform
+-- Polyhedra", Phil. Trans. R. Soc. A 246, 1954; the snub solids' constants are the real roots of t^3 = t^2 + t + 1 and
+-- x^3 = 2 x + phi. Invariant: corners on the unit sphere, edges of one length, faces counter-clockwise seen from
+-- outside.
 --
 --   local archimedean = require 'archimedean'
 --   local ball = gr.mesh(leather, archimedean.solid 'truncated icosahedron')
@@ -25,7 +26,7 @@ M.names = {
 local even = { { 1, 2, 3 }, { 2, 3, 1 }, { 3, 1, 2 } }
 local odd = { { 2, 1, 3 }, { 1, 3, 2 }, { 3, 2, 1 } }
 
---- Adds the permutations of a tuple with the signs that `keep` allows; what is there already is left out.
+--- Adds the permutations of a tuple with the signs that `keep` allows; duplicates are left out.
 local function spread(out, tuple, orders, keep)
     for _, order in ipairs(orders) do
         for signs = 0, 7 do
@@ -137,8 +138,8 @@ local function faces_of(verts)
         near[i] = {}
         for k, item in ipairs(list) do near[i][k] = item[1] end
     end
-    -- a face lies on the left of each of its edges: at the end of an edge the next one is the neighbour before the one
-    -- it came from
+    -- a face lies on the left of each of its edges: at the end of an edge, the next one goes to the neighbour before
+    -- the one it came from
     local faces, used = {}, {}
     for i = 1, #verts do
         for _, j in ipairs(near[i]) do

@@ -1,10 +1,10 @@
 -- bezier: bicubic Bezier patches as meshes with vertex normals.
 -- Idea: the tensor product is evaluated point by point with Bernstein polynomials; the normal is the cross product of
--- the two derivatives. Where a corner or an edge of the patch has shrunk to a point a derivative vanishes; there the
--- normal is taken a little way inside the patch, where it exists (Farin, "Curves and Surfaces", 4th ed., 16.7).
+-- the two derivatives. If a corner or an edge of the patch has collapsed to a point, a derivative vanishes; there the
+-- normal is taken slightly inside the patch, where it exists (Farin, "Curves and Surfaces", 4th ed., 16.7).
 -- Spline surfaces become Bezier patches exactly: a bicubic B-spline by the matrix of C. de Boor, "A Practical Guide to
 -- Splines", 1978, a surface through points by Catmull and Rom, "A Class of Local Interpolating Splines", 1974.
--- Invariant: quads that shrink to triangles are written as triangles, those that vanish are not written at all.
+-- Invariant: quads that collapse to triangles are written as triangles, empty ones are left out.
 --
 --   local bezier = require 'bezier'
 --   local control, patches = bezier.through(rows_of_points)              -- or bezier.b_spline(rows, true, false)
@@ -144,7 +144,7 @@ function M.mesh(control, patches, n, flip)
     return verts, normals, faces, faces
 end
 
--- Four points of a uniform spline to the four Bezier points of its piece between the second and the third.
+-- Converts four points of a uniform spline to the four Bezier points of its piece between the second and the third.
 local to_bezier = {
     ['b-spline'] = { { 1 / 6, 4 / 6, 1 / 6, 0 }, { 0, 4 / 6, 2 / 6, 0 }, { 0, 2 / 6, 4 / 6, 0 }, { 0, 1 / 6, 4 / 6, 1 / 6 } },
     ['catmull-rom'] = { { 0, 1, 0, 0 }, { -1 / 6, 1, 1 / 6, 0 }, { 0, 1 / 6, 1, -1 / 6 }, { 0, 0, 1, 0 } },
@@ -165,7 +165,7 @@ local function spline_patches(where, kind, net, closed_u, closed_v)
         check.fail(where, ('net has %d x %d points, which are too few'):format(columns, rows))
     end
     local matrix, interpolates = to_bezier[kind], kind == 'catmull-rom'
-    -- a point of the net; beyond the ends of an open interpolating one the last piece goes straight on
+    -- a point of the net; beyond the ends of an open interpolating net the last piece is extended linearly
     local function along(i, count, closed, get)
         if closed then return get((i - 1) % count + 1) end
         if i >= 1 and i <= count then return get(i) end

@@ -1,8 +1,8 @@
--- carve: picture frames with carved leaves, and relief for turned work.
--- Idea: a moulding (a curve across the frame) is swept round a rectangle with mitred corners and displaced along the
--- outward direction by ornament. All ornament is a function of the distance to the corner and of the place across the
--- moulding, so both sides of a mitre agree and the mesh closes without a seam.
--- Invariant: the frame lies in the plane z = 0 round the origin, its front towards +z; normals point out of the wood.
+-- carve: picture frames with carved leaves, and relief for lathed objects.
+-- Idea: a moulding (a curve across the frame) is swept around a rectangle with mitred corners and displaced along the
+-- outward direction by ornament. All ornament is a function of the distance to the corner and of the position across
+-- the moulding, so both sides of a mitre agree and the mesh closes without a seam.
+-- Invariant: the frame is in the plane z = 0 around the origin, its front towards +z; normals point out of the wood.
 
 local meshes = require 'meshes'
 
@@ -16,7 +16,7 @@ local function smoothstep(a, b, x)
     return t * t * (3 - 2 * t)
 end
 
---- Height of one acanthus-like leaf that lies along p and is as wide as |q| = 1 at its widest.
+--- Height of one acanthus-like leaf along p, which extends to |q| = 1 at its widest.
 ---@param p number  0 at the stalk, 1 at the tip
 ---@param q number  across, -1..1
 ---@return number height  0..1
@@ -46,11 +46,11 @@ function M.beads(s, q)
     return r < 1 and sqrt(1 - r) or 0
 end
 
---- A carved frame round an opening.
+--- A carved frame around an opening.
 ---@param width number  of the opening
 ---@param height number
 ---@param options table?  breadth of the moulding (0.2 of the smaller side), depth (0.6 of the breadth), along and across:
----  numbers of cells (along counts the whole frame), leaves: wished length of a leaf in breadths
+---  numbers of cells (along counts the whole frame), leaves: desired length of a leaf in breadths
 ---@return number[][] verts
 ---@return number[][] normals
 ---@return integer[][] faces
@@ -62,7 +62,7 @@ function M.frame(width, height, options)
     local along, across = options.along or 640, options.across or 44
     local leaf_length = (options.leaves or 0.95) * breadth
 
-    -- the moulding: u = 0 at the opening, 1 at the outer edge; offset outwards and height over the wall
+    -- the moulding: u = 0 at the opening, 1 at the outer edge; offset outwards and height above the wall
     local function moulding(u)
         local rim = 0.30 * math.exp(-((u - 0.90) / 0.055) ^ 2)
         local cove = 0.52 + 0.40 * smoothstep(0.16, 0.80, u) - 0.10 * sin(pi * smoothstep(0.18, 0.85, u))
@@ -103,7 +103,7 @@ function M.frame(width, height, options)
         if relief_on then
             local from_corner = half - abs(a)
             local from_middle = abs(a)
-            -- main leaves march from the middle of a side to its corners
+            -- main leaves follow each other from the middle of a side to its corners
             local q = (u - 0.50) / 0.27
             local reach = length / 2
             local count = math.max(1, math.floor(reach / leaf_length + 0.5))
@@ -112,17 +112,17 @@ function M.frame(width, height, options)
             local h = 0
             if cell < count and abs(q) < 1 then
                 h = M.leaf(p - cell, q)
-                -- the tip of the leaf before lies under the stalk of this one
+                -- the tip of the previous leaf is under the stalk of this one
                 if cell > 0 then h = math.max(h, 0.6 * M.leaf(math.min(0.999, 0.78 + (p - cell)), q * 1.3)) end
             end
-            -- a flower where the sides' middles meet
+            -- a flower at the middle of each side
             local mx, my = from_middle / (0.22 * breadth), (u - 0.5) / 0.22
             local r2 = mx * mx + my * my
             if r2 < 1 then
                 local petals = 0.72 + 0.28 * abs(cos(3 * math.atan(my, mx + 1e-12)))
                 h = math.max(h, 1.15 * sqrt(math.max(0, 1 - r2 / petals)) + 0.3 * math.exp(-r2 * 18))
             end
-            -- a big leaf over each corner, lying on the diagonal
+            -- a large leaf at each corner, along the diagonal
             local diagonal = ((1 - u) * breadth + from_corner) / (1.75 * breadth)
             local aside = (from_corner - (1 - u) * 0.02 * breadth) / (0.62 * breadth)
             local corner = M.leaf(1.24 - diagonal * 1.28, aside * 0.8)
@@ -150,7 +150,7 @@ function M.frame(width, height, options)
     return mesh[1], mesh[2], mesh[3], mesh[4]
 end
 
---- Relief for lathe.carved: gadroons that wind round the axis.
+--- Relief for lathe.carved: gadroons that wind around the axis.
 ---@param count integer  how many
 ---@param turns number  how often each goes round from end to end
 ---@param depth number  share of the radius

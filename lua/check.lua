@@ -1,19 +1,19 @@
--- check: what the library's functions say about wrong arguments.
--- Idea: one sentence that names the module, the function and the argument, with the place in the scene that called, not
--- the line of the library where it was noticed. Fields of option tables that nobody knows are errors, too.
+-- check: error messages of the library's functions for wrong arguments.
+-- Idea: one sentence that names the module, the function and the argument, with the position of the call in the scene,
+-- not the line of the library that detected it. Unknown fields of option tables are errors, too.
 --
 --   local check = require 'check'
 --   function M.ball(radius, options)                  -- in a module called solids
 --       check.above('solids.ball', 'radius', radius, 0)
 --       options = check.options('solids.ball', options, 'n smooth')
 --
--- Every function returns its value, or the default when nothing was given and there is a default.
+-- Every function returns its value, or the default if no value was given and there is a default.
 
 local M = {}
 
 local folder = debug.getinfo(1, 'S').source:match '^(.*[/\\])' or '@'
 
---- What stands in the place of an argument, in words.
+--- Describes the value of an argument in words.
 local function shown(value)
     if value == nil then return 'nothing' end
     if type(value) == 'number' then return ('%.14g'):format(value) end
@@ -22,7 +22,7 @@ local function shown(value)
     return 'a ' .. type(value)
 end
 
---- The first place outside of the library, counted from whoever calls `error`.
+--- The first position outside the library, counted from the caller of `error`.
 local function level_of_the_scene()
     local level = 3
     while true do
@@ -130,7 +130,7 @@ function M.table(where, name, value, default)
     return value
 end
 
---- A list with at least so many entries.
+--- A list with at least this many entries.
 ---@param least integer?  default 1
 function M.list(where, name, value, least)
     least = least or 1
@@ -186,7 +186,7 @@ function M.faces(where, name, value, count)
     return value
 end
 
---- A table of options whose fields are all known; nothing given is an empty one.
+--- A table of options whose fields are all known; nil gives an empty one.
 ---@param known string  the names, parted by blanks
 ---@return table
 function M.options(where, options, known)

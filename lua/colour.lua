@@ -1,6 +1,6 @@
 -- colour: colours by hue, by name, by temperature; mixing; palettes.
--- Colours are tuples {r, g, b} as materials and lights take them. A picture holds them as they are unless it is written
--- with --srgb; then linear ones are right: colour.linear turns what a colour picker shows into light.
+-- Colours are tuples {r, g, b} as for materials and lights. A picture file has them unchanged unless it is written
+-- with --srgb; then use linear ones: colour.linear converts the sRGB values of a colour picker.
 -- Sources: A. Smith, "Color Gamut Transform Pairs", SIGGRAPH 1978 (hsv); B. Ottosson, "A perceptual color space for image
 -- processing", 2020 (oklab); IEC 61966-2-1 (the sRGB curve); Planck's law by the fits of C. Wyman et al., JCGT 2(2), 2013,
 -- to the CIE functions (blackbody); the palettes viridis and magma of S. van der Walt and N. Smith (matplotlib, CC0);
@@ -58,7 +58,7 @@ function M.to_hsv(colour)
     return 60 * hue, high > 0 and span / high or 0, high
 end
 
---- What a colour picker shows, as light.
+--- Converts sRGB, as in a colour picker, to linear.
 function M.linear(colour)
     check.tuple('colour.linear', 'colour', colour, 3)
     local out = {}
@@ -66,7 +66,7 @@ function M.linear(colour)
     return out
 end
 
---- Light as a colour picker shows it.
+--- Converts linear to sRGB, as in a colour picker.
 function M.srgb(colour)
     check.tuple('colour.srgb', 'colour', colour, 3)
     local out = {}
@@ -80,7 +80,7 @@ function M.luminance(colour)
     return 0.2126 * colour[1] + 0.7152 * colour[2] + 0.0722 * colour[3]
 end
 
---- A share of b in a, number by number.
+--- Interpolates linearly from a to b.
 ---@return number[]
 function M.mix(a, b, share)
     check.tuple('colour.mix', 'a', a, 3)
@@ -118,14 +118,14 @@ function M.oklab(lab)
              -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s }
 end
 
---- Between two colours as the eye sees it (in Oklab, of colours as a picker shows them).
+--- Interpolates between two sRGB colours perceptually (in Oklab).
 function M.blend(a, b, share)
     local p, q = M.to_oklab(M.linear(a)), M.to_oklab(M.linear(b))
     local out = M.srgb(M.oklab(M.mix(p, q, check.number('colour.blend', 'share', share))))
     return { clamp(out[1]), clamp(out[2]), clamp(out[3]) }
 end
 
---- The colour of a glowing body, its largest part 1: 1900 a candle, 2700 a lamp, 5800 the sun.
+--- The colour of a black body, its largest component 1: 1900 a candle, 2700 a lamp, 5800 the sun.
 ---@param kelvin number  800 to 40000
 ---@return number[]  linear
 function M.blackbody(kelvin)
@@ -178,7 +178,7 @@ local function colours_of(where, name)
     return known[name]
 end
 
---- The colours of a palette, as a list. Palettes: viridis, magma, safe (told apart by everybody), land, earth, sea,
+--- The colours of a palette, as a list. Palettes: viridis, magma, safe (for colour-blind viewers), land, earth, sea,
 --- sunset, pastel, toy.
 ---@param name string
 ---@return number[][]
@@ -200,7 +200,7 @@ function M.palette(name, t)
     return M.mix(list[k + 1], list[k + 2], t - k)
 end
 
---- A palette by cosines: a + b cos(2 pi (c t + d)) for each part.
+--- A palette by cosines: a + b cos(2 pi (c t + d)) for each component.
 function M.cosine(a, b, c, d, t)
     for k, v in ipairs { a, b, c, d } do check.tuple('colour.cosine', ('abcd'):sub(k, k), v, 3) end
     check.number('colour.cosine', 't', t)
@@ -209,7 +209,7 @@ function M.cosine(a, b, c, d, t)
     return out
 end
 
---- So many colours of equal brightness and saturation, their hues as far from each other as they can be
+--- n colours of equal brightness and saturation with well separated hues
 --- (steps of the golden angle).
 ---@param count integer
 ---@param saturation number?  default 0.6

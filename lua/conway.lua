@@ -1,7 +1,7 @@
 -- conway: operators that make one polyhedron from another.
 -- Source: J. H. Conway, H. Burgiel, C. Goodman-Strauss, "The Symmetries of Things", 2008, chapter 21; D. Hart's notation.
--- Invariant: a closed mesh with faces counter-clockwise from outside gives such a mesh again. New corners stand at means
--- of old ones: the faces of dual, kis and their like need not be exactly flat.
+-- Invariant: a closed mesh with faces counter-clockwise from outside gives such a mesh again. New corners are means
+-- of old ones: the faces of dual, kis and similar operators need not be exactly planar.
 --
 --   local conway, polyhedra = require 'conway', require 'polyhedra'
 --   local ball = { conway.apply('tk', polyhedra.dodecahedron()) }      -- t of k of it, from right to left
@@ -27,7 +27,7 @@ local function mean(verts, face)
     return { x / n, y / n, z / n }
 end
 
---- For every corner the faces round it, counter-clockwise: next_face[corner][face] and one to begin with.
+--- For every corner the faces around it, counter-clockwise: next_face[corner][face], and one to start from.
 local function rounds(where, verts, faces)
     local owner = {} -- the face on the left of the edge from a to b
     for f, face in ipairs(faces) do
@@ -110,7 +110,7 @@ function M.kis(verts, faces, height, n)
     return out, new
 end
 
---- Corners at a share of each edge from both its ends; at 1/2 both are one.
+--- Corners at a fraction of each edge from both its ends; at 1/2 the two coincide.
 local function cut(where, verts, faces, share)
     local out, new, known = {}, {}, {}
     local function point(a, b)
@@ -179,7 +179,7 @@ function M.apply(word, verts, faces)
     return verts, faces
 end
 
---- All corners at one distance from the origin.
+--- Moves all corners to the same distance from the origin.
 ---@param radius number?  default 1
 function M.on_sphere(verts, faces, radius)
     checked('on_sphere', verts, faces)

@@ -1,6 +1,6 @@
--- easing: how something gets from 0 to 1 while a clock runs from 0 to 1, for frames of a film and for profiles.
+-- easing: functions from 0 to 1 over a time from 0 to 1, for frames of an animation and for profiles.
 -- Source: R. Penner, "Programming Macromedia Flash MX", 2002, chapter 7 (the equations in their usual normal form).
--- Invariant: every function is 0 at 0 and 1 at 1; arguments beyond are clamped.
+-- Invariant: every function is 0 at 0 and 1 at 1; other arguments are clamped.
 --
 --   local easing = require 'easing'
 --   ball:translate(0, 3 * (1 - easing.out_bounce(frame / 50)), 0)
@@ -12,7 +12,7 @@ local M = {}
 
 local pi = math.pi
 
--- Each as it begins; `out` and `in_out` follow by symmetry.
+-- The `in` variants; `out` and `in_out` follow by symmetry.
 local begins = {
     sine = function(t) return 1 - math.cos(t * pi / 2) end,
     quad = function(t) return t * t end,
@@ -41,7 +41,7 @@ local function clamped(where, t)
     return t < 0 and 0 or t > 1 and 1 or t
 end
 
---- The same speed all the way.
+--- Constant speed.
 function M.linear(t) return clamped('easing.linear', t) end
 
 --- Hermite's smooth step, 3 t^2 - 2 t^3.
@@ -66,7 +66,7 @@ for name, f in pairs(begins) do
     end
 end
 
---- Numbers or tuples between two, with a function of this module.
+--- Interpolates between two numbers or tuples with a function of this module.
 ---@param ease fun(t: number): number
 ---@param from number|number[]
 ---@param to number|number[]
@@ -86,7 +86,7 @@ function M.mix(ease, from, to, t)
     return out
 end
 
---- A value by keys in time: {{time, value}, ...} with rising times; values are numbers or tuples.
+--- A value from key frames {{time, value}, ...} with increasing times; values are numbers or tuples.
 ---@param keys table[]
 ---@param time number
 ---@param ease fun(t: number): number|nil  default easing.smooth

@@ -1,7 +1,7 @@
 -- font: letters made of strokes. Each glyph is a width and a few lines through points; a stroke that begins with ~ is a
 -- smooth curve through its points. Heights: baseline 0, small letters 4, capitals 6, descenders -2.
--- font.outline gives what a round pen covers that goes along them: the line at half the pen's thickness from the strokes, by
--- marching squares (W. Lorensen, H. Cline, SIGGRAPH 1987, in the plane), as pieces of parabolas.
+-- font.outline gives the outline of strokes drawn with a round pen: the line at half the pen's thickness from the
+-- strokes, by marching squares (W. Lorensen, H. Cline, SIGGRAPH 1987, in the plane), as pieces of parabolas.
 --
 --   local font = require 'font'
 --   local strokes, width = font.strokes 'hello'          -- lists of points
@@ -106,7 +106,7 @@ end
 
 local sqrt, max, min, abs = math.sqrt, math.max, math.min, math.abs
 
---- Distance to the strokes as a function, less half the weight.
+--- The distance to the strokes minus half the weight, as a function.
 local function field_of(strokes, weight)
     local segments = {}
     for _, points in ipairs(strokes) do
@@ -132,7 +132,7 @@ local function field_of(strokes, weight)
     end
 end
 
---- The lines where a field is zero, by marching squares, each point then moved onto the line along the gradient; inside is
+--- The zero lines of a field by marching squares, each point moved onto the line along the gradient; the inside is
 --- on the left.
 local function iso_lines(field, x0, y0, x1, y1, step)
     local nx, ny = math.ceil((x1 - x0) / step), math.ceil((y1 - y0) / step)
@@ -141,7 +141,7 @@ local function iso_lines(field, x0, y0, x1, y1, step)
         local i, row = 0, j * (nx + 1)
         while i <= nx do
             local v = field(x0 + i * step, y0 + j * step)
-            -- a distance changes by no more than the way: so far ahead its sign is known
+            -- a distance function has slope 1 at most: its sign is constant within that distance
             local known = max(0, math.ceil(abs(v) / step) - 2)
             for k = i, min(nx, i + known) do value[row + k] = v end
             i = i + known + 1
@@ -181,7 +181,7 @@ local function iso_lines(field, x0, y0, x1, y1, step)
             edge(w, s, function() return crossing(i, j, true) end)
             if #ins == 1 then
                 follow[outs[1]] = ins[1]
-            elseif #ins == 2 then -- two corners of four, across: the middle decides which belong together
+            elseif #ins == 2 then -- two diagonal corners: the centre decides which are connected
                 local middle = field(x0 + (i + 0.5) * step, y0 + (j + 0.5) * step) < 0
                 local same = s == middle
                 if same then follow[outs[1]], follow[outs[2]] = ins[1], ins[2] else follow[outs[1]], follow[outs[2]] = ins[2], ins[1] end
@@ -205,7 +205,7 @@ local function iso_lines(field, x0, y0, x1, y1, step)
     return lines
 end
 
---- A closed line as pieces of parabolas: { x, y, control x, control y } each, ending at the next one's beginning.
+--- A closed line as pieces of parabolas: { x, y, control x, control y } each, up to the start of the next one.
 local function parabolas(line, tolerance)
     local n, pieces = #line, {}
     local function at(k) return line[(k - 1) % n + 1] end
@@ -224,7 +224,7 @@ local function parabolas(line, tolerance)
     local is_corner = {}
     for _, k in ipairs(corners) do is_corner[k] = true end
     if #corners == 0 then corners = { 1 } end
-    local function tangent(k, ahead) -- along the line; at a corner that of the side it is asked for
+    local function tangent(k, ahead) -- along the line; at a corner, that of the requested side
         local wrapped = (k - 1) % n + 1
         if is_corner[wrapped] then
             if ahead then return way(at(k), at(k + 1)) end
@@ -251,7 +251,7 @@ local function parabolas(line, tolerance)
                 local y = (1 - t) ^ 2 * a[2] + 2 * t * (1 - t) * cy + t * t * b[2]
                 least = min(least, (p[1] - x) ^ 2 + (p[2] - y) ^ 2)
             end
-            -- between two of the thirteen the parabola may be nearer, by less than half their distance
+            -- between two of the thirteen points the parabola may be nearer, by less than half their distance
             worst = max(worst, sqrt(least) - length / 26)
         end
         if worst > tolerance and j - i > 1 then
@@ -291,7 +291,7 @@ function M.outline(letter, weight)
             for _, p in ipairs(points) do x0, y0, x1, y1 = min(x0, p[1]), min(y0, p[2]), max(x1, p[1]), max(y1, p[2]) end
         end
         local contours, step = {}, min(0.11, weight / 6)
-        -- a lattice that no letter lies on by accident
+        -- an irregular lattice, so that no letter coincides with it
         local field = field_of(shape.strokes, weight)
         for k, line in ipairs(iso_lines(field, x0 - reach - 0.0137, y0 - reach - 0.0091, x1 + reach, y1 + reach, step)) do
             contours[k] = parabolas(line, 0.012)

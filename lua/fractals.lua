@@ -1,9 +1,9 @@
 -- fractals: the Menger sponge, Sierpinski's tetrahedron and pyramid, the sphere flake.
--- Idea: as nodes a level holds the level below several times, so that the memory grows with the level and not with the
--- number of cubes, which is 20^level; as meshes only what lies on the surface is there.
--- Sources: K. Menger 1926 (a cell is gone where at least two of its ternary digits are 1); W. Sierpinski 1915; E. Haines,
--- "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987 (the sphere flake).
--- Invariant: nodes work with either order of transforms: no node carries two of them.
+-- Idea: as nodes, a level has several instances of the level below, so that memory grows with the level and not with
+-- the number of cubes, which is 20^level; meshes contain only the surface.
+-- Sources: K. Menger 1926 (a cell is removed if at least two of its ternary digits are 1); W. Sierpinski 1915; E.
+-- Haines, "A Proposal for Standard Graphics Environments", IEEE CG&A 7(11), 1987 (the sphere flake).
+-- Invariant: nodes work with every transform order: no node has two transforms.
 --
 --   local fractals = require 'fractals'
 --   scene:add_child(fractals.menger(3, stone))                      -- 8,000 cubes between -1 and 1
@@ -20,7 +20,7 @@ local function holder(name, transform, ...)
     return node
 end
 
---- A level that holds the one below, shrunk and at each of the places.
+--- A level with a scaled instance of the level below at each position.
 local function level_of(name, below, factor, places)
     local shrunk, level = holder(name, 'scale', factor, factor, factor), gr.node(name)
     shrunk:add_child(below)
@@ -113,7 +113,8 @@ function M.menger_mesh(level)
 end
 
 local s3 = math.sqrt(3)
--- Corners of the two solids, edges of length 2, standing on y = 0 round the y axis; faces from outside.
+-- Corners of the two solids, edges of length 2, standing on y = 0 around the y axis; faces counter-clockwise from
+-- outside.
 local bodies = {
     tetrahedron = {
         corners = { { 0, 0, 2 / s3 }, { -1, 0, -1 / s3 }, { 1, 0, -1 / s3 }, { 0, 2 * math.sqrt(2 / 3), 0 } },
@@ -139,8 +140,8 @@ function M.sierpinski(level, material, kind)
     return node
 end
 
---- The same as one mesh of triangles and squares. Tetrahedra touch in points, pyramids along edges too, so that only the
---- former are an operand of CSG.
+--- The same as one mesh of triangles and squares. Tetrahedra touch at points, pyramids also along edges, so that only
+--- the former can be operands of CSG.
 ---@param level integer  0 to 8
 ---@param kind? 'tetrahedron'|'pyramid'
 ---@return number[][] verts
@@ -168,12 +169,12 @@ function M.sierpinski_mesh(level, kind)
     return verts, faces
 end
 
--- Where the nine balls sit on one whose way up is y: six round its equator, three higher up; degrees.
+-- Positions of the nine balls on one whose axis is y: six around its equator, three above; degrees.
 local seats = {}
 for k = 0, 5 do seats[#seats + 1] = { 60 * k, 90 } end
 for k = 0, 2 do seats[#seats + 1] = { 120 * k + 30, math.deg(math.acos(math.sqrt(2 / 3))) } end
 
---- A ball of radius 1 that carries nine of a third of its size, which carry nine ...: (9^(level + 1) - 1) / 8 balls.
+--- A ball of radius 1 with nine balls of a third of its size on it, recursively: (9^(level + 1) - 1) / 8 balls.
 ---@param level integer  0 to 6
 ---@param materials gr.material|gr.material[]  one, or one for each size from the largest on; the last holds for the rest
 ---@return gr.node

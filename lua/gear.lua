@@ -1,10 +1,10 @@
--- gear: wheels with involute teeth, rings, racks, and where they stand so that they mesh.
+-- gear: wheels with involute teeth, rings, racks, and the positions at which they mesh.
 -- Source: D. W. Dudley, "Handbook of Practical Gear Design", 1984; DIN 3960 (profile shift, working pressure angle).
 -- Idea: the flank of a tooth is the involute of the base circle, r_b = r cos(pressure); at radius q the tooth reaches
 -- from its middle line to the angle  pi/2z + 2 x tan(pressure)/z + inv(pressure) - inv(acos(r_b / q)),  inv(a) = tan a - a.
--- Below the base circle the flank goes straight to the root.
+-- Below the base circle the flank is straight to the root.
 -- Invariant: outlines run counter-clockwise with a tooth (of a ring: a gap) on the +x axis; two wheels that
--- gear.mate or gear.angle puts together touch and do not cut into each other, whatever their angle.
+-- gear.mate or gear.angle puts together touch and do not intersect at any angle.
 --
 --   local gear = require 'gear'
 --   local big, small = gear.new {teeth = 36, module = 0.1}, gear.new {teeth = 18, module = 0.1}
@@ -22,8 +22,9 @@ local function inv(a) return tan(a) - a end
 
 --- A wheel.
 ---@param options table  teeth: at least 4; module: pitch diameter over teeth (1); pressure: angle in degrees, 10 to 30 (20);
----  shift: of the profile, in modules (0); addendum (1), dedendum (1.25): of the tooth over and under the pitch circle,
----  in modules; backlash: width that each tooth lacks at the pitch circle (0); inside: a ring with teeth inwards (false)
+---  shift: of the profile, in modules (0); addendum (1), dedendum (1.25): of the tooth above and below the pitch
+---  circle, in modules; backlash: reduction of each tooth's width at the pitch circle (0); inside: a ring with teeth
+---  inwards (false)
 ---@return table gear  with radius (pitch), base, tip, root besides
 function M.new(options)
     local where = 'gear.new'
@@ -41,12 +42,12 @@ function M.new(options)
     local m, a = g.module, math.rad(g.pressure)
     g.radius = m * g.teeth / 2
     g.base = g.radius * cos(a)
-    -- of a ring the gaps have the shape of a wheel's teeth: they reach out to its root
+    -- the gaps of a ring have the shape of a wheel's teeth: they extend to its root
     local out, back = g.inside and g.dedendum or g.addendum, g.inside and g.addendum or g.dedendum
     g.outer, g.inner = g.radius + m * (out + g.shift), g.radius - m * (back - g.shift)
     g.tip, g.root = g.inside and g.inner or g.outer, g.inside and g.outer or g.inner
     if g.inner <= 0 then check.fail(where, 'dedendum is larger than the wheel') end
-    -- teeth with a full root would be cut under by the tips of a rack (Dudley 3.5)
+    -- the tips of a rack would undercut teeth with a full root (Dudley 3.5)
     local least = 1 - g.teeth * sin(a) ^ 2 / 2
     if not g.inside and g.shift < least - 0.01 then
         check.fail(where, ('%d teeth are too few for a pressure angle of %g degrees: it takes %d, or a shift of %.3f'):format(
@@ -74,7 +75,7 @@ function M.outline(g, points)
     local low = math.max(g.base, g.inner)
     local flank = {}
     for k = 0, points - 1 do
-        -- evenly along the roll angle, which the curvature follows
+        -- uniform in the roll angle, which matches the curvature
         local from, to = sqrt((low / g.base) ^ 2 - 1), sqrt((g.outer / g.base) ^ 2 - 1)
         local roll = from + (to - from) * k / (points - 1)
         local q = g.base * sqrt(1 + roll * roll)
@@ -111,7 +112,7 @@ function M.circle(radius, n, x, y)
     return out
 end
 
---- Where a second wheel goes: how far away, and how far it is turned.
+--- Position of a second wheel: its distance and its rotation.
 ---@param a table  the first, turned by `turn` degrees; may be a ring
 ---@param b table  the second, beside the first (or in the ring)
 ---@param turn number?  degrees, default 0
@@ -142,8 +143,8 @@ function M.mate(a, b, turn, toward)
     return distance, theta + 180 + 180 / b.teeth + (theta - psi) * a.teeth / b.teeth
 end
 
---- A toothed rack along x: its teeth point to +y and its pitch line is y = 0; a gap is at x = 0, as a wheel above it with
---- a tooth straight down wants it.
+--- A toothed rack along x: its teeth point to +y and its pitch line is y = 0; a gap is at x = 0, for a wheel above it
+--- with a tooth that points straight down.
 ---@param g table  a wheel it fits: module, pressure, addendum, dedendum, backlash
 ---@param teeth integer
 ---@param thickness number  under the roots, in modules
@@ -174,10 +175,11 @@ function M.rack(g, teeth, thickness)
     return out
 end
 
---- A wheel (or ring) as a mesh about the z axis, its teeth slanted if wanted: a helical or, doubled, a herringbone wheel.
+--- A wheel (or ring) as a mesh about the z axis, optionally with slanted teeth: a helical or, doubled, a herringbone
+--- wheel.
 ---@param g table
 ---@param options table?  width: along the axis (module * 6), bore: radius of the hole (none; a ring: its outer radius,
----  root + 2 modules), helix: degrees at the pitch circle (0), double: the slant turns back in the middle (false),
+---  root + 2 modules), helix: degrees at the pitch circle (0), double: the slant is reversed in the middle (false),
 ---  points: on each flank (8), layers: along the axis (1, or 8 with a helix)
 ---@return number[][] verts
 ---@return number[][] normals
@@ -224,7 +226,8 @@ function M.mesh(g, options)
         for k = 0, n - 1 do bottom[n - k], top[k + 1] = k, layers * n + k end
         faces[#faces + 1], faces[#faces + 2] = bottom, top
     else
-        -- the other circle has a corner for each of the outline's, on the same ray: the end faces are rings of quads
+        -- the other circle has a corner for each corner of the outline, at the same angle: the end faces are rings of
+        -- quads
         local first = #verts
         for level = 0, 1 do
             local from = level * layers * n
@@ -246,7 +249,7 @@ function M.mesh(g, options)
     return mesh[1], mesh[2], mesh[3], mesh[4]
 end
 
---- A planetary train: sun in the middle, planets round it, ring outside, for a ring that stands still.
+--- A planetary train: sun in the middle, planets around it, a fixed ring outside.
 ---@param options table  sun, planet: numbers of teeth; planets: how many (3); turn: of the sun in degrees (0); module,
 ---  pressure, backlash as for gear.new
 ---@return table train  sun, planet, ring: gears; sun_angle, ring_angle, carrier_angle in degrees; planets: a list of
@@ -266,7 +269,7 @@ function M.planetary(options)
     end
     local train = { sun = wheel(s), planet = wheel(p), ring = wheel(r, true), planets = {}, sun_angle = turn }
     local carrier = turn * s / (s + r)
-    -- the ring is turned so that the first planet fits both: the planet's angle by the sun must be that by the ring
+    -- the ring is rotated so that the first planet meshes with both: sun and ring must give the planet the same angle
     local _, by_sun = M.mate(train.sun, train.planet, 0, 0)
     train.ring_angle = by_sun * p / r
     train.carrier_angle = carrier

@@ -1,7 +1,7 @@
--- knot: torus knots, as curves and as tubes. The (p, q) knot winds p times round the axis and q times through the hole
--- (C. Adams, "The Knot Book", 5.1). p and q without a common divisor give one closed curve. Beside them Lissajous knots
--- (M. Bogle et al., "Lissajous Knots", J. Knot Theory 3(2), 1994) and a few with names. Tubes have frames that turn as little
--- as they can (sweep.frames), so that they are not twisted.
+-- knot: torus knots, as curves and as tubes. The (p, q) knot winds p times around the axis and q times through the hole
+-- (C. Adams, "The Knot Book", 5.1). Coprime p and q give one closed curve. Also Lissajous knots
+-- (M. Bogle et al., "Lissajous Knots", J. Knot Theory 3(2), 1994) and some named knots. Tubes have rotation-minimising
+-- frames (sweep.frames), so that they are not twisted.
 --
 --   local knot = require 'knot'
 --   scene:add_child(gr.vn_mesh(gold, knot.mesh(2, 3)))
@@ -13,7 +13,7 @@ local sweep = require 'sweep'
 
 local M = {}
 
---- Points of a torus knot round the y axis.
+--- Points of a torus knot around the y axis.
 ---@param p integer
 ---@param q integer
 ---@param n integer?  number of points, default 240
@@ -99,7 +99,7 @@ local named = {
     ['three twist'] = function(n) return M.lissajous({ 3, 2, 7 }, { 0.7 / (2 * math.pi), 0.2 / (2 * math.pi), 0 }, n) end, -- 5_2
 }
 
---- Points of a knot by name: trefoil, figure eight, cinquefoil, three twist, septafoil, granny. About 1 large.
+--- Points of a knot by name: trefoil, figure eight, cinquefoil, three twist, septafoil, granny. Its size is about 1.
 ---@param name string
 ---@param n integer?  default 240
 ---@return number[][] points

@@ -1,7 +1,7 @@
--- lathe: a profile turned round the y axis, as a mesh with vertex normals.
--- Idea: the profile is a list of points {radius, height}; the normals come from its tangent, so they are exact round the
--- axis. A point written twice in a row is an edge: both sides keep their own normal there.
--- Invariant: whoever walks along the profile has the outside on the right, i.e. a solid's profile starts at the bottom of
+-- lathe: a profile rotated about the y axis, as a mesh with vertex normals.
+-- Idea: the profile is a list of points {radius, height}; the normals come from its tangent, so they are exact around
+-- the axis. A repeated point is an edge: its two sides have separate normals.
+-- Invariant: the outside is to the right of the profile, i.e. a solid's profile starts at the bottom of
 -- the axis, goes up the outside and ends at the axis. Points on the axis (radius 0) give triangles.
 --
 --   local lathe = require 'lathe'
@@ -13,7 +13,7 @@ local meshes = require 'meshes'
 
 local M = {}
 
---- A smooth curve through points (Catmull-Rom, centripetal), for profiles and paths. A point written twice is kept as a
+--- A smooth curve through points (Catmull-Rom, centripetal), for profiles and paths. A repeated point is kept as a
 --- corner.
 ---@param points number[][]  tuples of two or three numbers
 ---@param n integer?  pieces between two points, default 8
@@ -81,7 +81,7 @@ local function profile_normals(profile)
         local a, b = slopes[i - 1] or nil, slopes[i] or nil
         local n
         if a and b then
-            -- the shorter neighbour knows the tangent better
+            -- the shorter segment approximates the tangent better
             local x, y = a[1] * b[3] + b[1] * a[3], a[2] * b[3] + b[2] * a[3]
             local length = math.sqrt(x * x + y * y)
             n = length > 0 and { x / length, y / length } or { a[1], a[2] }
@@ -90,7 +90,7 @@ local function profile_normals(profile)
         end
         before[i], after[i] = { n[1], n[2] }, { n[1], n[2] }
     end
-    -- on the axis a smooth profile is level
+    -- on the axis a smooth profile is horizontal
     for _, list in ipairs { before, after } do
         for k = 1, count do
             local edge = slopes[k] or slopes[k - 1]
@@ -102,7 +102,7 @@ local function profile_normals(profile)
     return before, after, slopes
 end
 
---- Turns a profile round the y axis.
+--- Rotates a profile about the y axis.
 ---@param profile number[][]  points {radius, height}, the outside on the right of the way
 ---@param segments integer?  default 48
 ---@return number[][] verts
@@ -158,7 +158,7 @@ function M.turn(profile, segments)
     return verts, normals, faces, face_normals
 end
 
---- Turns a profile and presses ornament into it: the radius is scaled by what `relief` returns.
+--- Rotates a profile and adds ornament: `relief` returns the factor of the radius.
 ---@param profile number[][]  points {radius, height}
 ---@param segments integer  cells round the axis
 ---@param relief fun(angle: number, t: number, height: number): number  factor of the radius; angle 0..2 pi, t 0..1 along the profile

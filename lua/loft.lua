@@ -1,5 +1,5 @@
--- loft: a skin over cross sections, as shipwrights make hulls.
--- Idea: every section is measured out anew at equal steps of its length, so that sections with any numbers of points fit;
+-- loft: a surface through cross sections.
+-- Idea: every section is resampled at equal steps of its length, so that sections with any number of points fit;
 -- the lines from section to section are centripetal Catmull-Rom splines (lathe.spline).
 -- Invariant: sections that run counter-clockwise seen from the last one give faces seen from outside; with caps, or as a
 -- ring, the mesh is closed.
@@ -21,7 +21,7 @@ local function distance(p, q)
     return sqrt(s)
 end
 
---- A closed outline measured out at equal steps of its length.
+--- A closed outline resampled at equal steps of its length.
 ---@param outline number[][]  points of two or three numbers
 ---@param n integer  how many points
 ---@param start number?  where the first lies, 0..1 along it; default 0
@@ -50,7 +50,7 @@ function M.resample(outline, n, start)
     return out
 end
 
---- The outline begun at another point, so that it lies nearest to the one before.
+--- The outline with another start point, so that it is nearest to the previous one.
 local function aligned(before, points)
     local n, best, least = #points, 0, math.huge
     for shift = 0, n - 1 do
@@ -66,11 +66,11 @@ local function aligned(before, points)
     return out
 end
 
---- A skin over sections.
+--- A surface through sections.
 ---@param sections number[][][]  closed outlines of points {x, y, z}; or of pairs {x, z} with options.heights
 ---@param options table?  heights: y of each section of pairs; around: points of a section (64), along: pieces between two
 ---  sections (8), straight: no splines between them (false), ring: the last section is followed by the first (false),
----  caps: flat ends (true), align: sections are turned to follow each other without twist (true), crease: degrees above
+---  caps: flat ends (true), align: start points are chosen to avoid twist (true), crease: degrees above
 ---  which an edge stays sharp (40)
 ---@return number[][] verts
 ---@return number[][] normals
@@ -96,7 +96,7 @@ function M.mesh(sections, options)
         check.points(where, ('sections[%d]'):format(s), section, options.heights and 2 or 3, 3)
         local points = {}
         for k, p in ipairs(section) do
-            -- pairs are seen from above: x to the right, z towards the onlooker, so that counter-clockwise is x, -z
+            -- pairs are seen from above: x to the right, z towards the viewer, so that counter-clockwise is x, -z
             points[k] = options.heights and { p[1], options.heights[s], p[2] } or { p[1], p[2], p[3] }
         end
         points = M.resample(points, around)

@@ -1,14 +1,14 @@
--- lsystem: words that grow by rules, and the turtle that walks along them in space.
+-- lsystem: words that grow by rules, and a turtle that interprets them in space.
 -- Source: P. Prusinkiewicz, A. Lindenmayer, "The Algorithmic Beauty of Plants", 1990: chapter 1 (rules, brackets, the
--- turtle's letters), 1.7 (chance), 1.10 (letters with numbers), 2.3 (tropism).
--- A word is a string of one-letter symbols, each with numbers in parentheses if it likes: F(1.5)[+(30)A(2,0.1)].
--- A rule gives, for a letter, what it becomes: a string; a list of {weight, string}, one taken by chance; or a function
--- of the letter's numbers that returns a string (or nil: it stays).
+-- turtle's letters), 1.7 (random rules), 1.10 (letters with parameters), 2.3 (tropism).
+-- A word is a string of one-letter symbols with optional numbers in parentheses: F(1.5)[+(30)A(2,0.1)].
+-- A rule gives the replacement of a letter: a string; a list of {weight, string}, of which one is chosen at random; or
+-- a function of the letter's numbers that returns a string (or nil: no change).
 --
--- The turtle looks up (+y) at first. F(l) goes on and draws, f(l) goes on; +(a) -(a) turn left and right, &(a) ^(a) pitch
--- down and up, \(a) /(a) roll left and right, | turns round; $ rolls its left hand level; [ ] remember and return; !(w)
--- sets the radius, ! alone makes it thinner; ;(k) sets the colour, ; alone counts on; ~(s) puts a leaf of size s; { } draw a
--- polygon whose corners are where . stands. Letters that mean nothing are passed over.
+-- The turtle first faces up (+y). F(l) moves and draws, f(l) only moves; +(a) -(a) turn left and right, &(a) ^(a) pitch
+-- down and up, \(a) /(a) roll left and right, | turns by 180 degrees; $ rolls until its left is horizontal; [ ] save
+-- and restore the state; !(w) sets the radius, ! alone reduces it; ;(k) sets the colour, ; alone increments it; ~(s)
+-- adds a leaf of size s; { } draw a polygon with a corner at each dot. Other letters are ignored.
 --
 --   local lsystem = require 'lsystem'
 --   local word = lsystem.grow('A', {A = 'F[&~][/(120)&~]/(137.5)A'}, 8)
@@ -23,7 +23,7 @@ local sweep = require 'sweep'
 
 local M = {}
 
---- Letters and their numbers: calls f(letter, numbers or nil, text) for each.
+--- Iterates over letters and their numbers: calls f(letter, numbers or nil, text) for each.
 local function each(where, word, f)
     local at, size = 1, #word
     while at <= size do
@@ -111,7 +111,7 @@ function M.grow(axiom, rules, times, options)
     return word
 end
 
-local function turn(a, b, degrees) -- the frame's vectors a and b turned towards each other: a to b
+local function turn(a, b, degrees) -- rotates the frame's vectors a and b in their plane, from a to b
     local c, s = math.cos(math.rad(degrees)), math.sin(math.rad(degrees))
     return { a[1] * c + b[1] * s, a[2] * c + b[2] * s, a[3] * c + b[3] * s },
         { b[1] * c - a[1] * s, b[2] * c - a[2] * s, b[3] * c - a[3] * s }
@@ -141,13 +141,13 @@ local function bend(t, to, strength)
     end
 end
 
---- Lets the turtle walk along a word.
+--- Interprets a word with the turtle.
 ---@param word string
 ---@param options table?  angle: degrees of a turn without number (90), length of a step (1), radius of what is drawn
 ---  (0.05), thinner: factor of ! (0.7), leaf: size of ~ (1), tropism: {direction, strength} per step, heading: {0, 1, 0},
----  jitter: turns vary by so many degrees either way (0), seed (1)
+---  jitter: turns vary by this many degrees in both directions (0), seed (1)
 ---@return table walk  branches: { points, radii, colour }, in the order they end; leaves: { position, heading, left, up,
----  size, colour }; polygons: { points, colour }; low, high: the box of all places; steps: how many F
+---  size, colour }; polygons: { points, colour }; low, high: the bounding box; steps: the number of F
 function M.walk(word, options)
     local where = 'lsystem.walk'
     check.text(where, 'word', word)
@@ -261,7 +261,7 @@ end
 --- The branches as one mesh of closed tubes with vertex normals.
 ---@param walk table
 ---@param options table?  around: corners of a tube (8), smooth: pieces of the spline through the points of a branch (1:
----  straight), colour: only branches of this one, round: a tip that is drawn out to a point (true)
+---  straight), colour: only branches of this one, round: tips end in a point (true)
 ---@return number[][] verts
 ---@return number[][] normals
 ---@return integer[][] faces
@@ -305,7 +305,7 @@ function M.mesh(walk, options)
                         faces[#faces + 1] = { before + j, before + next_j, base + next_j, base + j }
                     end
                 end
-                if k == 1 or k == count then -- the ends: a flat one at the root, at the tip a point
+                if k == 1 or k == count then -- the ends: flat at the root, a point at the tip
                     local h, out = frames[k][1], k == 1 and -1 or 1
                     local far = k == count and pointed and p[4] or 0
                     verts[#verts + 1] = { p[1] + h[1] * far, p[2] + h[2] * far, p[3] + h[3] * far }
@@ -323,7 +323,7 @@ function M.mesh(walk, options)
     return verts, normals, faces, faces
 end
 
---- The branches as sweeps: the exact shape of a ball that runs along each, round at corners and ends.
+--- The branches as sphere sweeps: exact, round at corners and ends.
 ---@param walk table
 ---@param material gr.material|gr.material[]  one, or one for each colour
 ---@param spline? 'linear'|'catmull-rom'
@@ -341,7 +341,7 @@ function M.sweeps(walk, material, spline)
     return node
 end
 
---- A mesh of all leaves: a small mesh put at each place, its x along the turtle's left, its y along the heading and its
+--- A mesh of all leaves: a small mesh at each position, its x along the turtle's left, its y along the heading and its
 --- z along its up.
 ---@param walk table
 ---@param leaf table  a mesh { verts, normals, faces, face_normals } about as large as 1, or nil for a simple blade
@@ -396,7 +396,7 @@ function M.blade(width, rows)
     end)
 end
 
---- Words that are worth growing. Each has axiom, rules, times and the options of walk.
+--- Examples. Each has axiom, rules, times and the options of walk.
 M.examples = {
     -- Prusinkiewicz and Lindenmayer, figure 1.19: the three-dimensional Hilbert curve, 8^n - 1 steps
     hilbert = {
@@ -431,7 +431,7 @@ M.examples = {
     koch = { axiom = 'F--F--F', times = 4, angle = 60, rules = { F = 'F+F--F+F' } },
 }
 
---- Grows one of lsystem.examples and walks along it.
+--- Grows one of lsystem.examples and interprets it.
 ---@param name string
 ---@param times integer?
 ---@param options table?  as for walk

@@ -32,7 +32,7 @@ function M.new(verts, normals, faces, face_normals)
     return { verts, normals, faces, face_normals or faces }
 end
 
---- The table for one number of polygons and the triangles they make.
+--- The table for one number of polygons and their triangles.
 ---@param faces integer[][]
 ---@return integer polygons
 ---@return integer triangles
@@ -69,8 +69,8 @@ function M.merge(list)
     return { verts, normals, faces, face_normals }
 end
 
---- Applies an affine map: rows of a 3 x 4 matrix. Normals follow by the inverse transpose (the cofactors);
---- a mirroring map also turns the faces, so that outside stays outside.
+--- Applies an affine map: rows of a 3 x 4 matrix. Normals are transformed by the inverse transpose (the cofactors);
+--- a mirroring map also reverses the faces, so that the outside stays the same.
 ---@param mesh table
 ---@param m number[]  twelve numbers, row by row
 ---@return table mesh
@@ -132,7 +132,7 @@ function M.turn(faces)
     return turned
 end
 
---- Turns a mesh inside out.
+--- Reverses all faces and normals of a mesh.
 ---@param mesh table
 ---@return table mesh
 function M.flip(mesh)
@@ -197,8 +197,8 @@ function M.face_normal(verts, face)
     return x, y, z
 end
 
--- The angle of a face at each of its corners. An edge seen from its other end is its negative, to the bit; one of no
--- length is +y from both.
+-- The angle of a face at each of its corners. An edge from its other end is its exact negative; one of
+-- length 0 is +y from both.
 local function angles_of(verts, face, angles)
     local count = #face
     local p, q = verts[face[count] + 1], verts[face[1] + 1]
@@ -236,8 +236,8 @@ local function smooth_everywhere(verts, faces)
     return { verts, normals, faces, faces }
 end
 
---- Vertex normals: the sum of the normals of the faces round a vertex, weighted by their angle there.
---- With a crease angle, faces that meet at more than it keep their own normals on both sides.
+--- Vertex normals: the sum of the normals of the faces at a vertex, weighted by their angle there.
+--- Faces that meet at more than the crease angle keep separate normals.
 ---@param verts number[][]
 ---@param faces integer[][]
 ---@param crease number?  degrees; default: smooth everywhere
@@ -279,7 +279,7 @@ function M.smooth(verts, faces, crease)
 end
 
 --- A rectangular net of points as quads, with vertex normals from the net itself.
---- Counted so that the normal points to (step in j) x (step in i).
+--- The faces are oriented so that the normal is (step in j) x (step in i).
 ---@param ni integer  cells along i
 ---@param nj integer  cells along j
 ---@param point fun(i: integer, j: integer): number, number, number  i in 0..ni, j in 0..nj
@@ -338,8 +338,8 @@ function M.to_obj(mesh, title)
     return table.concat(out, '\n') .. '\n'
 end
 
---- Counts of vertices that faces use, of edges and of faces. V - E + F is Euler's characteristic: 2 for everything that
---- can be blown up to a ball, 0 for a ring.
+--- Counts of vertices that faces use, of edges and of faces. V - E + F is Euler's characteristic: 2 for every surface
+--- equivalent to a sphere, 0 for a torus.
 ---@param faces integer[][]
 ---@return integer vertices
 ---@return integer edges
@@ -359,8 +359,8 @@ function M.euler(faces)
     return vertex_count, edge_count, #faces
 end
 
---- Whether every edge is used by exactly two faces, once in each direction: what gr.difference and its like ask of a
---- mesh (which also count corners at one place as one).
+--- Whether every edge is used by exactly two faces, once in each direction: as gr.difference and similar functions
+--- require of a mesh (they also join corners at the same position).
 ---@param faces integer[][]
 ---@return boolean
 function M.is_closed(faces)
@@ -378,7 +378,7 @@ function M.is_closed(faces)
     return open == 0
 end
 
---- Volume of a closed mesh (the divergence theorem); positive when its faces are seen counter-clockwise from outside.
+--- Volume of a closed mesh (the divergence theorem); positive if its faces are counter-clockwise from outside.
 ---@param verts number[][]
 ---@param faces integer[][]
 ---@return number
@@ -398,7 +398,7 @@ function M.volume(verts, faces)
     return six / 6
 end
 
---- Area of all faces together; of a bent one, that of its fan of triangles.
+--- Total area of the faces; a non-planar face counts as a fan of triangles.
 ---@param verts number[][]
 ---@param faces integer[][]
 ---@return number

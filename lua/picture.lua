@@ -98,7 +98,7 @@ function Picture:line(points, thickness, colour)
     end, colour, x0 - half - 1, y0 - half - 1, x1 + half + 1, y1 + half + 1)
 end
 
---- Text whose middle (of width, and of the capitals' height) is at x, y.
+--- Text centred at x, y (by its width and the height of capitals).
 ---@param text string
 ---@param x number
 ---@param y number

@@ -36,7 +36,7 @@ function M.adler32(data)
     return b << 16 | a
 end
 
--- Bits collect from the low end; Huffman codes are stored with their bits already turned round.
+-- Bits are packed from the low end; Huffman codes are stored with reversed bits.
 local function new_writer()
     return { bits = 0, count = 0, out = {} }
 end
@@ -96,7 +96,7 @@ local function code_lengths(counts, symbols, limit)
     return lengths
 end
 
---- Canonical codes for code lengths, bits turned round.
+--- Canonical codes for code lengths, with reversed bits.
 local function codes_of(lengths, symbols)
     local per_length, next_code, codes = {}, {}, {}
     for s = 0, symbols - 1 do per_length[lengths[s]] = (per_length[lengths[s]] or 0) + 1 end
@@ -358,7 +358,7 @@ function M.encode(width, height, pixels, channels)
     end
     local colour_type = ({ 0, 4, 2, 6 })[channels]
     local rows, above, stride = {}, nil, width * channels
-    -- few colours: a palette is smaller than anything a filter can do
+    -- few colours: a palette is smaller than any filter result
     if channels == 3 then
         local known, list, indices = {}, {}, {}
         for i = 1, #pixels, 3 do

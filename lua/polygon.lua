@@ -1,6 +1,6 @@
--- polygon: outlines in the plane: areas, what lies in what, moving their edges in or out, triangles.
--- An outline is a list of points {x, y}, the last joined to the first. Several outlines together fill what an odd number
--- of them surrounds.
+-- polygon: outlines in the plane: areas, nesting, offsets, triangulation.
+-- An outline is a list of points {x, y}, the last joined to the first. Several outlines together fill the points that
+-- an odd number of them surrounds (even-odd rule).
 -- Sources: G. Meisters, "Polygons have ears", Amer. Math. Monthly 82, 1975; D. Eberly, "Triangulation by Ear Clipping",
 -- 2002 (bridges to holes).
 -- Invariant: triangles use the outlines' own points and no others, so that a cap fits its sides edge by edge.
@@ -15,7 +15,7 @@ local M = {}
 
 local sqrt, abs = math.sqrt, math.abs
 
---- Area inside an outline, positive when it runs counter-clockwise.
+--- Area inside an outline, positive if it runs counter-clockwise.
 ---@param outline number[][]
 ---@return number
 function M.area(outline)
@@ -46,7 +46,7 @@ local function reversed(outline)
     return out
 end
 
---- Outlines sorted into bodies: each an outline that runs counter-clockwise, and its holes, which run clockwise.
+--- Groups outlines: each group is a counter-clockwise outline with its clockwise holes.
 --- Outlines must not cross each other.
 ---@param outlines number[][][]
 ---@return table[] bodies  each { outline, holes = { ... } }
@@ -74,7 +74,7 @@ function M.bodies(outlines)
         if depth[i] % 2 == 1 then
             local p, q, best = outline[1], outline[2], nil
             for j, other in ipairs(outlines) do
-                -- the body it is a hole of is the innermost that surrounds it
+                -- a hole belongs to the innermost outline that surrounds it
                 if owner[j] and depth[j] == depth[i] - 1 and M.contains(other, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2) then best = owner[j] end
             end
             if best then best.holes[#best.holes + 1] = M.area(outline) < 0 and outline or reversed(outline) end
@@ -85,7 +85,7 @@ function M.bodies(outlines)
 end
 
 --- Every edge moved to its right by a distance (outwards if the outline runs counter-clockwise; a negative one goes
---- inwards); as many points as before. Sharp corners are moved at most `limit` distances.
+--- inwards); the number of points stays the same. Sharp corners move by at most `limit` distances.
 ---@param outline number[][]
 ---@param distance number
 ---@param limit number?  default 3
@@ -113,10 +113,10 @@ end
 
 local function cross(a, b, c) return (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]) end
 
---- Joins the holes to the outline by bridges: one closed walk of indices.
+--- Joins the holes to the outline by bridges: one closed sequence of indices.
 local function bridged(points, outline, holes)
     local walk = outline
-    -- the hole that reaches furthest to the right first
+    -- first the hole that extends furthest to the right
     local order = {}
     for k, hole in ipairs(holes) do
         local best = 1
@@ -142,8 +142,8 @@ local function bridged(points, outline, holes)
             end
         end
         if at then
-            -- seen from m that end of the edge may be hidden by reflex corners in the triangle: the one with the smallest
-            -- angle to the ray is seen
+            -- reflex corners in the triangle may hide that end of the edge from m: the one with the smallest
+            -- angle to the ray is visible
             local v, hit = points[walk[at]], { nearest, m[2] }
             local best, slope, near = at, math.huge, math.huge
             for k = 1, n do
@@ -167,7 +167,7 @@ local function bridged(points, outline, holes)
     return walk
 end
 
---- Cuts ears off a walk until nothing is left.
+--- Cuts ears off a sequence until it is empty.
 local function clip(points, walk, triangles)
     local n = #walk
     local before, after, alive = {}, {}, n
@@ -186,7 +186,7 @@ local function clip(points, walk, triangles)
             local p = points[i]
             if i ~= ia and i ~= ib and i ~= ic and p[1] >= low_x and p[1] <= high_x and p[2] >= low_y and p[2] <= high_y and
                 cross(a, b, p) >= 0 and cross(b, c, p) >= 0 and cross(c, a, p) >= 0 then
-                -- a corner that only touches is in the way only if it is reflex there
+                -- a corner that only touches blocks the ear only if it is reflex there
                 if patience == 0 or cross(points[walk[before[j]]], p, points[walk[after[j]]]) < 0 then return false end
             end
             j = after[j]
@@ -211,7 +211,7 @@ local function clip(points, walk, triangles)
     triangles[#triangles + 1] = { walk[before[k]] - 1, walk[k] - 1, walk[after[k]] - 1 }
 end
 
---- What the outlines fill, as triangles counter-clockwise; outlines must not cross.
+--- The filled region as counter-clockwise triangles; outlines must not cross.
 ---@param outlines number[][][]
 ---@return number[][] points  those of all outlines, one after another as they were given
 ---@return integer[][] triangles  0-based
@@ -237,7 +237,7 @@ function M.triangulate(outlines)
     return points, triangles
 end
 
---- A solid from outlines in the plane z = 0, drawn out from z = 0 to `depth`, edges bevelled if wanted.
+--- A solid from outlines in the plane z = 0, extruded to z = `depth`, optionally with bevelled edges.
 ---@param outlines number[][][]
 ---@param depth number
 ---@param options table?  bevel: how far the front edge is cut away (0), steps: pieces of a round bevel (1: flat), back:
@@ -255,7 +255,7 @@ function M.extrude(outlines, depth, options)
     local back = check.flag(where, 'back', options.back)
     if back and 2 * bevel > depth then check.fail(where, 'bevel must be at most half the depth when the back has one too') end
     local crease = check.number(where, 'crease', options.crease, 0, 180, 35)
-    -- the shape of the side: how far in, and how high, from the back to the front
+    -- the profile of the side: inset and height, from the back to the front
     local side = {}
     local function round(k) return bevel * (1 - math.cos(math.pi / 2 * k / steps)), bevel * (1 - math.sin(math.pi / 2 * k / steps)) end
     if bevel > 0 and back then

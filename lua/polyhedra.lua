@@ -1,7 +1,7 @@
 -- polyhedra: the five Platonic solids, subdivision surfaces, geodesic spheres, boxes.
 -- Subdivision: C. Loop, "Smooth Subdivision Surfaces Based on Triangles" (Utah 1987); E. Catmull, J. Clark, "Recursively
 -- generated B-spline surfaces on arbitrary topological meshes", CAD 10(6), 1978. Borders follow the cubic B-spline rule.
--- Invariant: faces are counted counter-clockwise seen from outside and index from 0; shared vertices stay shared.
+-- Invariant: faces are counter-clockwise from outside with indices from 0; shared vertices stay shared.
 --
 --   local polyhedra = require 'polyhedra'
 --   scene:add_child(gr.mesh(jade, polyhedra.dodecahedron()))
@@ -68,7 +68,7 @@ function M.dodecahedron()
         for i = 1, 3 do
             local here = around[face[i]] or {}
             around[face[i]] = here
-            -- the triangle that follows round a corner begins with the edge that this one ends with
+            -- the next triangle around a corner begins with the last edge of this one
             here[face[i % 3 + 1]] = { face = k - 1, to = face[(i + 1) % 3 + 1] }
         end
     end
@@ -100,7 +100,7 @@ function M.box(low, high)
         { { 4, 5, 6, 7 }, { 1, 0, 3, 2 }, { 5, 1, 2, 6 }, { 0, 4, 7, 3 }, { 7, 6, 2, 3 }, { 0, 1, 5, 4 } }
 end
 
---- Every face of three corners: n-gons as fans.
+--- Splits all faces into triangles: n-gons as fans.
 ---@param faces integer[][]
 ---@return integer[][]
 function M.triangles(faces)
@@ -141,7 +141,7 @@ local function combine(out, ...)
     out[#out + 1] = { x, y, z }
 end
 
---- One step of Loop subdivision; faces that are no triangles are fanned first.
+--- One step of Loop subdivision; other faces are first split into fans of triangles.
 ---@param verts number[][]
 ---@param faces integer[][]
 ---@return number[][] verts
@@ -292,7 +292,7 @@ function M.subdivide(method, times, verts, faces)
     return verts, faces
 end
 
---- Geodesic sphere of radius 1: an icosahedron whose triangles are quartered and pushed out.
+--- Geodesic sphere of radius 1: an icosahedron whose triangles are divided into four and projected onto the sphere.
 ---@param times integer?  20 * 4^times triangles, default 3
 ---@return number[][] verts
 ---@return number[][] normals  the same points

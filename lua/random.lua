@@ -1,7 +1,7 @@
 -- random: numbers from a seed, the same on every machine and independent of math.random.
 -- Source: the generator PCG XSH RR 64/32 (M. O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good
 -- Algorithms for Random Number Generation", Harvey Mudd College HMC-CS-2014-0905).
--- Invariant: two generators made with the same seed and stream give the same sequence; nothing else has an influence.
+-- Invariant: two generators with the same seed and stream give the same sequence; nothing else affects it.
 --
 --   local random = require 'random'
 --   local dice = random.new(7)

@@ -1,12 +1,12 @@
 -- readobj: a Wavefront OBJ file as two tables, as the classic course scripts expect it.
 -- Idea: one pass over the lines; only `v` and `f` matter, the four spellings of a corner (7, 7/1, 7//3, 7/1/3) and
--- negative (relative) indices become 0-based vertex numbers. Everything else is passed over.
+-- negative (relative) indices become 0-based vertex numbers. Everything else is ignored.
 -- Invariant: every index in `faces` is a whole number in 0 .. #verts-1; a file that breaks this is an error with its line.
--- The module sets the global `readobj`, as scripts of Lua 5.0's days want it, and returns the same function.
+-- The module sets the global `readobj`, as scripts for Lua 5.0 expect, and returns the same function.
 
 local io_open, fail, number = io.open, error, tonumber
 
---- Finds a mesh file the way scenes name it: as given, beside the script, or in an Assets folder.
+--- Finds a mesh file by the rules for scenes: as given, in the script's folder, or in an Assets folder.
 ---@param file string
 ---@return file* handle
 ---@return string name

@@ -1,9 +1,9 @@
--- scatter: places that keep their distance from each other, in a rectangle, a box or on a mesh.
+-- scatter: points with a minimum distance, in a rectangle, a box or on a mesh.
 -- Sources: R. Bridson, "Fast Poisson Disk Sampling in Arbitrary Dimensions", SIGGRAPH sketches 2007 (rectangle and box);
 -- D. Cline, S. Jeschke, K. White, A. Razdan, P. Wonka, "Dart Throwing on Surfaces", EGSR 2009 (a mesh, by distance);
 -- C. Yuksel, "Sample Elimination for Generating Poisson Disk Sample Sets", EUROGRAPHICS 2015 (a mesh, by number).
--- Invariant: with a radius no two places are nearer to each other than it, measured straight through space; the same
--- seed gives the same places.
+-- Invariant: with a radius no two points are nearer to each other (in straight distance); the same
+-- seed gives the same points.
 --
 --   local scatter = require 'scatter'
 --   local trees = scatter.mesh(verts, faces, {radius = 0.4, seed = 3, where = function(p, n) return n[2] > 0.8 end})
@@ -79,7 +79,7 @@ local function bridson(size, radius, tries, dice)
     return points
 end
 
---- Places {x, z} in the rectangle from (0, 0) to (width, depth).
+--- Points {x, z} in the rectangle from (0, 0) to (width, depth).
 ---@param width number
 ---@param depth number
 ---@param radius number  the smallest distance between two
@@ -96,7 +96,7 @@ function M.rectangle(width, depth, radius, options)
         random.new(check.whole(where, 'seed', options.seed, nil, nil, 1)))
 end
 
---- Places {x, y, z} in the box from the origin to `size`.
+--- Points {x, y, z} in the box from the origin to `size`.
 ---@param size number[]
 ---@param radius number
 ---@param options table?  seed (1), tries (30)
@@ -112,7 +112,7 @@ function M.box(size, radius, options)
         random.new(check.whole(where, 'seed', options.seed, nil, nil, 1)))
 end
 
---- Triangles of a mesh with the sums of their areas, and a function that draws a random place on it.
+--- Triangles of a mesh with the sums of their areas, and a function that draws a random point on it.
 local function sampler(verts, faces, dice, density)
     local triangles, total = {}, 0
     for f, face in ipairs(faces) do
@@ -146,7 +146,7 @@ local function sampler(verts, faces, dice, density)
     return draw, total
 end
 
---- A lattice of cubes that finds what is near.
+--- A lattice of cubes for neighbour searches.
 local function lattice(cell)
     local cells = {}
     local function key(i, j, k) return (i * 2097152 + j) * 2097152 + k end
@@ -182,7 +182,7 @@ end
 local function throw(draw, total, radius, patience)
     local near, places, least = lattice(radius), {}, radius * radius
     local wanted = total / (radius * radius)
-    -- a saturated surface holds about 0.7 places per squared radius; so many candidates leave holes of no weight
+    -- a saturated surface has about 0.7 points per squared radius; with this many candidates gaps are negligible
     for _ = 1, math.ceil(patience * wanted) + 50 do
         local place = draw()
         if place and not near.near(place.position, function(_, squared) return squared < least end) then
@@ -193,9 +193,9 @@ local function throw(draw, total, radius, patience)
     return places
 end
 
---- Yuksel's elimination: the candidate that is nearest to too many others goes, again and again.
+--- Yuksel's elimination: repeatedly removes the candidate with the greatest weight, i.e. with the nearest neighbours.
 local function eliminate(candidates, count, total)
-    local radius = sqrt(total / (2 * sqrt(3) * count)) -- no set of so many keeps twice this distance
+    local radius = sqrt(total / (2 * sqrt(3) * count)) -- no set of this many points has twice this distance
     local smallest = radius * (1 - (count / #candidates) ^ 1.5) * 0.65
     local reach, near, weight, links = 2 * radius, lattice(2 * radius), {}, {}
     for k, place in ipairs(candidates) do
@@ -217,7 +217,7 @@ local function eliminate(candidates, count, total)
         end)
         weight[k], links[k] = sum, list
     end
-    -- a heap with the heaviest on top; equal weights go by number, so that the result depends on nothing else
+    -- a heap with the heaviest on top; equal weights are ordered by number, so that the result is unique
     local heap, at, size = {}, {}, #candidates
     local function heavier(a, b) return weight[a] > weight[b] or (weight[a] == weight[b] and a < b) end
     local function sink(i)
@@ -244,7 +244,7 @@ local function eliminate(candidates, count, total)
         for _, link in ipairs(links[top]) do
             local other = link[1]
             if at[other] then
-                weight[other] = weight[other] - link[2] -- it only becomes lighter
+                weight[other] = weight[other] - link[2] -- its weight only decreases
                 sink(at[other])
             end
         end
@@ -257,11 +257,11 @@ local function eliminate(candidates, count, total)
     return out
 end
 
---- Places on a mesh, by their smallest distance or by their number.
+--- Points on a mesh, by their minimum distance or by their number.
 ---@param verts number[][]
 ---@param faces integer[][]
 ---@param options table  radius or count; seed (1); where: a function of (position, normal, face number) that says whether
----  a place is wanted there
+---  whether to keep a point there
 ---@return table[] places  each { position, normal, face: counted from 1 }
 function M.mesh(verts, faces, options)
     local where = 'scatter.mesh'
@@ -289,7 +289,7 @@ function M.mesh(verts, faces, options)
     return eliminate(candidates, count, total * #candidates / tried)
 end
 
---- Nodes at places: each stands with its y along the normal, turned about it and scaled by chance.
+--- Nodes at points: each with its y axis along the normal, with random rotation about it and random scale.
 ---@param places table[]  as scatter.mesh returns them; or points {x, y, z}; or pairs {x, z}, at y = 0
 ---@param nodes gr.node|gr.node[]  one, or several to choose from
 ---@param options table?  scale: a number or {low, high} (1), lean: how much of the normal counts against straight up, 0 to
@@ -316,7 +316,7 @@ function M.place(places, nodes, options)
         local size, turn = dice:range(low, high), dice:range(0, 360)
         local node = nodes[1 + dice:bits() * #nodes // 4294967296]
         local length = sqrt(x * x + y * y + z * z)
-        -- one transform a node, so that the script's order of transforms does not matter
+        -- one transform per node, so that the script's transform order does not matter
         local function over(transform, ...)
             local holder = gr.node 'place'
             holder[transform](holder, ...)

@@ -1,7 +1,7 @@
--- sweep: a profile carried along a curve in space, as a mesh with vertex normals.
--- Idea: the frames turn as little as they can about the curve (Wang, Juettler, Zheng, Liu, "Computation of Rotation
--- Minimizing Frames", ACM TOG 27(1), 2008: double reflection); on a closed curve what is left over after one round is
--- dealt out evenly.
+-- sweep: a profile moved along a curve in space, as a mesh with vertex normals.
+-- Idea: the frames have minimal rotation about the curve (Wang, Juettler, Zheng, Liu, "Computation of Rotation
+-- Minimizing Frames", ACM TOG 27(1), 2008: double reflection); on a closed curve the angle that remains after one turn
+-- is distributed evenly.
 -- Invariant: the three vectors of a frame are orthonormal and right-handed: side x up = forward.
 --
 --   local sweep = require 'sweep'
@@ -77,7 +77,7 @@ function M.frames(path, closed)
     return frames
 end
 
---- A closed profile carried along a path.
+--- A closed profile moved along a path.
 ---@param path number[][]  points in space
 ---@param profile number[][]  points {side, up} of a closed outline, counter-clockwise
 ---@param options table?  closed: the path is a ring; scale, twist: functions of 0..1 along the path (factor; degrees);

@@ -1,8 +1,8 @@
 -- teapot: Martin Newell's teapot (University of Utah, 1975) as 306 control points and 32 bicubic Bezier patches.
--- The numbers are Newell's, in the file of his tea set as it has gone round since (teaset.tgz of Steve Baker's "A Brief
+-- The numbers are Newell's, from the file of his tea set in common use (teaset.tgz of Steve Baker's "A Brief
 -- History of The Teapot"; F. Crow, "The Origins of the Teapot", IEEE CG&A 7(1), 1987), with the four patches of the
--- bottom that others added. Points 204, 205, 215 and 222 belong to no patch; they are kept so that the numbers agree.
--- The table is z up, 3.15 high, spout towards +x; what this module returns is y up, base at y = 0.
+-- bottom, which others added later. Points 204, 205, 215 and 222 belong to no patch; they are kept so that the numbers
+-- agree. The table is z up, 3.15 high, spout towards +x; what this module returns is y up, base at y = 0.
 -- Patches: 1-4 rim, 5-12 body, 13-16 handle, 17-20 spout, 21-28 lid, 29-32 bottom.
 -- Invariant: du x dv points out of the pot on every patch.
 

@@ -1,10 +1,10 @@
--- terrain: tables of heights for gr.height_field, and meshes of them.
+-- terrain: height tables for gr.height_field, and meshes of them.
 -- Sources: A. Fournier, D. Fussell, L. Carpenter, "Computer Rendering of Stochastic Models", CACM 25(6), 1982 (midpoint
 -- displacement, here in diamonds and squares); F. K. Musgrave, C. Kolb, R. Mace, "The Synthesis and Rendering of Eroded
 -- Fractal Terrains", SIGGRAPH 1989 (sums of noise, ridges, thermal erosion); H. Beyer, "Implementation of a method for
--- hydraulic erosion", TU Muenchen 2015 (drops that carry soil).
+-- hydraulic erosion", TU Muenchen 2015 (drops that transport soil).
 -- Invariant: heights are rows of equally many numbers, heights[row][column], x along a row and z from row to row, as
--- gr.height_field takes them; no function changes what it was given.
+-- for gr.height_field; no function changes its arguments.
 --
 --   local terrain = require 'terrain'
 --   local land = terrain.noise {columns = 200, rows = 200, ridged = true, seed = 4}
@@ -86,8 +86,8 @@ end
 
 --- Sums of noise.
 ---@param options table?  columns, rows (128), size: of the largest hills in parts of a row's length (0.4), octaves (6),
----  gain: height of an octave against the one before (0.5), lacunarity: how much finer it is (2), ridged: crests instead
----  of rounded hills (false), warp: how far noise moves the places (0), seed (1)
+---  gain: height of an octave relative to the previous one (0.5), lacunarity: ratio of frequencies (2), ridged: crests
+---  instead of rounded hills (false), warp: amplitude of the domain warp (0), seed (1)
 ---@return number[][] heights  about -1 to 1; ridged 0 to 2
 function M.noise(options)
     local where = 'terrain.noise'
@@ -118,7 +118,7 @@ function M.noise(options)
                 local n = value(x * scale + s[1], s[2], z * scale + s[3])
                 if ridged then
                     n = (1 - abs(n)) ^ 2 * weight
-                    weight = min(1, 2 * n) -- fine crests stand on coarse ones only
+                    weight = min(1, 2 * n) -- fine crests only on coarse ones
                 end
                 sum, scale, height = sum + n * height, scale * lacunarity, height * gain
             end
@@ -129,7 +129,7 @@ function M.noise(options)
     return out
 end
 
---- Heights as a function of the place.
+--- Heights from a function of the position.
 ---@param columns integer
 ---@param rows integer
 ---@param f fun(u: number, v: number, i: integer, j: integer): number  u, v 0..1 along and across
@@ -148,7 +148,7 @@ function M.of(columns, rows, f)
     return out
 end
 
---- Every height through a function.
+--- Applies a function to every height.
 ---@param heights number[][]
 ---@param f fun(height: number, u: number, v: number): number
 ---@return number[][] heights
@@ -168,7 +168,7 @@ function M.range(heights)
     return low, high
 end
 
---- Heights stretched so that the lowest is `low` and the highest `high`.
+--- Scales heights so that the lowest is `low` and the highest `high`.
 ---@return number[][] heights
 function M.fit(heights, low, high)
     check.number('terrain.fit', 'low', low)
@@ -190,7 +190,7 @@ function M.at(heights, u, v)
     return (a[i + 1] * (1 - s) + a[i + 2] * s) * (1 - t) + (b[i + 1] * (1 - s) + b[i + 2] * s) * t
 end
 
---- Stones roll down where the slope between neighbours is too steep. What one place loses another gains.
+--- Thermal erosion: material moves down where the slope between neighbours is too steep. The total is conserved.
 ---@param options table?  steps (30), talus: the difference between neighbours that holds (0.01), rate 0 to 0.5 (0.25)
 ---@return number[][] heights
 function M.erode_slopes(heights, options)
@@ -233,9 +233,10 @@ function M.erode_slopes(heights, options)
     return h
 end
 
---- Drops of rain run downhill, take soil along where they are fast and leave it where they are slow: valleys and fans.
+--- Hydraulic erosion: raindrops run downhill, take soil where they are fast and deposit it where they are slow: valleys
+--- and fans.
 ---@param options table?  drops (20000), seed (1), inertia 0 to 1 (0.05), capacity (4), erosion 0 to 1 (0.3),
----  deposition 0 to 1 (0.3), evaporation 0 to 1 (0.02), life: steps of a drop (40), scale: how the heights compare with
+---  deposition 0 to 1 (0.3), evaporation 0 to 1 (0.02), life: steps of a drop (40), scale: unit of heights relative to
 ---  the distance of neighbours, which is 1 (heights of a sixth of the length of a row)
 ---@return number[][] heights
 function M.erode_rain(heights, options)
@@ -280,7 +281,7 @@ function M.erode_rain(heights, options)
             if rise > 0 then gives = min(rise, soil)
             elseif soil > holds then gives = (soil - holds) * deposition
             else gives = -min((holds - soil) * erosion, -rise) end
-            -- what is left or taken is shared by the four corners round the place the drop came from
+            -- the four corners around the drop's previous position share the deposited or eroded soil
             soil = soil - gives
             a[i], a[i + 1] = h00 + gives * (1 - s) * (1 - t), h10 + gives * s * (1 - t)
             b[i], b[i + 1] = h01 + gives * (1 - s) * t, h11 + gives * s * t
@@ -294,7 +295,8 @@ function M.erode_rain(heights, options)
     return h
 end
 
---- The land as a mesh over a rectangle round the origin, with vertex normals; closed it is an operand of CSG.
+--- The terrain as a mesh over a rectangle centred at the origin, with vertex normals; a closed one can be an operand of
+--- CSG.
 ---@param heights number[][]
 ---@param options table?  width, depth: along x and z (1, 1), bottom: closes it with sides down to this height
 ---@return number[][] verts
@@ -338,7 +340,8 @@ function M.mesh(heights, options)
     return verts, normals, faces, face_normals
 end
 
---- The faces of a mesh in groups, for a material each: grass where it is flat, rock where it is steep, snow above.
+--- Splits the faces of a mesh into groups with a material each: grass where it is flat, rock where it is steep, snow
+--- above.
 ---@param verts number[][]
 ---@param normals number[][]
 ---@param faces integer[][]

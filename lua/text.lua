@@ -1,7 +1,7 @@
--- text: solid letters, from a font file (gr.glyphs, by FreeType) or from the letters that come with the library.
--- Idea: outlines stay curves as long as they can. text.node gives exact prisms, which are operands of CSG; text.mesh
--- measures the curves out into points and can cut the edges off (polygon.extrude).
--- Invariant: text stands in the plane z = 0 and is drawn out towards +z; its first base line begins at the origin (or is
+-- text: solid letters, from a font file (gr.glyphs, by FreeType) or from the built-in letters of the library.
+-- Idea: outlines stay curves as long as possible. text.node gives exact prisms, which can be operands of CSG; text.mesh
+-- samples the curves and can bevel the edges (polygon.extrude).
+-- Invariant: text is in the plane z = 0 and extruded towards +z; its first base line begins at the origin (or is
 -- centred or ends there). Sizes: an em of a font file is `size` high; the library's capitals are 0.7 of it.
 --
 --   local text = require 'text'
@@ -15,7 +15,7 @@ local polygon = require 'polygon'
 
 local M = {}
 
-local LETTER <const> = 0.7 / 6 -- an em over a unit of the library's strokes
+local LETTER <const> = 0.7 / 6 -- the ratio of an em to a unit of the library's strokes
 
 --- A line of the library's letters in the form of gr.glyphs.
 local function own_line(line, weight)
@@ -54,11 +54,11 @@ end
 
 local known = 'font size align line weight spacing'
 
---- Letters in their places.
+--- Letters at their positions.
 ---@param string string  lines are parted by \n
 ---@param options table?  font: a file, or none for the library's letters; size (1), align: 'left', 'centre' or 'right'
----  ('left'), line: distance of lines in parts of the font's own (1), spacing: added between letters, in ems (0), weight:
----  thickness of the library's letters in parts of their usual one (1)
+---  ('left'), line: line spacing relative to the font's (1), spacing: added between letters, in ems (0), weight:
+---  thickness of the library's letters relative to the default (1)
 ---@return table letters  a list of { code, contours }: closed cubic outlines of points {x, y}, 3 for each piece, as gr.prism
 ---  takes them with spline 'bezier'; with width: of the longest line, low, high: y of the lowest and highest line's edge
 function M.letters(string, options)
@@ -98,7 +98,7 @@ function M.letters(string, options)
     return out
 end
 
---- Cubic pieces measured out into points, so that no chord is further from the curve than a tolerance.
+--- Samples cubic pieces so that every chord is within a tolerance of the curve.
 ---@param contour number[][]  3 points for each piece
 ---@param tolerance number
 ---@return number[][] outline
@@ -114,7 +114,7 @@ function M.points(contour, tolerance)
     end
     for k = 1, n, 3 do
         local a, b, c, d = contour[k], contour[k + 1], contour[k + 2], contour[(k + 2) % n + 1]
-        -- the second derivative bounds how far the chord is off: |p''| / 8 pieces^2
+        -- the second derivative bounds the distance of the chord: |p''| / 8 pieces^2
         local bend = math.max(math.abs(a[1] - 2 * b[1] + c[1]) + math.abs(a[2] - 2 * b[2] + c[2]),
             math.abs(b[1] - 2 * c[1] + d[1]) + math.abs(b[2] - 2 * c[2] + d[2]))
         local pieces = math.max(1, math.min(64, math.ceil(math.sqrt(0.75 * bend / tolerance) - 1e-9)))
@@ -146,7 +146,7 @@ function M.node(string, options)
     local set
     options, set = split_options(where, options, 'depth material')
     local depth = check.above(where, 'depth', options.depth, 0, 0.2 * (options.size or 1))
-    -- a prism stands on x and z with y up: laid down it looks along +z
+    -- a prism has its base in x and z with y up: rotated, it faces +z
     local node = gr.node 'text'
     node:rotate('x', 90)
     for _, letter in ipairs(M.letters(string, set)) do
@@ -162,10 +162,11 @@ function M.node(string, options)
     return node
 end
 
---- The text as one mesh, closed letter by letter.
+--- The text as one mesh; each letter is closed.
 ---@param string string
 ---@param options table  as for letters; depth (0.2 of the size), bevel: how far the edges are cut away (0), steps: pieces of
----  a round bevel (1: flat), back: whether the back edges are, too (false), tolerance: of curves (0.002 of the size)
+---  a round bevel (1: flat), back: whether the back edges are bevelled, too (false), tolerance: of curves (0.002 of the
+---  size)
 ---@return number[][] verts
 ---@return number[][] normals
 ---@return integer[][] faces

@@ -1,5 +1,5 @@
 -- TITLE: Chess
--- A corner of a board with turned pawns, kings and a rook cut with CSG; the board mirrors.
+-- A corner of a board with turned pawns, kings and a rook cut with CSG; the board reflects them.
 -- Author: gray project. Dialect: project.
 
 local lathe = require 'lathe'

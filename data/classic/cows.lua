@@ -1,6 +1,6 @@
 -- TITLE: Macho cows
--- A herd on a hill, in the manner of the old hand-outs: readobj gives vertices and faces at once.
--- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object (readobj tells).
+-- A herd on a hill, in the style of the old assignments: readobj returns vertices and faces together.
+-- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object (detected from readobj).
 
 require('readobj')
 

@@ -1,6 +1,6 @@
 -- TITLE: Dodecahedra
 -- Pentagons given as tables of vertices and faces; each smaller one stands in the eye of a bigger one.
--- Author: gray project. Dialect: classic, OLD order (vertex tables tell).
+-- Author: gray project. Dialect: classic, OLD order (detected from the vertex tables).
 
 local g = (1 + math.sqrt(5)) / 2
 local h = 1 / g

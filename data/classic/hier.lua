@@ -1,6 +1,6 @@
 -- TITLE: A small hierarchy
 -- Arches and spheres under nodes that turn and scale them together; the mesh comes from a file.
--- Author: gray project. Dialect: classic, calls act in the order they are written (a mesh by file name tells).
+-- Author: gray project. Dialect: classic, calls act in the order they are written (detected from the mesh file name).
 
 gold = gr.material({0.85, 0.65, 0.2}, {0.3, 0.3, 0.2}, 25)
 grass = gr.material({0.15, 0.5, 0.2}, {0.0, 0.0, 0.0}, 0)

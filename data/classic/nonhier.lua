@@ -1,5 +1,5 @@
 -- TITLE: Placed shapes
--- Spheres, boxes and a mesh at their places, nothing under anything else: the first scene of every course.
+-- Spheres, boxes and a mesh without a hierarchy: the first scene of every course.
 -- Author: gray project. Dialect: classic.
 
 red = gr.material({0.8, 0.2, 0.15}, {0.5, 0.5, 0.5}, 25)
@@ -29,7 +29,7 @@ b1 = gr.nh_box('b1', {-260, 0, -380}, 120)
 b1:set_material(blue)
 scene:add_child(b1)
 
--- a negative size reaches the other way
+-- a negative size extends in the other direction
 b2 = gr.nh_box('b2', {80, 40, -60}, -40)
 b2:set_material(red)
 scene:add_child(b2)

@@ -1,5 +1,5 @@
 -- TITLE: Puppet
--- A figure of spheres whose limbs hang on joints; each joint stands at its initial angles.
+-- A figure of spheres whose limbs hang on joints; each joint has its initial angles.
 -- Author: gray project. Dialect: classic, new order (the hat comes from a file).
 
 local skin = gr.material({0.85, 0.6, 0.45}, {0.15, 0.15, 0.15}, 10)

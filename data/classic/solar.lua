@@ -15,7 +15,7 @@ local function circle(radius, n)
     return path
 end
 
--- the sun shines by its own colour: more than white where only ambient light is
+-- the sun is bright by its own colour: above white under ambient light alone
 local sun = gr.geometry('sun', gr.sphere(gr.material({ 6, 4.6, 2 }, { 0, 0, 0 }, 1)))
 sun:scale(1.1, 1.1, 1.1)
 root:add_child(sun)

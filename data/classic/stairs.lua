@@ -1,5 +1,5 @@
 -- TITLE: Winding stair
--- Steps round a column of marble, with a glass ball on the newel and a mirror floor.
+-- Steps around a column of marble, with a glass ball on the newel and a mirror floor.
 -- Author: gray project. Dialect: project.
 
 local sweep = require 'sweep'

@@ -1,6 +1,6 @@
 -- TITLE: Village
--- Houses round a green, written for Lua 5.0: unpack, table.getn, math.mod, and tables that shadow the library's.
--- Author: gray project. Dialect: classic, OLD order (a bare unpack tells).
+-- Houses around a green, written for Lua 5.0: unpack, table.getn, math.mod, and tables that shadow the library's.
+-- Author: gray project. Dialect: classic, OLD order (detected from a bare unpack).
 
 table_top = nil
 local colours = { {0.8, 0.75, 0.6}, {0.75, 0.5, 0.4}, {0.6, 0.65, 0.7}, {0.85, 0.8, 0.75} }
@@ -80,7 +80,7 @@ local spruce = tree()
 local count = 9
 for i = 0, count - 1 do
     local at = gr.node('plot')
-    -- read from the bottom: out to the ring, then round it
+    -- read from the bottom: out to the ring, then around it
     at:rotate('y', 360 / count * i + 10)
     at:translate(0, 0, -6.5)
     at:add_child(kinds[math.mod(i, 4) + 1])

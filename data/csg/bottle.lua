@@ -1,7 +1,7 @@
 -- TITLE: Glass: a bottle and a tumbler, merged, hollowed and filled
 -- OPTIONS: -refract-limit 8 -reflect-limit 2 --cutoff 0.03
--- Glass is where merge matters: body, neck and lip of the bottle are one piece of glass without walls between them. What
--- is in it is cut from its hollow, a little larger than that, so that glass and liquid touch.
+-- Glass needs merge: body, neck and lip of the bottle are one piece of glass without walls between them. The
+-- liquid is cut from the shape of its hollow, slightly enlarged, so that glass and liquid touch.
 
 local function glass(tint)
     return gr.difresnel_material(gr.rr_material {kd = {0, 0, 0}, ks = {0.97, 0.98, 0.97}, shininess = 300, reflect = 0, refract = 1, ior = 1.5, absorption = tint})
@@ -17,7 +17,7 @@ local stripe = gr.material({0.25, 0.42, 0.50}, {0, 0, 0}, 1)
 local peel = gr.material({0.92, 0.76, 0.12}, {0.25, 0.25, 0.2}, 25)
 local cork = gr.wood_pnd_material(gr.material({0.66, 0.48, 0.30}, {0, 0, 0}, 1), 9, 6, 1, {0.45, 0.30, 0.17})
 
--- --- the bottle: everything about y ---
+-- --- the bottle, with axis y ---
 
 local function turned(points) return gr.lathe {points = points, spline = 'catmull-rom', open = false} end
 local body = gr.cylinder {from = {0, 0, 0}, to = {0, 2.6, 0}, radius = 0.62}

@@ -21,7 +21,7 @@ local function helix(r, low, high, pitch, depth)
     return gr.sweep {points = points, radii = depth, spline = 'catmull-rom'}
 end
 
--- What stands between a post and the plate it stands on: a ring less a torus.
+-- The fillet between a post and its plate: a ring minus a torus.
 local function fillet(r, y, size)
     return gr.difference('fillet', rod(r + size, y, y + size),
         gr.torus {major = r + size, minor = size}:translate(0, y + size, 0))

@@ -9,7 +9,7 @@ local EM <const>, WEIGHT <const> = 1000, 0.9
 local unit = EM * 0.7 / 6
 local function round(x) return math.floor(x + 0.5) end
 
--- Each glyph: its contours as points { x, y, on the curve }, its advance.
+-- Each glyph: contours as points { x, y, on the curve }, and its advance.
 local glyphs = { { code = 0, contours = { { { 50, 0, true }, { 50, 700, true }, { 450, 700, true }, { 450, 0, true } },
                                           { { 100, 50, true }, { 400, 50, true }, { 400, 650, true }, { 100, 650, true } } }, advance = 500 },
                  { code = 32, contours = {}, advance = round(2.6 * unit) } }
@@ -21,7 +21,7 @@ for _, letter in ipairs(font.letters()) do
         for k = #pieces, 1, -1 do -- TrueType has the inside on the right
             local p, q = pieces[k], pieces[k % #pieces + 1]
             points[#points + 1] = { round((q[1] + left) * unit), round(q[2] * unit), true }
-            -- a control point near the middle of its chord is a straight piece
+            -- a piece whose control point is near the middle of its chord is straight
             local mx, my = (p[1] + q[1]) / 2 - p[3], (p[2] + q[2]) / 2 - p[4]
             if mx * mx + my * my > 1e-6 then points[#points + 1] = { round((p[3] + left) * unit), round(p[4] * unit), false } end
         end
@@ -63,7 +63,7 @@ for k, glyph in ipairs(glyphs) do
     widest = math.max(widest, glyph.advance)
 end
 
--- runs of codes that follow each other
+-- runs of consecutive codes
 local runs = {}
 for k = 2, #glyphs do
     local code, run = glyphs[k].code, runs[#runs]
@@ -81,7 +81,7 @@ local segments = pack('I2I2I2I2', 2 * #runs, 2 * power, math.tointeger(math.log(
     table.concat(parts[1]) .. pack('I2', 0) .. table.concat(parts[2]) .. table.concat(parts[3]) .. table.concat(parts[4])
 local cmap = pack('I2I2I2I2I4', 0, 1, 3, 1, 12) .. pack('I2I2I2', 4, 6 + #segments, 0) .. segments
 
--- a few pairs that stand too far apart
+-- a few pairs that need kerning
 local pairs_of = {}
 for pair, move in ('AT-90 TA-90 AV-80 VA-80 AW-60 WA-60 AY-90 YA-90 LT-90 LV-80 LY-90 PA-70 FA-60 To-80 Ta-80 Te-80 Yo-70 Va-50 Vo-50 ry20'):gmatch '(%a%a)(%-?%d+)' do
     pairs_of[#pairs_of + 1] = { number[pair:byte(1)], number[pair:byte(2)], tonumber(move) }

@@ -1,6 +1,6 @@
 -- TITLE: Library: palettes, temperatures and easing
--- Rows of pegs in the colours of the palettes, lamps of 1,500 to 15,000 kelvin, and balls that stand where easing functions
--- put them.
+-- Rows of pegs in the colours of the palettes, lamps of 1,500 to 15,000 kelvin, and balls at positions given by easing
+-- functions. put them.
 -- Author: gray project
 
 local studio = require 'studio'
@@ -28,7 +28,7 @@ for k = 0, 8 do
     scene:add_child(gr.cylinder { from = { -6.0 + 0.84 * k, 0, -4.6 }, to = { -6.0 + 0.84 * k, 2.2, -4.6 }, radius = 0.05, material = studio.silver })
 end
 
--- Easing: time goes to the right, the way upwards.
+-- Easing: time to the right, the value upwards.
 local functions = { { 'in_out_cubic', 0.03 }, { 'out_bounce', 0.13 }, { 'out_elastic', 0.56 }, { 'in_out_back', 0.75 } }
 for row, item in ipairs(functions) do
     local material, z = studio.glaze(colour.hsv(360 * item[2], 0.7, 0.8)), 2.2 - 1.45 * row

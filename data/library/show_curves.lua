@@ -51,7 +51,7 @@ local control, patches = bezier.through(net, true, false)
 local bowl = gr.material { kd = { 0.75, 0.42, 0.12 }, ks = { 0.4, 0.4, 0.4 }, shininess = 80, two_sided = true }
 at(2.6, 0, 0.9, 10, gr.patch { points = control, patches = patches, tolerance = 0.001, material = bowl })
 
--- A cushion: a B-spline net that goes round, its ends drawn together; a point written three times is reached.
+-- A cushion: a closed B-spline net whose ends meet; the surface passes through a point that is given three times.
 local cushion = {}
 for j, row in ipairs { { 0, -0.3 }, { 0, -0.3 }, { 0, -0.3 }, { 1.5, -0.4 }, { 2.1, 0 }, { 1.5, 0.4 }, { 0, 0.3 }, { 0, 0.3 }, { 0, 0.3 } } do
     cushion[j] = {}

@@ -1,6 +1,6 @@
 -- TITLE: Library: sponge, pyramid and flake
 -- Menger's sponge of 8,000 cubes with a corner cut off along its diagonal, Sierpinski's pyramid of 15,625, a flake of
--- 7,381 balls. All are instances but the cut sponge, which is a closed mesh under CSG.
+-- 7,381 balls. All are instances except the cut sponge, which is a closed mesh in a CSG solid.
 -- Author: gray project
 
 local studio = require 'studio'

@@ -1,6 +1,6 @@
 -- TITLE: Library: gears
--- Involute teeth: a planetary train in its ring, a pair of herringbone wheels, a pinion on a rack. They touch and do not
--- cut into each other; tests/library/claims_gear.lua holds them to it.
+-- Involute teeth: a planetary train in its ring, a pair of herringbone wheels, a pinion on a rack. They touch without
+-- intersecting; tests/library/claims_gear.lua checks it.
 -- Author: gray project
 
 local studio = require 'studio'
@@ -12,7 +12,7 @@ local steel = gr.rr_material({ 0.27, 0.28, 0.31 }, { 0.75, 0.77, 0.80 }, 50, 0.3
 local blue = gr.rr_material({ 0.13, 0.18, 0.28 }, { 0.60, 0.68, 0.80 }, 60, 0.30, 0, 1)
 local red = gr.rr_material({ 0.42, 0.08, 0.06 }, { 0.70, 0.55, 0.5 }, 60, 0.15, 0, 1.5)
 
---- A wheel with an axle, spokes' holes if it is large, turned and in its place; wheels lie about z.
+--- A wheel with an axle, with holes if it is large, rotated and at its position; the axis of wheels is z.
 local function wheel(g, material, x, y, z, angle, options)
     local node, placed = gr.node 'wheel', gr.node 'placed'
     node:rotate('z', angle)
@@ -51,7 +51,7 @@ middle:add_child(wheel(small, steel, distance * math.cos(math.rad(62)), distance
     { width = 0.8, bore = 0.2, helix = -26, double = true, layers = 12 }))
 stand(middle, 0.55, big.tip, 0.2, -14)
 
--- A pinion on a rack on the right: teeth point up, a wheel above with a tooth straight down stands in a gap.
+-- A pinion on a rack on the right: its teeth point up, and the wheel above has a tooth in a gap.
 local pinion = gear.new { teeth = 20, module = 0.12 }
 local rack = gr.node 'rack'
 local lying = gr.node 'lying'

@@ -1,4 +1,4 @@
--- TITLE: Library: a walk through every corner of a cube
+-- TITLE: Library: a path through every part of a cube
 -- Hilbert's curve in space, 512 places in 511 steps, grown by an L-system: a rainbow of tubes with round corners; Koch's
 -- snowflake as a tray.
 -- Author: gray project
@@ -21,7 +21,7 @@ turned:rotate('y', 33)
 turned:add_child(cube)
 scene:add_child(turned)
 
--- The tray: the snowflake drawn out, with a hexagon of wood on it.
+-- The tray: the extruded snowflake, with a hexagon of wood on it.
 local flake = lsystem.example('koch', 4, { length = 14.5 / 81 })
 local outline = {}
 local rim = flake.branches[1].points

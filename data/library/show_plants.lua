@@ -1,6 +1,6 @@
 -- TITLE: Library: what words grow into
--- L-systems: two trees after Honda, a bush and herbs from "The Algorithmic Beauty of Plants", and flowers of a word of
--- our own with chance in it.
+-- L-systems: two trees after Honda, a bush and herbs from "The Algorithmic Beauty of Plants", and flowers from a word
+-- of gray's own with random rules.
 -- Author: gray project
 
 local studio = require 'studio'
@@ -21,7 +21,7 @@ local function put(node, x, z, size, turn, y)
     scene:add_child(placed)
 end
 
---- Leaves let light through: they are shaded as the crown is, by where they stand in it, not each for itself.
+--- Leaves are translucent: they are shaded by their position in the crown, not individually.
 local function foliage(c, walk, leaf)
     local verts, _, faces = lsystem.leaves(walk, leaf)
     local normals, middle = {}, { 0, walk.high[2] * 0.45, 0 }
@@ -64,14 +64,14 @@ shrub:add_child(gr.vn_mesh(bark, lsystem.mesh(bush, { around = 5 })))
 shrub:add_child(foliage({ 0.20, 0.44, 0.24 }, bush))
 put(shrub, 0.2, -1.4, 1.0, 0)
 
---- Normals towards light and onlooker.
+--- Normals between the directions to the light and to the camera.
 local function bright(verts)
     local out = {}
     for k = 1, #verts do out[k] = { -0.3 + dice:range(-0.2, 0.2), 0.8, 0.6 } end
     return out
 end
 
--- Flowers: a stem with leaves, bent by chance, a head of petals round a ball.
+-- Flowers: a randomly bent stem with leaves, and a head of petals around a ball.
 local function flower(seed, petal)
     local rules = { S = { { 2, 'F+(6)/(30)S' }, { 2, 'F-(6)\\(40)S' }, { 1, 'F[&(50);(1)~(0.5)]/(100)[&(60);(1)~(0.4)]S' } } }
     local word = lsystem.grow('F[&(55)~(0.6)]/(160)[&(60)~(0.5)]S', rules, 7, { seed = seed }):gsub('S$', 'F')

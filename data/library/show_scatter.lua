@@ -1,6 +1,6 @@
--- TITLE: Library: places that keep their distance
--- A ball with nails at the distance of at least 0.17 from each other, a torus knot with just 900 beads by sample
--- elimination, a meadow of Bridson's algorithm, and beside it the same number of blades by mere chance.
+-- TITLE: Library: points with a minimum distance
+-- A ball with nails at least 0.17 apart, a torus knot with exactly 900 beads by sample
+-- elimination, a meadow of Bridson's algorithm, and beside it the same number of uniformly random blades.
 -- Author: gray project
 
 local studio = require 'studio'

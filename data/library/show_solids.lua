@@ -1,6 +1,6 @@
 -- TITLE: Library: regular and half-regular solids
--- The five Platonic solids in gold, the thirteen Archimedean ones behind them, prisms and antiprisms, and what Conway's
--- operators make of a dodecahedron.
+-- The five Platonic solids in gold, the thirteen Archimedean ones behind them, prisms and antiprisms, and the results
+-- of Conway's operators on a dodecahedron.
 -- Author: gray project
 
 local studio = require 'studio'
@@ -12,7 +12,7 @@ local scene = gr.node 'solids'
 local function stand(verts, faces, material, x, z, size, turn, y)
     local solid = gr.mesh(material, verts, faces)
     solid:scale(size, size, size)
-    -- the first face looks up, so that the opposite one, where there is one, lies flat
+    -- the first face is on top, so that an opposite face, if any, lies on the floor
     local tilted, turned, placed = gr.node 'tilted', gr.node 'turned', gr.node 'placed'
     local nx, ny, nz = require 'meshes'.face_normal(verts, faces[1])
     local length = math.sqrt(nx * nx + ny * ny + nz * nz)

@@ -1,13 +1,13 @@
 -- TITLE: Library: subdivision surfaces
--- Cages and what becomes of them: Catmull and Clark's rule on a cross of cubes, Loop's on a star, step by step.
--- Author: gray project
+-- Control meshes and their limit surfaces: Catmull and Clark's rule on a cross of cubes, Loop's on a star, step by
+-- step. Author: gray project
 
 local studio = require 'studio'
 local colour, meshes, polyhedra, conway = require 'colour', require 'meshes', require 'polyhedra', require 'conway'
 
 local scene = gr.node 'subdivision'
 
--- Six cubes on the faces of a seventh: the faces between them are gone.
+-- Six cubes on the faces of a seventh, without the faces between them.
 local function jack()
     local verts, faces = {}, {}
     local low, high = polyhedra.box({ -1, -1, -1 }, { 1, 1, 1 }), nil
@@ -74,7 +74,7 @@ end
 local cross_verts, cross_faces = jack()
 show(polyhedra.catmull_clark, cross_verts, cross_faces, -2.2, 190, 0.95, quick and 3 or 4)
 local star_verts, star_faces = conway.kis(polyhedra.octahedron())
-for k = 7, #star_verts do -- the tips of the pyramids, drawn out
+for k = 7, #star_verts do -- the tips of the pyramids, extended
     for d = 1, 3 do star_verts[k][d] = 2.6 * star_verts[k][d] end
 end
 show(polyhedra.loop, star_verts, star_faces, 2.6, 8, 1.0, quick and 3 or 4)

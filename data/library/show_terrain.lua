@@ -1,6 +1,6 @@
 -- TITLE: Library: an island
 -- Ridged noise shaped into an island, worn down by 40,000 drops of rain; its faces are sorted into sand, grass, rock and
--- snow by height and slope; firs stand where scatter found room in the grass.
+-- snow by height and slope; firs stand at scattered points in the grass.
 -- Author: gray project
 
 local studio = require 'studio'

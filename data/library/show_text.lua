@@ -1,6 +1,6 @@
 -- TITLE: Library: solid letters
--- Text as bevelled meshes and as exact prisms in CSG: a sign with letters cut into it. From a font file where FreeType is
--- there, from the library's own letters, which are the same, where it is not.
+-- Text as bevelled meshes and as exact prisms in CSG: a sign with letters cut into it. From a font file if FreeType is
+-- installed, otherwise from the equal letters of the library.
 -- Author: gray project
 
 local studio = require 'studio'
@@ -33,7 +33,7 @@ lean:rotate('x', -14)
 lean:add_child(gr.difference('sign', slab, gr.vn_mesh(studio.gold, table.unpack(require 'meshes'.translate(words, 0, 0.86, 0.1)))))
 at(-1.5, 0.04, 2.2, 8, lean)
 
--- Exact prisms as a little word of glass.
+-- Exact prisms: a small word of glass.
 local glass = gr.difresnel_material(gr.rr_material({ 0.02, 0.03, 0.03 }, { 0.88, 0.96, 0.94 }, 200, 0, 1, 1.5))
 at(2.3, 0.07, 2.2, -14, text.node('0123', { font = font, size = 1.0, depth = 0.35, material = glass }))
 

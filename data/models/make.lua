@@ -146,7 +146,7 @@ for i = 1, #rim do
 end
 save('gear.stl', ('<c80I4'):pack('gear wheel (gray project)', triangles) .. table.concat(stl))
 
--- A crate with a picture and a normal map: glTF with its buffer inside.
+-- A crate with a picture and a normal map: glTF with an embedded buffer.
 local digits = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/'
 local function base64(data)
     local text = {}

@@ -1,6 +1,6 @@
 -- TITLE: The Cornell box
 -- The measured box of Cornell University's Program of Computer Graphics (Goral, Torrance, Greenberg, Battaile 1984; data
--- of 1998), colours as linear RGB: light goes from wall to wall. A unit is a decimetre.
+-- of 1998), colours as linear RGB: walls light each other. A unit is a decimetre.
 local function matte(r, g, b)
     return gr.material { kd = { r, g, b }, two_sided = true }
 end

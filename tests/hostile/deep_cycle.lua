@@ -1,5 +1,5 @@
 -- expect: SCRIPT:6: gr.render: the nodes form a cycle: 'a' > 'b' > 'a'
--- Nodes that hold each other.
+-- Nodes that contain each other.
 local a, b = gr.node('a'), gr.node('b')
 a:add_child(b)
 b:add_child(a)

@@ -1,5 +1,5 @@
 -- expect: SCRIPT:9: gr.render: the scene places more than 268435456 primitives (instances of instances?)
--- A million million balls out of forty nodes.
+-- 10^12 balls from forty nodes.
 local node = gr.node('leaf')
 node:add_child(gr.sphere{})
 for i = 1, 40 do

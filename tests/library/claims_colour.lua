@@ -55,7 +55,7 @@ claims.claim('palettes begin and end with their colours and are joined', functio
         end
     end
     same(colour.palette({ { 0, 0, 0 }, { 1, 1, 1 } }, 0.25), { 0.25, 0.25, 0.25 }, 1e-12, 'own')
-    -- viridis gets brighter all the way
+    -- the brightness of viridis increases monotonically
     local before = -1
     for t = 0, 1, 0.05 do
         local y = colour.luminance(colour.linear(colour.palette('viridis', t)))

@@ -148,7 +148,7 @@ claims.claim('a loft between equal squares is a box, between squares a frustum',
 end)
 
 claims.claim('a loft goes through its sections and does not twist', function()
-    -- the same circle, begun elsewhere each time
+    -- the same circle with different start points
     local sections = {}
     for k = 1, 4 do sections[k] = loft.polygon(40, 1, nil, 90 * k) end
     local verts, _, faces = loft.mesh(sections, { heights = { 0, 1, 2, 3 }, around = 40 })

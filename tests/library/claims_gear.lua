@@ -28,7 +28,7 @@ local function inside(outline, p)
     return odd
 end
 
--- From a point to the nearest piece of the outline; pieces further than `reach` along either axis are passed over.
+-- The distance from a point to the outline; pieces further away than `reach` along either axis are skipped.
 local function distance(outline, p, reach)
     local least, x, y = reach * reach, p[1], p[2]
     for k, a in ipairs(outline) do
@@ -42,7 +42,7 @@ local function distance(outline, p, reach)
     return math.sqrt(least)
 end
 
--- How deep the outlines go into each other at most, and how near they come; only points that are near the place count.
+-- The maximum depth to which the outlines intersect, and their smallest distance; only points near the contact count.
 local function contact(a, b, x, y, reach)
     local depth, gap = 0, math.huge
     for k, one in ipairs { a, b } do
@@ -75,7 +75,7 @@ claims.claim('outlines lie between root and tip and have a point for each tooth 
         assert(q > g.root - 1e-9 and q < g.tip + 1e-9)
     end
     assert(inside(outline, { g.tip - 0.1, 0 }) and not inside(outline, placed({ { g.tip - 0.1, 0 } }, 180 / 19, 0, 0)[1]))
-    -- half of the ring between root and tip is tooth, about
+    -- about half of the ring between root and tip is tooth
     assert(area(outline) > pi * g.root ^ 2 and area(outline) < pi * g.tip ^ 2)
 end)
 
@@ -151,7 +151,7 @@ claims.claim('meshes of wheels are closed, with the volume of their outline', fu
         assert(v - e + f == (options.bore and 0 or 2))
         if not options.helix then
             local hole = 0
-            if options.bore then -- its corners lie on the rays of the outline's
+            if options.bore then -- its corners have the angles of the outline's corners
                 local circle = {}
                 for k, p in ipairs(gear.outline(g)) do
                     local q = math.sqrt(p[1] ^ 2 + p[2] ^ 2)

@@ -61,7 +61,7 @@ claims.claim('places on a ball keep their distance, cover it and lie on it', fun
     local verts, _, faces = polyhedra.geodesic(3)
     local places = scatter.mesh(verts, faces, { radius = 0.2, seed = 2 })
     assert(nearest(places) >= 0.2)
-    -- between the densest packing, 2 / sqrt 3 a squared radius, and half of it
+    -- between the densest packing, 2 / sqrt 3 per squared radius, and half of it
     local packing = 2 / math.sqrt(3) * 4 * math.pi / 0.04
     assert(#places < packing and #places > 0.5 * packing)
     local dice = random.new(1)
@@ -84,7 +84,7 @@ claims.claim('elimination leaves as many as asked for, better spread than chance
     local verts, _, faces = polyhedra.geodesic(2)
     local places = scatter.mesh(verts, faces, { count = 200, seed = 7 })
     assert(#places == 200)
-    -- the bound that no set of 200 can pass
+    -- the upper bound for sets of 200
     local bound = 2 * math.sqrt(4 * math.pi / (2 * math.sqrt(3) * 200))
     local least = nearest(places)
     assert(least > 0.55 * bound and least <= bound, ('%g of %g'):format(least, bound))

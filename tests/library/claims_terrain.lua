@@ -97,7 +97,7 @@ claims.claim('closed land is a solid with the volume under it', function()
     local verts, normals, faces, face_normals = terrain.mesh(h, { width = 3, depth = 2, bottom = 0 })
     assert(meshes.is_closed(faces) and #faces == #face_normals)
     near(meshes.volume(verts, faces), 6 * 2.5, 1e-9, 'volume')
-    for k, face in ipairs(faces) do -- every normal is on the side its face is seen from
+    for k, face in ipairs(faces) do -- every normal is on the front side of its face
         local x, y, z = meshes.face_normal(verts, face)
         local n = normals[face_normals[k][1] + 1]
         assert(x * n[1] + y * n[2] + z * n[3] > 0)

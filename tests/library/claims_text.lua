@@ -60,7 +60,7 @@ claims.claim('lines are set below each other and aligned', function()
 end)
 
 claims.claim('curves are measured out within the tolerance', function()
-    -- a circle of four cubic pieces, right to 3 in 10,000
+    -- a circle of four cubic pieces, with an error of 3 in 10,000
     local k = 0.5522847498
     local circle = { { 1, 0 }, { 1, k }, { k, 1 }, { 0, 1 }, { -k, 1 }, { -1, k }, { -1, 0 }, { -1, -k }, { -k, -1 }, { 0, -1 }, { k, -1 }, { 1, -k } }
     for _, tolerance in ipairs { 0.1, 0.01, 0.001 } do
@@ -92,7 +92,7 @@ claims.claim('wrong arguments are named', function()
     claims.fails('text.letters: string must be UTF-8', text.letters, '\xff')
 end)
 
--- What needs FreeType; without it there is one line that says so.
+-- Tests that need FreeType; without it there is one line with a message.
 if text.has_fonts() then
     claims.claim('a font file gives the same letters as the library, which drew it', function()
         local own, read = text.letters('Hamburg'), text.letters('Hamburg', { font = file })

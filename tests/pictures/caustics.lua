@@ -1,8 +1,8 @@
 -- TITLE: Light through glass and off mirrors
 -- OPTIONS: --caustics 20000
 -- Covers photon maps by the option and by the field with photons and radius, from points, spots, directions and surfaces,
--- through glass (Fresnel, absorption, rough), off mirrors, a metal ring and solids, onto walls, images and relief, and in
--- fog.
+-- through glass (Fresnel, absorption, rough), off mirrors, a metal ring and solids, onto walls, images and bump maps,
+-- and in fog.
 -- Author: gray project
 
 local textures = '../../textures/'

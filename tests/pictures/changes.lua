@@ -4,7 +4,7 @@
 -- gr.change_exposure, and gr.transform_order with each of its orders.
 -- Author: gray project
 
--- The numbers of nodes and materials count from the start of the script: what the changes are for comes first.
+-- Nodes and materials are numbered from the start of the script: the objects of the changes come first.
 local first = gr.material({ .7, .2, .2 }, { .4, .4, .4 }, 20) -- 1
 local second = gr.material({ .2, .6, .3 }, { .4, .4, .4 }, 20) -- 2
 local glass = gr.difresnel_material(gr.rr_material({ 0, 0, 0 }, { 1, 1, 1 }, 100, 1, 1, 1.5)) -- 4, over 3

@@ -1,6 +1,6 @@
 -- TITLE: The classic dialect
 -- OPTIONS: --view target --pixel-sample corner --ambient plain --specular blinn
--- Covers scripts of the course: readobj and the old transform order that its use decides, joints, shapes by name,
+-- Covers scripts of the course: readobj and the old transform order that it implies, joints, shapes by name,
 -- positional arguments, meshes by tables, node:set_material, node:set_texture and node:set_bump on scaled shapes, and the
 -- options for views by target, samples at corners, plain ambient light and Blinn highlights.
 -- Author: gray project. Dialect: classic, OLD order: the last call acts first on the object.

@@ -56,7 +56,7 @@ picture('rough', row {
         absorption = { .2, 1, 1 } },
 }, { refract_limit = 3 })
 
--- a glass of water with a bubble and a marble in it; what overlaps is in the material that was entered last
+-- a glass of water with a bubble and a marble in it; an overlap has the medium that was entered last
 local water = fresnel { ior = 1.33, absorption = { .5, .15, .05 } }
 local wall = fresnel { ior = 1.5, absorption = { .05, .02, .05 } }
 local function tumbler(x)

@@ -8,7 +8,7 @@
 local textures = '../../textures/'
 local plain = gr.material({ .75, .75, .75 }, { .3, .3, .3 }, 25)
 
---- New shapes with coordinates, each of about the size of a unit ball.
+--- New shapes with coordinates, each about as large as a unit ball.
 local function shapes()
     local verts = { { -.9, -.9, 0 }, { .9, -.9, 0 }, { .9, .9, .3 }, { -.9, .9, -.3 }, { 0, 0, .7 } }
     local uvs = { { 0, 0 }, { 2, 0 }, { 2, 2 }, { 0, 2 }, { 1, 1 } }
@@ -35,7 +35,7 @@ local function shapes()
     }
 end
 
---- Twelve shapes in three rows, dressed by a function.
+--- Twelve shapes in three rows, with materials from a function.
 local function picture(name, dress)
     local root = gr.node(name)
     for k, shape in ipairs(shapes()) do
@@ -89,7 +89,7 @@ picture('normals', function(shape, k)
     if k % 2 == 0 then shape:set_bump(map) else shape:set_material(gr.bump_material(plain, map)) end
 end)
 
--- relief under images, over relief, as a plain file, on mirrors and on what is scaled unevenly
+-- bump maps under images, over bump maps, as a file name, on mirrors and on unevenly scaled shapes
 local mirror = gr.rr_material({ .2, .2, .2 }, { .8, .8, .8 }, 80, .6, 0, 1)
 picture('both', function(shape, k)
     if k % 4 == 0 then

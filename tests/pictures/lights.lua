@@ -6,7 +6,7 @@
 
 local function matt(kd) return gr.material(kd, { .3, .3, .3 }, 20) end
 
---- A floor, a wall and five balls; returns the root and what it holds by name.
+--- A floor, a wall and five balls; returns the root and its objects by name.
 local function room()
     local parts = {
         root = gr.node 'room',
@@ -22,7 +22,7 @@ local function room()
         parts.balls[k + 3] = ball
         parts.root:add_child(ball)
     end
-    -- a mirror shows lights that are visible
+    -- a mirror shows visible lights
     parts.root:add_child(gr.box { min = { -4.4, 0, -3.9 }, max = { -1.2, 2.6, -3.8 },
         material = gr.rr_material({ 0, 0, 0 }, { .9, .9, .9 }, 100, .9, 0, 1) })
     return parts
@@ -57,7 +57,7 @@ picture('spots', here.root, {
     gr.spot_light { position = { 4, .4, 3 }, target = { 0, 1.5, -4 }, colour = { 1, .2, .2 }, inner = 0, outer = 20,
         intensity = 30,
         include = { here.wall, here.balls[4] } },
-    -- more than half of all directions, and all
+    -- more than half of all directions, and all directions
     gr.spot_light { position = { -4, 1, 1 }, direction = { -1, 0, 0 }, colour = { .4, .3, .5 }, inner = 100, outer = 140 },
     gr.spot_light { position = { 0, 7, 0 }, colour = { .1, .1, .1 }, inner = 180, outer = 180, falloff = { .1, .1, 0 },
         exclude = { here.floor } },
@@ -95,7 +95,7 @@ picture('radiance', here.root, {
         samples = 1 },
 }, nil, 'reinhard')
 
--- meshes that shine
+-- emitting meshes
 here = room()
 local verts = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }
 local faces = { { 0, 2, 1 }, { 0, 1, 3 }, { 0, 3, 2 }, { 1, 2, 3 } }

@@ -1,13 +1,13 @@
--- TITLE: Opaque materials and what decorates them
+-- TITLE: Opaque materials and their decorators
 -- Covers gr.material and gr.rr_material (Phong and Blinn highlights at many exponents, lit, two_sided, emission, mirrors,
 -- rough metal at several roughnesses and glossy_samples), gr.marble_pnd_material, gr.wood_pnd_material,
 -- gr.td_cube_material, gr.td_sphere_material, gr.image_material (all channels) and gr.bump_material, composed in both
--- orders, over materials that mirror and that refract.
+-- orders, over materials that reflect and that refract.
 -- Author: gray project
 
 local textures = '../../textures/'
 
---- Places things in rows before a floor and returns the root.
+--- Places objects in rows in front of a floor and returns the root.
 local function shelf(things, columns, spacing)
     local root = gr.node 'shelf'
     for k, thing in ipairs(things) do
@@ -37,7 +37,7 @@ end
 
 local function ball(material) return gr.sphere(material) end
 
--- highlights; a shape that is open shows its back
+-- highlights; an open shape shows its back
 local red, gray = { .6, .15, .1 }, { .7, .7, .7 }
 local function bowl(material)
     return gr.paraboloid { material = material, open = true, height = 1.4 }:rotate('x', 60)
@@ -60,7 +60,7 @@ for k = 2, 4 do highlights[k - 1] = ball(gr.material(red, gray, ({ 3, 40, 4000 }
 highlights[4] = bowl(gr.material { kd = red, ks = gray, shininess = 30, two_sided = true })
 picture('blinn', shelf({ table.unpack(highlights, 1, 4) }, 2), { specular = 'blinn' })
 
--- mirrors and rough metals, mirrored in each other
+-- mirrors and rough metals that reflect each other
 local gold = { .9, .7, .35 }
 local function metal(fields)
     fields.kd, fields.ks, fields.shininess = fields.kd or { .1, .07, .03 }, fields.ks or gold, fields.shininess or 60

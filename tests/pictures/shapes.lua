@@ -3,13 +3,13 @@
 -- planes, squares, rectangles, discs, triangles, polygons with holes, paraboloids, hyperboloids, quadrics,
 -- superellipsoids, lathes, prisms, sweeps, blobs, curves, patches, height fields, letters, meshes from tables and files by
 -- all four names (normals, uvs, smooth, weld, flip, cull, parts), gr.node, gr.joint, gr.instances, gr.geometry, and every
--- transform; node:bounds and node:faces place things.
+-- transform; node:bounds and node:faces place objects.
 -- Author: gray project
 
 local polyhedra = require 'polyhedra'
 
 local count = 0
---- A material, another colour each time.
+--- A material with a different colour for each call.
 local function paint(two_sided)
     count = count + 1
     local turn = count * 2.4
@@ -18,7 +18,7 @@ local function paint(two_sided)
         two_sided = two_sided }
 end
 
---- Puts things side by side, four in a row, each scaled to the same size by its bounds.
+--- Places objects side by side, four in a row, each scaled to the same size by its bounds.
 local function picture(name, things)
     local root = gr.node(name)
     local rows = (#things + 3) // 4
@@ -98,7 +98,7 @@ picture('curves', {
         gr.height_field(paint(), pond),
 })
 
--- meshes: the same twenty faces smooth, flat, turned round, culled, in several materials
+-- meshes: the same twenty faces smooth, flat, reversed, culled, with several materials
 local solid, corners = polyhedra.icosahedron()
 local normals = {}
 for k, corner in ipairs(solid) do normals[k] = { corner[1] + .2, corner[2], corner[3] } end

@@ -28,7 +28,7 @@ local function picture(name, background, fields)
     gr.render(fields)
 end
 
--- a cross, by the old function and as a sky; the letters read the right way round or not
+-- a cross, by the old function and as a sky; the letters are readable or mirrored
 gr.render_skybox(scene(), 'skies-cross.png', textures .. 'sky_letters.png', 96, 72, { 0, .6, 6 }, { .3, .1, -1 }, { 0, 1, 0 },
     80,
     { .3, .3, .3 }, { gr.light({ 3, 5, 6 }, { .6, .6, .6 }) })
@@ -47,7 +47,7 @@ local both = gr.node 'both'
 both:add_child(scene())
 picture('faces', six, { node = both, projection = 'panorama', eye = { 0, .3, 2.4 }, lights = { gr.sky_light(six) } })
 
--- maps: one is seen, others are lights of one ball each
+-- maps: one is visible, others light one ball each
 local root = scene()
 local balls, lights = {}, {}
 local pfm = gr.sky_map { image = light .. 'picture.pfm', intensity = 1.5 }
@@ -73,7 +73,7 @@ local clear = gr.clear_sky(evening { turbidity = 4, ground = { .2, .25, .1 }, in
 picture('clear', clear, { lights = { gr.sky_light(clear), gr.sun_light(evening { colour = { .5, .4, .3 } }) },
     projection = 'fisheye', angle = 220, eye = { 0, .3, 3 } })
 
--- gradients, with glass to the next world: another sky as light
+-- gradients, with glass; another sky as light
 local noon = gr.clear_sky({ .3, .8, -.5 }, 2.2)
 picture('gradient', 'gradient', { fov = 70, lights = {
     gr.sky_light 'gradient',

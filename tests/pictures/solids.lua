@@ -96,7 +96,7 @@ picture('shapes', {
         gr.paraboloid(mirror), gr.cone { radius = .7, to = { 0, 1.2, 0 }, material = red }),
 })
 
--- materials that depend on the place, holes, glass with other glass in it, walls cut open
+-- materials that depend on the position, holes, glass with other glass in it, walls cut open
 local function over(kind, name, fields)
     local all = { material = white, image = textures .. name .. '.png' }
     for key, value in pairs(fields or {}) do all[key] = value end

@@ -1,8 +1,8 @@
 -- TITLE: Every input of a material with a texture of each kind
 -- Covers gr.texture, gr.marble_texture, gr.wood_texture, gr.mix_texture, gr.multiply_texture and constants as kd, ks,
 -- shininess, reflect, refract, roughness, emission, opacity, metalness, height of bumps and normal of gr.material and
--- gr.bump_material, on balls, boxes, shapes with their own coordinates, operands of solids, and meshes with colours of
--- vertices. One material is shown by shapes that hold images in different ways.
+-- gr.bump_material, on balls, boxes, shapes with their own coordinates, operands of solids, and meshes with colours at
+-- vertices. One material is used by shapes with different image mappings.
 -- Author: gray project
 
 local textures = '../../textures/'
@@ -89,7 +89,7 @@ for k, kind in ipairs(kinds) do
     picture(kind[1], root)
 end
 
--- what a node lays over its own material, on every shape, over a material whose kd has the same texture
+-- textures that a node adds over its material, on every shape, over a material whose kd has the same texture
 local root = gr.node 'nodes'
 local under = gr.material { kd = gr.texture { file = textures .. 'rug.png' }, ks = ks, shininess = 20,
     bump = gr.bump { file = gr.wood_texture(1, 3, 1), height = .1 } }

@@ -1,4 +1,4 @@
--- One description of every shape and every way of combining them, in two languages: as nodes of gray, or, with
+-- One description of every shape and every combination, in two languages: as nodes of gray, or, with
 -- -D POV=true, as scene files of POV-Ray on standard output. Surfaces have one colour each and no shading; black fog of
 -- known density turns the picture into depth: depth = -log(brightness)/density.
 gr.transform_order('new')
@@ -13,7 +13,7 @@ local function pairs_of(points)
     return table.concat(words, ',')
 end
 
--- A thing in both languages: make(material) gives the node, sdl has %s where colour and transforms go.
+-- An object in both languages: make(material) gives the node, sdl has %s for colour and transforms.
 local function thing(make, sdl) return {make = make, sdl = sdl} end
 local function placed(what, colour, scale, turn, move) return {what = what, colour = colour, scale = scale, turn = turn, move = move} end
 
@@ -67,7 +67,7 @@ local function inverse(part)
         sdl = function() return 'object{' .. sdl_of(part) .. ' inverse %s}' end,
     }
 end
--- The second solid is not seen: POV-Ray takes no colour for it.
+-- The second solid is invisible: POV-Ray uses no colour for it.
 local function clipped(part, by)
     by.unseen = true
     return {
@@ -255,7 +255,7 @@ else
     local right = {-w[3] / flat_length, 0, w[1] / flat_length}
     local up = {right[2] * w[3] - right[3] * w[2], right[3] * w[1] - right[1] * w[3], right[1] * w[2] - right[2] * w[1]}
     local tall = 2 * math.tan(math.rad(FOV / 2))
-    -- One scene of POV-Ray after the other, each begun by a line with its name.
+    -- The scenes for POV-Ray, each after a line with its name.
     for _, scene in ipairs(scenes) do
         print('// SCENE ' .. scene[1])
         print('#version 3.7; global_settings{assumed_gamma 1 max_trace_level 2} #default{finish{ambient 1 diffuse 0}}')

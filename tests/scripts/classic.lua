@@ -1,4 +1,4 @@
--- One of everything in the classic dialect.
+-- One object of every kind in the classic dialect.
 require 'readobj'
 local mat = gr.material({0.7, 1.2, -0.1}, {0.5, 0.7, 0.5}, 0)
 local root = gr.node('root')

@@ -1,4 +1,4 @@
--- Every gr function and method once, in both forms where there are two; used while allocations fail.
+-- Every gr function and method once, in both forms if there are two; used to test failing allocations.
 local plain = gr.material({1, 0.5, 0.2}, {0.5, 0.5, 0.5}, 20)
 local glass = gr.rr_material({1, 1, 1}, {1, 1, 1}, 100, 0.1, 0.9, 1.5)
 local fresnel = gr.difresnel_material(glass)

@@ -1,4 +1,4 @@
--- With --lenient whatever does not exist is told once and does nothing.
+-- With --lenient an unknown function is reported once and does nothing.
 local root = gr.node('root')
 local torus = gr.klein_bottle('ring', 2, 1)
 root:add_child(torus)

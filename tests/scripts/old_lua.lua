@@ -1,4 +1,4 @@
--- Scripts of the days of Lua 5.0 and 5.1: every name they use that 5.4 no longer has.
+-- Scripts for Lua 5.0 and 5.1: every name that 5.4 no longer has.
 assert(select('#', unpack({1, 2, 3})) == 3)
 assert(table.getn({1, 2, 3}) == 3)
 table.setn({}, 3)

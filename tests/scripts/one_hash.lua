@@ -1,5 +1,5 @@
--- A small picture that uses what could depend on how the work is parted: a photon map, soft lights, glass, mirrors, a
--- combined solid, a mesh with smooth normals, noise, an image, fog, a lens, a moving ball and marked pixels. For
+-- A small picture with everything that could depend on the division of work: a photon map, soft lights, glass, mirrors,
+-- a combined solid, a mesh with smooth normals, noise, an image, fog, a lens, a moving ball and marked pixels. For
 -- tools/one_hash.sh.
 local white = gr.material({0.8, 0.8, 0.8}, {0, 0, 0}, 1)
 local glass = gr.rr_material({0, 0, 0}, {1, 1, 1}, 100, 0.1, 0.9, 1.5)

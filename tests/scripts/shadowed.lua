@@ -1,4 +1,4 @@
--- Scenes call their things table, math, string ...: nothing of ours may need those globals while a script runs.
+-- Scenes name their variables table, math, string ...: gray must not need those globals while a script runs.
 local make, light, draw = gr.node, gr.light, gr.render
 table = gr.node('table')
 math = gr.sphere('math')

@@ -6,7 +6,7 @@ for key, value in pairs(t) do order[#order + 1] = tostring(key) .. '=' .. value 
 assert(table.concat(order, ' ') ==
     "1=30 2=10 3=20 -1=4 2.5=5 100=6 false=10 true=9 =3 apple=2 zebra=1 node 'a'=8 node 'b'=7")
 
--- entries may be changed and removed on the way
+-- entries may be changed and removed during the traversal
 local seen = 0
 local u = {x = 1, y = 2, z = 3, 1, 2, 3}
 for key in pairs(u) do
@@ -39,7 +39,7 @@ for key in pairs(many) do
 end
 assert(count == 3000)
 
--- what a stranger's script must not have
+-- functions that untrusted scripts must not have
 assert(os.execute == nil and io.popen == nil and package.loadlib == nil and debug.sethook == nil)
 assert(debug.getinfo(1, 'S').source:sub(1, 1) == '@' and debug.getinfo(1, 'S').source:match('traverse%.lua$'))
 assert(type(debug.traceback('x')) == 'string')
@@ -47,7 +47,7 @@ assert(load(string.dump(function() end)) == nil)
 assert(getmetatable(a) == 'node' and not pcall(setmetatable, gr, {}))
 assert(require 'gr' == gr and gr.version)
 
--- files beside the script
+-- files in the script's folder
 local handle = assert(io.open('parts/shades.lua'))
 handle:close()
 assert(io.open('nowhere') == nil)
