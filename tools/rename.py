@@ -274,13 +274,12 @@ def fold(path, into, what, first):
     """The text of a file with another one's at its end; a header that it included goes first. What the other file opened
     with heads its part, unless it only names its header."""
     to, part = Parts(without_repeats(into)), Parts(what)
-    own = '#include "%s"' % re.sub(r'^src/|\.c$', '', path)
-    own = own if path.endswith('.h') else own[:-1] + '.h"'
-    if path.endswith('.h'):
-        first = first or any(own in block for block in to.blocks)
-        for side in (to, part):
-            side.blocks = [[line for line in block if line != own] for block in side.blocks]
-            side.blocks = [block for block in side.blocks if block]
+    itself = '#include "%s"' % re.sub(r'^src/', '', path)
+    own = itself[:-2] + 'h"'
+    first = first or any(itself in block for block in to.blocks)
+    for side in (to, part):
+        side.blocks = [[line for line in block if line != itself] for block in side.blocks]
+        side.blocks = [block for block in side.blocks if block]
     for block in part.blocks:
         for line in block:
             to.include(line, own)

@@ -10,7 +10,7 @@
 #
 # Lines of a map (tools/renames/NN-subject.map); @GLOB,GLOB behind the first word limits a line to these paths:
 #   file OLD NEW          moves a file or a folder; includes, guards and mentions of it follow
-#   fold OLD NEW [first]  puts a C file at the end of another (first: at its beginning), its includes among the others; the
+#   fold OLD NEW [first]  puts a C file (or a header) at the end of another, first: at its beginning; includes merge, and the
 #                         comment that it opened with heads its part
 #   word OLD NEW [merge]  an identifier; one * stands for the rest of it: word reach_* path_policy_*
 #   tag OLD NEW [merge]   the same, only behind struct, enum or union
