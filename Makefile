@@ -148,7 +148,7 @@ $(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/lamps: $(BUILD)/benc
 $(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma -mpopcnt -fno-tree-slp-vectorize
 $(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mpopcnt -fno-tree-slp-vectorize
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
-$(BUILD)/src/script/libm_override.o: override CFLAGS += -fno-builtin
+$(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
 
 # Kernels in plain C are so long that gcc gives up telling a debugger where variables are, and says so.
 $(BUILD)/tests/unit/test_portable_kernel.o: override CFLAGS += -g0

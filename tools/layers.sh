@@ -52,10 +52,10 @@ sources=$(ls src/*/*.c src/*/*.h 2>/dev/null)
     calls 'malloc|calloc|realloc|free|posix_memalign|aligned_alloc|strdup|strndup|asprintf|alloca' \
         $(printf '%s\n' $sources | grep -v '^src/base/mem\.c$') | sed 's/$/   <- memory outside base\/mem/'
     calls 'fopen|freopen|open|openat|creat|rename|renameat|unlink|mkdir|opendir|tmpfile|mkstemp' \
-        $(printf '%s\n' $sources | grep -vE '^src/base/(file|file_output|process|path_policy|fault)\.c$') | sed 's/$/   <- files outside base\/file and base\/path_policy/'
-    calls 'mmap|munmap' $(printf '%s\n' $sources | grep -vE '^src/base/(mem|file|share|fault)\.c$') | sed 's/$/   <- mappings outside base/'
+        $(printf '%s\n' $sources | grep -vE '^src/base/(file|file_output|system|path_policy|mem)\.c$') | sed 's/$/   <- files outside base\/file and base\/path_policy/'
+    calls 'mmap|munmap' $(printf '%s\n' $sources | grep -vE '^src/base/(mem|file|system)\.c$') | sed 's/$/   <- mappings outside base/'
     calls 'sin|cos|tan|asin|acos|atan|atan2|exp|exp2|log|log2|log10|pow|cbrt|hypot|sincos|fma' \
-        $(printf '%s\n' $sources | grep -vE '^src/script/libm_override\.c$') |
+        $(printf '%s\n' $sources | grep -vE '^src/script/sandbox\.c$') |
         sed 's/$/   <- elementary functions come from math\/elementary/'
 } >>"$bad"
 

@@ -8,7 +8,10 @@
 
 #include "base/checked.h"
 #include "base/fault.h"
+#include "base/hash.h"
 #include "base/mem_peak.h"
+#include "base/random.h"
+#include "base/sort.h"
 
 #include <malloc.h>
 #include <stdatomic.h>
@@ -247,3 +250,139 @@ void mem_unshare(void *block, size_t size) {
     if (block)
         (void)munmap(block, size ? size : 1);
 }
+
+/* See hash.h: eight bytes at a time, mixed with multiplications; the tail is padded with zeros and the length mixed in.
+ */
+
+uint64_t hash_bytes(const void *data, size_t size, uint64_t seed) {
+    const unsigned char *bytes = data;
+    uint64_t h = random_mix(seed + UINT64_C(0x9e3779b97f4a7c15) + size);
+    size_t at = 0;
+    for (; size - at >= 8; at += 8) {
+        uint64_t word;
+        memcpy(&word, bytes + at, 8);
+        h = (h ^ random_mix(word)) * UINT64_C(0x100000001b3) + (h >> 47);
+    }
+    uint64_t tail = 0;
+    if (size > at)
+        memcpy(&tail, bytes + at, size - at);
+    return random_mix(h ^ tail);
+}
+
+struct digest digest_bytes(const void *data, size_t size, struct digest before) {
+    return (struct digest){hash_bytes(data, size, before.a), hash_bytes(data, size, before.b ^ ~UINT64_C(0))};
+}
+
+bool digest_equal(struct digest x, struct digest y) {
+    return x.a == y.a && x.b == y.b;
+}
+
+static void sift_down(uint64_t *items, size_t root, size_t count) {
+    for (size_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && items[child + 1] > items[child])
+            child++;
+        if (items[root] >= items[child])
+            return;
+        uint64_t swap = items[root];
+        items[root] = items[child];
+        items[child] = swap;
+    }
+}
+
+void sort_words(uint64_t *items, size_t count) {
+    if (count <= 24) {
+        for (size_t i = 1; i < count; i++) {
+            uint64_t item = items[i];
+            size_t j = i;
+            for (; j > 0 && items[j - 1] > item; j--)
+                items[j] = items[j - 1];
+            items[j] = item;
+        }
+        return;
+    }
+    for (size_t root = count / 2; root-- > 0;)
+        sift_down(items, root, count);
+    for (size_t last = count - 1; last > 0; last--) {
+        uint64_t swap = items[0];
+        items[0] = items[last];
+        items[last] = swap;
+        sift_down(items, 0, last);
+    }
+}
+
+/* The counters live in a page that the processes of one run share, from before the first allocation on. */
+
+#ifdef GRAY_FAULTS
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+struct fault_counters {
+    _Atomic uint64_t count[2], failing[2];
+    _Atomic int error;
+    uint64_t acting; /* of calls; 0: none */
+    void (*act)(void);
+    pid_t first; /* the process that reports the counts */
+};
+
+static struct fault_counters own, *counters = &own;
+
+void fault_apart(void) {
+    void *page = mmap(NULL, sizeof own, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page != MAP_FAILED)
+        counters = page;
+    atomic_store(&counters->error, EIO);
+    counters->first = getpid();
+}
+
+__attribute__((constructor)) static void read_environment(void) {
+    static const char *const names[] = {"GRAY_FAIL_ALLOC", "GRAY_FAIL_CALL"};
+    fault_apart();
+    for (int kind = 0; kind < 2; kind++) {
+        const char *text = getenv(names[kind]);
+        if (text)
+            fault_at((enum fault_kind)kind, strtoull(text, NULL, 10));
+    }
+    const char *number = getenv("GRAY_FAIL_ERRNO");
+    (void)fault_errno(number ? atoi(number) : 0);
+}
+
+__attribute__((destructor)) static void report_counts(void) {
+    const char *path = getenv("GRAY_FAULT_COUNT");
+    if (!path || counters->first != getpid())
+        return;
+    FILE *stream = fopen(path, "w");
+    if (!stream)
+        return;
+    (void)fprintf(stream, "%llu %llu\n", (unsigned long long)counters->count[0],
+                  (unsigned long long)counters->count[1]);
+    (void)fclose(stream);
+}
+
+bool fault_now(enum fault_kind kind) {
+    uint64_t number = atomic_fetch_add(&counters->count[kind], 1) + 1;
+    if (kind == FAULT_OF_CALL && number == counters->acting)
+        counters->act();
+    return number == atomic_load(&counters->failing[kind]);
+}
+
+void fault_before(uint64_t number, void (*act)(void)) {
+    counters->act = act;
+    counters->acting = atomic_load(&counters->count[FAULT_OF_CALL]) + number;
+}
+
+void fault_at(enum fault_kind kind, uint64_t number) {
+    atomic_store(&counters->failing[kind], number == 0 ? 0 : atomic_load(&counters->count[kind]) + number);
+}
+
+int fault_errno(int number) {
+    return number == 0 ? atomic_load(&counters->error) : atomic_exchange(&counters->error, number);
+}
+
+uint64_t fault_count(enum fault_kind kind) {
+    return atomic_load(&counters->count[kind]);
+}
+#endif

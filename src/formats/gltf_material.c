@@ -11,7 +11,7 @@
 
 #include "formats/gltf.h"
 
-#include "image/image_file.h"
+#include "image/image.h"
 
 #include <stdio.h>
 

@@ -3,7 +3,7 @@
 #define GRAY_HOST_CHANNEL_SERVICES_H
 
 #include "base/share.h"
-#include "session/channel.h"
+#include "session/messages.h"
 #include "session/services.h"
 
 struct channel_services {

@@ -4,11 +4,11 @@
 #include "host/render_process.h"
 
 #include "base/arena.h"
+#include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/mem.h"
 #include "base/pool.h"
-#include "base/size.h"
 #include "base/terminal_text.h"
 #include "image/image.h"
 #include "inspect/inspect.h"

@@ -6,7 +6,7 @@
 #include "host/file_watch.h"
 #include "host/supervisor.h"
 #include "output/output_session.h"
-#include "session/channel.h"
+#include "session/messages.h"
 #include "session/standard_streams.h"
 #include "viewer/viewer.h"
 

@@ -5,10 +5,18 @@
  * numbers, so nothing is rounded before the final division). Colours are averaged weighted by alpha. Invariant: a size
  * divisible by 4 (width) or 3 (height) stays so until a quarter or third is a single texel. So the faces of a sky cross
  * are whole texels in every level, and no level mixes two of them. */
+#include "base/file.h"
+#include "image/exr.h"
+#include "image/float_read.h"
+#include "image/jpeg_read.h"
 #include "image/levels.h"
+#include "image/tone.h"
+#include "math/elementary.h"
 
 #include "base/mem.h"
+#include "image/image.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Half of a size that is made of `parts` equal parts, if it is; plain half (at least 1) otherwise. */
@@ -241,4 +249,74 @@ struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
     }
     const uint16_t *t = (const uint16_t *)image->levels[0].texels + at;
     return (struct rgba){t[0] / 65535.0, t[1] / 65535.0, t[2] / 65535.0, t[3] / 65535.0};
+}
+
+/* The choice of a reader. For unknown formats the PNG reader makes the error; it names the probable format. */
+
+#define FILE_LIMIT ((size_t)1 << 32)
+
+struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error) {
+    if (size >= 3 && memcmp(data, "\xff\xd8\xff", 3) == 0)
+        return image_parse_jpeg(path, data, size, error);
+    if (hdr_is(data, size))
+        return image_parse_hdr(path, data, size, error);
+    if (exr_is(data, size))
+        return image_parse_exr(path, data, size, error);
+    if (pfm_is(data, size))
+        return image_parse_pfm(path, data, size, error);
+    return image_parse_png(path, data, size, error);
+}
+
+/* Stricter than the readers where their words are short: what it finds is replaced. */
+bool image_is_picture(const uint8_t *head, size_t size) {
+    static const struct {
+        size_t size;
+        const char *bytes;
+    } signatures[] = {
+        {8, "\x89PNG\r\n\x1a\n"}, {3, "\xff\xd8\xff"}, {10, "#?RADIANCE"}, {6, "#?RGBE"}, {4, "\x76\x2f\x31\x01"},
+    };
+    for (size_t i = 0; i < sizeof signatures / sizeof *signatures; i++) {
+        if (size >= signatures[i].size && memcmp(head, signatures[i].bytes, signatures[i].size) == 0)
+            return true;
+    }
+    return pfm_is(head, size) && size >= 4 && (head[3] == '\n' || (head[3] >= '0' && head[3] <= '9'));
+}
+
+struct image *image_read(const char *path, struct error *error) {
+    struct file_bytes file;
+    uint64_t refusals = mem_refusals();
+    if (!file_map(path, FILE_LIMIT, &file, error))
+        return NULL;
+    struct image *image = image_parse(path, file.data, file.size, error);
+    file_unmap(&file);
+    if (!image)
+        (void)error_of_file(error, path, refusals);
+    return image;
+}
+
+/* Curves, channel by channel: Reinhard, Stark, Shirley, Ferwerda, "Photographic Tone Reproduction for Digital Images",
+ * SIGGRAPH 2002 (equation 3), and the fit of Narkowicz, "ACES Filmic Tone Mapping Curve", 2015. */
+
+double tone_apply(const struct tone *tone, double c) {
+    if (tone->exposure != 0)
+        c *= el_exp2(tone->exposure);
+    switch (tone->curve) {
+    case TONE_NONE:
+        break;
+    case TONE_REINHARD:
+        c = c > 0 ? c / (1 + c) : c;
+        break;
+    case TONE_FILMIC:
+        c = c > 0 ? c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14) : c;
+        break;
+    }
+    if (tone->srgb)
+        c = c <= 0.0031308 ? 12.92 * c : 1.055 * el_pow(c, 1 / 2.4) - 0.055;
+    return c;
+}
+
+uint16_t tone_word(double c) {
+    if (!(c > 0))
+        return 0;
+    return c < 1 ? (uint16_t)floor(65535 * c + 0.5) : 65535;
 }

@@ -57,4 +57,13 @@ struct rgba image_lookup(const struct image *image, double u, double v, double w
 struct rgba image_lookup_part(const struct image *image, uint32_t x0, uint32_t y0, uint32_t w, uint32_t h, double u,
                               double v, double width_u, double width_v, enum image_filter filter);
 
+/* Pictures of any format that this build reads; the first bytes select the format. */
+
+/* Errors name the path. What JPEG stores is 8 bits a channel, without alpha. */
+struct image *image_read(const char *path, struct error *error);
+/* From memory; `path` is for messages. */
+struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error);
+/* Whether a file that begins so (FILE_HEAD_SIZE bytes) is a picture of a format that gray reads or writes. */
+bool image_is_picture(const uint8_t *head, size_t size);
+
 #endif

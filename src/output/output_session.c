@@ -3,8 +3,8 @@
  * usage, and then no file may have been touched. */
 #include "output/output_session.h"
 
+#include "base/error.h"
 #include "base/file.h"
-#include "base/size.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
 #include "image/exr.h"

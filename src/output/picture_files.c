@@ -2,8 +2,8 @@
  * written, and may only replace a picture. A name from the command line is the user's. */
 #include "output/picture_files.h"
 
-#include "base/size.h"
-#include "image/image_file.h"
+#include "base/error.h"
+#include "image/image.h"
 #include "output/layers.h"
 #include "render/aov.h"
 #include "render/tile_file.h"

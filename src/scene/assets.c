@@ -1,7 +1,7 @@
 /* The store of assets: what is the same is there once, however often scripts ask for it. Keys are content (tables) or
  * canonical path (files); a list is enough, since a look-up costs far less than making the asset. */
 #include "base/mem.h"
-#include "image/image_file.h"
+#include "image/image.h"
 #include "scene/node.h"
 
 #include <string.h>

@@ -79,7 +79,7 @@ enum {
 };
 binding gr_mesh, gr_bounds, gr_faces; /* the last two: args[SELF] is the node */
 
-/* gr_font.c */
+/* gr_mesh.c */
 enum { GLYPHS_FONT, GLYPHS_TEXT, GLYPHS_COUNT };
 binding gr_glyphs;
 
@@ -136,7 +136,7 @@ struct bump *gr_keep_texture(struct script_context *context, const struct bump *
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error);
 
-/* gr_sky.c; the fields of the sun come together, counted from SUN_DIRECTION */
+/* gr_environment.c; the fields of the sun come together, counted from SUN_DIRECTION */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
@@ -146,7 +146,7 @@ enum { GRADIENT_STOPS = SKY_OWN };
 enum { CLEAR_SUN = SKY_OWN, CLEAR_TURBIDITY = CLEAR_SUN + SUN_FIELDS, CLEAR_GROUND };
 binding gr_sky_faces, gr_sky_cross, gr_sky_map, gr_sky_gradient, gr_clear_sky, gr_sun_light;
 
-/* gr_fog.c */
+/* gr_environment.c */
 enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
 enum { FOG_AMOUNT = FOG_OWN, FOG_IS_SQUARED, FOG_COUNT };
 enum { FOG_NEAR = FOG_OWN, FOG_FAR };

@@ -114,3 +114,145 @@ void context_raise_no_memory(struct script_context *context) {
     error_no_memory(&error, context->function->name);
     context_raise_error(context, &error);
 }
+
+/* Handles: what a script holds of a node, material, light or texture. A userdata with a tag and a pointer into the
+ * scene's arena, without finalizer: the scene outlives the Lua state. A ghost replaces what this version does not have;
+ * it exists with --lenient only, is accepted everywhere and does nothing. */
+
+#define HANDLE_NAME(type, name, words) [type] = (name),
+#define HANDLE_WORDS(type, name, words) [type] = (words),
+static const char *const type_names[] = {HANDLE_LIST(HANDLE_NAME)};
+
+const char *handle_words(enum handle_type type) {
+    static const char *const words[] = {HANDLE_LIST(HANDLE_WORDS)};
+    return words[type];
+}
+
+const void *handle_key(enum handle_type type) {
+    return type_names[type];
+}
+
+void handle_push(lua_State *L, enum handle_type type, void *pointer) {
+    struct script_context *context = context_of(L);
+    struct handle *handle = lua_newuserdatauv(L, sizeof *handle, 0);
+    *handle = (struct handle){.type = type, .serial = context->handle_count++, .pointer = pointer};
+    lua_rawgetp(L, LUA_REGISTRYINDEX, type_names[type]);
+    lua_setmetatable(L, -2);
+}
+
+const struct handle *handle_at(lua_State *L, int index) {
+    const struct handle *handle = lua_touserdata(L, index);
+    if (!handle)
+        return NULL;
+    /* Scripts get no light userdata, and everybody's others have metatables. */
+    bool has_metatable = lua_getmetatable(L, index);
+    assert(has_metatable);
+    (void)has_metatable;
+    const void *metatable = lua_topointer(L, -1);
+    lua_pop(L, 1);
+    const struct script_context *context = context_of(L);
+    for (int type = 0; type < HANDLE_TYPES; type++)
+        if (context->metatables[type] == metatable)
+            return handle;
+    return NULL;
+}
+
+const char *value_words(lua_State *L, int index) {
+    const struct handle *handle = handle_at(L, index);
+    if (handle)
+        return handle_words(handle->type);
+    switch (lua_type(L, index)) {
+    case LUA_TNIL:
+        return "nil";
+    case LUA_TNONE:
+        return "nothing";
+    case LUA_TBOOLEAN:
+        return "a boolean";
+    case LUA_TNUMBER:
+        return "a number";
+    case LUA_TSTRING:
+        return "a string";
+    case LUA_TTABLE:
+        return "a table";
+    case LUA_TFUNCTION:
+        return "a function";
+    case LUA_TTHREAD:
+        return "a coroutine";
+    default:
+        return "a userdata";
+    }
+}
+
+/* tostring(handle): no addresses, so that what a script prints is the same every time. */
+static int handle_text(lua_State *L) {
+    const struct handle *handle = handle_at(L, 1);
+    assert(handle); /* no script gets at the metatable */
+    if (handle->type == HANDLE_NODE)
+        lua_pushfstring(L, "node '%s'", ((const struct node *)handle->pointer)->name);
+    else
+        lua_pushstring(L, type_names[handle->type]);
+    return 1;
+}
+
+void handles_open(lua_State *L) {
+    struct script_context *context = context_of(L);
+    for (int type = 0; type < HANDLE_TYPES; type++) {
+        lua_createtable(L, 0, 4);
+        lua_pushstring(L, type_names[type]);
+        lua_setfield(L, -2, "__name");
+        lua_pushstring(L, type_names[type]); /* what getmetatable shows; setmetatable is refused */
+        lua_setfield(L, -2, "__metatable");
+        lua_pushcfunction(L, handle_text);
+        lua_setfield(L, -2, "__tostring");
+        context->metatables[type] = lua_topointer(L, -1);
+        lua_rawsetp(L, LUA_REGISTRYINDEX, type_names[type]);
+    }
+}
+
+/* "Did you mean": the optimal string alignment form of the Damerau-Levenshtein distance (insert, delete, replace, swap
+ * of neighbours), letters compared without case. A suggestion is made when at most a third of the word, and at least
+ * one letter, has to change. Words longer than WORD_LIMIT are not looked at. */
+
+enum { WORD_LIMIT = 40 };
+
+static int lower(char c) {
+    return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
+}
+
+static size_t smaller(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+static size_t distance(const char *a, size_t a_length, const char *b, size_t b_length) {
+    size_t rows[3][WORD_LIMIT + 1]; /* of the matrix: row i is rows[i % 3] */
+    for (size_t j = 0; j <= b_length; j++)
+        rows[0][j] = j;
+    for (size_t i = 1; i <= a_length; i++) {
+        size_t *row = rows[i % 3], *above = rows[(i + 2) % 3], *above2 = rows[(i + 1) % 3];
+        row[0] = i;
+        for (size_t j = 1; j <= b_length; j++) {
+            size_t cost = lower(a[i - 1]) != lower(b[j - 1]);
+            row[j] = smaller(smaller(above[j] + 1, row[j - 1] + 1), above[j - 1] + cost);
+            bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
+            if (swapped)
+                row[j] = smaller(row[j], above2[j - 2] + 1);
+        }
+    }
+    return rows[a_length % 3][b_length];
+}
+
+void suggest_begin(struct suggestion *suggestion, const char *word) {
+    size_t third = strlen(word) / 3;
+    *suggestion = (struct suggestion){.word = word, .distance = (third > 0 ? third : 1) + 1};
+}
+
+void suggest_offer(struct suggestion *suggestion, const char *candidate) {
+    size_t a_length = strlen(suggestion->word), b_length = strlen(candidate);
+    if (a_length > WORD_LIMIT || b_length > WORD_LIMIT)
+        return;
+    size_t d = distance(suggestion->word, a_length, candidate, b_length);
+    if (d < suggestion->distance) { /* the first of equals stays, so the answer depends on the order of offers alone */
+        suggestion->distance = d;
+        suggestion->best = candidate;
+    }
+}

@@ -136,7 +136,7 @@ void limits_count_output(struct script_context *context,
 void limits_pause(struct script_context *context);
 void limits_resume(struct script_context *context);
 
-/* handles.c */
+/* context.c */
 void handles_open(lua_State *L);
 void handle_push(lua_State *L, enum handle_type type, void *pointer);
 /* The handle at a stack index, or NULL when there is something else. */
@@ -154,7 +154,7 @@ void dispatch_open(lua_State *L); /* the global gr */
 bool arguments_read(struct script_context *context, const struct script_function *function, int first,
                     struct script_value *args);
 
-/* suggest.c: the nearest of the words by Damerau-Levenshtein distance when it is near enough, else NULL. */
+/* context.c: the nearest of the words by Damerau-Levenshtein distance when it is near enough, else NULL. */
 struct suggestion {
     const char *word, *best;
     size_t distance;
@@ -186,10 +186,10 @@ void protect_open(lua_State *L);                    /* protect.c */
 void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);
 void compat_open(lua_State *L);   /* compat.c: old Lua */
 void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */
-void library_open(lua_State *L);  /* library.c: remembers the globals for our own modules; after all of these */
-void define_open(lua_State *L);   /* define.c: -D */
+void library_open(lua_State *L);  /* files.c: remembers the globals for our own modules; after all of these */
+void define_open(lua_State *L);   /* script.c: -D */
 
-/* library.c: the chunk on top of the stack, from the file `path`, sees the remembered globals if it is one of ours. */
+/* files.c: the chunk on top of the stack, from the file `path`, sees the remembered globals if it is one of ours. */
 void library_adopt(lua_State *L, const char *path);
 
 #endif

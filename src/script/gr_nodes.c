@@ -1,4 +1,5 @@
 /* Nodes and primitives. A primitive is a geometry node: whatever can be placed is a node. */
+#include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
 #include "script/context.h"
 
@@ -283,5 +284,20 @@ bool gr_transform_order(struct script_context *context, const struct script_valu
     (void)result;
     (void)error;
     context->scene.order = (enum transform_order)args[0].choice;
+    return true;
+}
+
+/* node:bounds(). */
+
+bool gr_bounds(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
+    struct box *box = arena_alloc(&context->call, sizeof *box);
+    if (!box)
+        return error_no_memory(error, "a box");
+    if (!node_bounds(args[SELF].node, box, error))
+        return false;
+    if (box_is_empty(box))
+        return error_set(error, ERROR_SCENE, "no shape is below this node");
+    result->pointer = box;
     return true;
 }

@@ -9,8 +9,8 @@
 #include "base/clock.h"
 #include "script/context.h"
 
+#include "base/error.h"
 #include "base/mem.h"
-#include "base/size.h"
 
 #include <lauxlib.h>
 #include <stdio.h>

@@ -3,8 +3,8 @@
  * are no options are scripts; after "--" everything is. */
 #include "session/options_internal.h"
 
+#include "base/error.h"
 #include "base/isa.h"
-#include "base/size.h"
 #include "render/aov.h"
 
 #include <assert.h>

@@ -3,7 +3,7 @@
  * message is a length of two bytes, little-endian, and that many bytes; the rest is zero if the kind has a fixed size.
  */
 #include "output/output_session.h"
-#include "session/channel.h"
+#include "session/messages.h"
 #include "tests/fuzz/folder.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* The channel between supervisor and child: messages arrive complete, and invalid ones are refused. */
 #include "base/share.h"
-#include "session/channel.h"
+#include "session/messages.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>

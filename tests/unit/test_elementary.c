@@ -202,7 +202,7 @@ static bool same(double a, double b) {
 
 /* Annex F of the C standard fixes these values; the library's long double functions follow it and serve as the table.
  * If both arguments are finite, only exact results are compared. (The double functions of this program may be ours:
- * libm_override.c.) */
+ * sandbox.c.) */
 TEST(elementary_special_arguments_follow_annex_f) {
     static const double odd[] = {0.0, -0.0, 1.0, -1.0, INFINITY, -INFINITY, NAN, 2.0, -2.0, 3.0, -3.0, 0.5, -0.5};
     for (int i = 0; i < COUNT(odd); i++) {

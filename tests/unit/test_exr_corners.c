@@ -2,7 +2,7 @@
  * failures of each allocation and each call into the library. */
 #include "base/fault.h"
 #include "image/exr.h"
-#include "image/image_file.h"
+#include "image/image.h"
 #include "model_makers.h"
 
 #include <math.h>

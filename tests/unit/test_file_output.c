@@ -3,7 +3,7 @@
 #define _GNU_SOURCE
 #include "base/file_output.h"
 
-#include "image/image_file.h"
+#include "image/image.h"
 #include "render/tile_file.h"
 #include "tests/harness.h"
 

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "image/exr.h"
 #include "image/float_write.h"
-#include "image/image_file.h"
+#include "image/image.h"
 #include "image/levels.h"
 #include "light/sky.h"
 #include "tests/harness.h"

@@ -1,5 +1,5 @@
 #include "base/mem.h"
-#include "image/image_file.h"
+#include "image/image.h"
 #include "image/jpeg_read.h"
 #include "tests/harness.h"
 

@@ -3,7 +3,7 @@
 #include "base/fault.h"
 #include "image/exr.h"
 #include "image/float_write.h"
-#include "image/image_file.h"
+#include "image/image.h"
 #include "tests/harness.h"
 
 #include <stdio.h>

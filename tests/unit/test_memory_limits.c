@@ -1,8 +1,8 @@
 /* --script-memory limits everything that a scene makes the program allocate: memory to decode files, the structures for
  * a picture, the picture itself. Each attack ends with one line and status 1, and no process takes more than the limit
  * plus a tenth beyond the memory of an empty script; with a picture, three quarters of the limit more. */
+#include "base/error.h"
 #include "base/mem.h"
-#include "base/size.h"
 #include "formats/font.h"
 #include "formats/model.h"
 #include "image/exr.h"

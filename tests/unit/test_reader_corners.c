@@ -1,6 +1,6 @@
 /* Corner cases of the readers, one short file each: accepted, or refused with these words. */
 #include "formats/decimal.h"
-#include "image/image_file.h"
+#include "image/image.h"
 #include "model_makers.h"
 
 #include "base/fault.h"

@@ -2,7 +2,6 @@
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/image.h"
-#include "image/image_file.h"
 #include "image/png_write.h"
 #include "image/tone.h"
 #include "tests/harness.h"
