@@ -6,6 +6,7 @@
  * times a fiftieth of the picture's size on the surface; norm and glTF's normalTexture are normal maps. */
 #include "formats/model_node.h"
 
+#include "material/bump.h"
 #include "material/material_inputs.h"
 
 #include <stdio.h>
@@ -110,16 +111,19 @@ static bool cut(struct scene *scene, const struct model_texture *map, const stru
     return true;
 }
 
-static bool add_bump_map(struct scene *scene, const struct model_texture *map, enum material_kind kind, double height,
+static bool add_bump_map(struct scene *scene, const struct model_texture *map, enum material_kind kind,
                          const struct material **top, struct error *error) {
-    struct bump bump = {.kind = kind, .height = height, .relative = kind == MATERIAL_BUMP};
     struct texture_image image;
     bool there;
     if (!find_map(scene, map, &image, &there, error) || !there)
         return !there;
     struct material *m = scene_material(scene, kind, *top, error);
-    bump.texture.authored = texture_keep(&scene->arena, texture_image(&image, NULL), error);
-    if (!m || !bump.texture.authored || !material_add_bump(m, &bump, &scene->arena, error))
+    const struct texture *texture = m ? texture_keep(&scene->arena, texture_image(&image, NULL), error) : NULL;
+    if (!texture)
+        return false;
+    struct bump bump = bump_make(kind, texture);
+    bump.height *= map->strength;
+    if (!material_add_bump(m, &bump, &scene->arena, error))
         return false;
     *top = m;
     return true;
@@ -149,8 +153,8 @@ static const struct material *with_maps(struct scene *scene, const struct model_
               (!shiny || cover(scene, &from->map_ks, INPUT_KS, or_white(from->ks), &top, error)) &&
               cover(scene, &from->map_ke, INPUT_EMISSION, or_white(from->ke), &top, error) &&
               cut(scene, &from->map_d, &top, error) &&
-              add_bump_map(scene, &from->map_bump, MATERIAL_BUMP, BUMP_HEIGHT * from->map_bump.strength, &top, error) &&
-              add_bump_map(scene, &from->map_normal, MATERIAL_NORMAL, from->map_normal.strength, &top, error);
+              add_bump_map(scene, &from->map_bump, MATERIAL_BUMP, &top, error) &&
+              add_bump_map(scene, &from->map_normal, MATERIAL_NORMAL, &top, error);
     return ok ? top : NULL;
 }
 

@@ -3,33 +3,6 @@
 
 #include "base/sort.h"
 
-const char *inspect_material(const struct material *link) {
-#define IMAGE_ON(input, word) [input] = "image on " word,
-    static const char *const kinds[] = {MATERIAL_KINDS(LIST_WORD)}, *const images[] = {MATERIAL_INPUTS(IMAGE_ON)};
-#undef IMAGE_ON
-    return link->kind == MATERIAL_IMAGE && link->changed != INPUT_KD ? images[link->changed] : kinds[link->kind];
-}
-
-const char *inspect_sky(enum sky_kind kind) {
-    switch (kind) {
-    case SKY_GRADIENT:
-        return "the gradient";
-    case SKY_CONSTANT:
-        return "one colour";
-    case SKY_CROSS:
-        return "an image, a cross of cube faces";
-    case SKY_FACES:
-        return "six images";
-    case SKY_MAP:
-        return "an image of all directions";
-    case SKY_STOPS:
-        return "colours by height";
-    case SKY_CLEAR:
-        return "the clear sky";
-    }
-    return "?";
-}
-
 const char *inspect_ray(enum ray_kind kind) {
     switch (kind) {
     case RAY_CAMERA:

@@ -40,8 +40,6 @@ void pixel_trace_print(const struct trace_report *report, struct text_writer *wr
 void pixel_trace_print_json(const struct trace_report *report, struct text_writer *writer);
 
 /* Words for kinds. */
-const char *inspect_material(const struct material *link);
-const char *inspect_sky(enum sky_kind kind);
 const char *inspect_ray(enum ray_kind kind);
 
 #endif

@@ -177,7 +177,7 @@ static void describe_material(const struct material *material, struct picked *ou
     const struct material *base = material_origin(material);
     for (const struct material *link = material; link; link = link->base) {
         int length = snprintf(words + used, sizeof words - used, "%s%s", used > 0 ? " over " : "",
-                              link->name ? link->name : inspect_material(link));
+                              link->name ? link->name : material_step_name(link));
         used = length < 0 || used + (size_t)length >= sizeof words ? sizeof words - 1 : used + (size_t)length;
     }
     pick_copy_name(out->material, words);

@@ -24,7 +24,7 @@ static void text(struct text_writer *writer, const char *name, const char *value
 
 static void json_link(struct text_writer *writer, const struct pixel_trace_link *link) {
     const struct surface_inputs *inputs = &link->inputs;
-    text_writer_print(writer, "{\"kind\":\"%s\"", inspect_material(link->material));
+    text_writer_print(writer, "{\"kind\":\"%s\"", material_step_name(link->material));
     if (link->material->name && link->material->name[0])
         text(writer, "name", link->material->name);
     vector(writer, "kd", inputs->kd);

@@ -50,7 +50,7 @@ static void changed_flag(struct text_state *t, const char *name, bool now, bool 
 static void print_link(struct text_state *t, const struct pixel_trace_link *link, const struct surface_inputs *before) {
     const struct surface_inputs *inputs = &link->inputs;
     indent(t, 1);
-    text_writer_print(t->writer, "%s", inspect_material(link->material));
+    text_writer_print(t->writer, "%s", material_step_name(link->material));
     if (link->material->name && link->material->name[0]) {
         text_writer_print(t->writer, " '");
         text_writer_name(t->writer, link->material->name);
@@ -219,7 +219,7 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
     } else {
         indent(t, 1);
         text_writer_print(t->writer, "meets nothing: background, %s\n",
-                          inspect_sky(t->report->picture->job->world->sky.kind));
+                          sky_kind_name(t->report->picture->job->world->sky.kind));
     }
 }
 

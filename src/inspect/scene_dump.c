@@ -90,7 +90,7 @@ static bool dump_primitives(void *context, uint32_t first, uint32_t count, const
 
 static void link_json(struct text_writer *writer, const struct material *link) {
     const struct phong *phong = &material_origin(link)->phong;
-    text_writer_print(writer, "{\"kind\":\"%s\"", inspect_material(link));
+    text_writer_print(writer, "{\"kind\":\"%s\"", material_step_name(link));
     if (link->name && link->name[0]) {
         text_writer_print(writer, ",\"name\":");
         text_writer_json(writer, link->name);
@@ -106,7 +106,7 @@ static void link_json(struct text_writer *writer, const struct material *link) {
 
 static void link_text(struct text_writer *writer, const struct material *link) {
     const struct phong *phong = &material_origin(link)->phong;
-    text_writer_print(writer, "%s", inspect_material(link));
+    text_writer_print(writer, "%s", material_step_name(link));
     if (link->name && link->name[0]) {
         text_writer_print(writer, " '");
         text_writer_name(writer, link->name);
@@ -179,7 +179,7 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
                           ": %u primitives, %llu triangles, %u materials, %u lights; background: %s\n\n"
                           "  number  shape          triangles  material        box  node\n",
                           world->primitive_count, (unsigned long long)world->triangles, world->material_number_count,
-                          world->light_count, inspect_sky(world->sky.kind));
+                          world->light_count, sky_kind_name(world->sky.kind));
     }
     bool ok = world_visit_paths(world, picture->root, dump_primitives, &d, error);
     if (ok)

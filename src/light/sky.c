@@ -129,6 +129,11 @@ struct vec3 sky_map_colour(const struct image *image, struct vec3 d, double spre
     return (struct vec3){c.r, c.g, c.b};
 }
 
+const char *sky_kind_name(enum sky_kind kind) {
+    static const char *const names[] = {SKY_KINDS(LIST_WORD)};
+    return names[kind];
+}
+
 struct face {
     uint32_t column, row; /* cell of the cross */
     struct vec3 right, up, forward;

@@ -3,10 +3,21 @@
 #define GRAY_LIGHT_SKY_H
 
 #include "base/error.h"
+#include "base/list.h"
 #include "image/image.h"
 #include "math/vec3.h"
 
-enum sky_kind { SKY_GRADIENT, SKY_CONSTANT, SKY_CROSS, SKY_FACES, SKY_MAP, SKY_STOPS, SKY_CLEAR };
+/* Every kind with what listings call it. */
+#define SKY_KINDS(X)                                                                                                   \
+    X(SKY_GRADIENT, "the gradient")                                                                                    \
+    X(SKY_CONSTANT, "one colour")                                                                                      \
+    X(SKY_CROSS, "an image, a cross of cube faces")                                                                    \
+    X(SKY_FACES, "six images")                                                                                         \
+    X(SKY_MAP, "an image of all directions")                                                                           \
+    X(SKY_STOPS, "colours by height")                                                                                  \
+    X(SKY_CLEAR, "the clear sky")
+enum sky_kind { SKY_KINDS(LIST_MEMBER) };
+const char *sky_kind_name(enum sky_kind kind);
 
 struct sky {
     enum sky_kind kind;

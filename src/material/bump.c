@@ -15,6 +15,14 @@
 #include "material/texture_mapping.h"
 #include "math/frame.h"
 
+struct bump bump_make(enum material_kind kind, const struct texture *texture) {
+    bool is_normal = kind == MATERIAL_NORMAL;
+    return (struct bump){.kind = kind,
+                         .height = is_normal ? 1 : BUMP_HEIGHT,
+                         .relative = !is_normal && texture_as_image(texture),
+                         .texture.authored = texture};
+}
+
 static double height_at(const struct texture_image *image, struct texcoord at, double du, double dv) {
     at.u += du;
     at.v += dv;

@@ -94,6 +94,13 @@ bool material_has_holes(const struct material *material) {
     return material_texture(material, INPUT_OPACITY) != NULL;
 }
 
+const char *material_step_name(const struct material *link) {
+#define IMAGE_ON(input, word) [input] = "image on " word,
+    static const char *const kinds[] = {MATERIAL_KINDS(LIST_WORD)}, *const images[] = {MATERIAL_INPUTS(IMAGE_ON)};
+#undef IMAGE_ON
+    return link->kind == MATERIAL_IMAGE && link->changed != INPUT_KD ? images[link->changed] : kinds[link->kind];
+}
+
 bool material_has_image(const struct material *material) {
     for (int i = 0; i < INPUT_COUNT; i++) {
         const struct texture *texture = material_texture(material, (enum material_input)i);

@@ -117,6 +117,8 @@ void material_inputs_observe(const struct material *material, const struct hit *
 /* The base at the end of its chain, as it was made: what the world has copied of it (material_mapping.h) has the
  * numbers of that. */
 const struct material *material_origin(const struct material *material);
+/* What a material of a chain does, in a word for descriptions: "wood", "image on ks". */
+const char *material_step_name(const struct material *link);
 /* What hits must know for it: the footprint in pattern space; where bumps rise (hit->raise). */
 bool material_has_image(const struct material *material);
 bool material_has_bump(const struct material *material);

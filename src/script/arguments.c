@@ -450,8 +450,8 @@ static void read_caustics(struct script_context *c, int index, const struct argu
 }
 
 /* The image of a texture that is nothing else, or NULL. */
-static struct image *image_of(const struct bump *texture) {
-    const struct texture_image *image = texture_as_image(texture->texture.authored);
+static struct image *image_of(const struct script_texture *texture) {
+    const struct texture_image *image = texture_as_image(texture->texture);
     return image ? image->image : NULL;
 }
 

@@ -131,7 +131,8 @@ const struct bump *read_bump_values(struct script_context *context, const struct
 
 /* gr_textures.c */
 /* What a script holds of a texture; NULL and error. */
-struct bump *gr_keep_texture(struct script_context *context, const struct bump *value, struct error *error);
+struct script_texture *gr_keep_texture(struct script_context *context, const struct script_texture *value,
+                                       struct error *error);
 /* The texture that a script gave for an input, or that of its number or colour; NULL and error. */
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error);

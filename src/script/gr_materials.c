@@ -3,6 +3,7 @@
 #include "script/context.h"
 
 #include "base/file.h"
+#include "material/bump.h"
 #include "material/material_inputs.h"
 
 #include <string.h>
@@ -148,7 +149,7 @@ struct image *gr_find_image(struct script_context *context, const struct script_
 }
 
 static void image_defaults(struct texture_image *out, const struct script_value *value, struct image *image) {
-    const struct texture_image *from = value->texture ? texture_as_image(value->texture->texture.authored) : NULL;
+    const struct texture_image *from = value->texture ? texture_as_image(value->texture->texture) : NULL;
     *out = from ? *from : (struct texture_image){.filter = IMAGE_MIPMAP, .wrap = IMAGE_REPEAT};
     out->image = image;
 }
@@ -237,34 +238,34 @@ bool gr_image_material(struct script_context *context, const struct script_value
 static bool read_bump(struct script_context *context, const struct script_value *value,
                       const struct script_value *lookup, const struct script_value *args, struct bump *out,
                       struct error *error) {
-    const struct bump *from = value->texture;
-    bool known = from && from->kind != MATERIAL_IMAGE;
-    bool is_image = !from || texture_as_image(from->texture.authored);
-    *out = (struct bump){.kind = known ? from->kind : MATERIAL_BUMP,
-                         .texture.authored = from ? from->texture.authored : NULL};
     static const enum material_kind kinds[] = {BUMP_KINDS(LIST_MEMBER)};
-    if (args[1].given)
-        out->kind = kinds[args[1].choice];
-    if (is_image && !(out->texture.authored = read_texture(context, value, lookup, error)))
+    const struct script_texture *from = value->texture;
+    bool is_image = !from || texture_as_image(from->texture), known = from && from->is_bump;
+    const struct texture *texture = is_image ? read_texture(context, value, lookup, error) : from->texture;
+    if (!texture)
         return false;
+    *out = bump_make(args[1].given ? kinds[args[1].choice] : known ? from->bump.kind : kinds[0], texture);
     if (args[0].given) {
         out->height = args[0].number;
-    } else if (!known || from->kind != out->kind) {
-        out->relative = out->kind == MATERIAL_BUMP && is_image;
-        out->height = out->kind == MATERIAL_BUMP ? BUMP_HEIGHT : 1;
-    } else {
-        out->relative = from->relative;
-        out->height = from->height;
+        out->relative = false;
+    } else if (known && from->bump.kind == out->kind) {
+        out->height = from->bump.height;
+        out->relative = from->bump.relative;
     }
     return true;
 }
 
 bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
                 struct error *error) {
-    struct bump texture = {.kind = MATERIAL_IMAGE};
-    texture.texture.authored = read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error);
-    result->pointer = texture.texture.authored ? gr_keep_texture(context, &texture, error) : NULL;
+    struct script_texture texture = {.texture =
+                                         read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error)};
+    result->pointer = texture.texture ? gr_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
+}
+
+static struct script_texture *keep_bump(struct script_context *context, const struct bump *bump, struct error *error) {
+    return gr_keep_texture(
+        context, &(struct script_texture){.texture = bump->texture.authored, .is_bump = true, .bump = *bump}, error);
 }
 
 bool gr_bump(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -272,7 +273,7 @@ bool gr_bump(struct script_context *context, const struct script_value *args, st
     struct bump bump;
     if (!read_bump(context, &args[BUMP_FILE], &args[BUMP_LOOKUP], &args[BUMP_AMOUNT], &bump, error))
         return false;
-    result->pointer = gr_keep_texture(context, &bump, error);
+    result->pointer = keep_bump(context, &bump, error);
     return result->pointer != NULL;
 }
 
@@ -289,7 +290,9 @@ const struct bump *read_bump_values(struct script_context *context, const struct
                                     struct error *error) {
     static const struct script_value nothing[LOOKUP_COUNT];
     struct bump bump;
-    return read_bump(context, value, nothing, nothing, &bump, error) ? gr_keep_texture(context, &bump, error) : NULL;
+    const struct script_texture *kept =
+        read_bump(context, value, nothing, nothing, &bump, error) ? keep_bump(context, &bump, error) : NULL;
+    return kept ? &kept->bump : NULL;
 }
 
 const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,

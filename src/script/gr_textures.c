@@ -5,8 +5,9 @@
 #include "script/table_rows.h"
 
 /* Saved edits count textures among the materials of a scene. */
-struct bump *gr_keep_texture(struct script_context *context, const struct bump *value, struct error *error) {
-    struct bump *out = arena_alloc(&context->scene.arena, sizeof *out);
+struct script_texture *gr_keep_texture(struct script_context *context, const struct script_texture *value,
+                                       struct error *error) {
+    struct script_texture *out = arena_alloc(&context->scene.arena, sizeof *out);
     if (!out) {
         error_no_memory(error, "a texture");
         return NULL;
@@ -19,22 +20,22 @@ struct bump *gr_keep_texture(struct script_context *context, const struct bump *
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error) {
     struct arena *arena = &context->scene.arena;
-    const struct bump *given = value->texture;
+    const struct script_texture *given = value->texture;
     struct vec3 v = value->vector;
-    const struct texture_image *image = given ? texture_as_image(given->texture.authored) : NULL;
+    const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
     if (image) { /* what is transparent is white */
         const struct texture *white = texture_keep(arena, texture_number(1), error);
         return white ? texture_keep(arena, texture_image(image, white), error) : NULL;
     }
     if (given)
-        return given->texture.authored;
+        return given->texture;
     return texture_keep(arena, v.x == v.y && v.y == v.z ? texture_number(v.x) : texture_constant(v), error);
 }
 
 static bool give(struct script_context *context, struct texture texture, struct script_result *result,
                  struct error *error) {
-    struct bump out = {.kind = MATERIAL_IMAGE, .texture.authored = texture_keep(&context->scene.arena, texture, error)};
-    result->pointer = out.texture.authored ? gr_keep_texture(context, &out, error) : NULL;
+    struct script_texture out = {.texture = texture_keep(&context->scene.arena, texture, error)};
+    result->pointer = out.texture ? gr_keep_texture(context, &out, error) : NULL;
     return result->pointer != NULL;
 }
 

@@ -55,6 +55,13 @@ enum kind {
     KIND_COUNT,
 };
 
+/* What gr.texture, gr.bump and their like made. */
+struct script_texture {
+    const struct texture *texture;
+    bool is_bump;
+    struct bump bump; /* then, with that texture */
+};
+
 /* One argument in plain C. Text belongs to Lua and lives as long as the call, arrays to the call's arena. */
 struct script_value {
     bool given;
@@ -66,7 +73,7 @@ struct script_value {
     struct node *node;
     const struct material *material;
     const struct material **materials;
-    const struct bump *texture; /* what gr.texture, gr.bump and their like made; what is no bump is a MATERIAL_IMAGE */
+    const struct script_texture *texture;
     const char **names;
     struct image *image;
     uint32_t count;
