@@ -2,7 +2,7 @@
  * has asked the processor. */
 #if defined(__AVX2__)
 #define TRAVERSAL(name) box_tree_traversal_##name##_avx2
-#include "accel/box_tree_traversal.h"
+#include "accel/box_tree_traversal_internal.h"
 #else
 #include "accel/box_tree.h"
 #endif

@@ -1,14 +1,14 @@
 /* Hierarchies of eight children to a node (Wald, Benthin, Boulos, "Getting Rid of Packets", RT 2008), cut from binary
- * ones (triangle_tree.h).
+ * ones (triangle_tree_internal.h).
  *
  * Parallel and deterministic: ranges above a size that only the data decides are partitioned by all threads together,
  * round by round, until the rest can be distributed; the parts are built by jobs, put together, made better by
  * reinsertion on one thread, weighed from below by jobs and on top of them, and written by jobs to where a count of all
  * before them says. The binary hierarchy is a third as large as what is made, and gone by the time the references are.
  */
-#include "accel/triangle_build.h"
+#include "accel/triangle_build_internal.h"
 
-#include "accel/triangle_tree.h"
+#include "accel/triangle_tree_internal.h"
 #include "base/mem.h"
 
 #include <string.h>

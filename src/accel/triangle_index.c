@@ -12,9 +12,9 @@
 #include "accel/triangle_index.h"
 
 #include "accel/accel_cost.h"
-#include "accel/triangle_build.h"
-#include "accel/triangle_kernels.h"
-#include "accel/triangle_layout.h"
+#include "accel/triangle_build_internal.h"
+#include "accel/triangle_kernels_internal.h"
+#include "accel/triangle_layout_internal.h"
 #include "accel/triangle_packet.h"
 #include "base/isa.h"
 #include "base/mem.h"

@@ -5,7 +5,7 @@
 #if defined(__FMA__)
 #define GRAY_KERNEL_FMA
 #endif
-#include "accel/triangle_kernel.h"
+#include "accel/triangle_kernel_internal.h"
 #else
-#include "accel/triangle_kernels.h"
+#include "accel/triangle_kernels_internal.h"
 #endif

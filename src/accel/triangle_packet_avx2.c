@@ -4,7 +4,7 @@
 #if defined(__FMA__)
 #define GRAY_KERNEL_FMA
 #endif
-#include "accel/triangle_packet_kernel.h"
+#include "accel/triangle_packet_kernel_internal.h"
 #else
 #include "accel/triangle_packet.h"
 #endif

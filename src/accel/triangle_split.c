@@ -1,7 +1,7 @@
 /* Parting the triangles of a range in two by the surface area heuristic in bins: Ingo Wald, "On fast Construction of
  * SAH-based Bounding Volume Hierarchies", RT 2007. The cost of a leaf counts blocks of eight triangles, not triangles.
  */
-#include "accel/triangle_split.h"
+#include "accel/triangle_split_internal.h"
 
 enum { BINS = 16 };
 

@@ -12,7 +12,7 @@
  * branch and 1 .. 8 lanes the least cost of standing in so many lanes of a node is known when that of both children is.
  *
  * What it brings: docs/performance-notebook.md. */
-#include "accel/triangle_tree.h"
+#include "accel/triangle_tree_internal.h"
 
 #include "base/mem.h"
 #include "base/sort.h"

@@ -9,7 +9,7 @@
 #include "base/checked.h"
 #include "base/fault.h"
 #include "base/hash.h"
-#include "base/mem_peak.h"
+#include "base/mem_peak_internal.h"
 #include "base/random.h"
 #include "base/sort.h"
 

@@ -6,7 +6,7 @@
  *   2. w of up to 19 digits and -27 <= e < 0 (doubles printed with 17 digits): w / 5^-e in whole numbers of 128 bits;
  * what the remainder says goes into the last bit of the quotient, which has ten bits more than a double keeps.
  *   3. everything else through the C library's strtod on a copy of the token. */
-#include "formats/decimal.h"
+#include "formats/decimal_internal.h"
 
 #include <assert.h>
 #include <locale.h>

@@ -22,7 +22,7 @@ const char *gltf_library(void) {
 #else
 
 #include "base/hash.h"
-#include "formats/gltf.h"
+#include "formats/gltf_internal.h"
 
 #include <assert.h>
 #include <math.h>

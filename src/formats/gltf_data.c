@@ -3,7 +3,7 @@
  * once, when an accessor is made; reading then checks nothing but the numbers themselves. */
 #ifdef HAVE_JANSSON
 
-#include "formats/gltf.h"
+#include "formats/gltf_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -9,7 +9,7 @@
  * ours. */
 #ifdef HAVE_JANSSON
 
-#include "formats/gltf.h"
+#include "formats/gltf_internal.h"
 
 #include "image/image.h"
 

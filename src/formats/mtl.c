@@ -4,7 +4,7 @@
  * behind its options. */
 #include "formats/model.h"
 
-#include "formats/decimal.h"
+#include "formats/decimal_internal.h"
 
 #include <string.h>
 

@@ -11,12 +11,12 @@
  * first corner that names one and say MISSING for all corners before. Memory: lists grow by half, and the shortest way
  * to cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is usual.
  */
-#include "formats/obj.h"
+#include "formats/obj_internal.h"
 
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/list.h"
-#include "formats/decimal.h"
+#include "formats/decimal_internal.h"
 #include "formats/list.h"
 #include "formats/model.h"
 

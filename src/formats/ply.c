@@ -5,9 +5,9 @@
  * rows and properties then reads everything, and what means nothing is passed over by its size. A row of text is a
  * line. Nothing is trusted: a count claims at least so many bytes and is refused when the file has fewer, before any
  * memory is taken, so memory is a small multiple of the file. */
-#include "formats/decimal.h"
+#include "formats/decimal_internal.h"
 #include "formats/model.h"
-#include "formats/scan.h"
+#include "formats/scan_internal.h"
 
 #include <assert.h>
 #include <math.h>

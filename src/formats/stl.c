@@ -2,9 +2,9 @@
  * bytes of anything, a count, per triangle twelve little-endian floats and two bytes of attributes). The file repeats
  * every corner, so corners in one place become one vertex, exactly: closed solids are closed. The normals in the file
  * say no more than the order of the corners does, are often zero or wrong, and are not used. */
-#include "formats/decimal.h"
+#include "formats/decimal_internal.h"
 #include "formats/model.h"
-#include "formats/scan.h"
+#include "formats/scan_internal.h"
 
 #include "mesh/mesh_topology.h"
 

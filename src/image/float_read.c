@@ -3,7 +3,7 @@
  * channel in runs. A mantissa m represents the middle of the values that were rounded down to it, (m + 1/2) 2^(e -
  * 136). PFM (Debevec): two or three lines of text and floats, rows from the bottom. Every length is checked against the
  * remaining bytes before it is used. */
-#include "image/float_read.h"
+#include "image/float_read_internal.h"
 
 #include "base/mem.h"
 #include "image/levels.h"

@@ -7,7 +7,7 @@
  * are whole texels in every level, and no level mixes two of them. */
 #include "base/file.h"
 #include "image/exr.h"
-#include "image/float_read.h"
+#include "image/float_read_internal.h"
 #include "image/jpeg_read.h"
 #include "image/levels.h"
 #include "image/tone.h"

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "light/light_internal.h"
 #include "light/light_mesh.h"
-#include "light/sky_light.h"
+#include "light/sky_light_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 #include "math/range.h"

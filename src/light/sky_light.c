@@ -4,7 +4,7 @@
  * directions are uniform. Equal cells make the poles no special case: rows are thin in angle near the horizon and wide
  * at the poles, where skies change little. A part of all samples goes everywhere alike, so that what the table has
  * missed is found and no sample counts for very much. */
-#include "light/sky_light.h"
+#include "light/sky_light_internal.h"
 
 #include "light/light_internal.h"
 #include "math/elementary.h"

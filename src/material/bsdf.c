@@ -9,8 +9,8 @@
 #include "material/bsdf.h"
 
 #include "material/classic.h"
-#include "material/dielectric.h"
-#include "material/microfacet.h"
+#include "material/dielectric_internal.h"
+#include "material/microfacet_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 

@@ -1,5 +1,5 @@
-/* See dielectric.h. */
-#include "material/dielectric.h"
+/* See dielectric_internal.h. */
+#include "material/dielectric_internal.h"
 
 struct vec3 dielectric_mirror(struct vec3 normal, struct vec3 view) {
     return vec3_sub(vec3_scale(normal, 2 * vec3_dot(normal, view)), view);

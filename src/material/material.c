@@ -3,7 +3,7 @@
  * made the surface, so they stick to the object. */
 #include "material/material.h"
 
-#include "material/bump.h"
+#include "material/bump_internal.h"
 
 const struct material *material_origin(const struct material *material) {
     return material->origin ? material->origin : material;

@@ -2,7 +2,7 @@
  * would be behind the surface, the geometric one takes their place. */
 #include "material/material_eval.h"
 
-#include "material/dielectric.h"
+#include "material/dielectric_internal.h"
 
 static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight, double exponent) {
     struct lobe *lobe = &bsdf->lobes[bsdf->count++];

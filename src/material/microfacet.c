@@ -2,7 +2,7 @@
  * through Rough Surfaces", EGSR 2007), sampled by the normals that are seen (Heitz, "Sampling the GGX Distribution of
  * Visible Normals", JCGT 2018): no sample is wasted on facets that face away. Seen head on, the share of facets steeper
  * than theta is alpha^2 / (alpha^2 + tan^2 theta). */
-#include "material/microfacet.h"
+#include "material/microfacet_internal.h"
 #include "math/elementary.h"
 
 #include "math/frame.h"

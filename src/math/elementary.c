@@ -11,20 +11,22 @@
  *    is a pair; then polynomials on [-pi/4, pi/4].
  *  - atan: nearest i/64, atan(a) = atan(c) + atan((a - c) / (1 + a c)), and a few terms of the series.
  *  - asin, acos: a polynomial below 1/2, the half-angle formula with a corrected square root above (as in fdlibm).
- *  - products and sums whose error matters are Dekker's (1971) with Veltkamp's splitting (exact.h); there is no fma.
+ *  - products and sums whose error matters are Dekker's (1971) with Veltkamp's splitting (exact_internal.h); there is
+ * no fma.
  *
  * The algebraic ones (cube root, hypotenuse, remainder) are in elementary.c.
  *
  * Invariant: no operation here depends on the processor, the compiler's freedom or the library. The build must keep
- * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in elementary_tables.h. */
+ * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in elementary_tables_internal.h.
+ */
 #include "math/elementary.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "math/elementary_tables.h"
-#include "math/exact.h"
+#include "math/elementary_tables_internal.h"
+#include "math/exact_internal.h"
 
 #ifdef __FAST_MATH__
 #error "elementary functions need strict floating-point arithmetic"

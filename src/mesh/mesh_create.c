@@ -5,7 +5,7 @@
 
 #include "base/hash.h"
 #include "base/mem.h"
-#include "mesh/triangulate.h"
+#include "mesh/triangulate_internal.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
  * Coordinates are those of the vertices, one axis left out: no rotation, so straight runs stay exactly straight and
  * scaling by a power of two changes nothing. A corner in the middle of a straight run is never skipped over, because
  * the polygon next door may use it. */
-#include "mesh/triangulate.h"
+#include "mesh/triangulate_internal.h"
 
 #include "accel/triangle.h"
 #include "base/mem.h"

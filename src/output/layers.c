@@ -1,5 +1,5 @@
 /* The name of a layer comes before the extension of the picture, which selects the format of both. */
-#include "output/layers.h"
+#include "output/layers_internal.h"
 
 #include "image/exr.h"
 #include "image/float_write.h"

@@ -8,8 +8,8 @@
 #include "base/terminal_text.h"
 #include "base/version.h"
 #include "image/exr.h"
-#include "output/layers.h"
-#include "output/statistics.h"
+#include "output/layers_internal.h"
+#include "output/statistics_internal.h"
 #include "render/aov.h"
 #include "session/text.h"
 

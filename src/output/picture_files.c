@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "image/image.h"
-#include "output/layers.h"
+#include "output/layers_internal.h"
 #include "render/aov.h"
 #include "render/tile_file.h"
 

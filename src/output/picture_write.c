@@ -4,7 +4,7 @@
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
-#include "output/layers.h"
+#include "output/layers_internal.h"
 
 #include <string.h>
 #include <strings.h>

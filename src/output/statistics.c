@@ -1,5 +1,5 @@
 /* One list of figures serves both forms, so they cannot differ. */
-#include "output/statistics.h"
+#include "output/statistics_internal.h"
 
 #include "session/text.h"
 

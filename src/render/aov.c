@@ -9,7 +9,7 @@
 #include "material/texture_mapping.h"
 #include "math/elementary.h"
 #include "math/range.h"
-#include "render/integrator.h"
+#include "render/integrator_internal.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * one, about 1 % of the work, and from then on the time estimate (render/time_estimate.h) a hundred times a second,
  * reported by the next free worker. Processor time, so that what else the machine does counts for nothing. */
 #include "base/clock.h"
-#include "render/integrator.h"
+#include "render/integrator_internal.h"
 
 #include <string.h>
 

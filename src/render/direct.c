@@ -1,7 +1,7 @@
 /* Light that comes straight from the lights of the scene, and that of the photon map. A delta light is one evaluation
  * times the share of its shadow rays that arrive; of a lamp every shadow ray is evaluated by itself. The samples of a
  * light are in cells of the unit square, which are divided once more among the samples of a pixel. */
-#include "render/direct.h"
+#include "render/direct_internal.h"
 
 #include "world/packet.h"
 

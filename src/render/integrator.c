@@ -1,10 +1,10 @@
-/* See integrator.h. */
-#include "render/integrator.h"
+/* See integrator_internal.h. */
+#include "render/integrator_internal.h"
 
 #include "base/mem.h"
 #include "base/unreachable.h"
-#include "render/path.h"
-#include "render/whitted.h"
+#include "render/path_internal.h"
+#include "render/whitted_internal.h"
 
 struct integrator {
     enum integrator_kind kind;

@@ -1,8 +1,8 @@
-/* The pixels of the path tracer: the mean of `samples` samples each, added in their order. See path.h. */
-#include "render/path.h"
+/* The pixels of the path tracer: the mean of `samples` samples each, added in their order. See path_internal.h. */
+#include "render/path_internal.h"
 
-#include "render/integrator.h"
-#include "render/path_film.h"
+#include "render/integrator_internal.h"
+#include "render/path_film_internal.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* The record of a path-traced pixel. A sum is two floats, the nearest one and what it leaves: 48 bits, so 2^24 samples
- * add up without a visible loss. See path_film.h. */
-#include "render/path_film.h"
+ * add up without a visible loss. See path_film_internal.h. */
+#include "render/path_film_internal.h"
 
 #include <float.h>
 #include <math.h>

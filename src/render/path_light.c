@@ -4,7 +4,7 @@
  *
  * Lamps have no body for shadow rays, so a scattered ray takes the light of every lamp on its way and goes on: both
  * ways find the same light. */
-#include "render/path.h"
+#include "render/path_internal.h"
 
 #include "material/medium.h"
 

@@ -4,7 +4,7 @@
  * A *line of sight* is a camera ray, with all that smooth surfaces make of it and what holes let through. Lines of
  * sight see what the scene shows: the background, lamps that are visible, fog. Other rays are scattered: they take the
  * light that a surface receives, weighted against what path_direct has found there. */
-#include "render/path.h"
+#include "render/path_internal.h"
 
 #include "material/medium.h"
 #include "math/range.h"

@@ -14,7 +14,7 @@
  * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 attenuation(d) after the way d,
  * so that free light arrives as colour * attenuation(d) * cosine; a lamp sends radiance / pi per area and projected
  * solid angle, since a view factor is a cosine over pi. */
-#include "render/photon_target.h"
+#include "render/photon_target_internal.h"
 
 #include "base/random.h"
 #include "math/elementary.h"

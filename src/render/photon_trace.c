@@ -6,14 +6,14 @@
  *
  * A photon is a function of its number, and its place in the array is that number: threads cannot change the map. It
  * lands at most once, so memory is known before. */
-#include "render/photon_trace.h"
 #include "base/clock.h"
+#include "render/photon_trace_internal.h"
 
 #include "base/mem.h"
 #include "base/random.h"
 #include "material/material_eval.h"
 #include "material/medium.h"
-#include "render/photon_target.h"
+#include "render/photon_target_internal.h"
 
 enum { BATCH = 1024 };
 

@@ -1,7 +1,7 @@
 /* Tiles, handed out to the workers; within one works the integrator. A tile is self-contained and final when it is
  * done. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
 #include "base/clock.h"
-#include "render/integrator.h"
+#include "render/integrator_internal.h"
 
 #include "base/mem.h"
 #include "render/film.h"

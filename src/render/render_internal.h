@@ -1,10 +1,10 @@
-/* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator.h), the time estimate
- * (cost_prepass.c), render layers (aov.c). Nobody else includes it. */
+/* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator_internal.h), the time
+ * estimate (cost_prepass.c), render layers (aov.c). Nobody else includes it. */
 #ifndef GRAY_RENDER_RENDER_INTERNAL_H
 #define GRAY_RENDER_RENDER_INTERNAL_H
 
 #include "render/camera.h"
-#include "render/integrator_state.h"
+#include "render/integrator_state_internal.h"
 #include "render/render.h"
 #include "render/time_estimate.h"
 #include "world/packet.h"

@@ -1,6 +1,6 @@
 /* One sample of a pixel, from the place in the picture to the colour; alone, or many whose camera rays go together. The
  * random key of a sample is a function of the pixel and of the sample's number. */
-#include "render/integrator.h"
+#include "render/integrator_internal.h"
 
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],

@@ -1,10 +1,10 @@
-/* See whitted.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample and the
- * way through the tree of rays. */
-#include "render/whitted.h"
+/* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
+ * and the way through the tree of rays. */
+#include "render/whitted_internal.h"
 
 #include "material/medium.h"
 #include "math/range.h"
-#include "render/direct.h"
+#include "render/direct_internal.h"
 
 /* Of the colour that a secondary ray brings: no filter makes an infinity of it, so infinity times 0 cannot arise. */
 static const double light_limit = 1e200;

@@ -1,12 +1,12 @@
 /* Adaptive anti-aliasing. A part of a tile samples its pixels and the rim of one pixel round them once (a pixel's first
  * sample is a function of the pixel alone, so two parts that share a rim agree), marks by neighbours' differences,
  * samples what is marked N x N times, and is final. */
-#include "render/whitted.h"
+#include "render/whitted_internal.h"
 
 #include "base/mem.h"
 #include "math/elementary.h"
-#include "render/integrator.h"
-#include "render/photon_trace.h"
+#include "render/integrator_internal.h"
+#include "render/photon_trace_internal.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 #include "base/unreachable.h"
 #include "math/range.h"
 #include "render/settings.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

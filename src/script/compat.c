@@ -1,6 +1,6 @@
 /* Old Lua: what scripts of the days of 5.0 and 5.1 use and 5.4 no longer has (Lua reference manuals 5.0 to 5.4,
  * "Changes since the previous version"). Not possible: the implicit table `arg` of vararg functions. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "math/elementary.h"
 

@@ -1,6 +1,6 @@
 /* Places, warnings and errors of a running script. A place is the nearest Lua function on the stack with a known line,
  * so that gr functions called through pcall or other C functions still name the script's line. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

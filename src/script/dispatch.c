@@ -1,6 +1,6 @@
 /* The one C function behind every gr function and node method: reads the arguments as the table's row says, runs the
  * row's plain C function, answers. Names that do not exist are errors with a suggestion, or with --lenient ghosts. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/version.h"
 #include "formats/font.h"

@@ -1,7 +1,7 @@
 /* Files a script names: Lua files through require, dofile and loadfile, meshes and images. Everything is read through
  * base/file.h. Where a relative name is looked for (docs/language.md 12.3): the scene's folder, the working directory,
  * Assets/ beside and above the scene, and the bare file name in the scene's folder. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/file.h"
 

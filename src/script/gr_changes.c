@@ -1,7 +1,7 @@
 /* Edits of the window, as calls: they are noted, and laid over every picture that is made afterwards.
  * Nothing of the script's own tree is changed for good. */
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Skies, and the light of the sun. */
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 static bool give_sky(struct script_context *context, struct sky *sky, const struct script_value *args,
                      struct script_result *result, struct error *error) {

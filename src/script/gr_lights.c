@@ -1,7 +1,7 @@
 /* Lights of the language: what each takes, what it makes of it, and its row of the table. */
 #include "math/elementary.h"
-#include "script/context.h"
-#include "script/table_rows.h"
+#include "script/context_internal.h"
+#include "script/table_rows_internal.h"
 
 enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
 enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };

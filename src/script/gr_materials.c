@@ -1,9 +1,9 @@
 /* Materials, their decorators, and textures. */
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/file.h"
-#include "material/bump.h"
+#include "material/bump_internal.h"
 #include "material/material_inputs.h"
 
 #include <string.h>

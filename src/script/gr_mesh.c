@@ -1,7 +1,7 @@
 /* Meshes from tables and from files. Both are assets: the same tables, or the same file, are one mesh, so that a
  * script that builds its scene again for every picture builds no mesh again. */
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/file.h"
 #include "formats/font.h"

@@ -1,6 +1,6 @@
 /* Methods of nodes. args[SELF] is the node in front of the colon. */
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* Nodes and primitives. A primitive is a geometry node: whatever can be placed is a node. */
 #include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <string.h>
 

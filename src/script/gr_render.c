@@ -1,7 +1,7 @@
 /* The call that everything is for. */
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {

@@ -1,8 +1,8 @@
 /* Analytic shapes: every row of the table becomes a geometry node with one shape in it. Numbers are checked here for
  * what the table cannot say about several of them together, and for sizes beyond what the root-finders are made for. */
 #include "math/range.h"
-#include "script/context.h"
-#include "script/table_rows.h"
+#include "script/context_internal.h"
+#include "script/table_rows_internal.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
 

@@ -1,7 +1,7 @@
 /* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
  * shape live in the arena of the scene; the builder of the shape reports their errors. */
-#include "script/context.h"
-#include "script/table_rows.h"
+#include "script/context_internal.h"
+#include "script/table_rows_internal.h"
 
 #include "mesh/patch.h"
 #include "shape/blob.h"

@@ -1,8 +1,8 @@
 /* Textures that are no images: patterns, and operations on other textures. A function is a binding and a row in here.
  */
 #include "script/bindings_internal.h"
-#include "script/context.h"
-#include "script/table_rows.h"
+#include "script/context_internal.h"
+#include "script/table_rows_internal.h"
 
 /* Saved edits count textures among the materials of a scene. */
 struct script_texture *gr_keep_texture(struct script_context *context, const struct script_texture *value,

@@ -7,7 +7,7 @@
  * A used-up limit is a fatal error of the context, which no script can catch. Once there is one the hook raises it
  * again at every step: handlers of to-be-closed variables get no further. */
 #include "base/clock.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/error.h"
 #include "base/mem.h"

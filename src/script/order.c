@@ -5,7 +5,7 @@
  * dialect.
  *
  * The lexer follows the Lua 5.4 manual, section 3.1, as far as comments, strings and names go. */
-#include "script/order.h"
+#include "script/order_internal.h"
 
 #include "base/arena.h"
 #include "base/file.h"

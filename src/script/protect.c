@@ -4,7 +4,7 @@
  * Two more ways past the limits are closed here. Lua runs the handler of xpcall with hooks off when the error came from
  * the hook: ours answers a fatal error itself. Lua runs finalizers (__gc) with hooks off always: setmetatable leaves
  * them out, so that no code of a scene runs while garbage is collected or the state is closed. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <lauxlib.h>
 

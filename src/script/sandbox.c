@@ -4,7 +4,7 @@
  * more. Files are in files.c and streams.c, what could catch or escape a limit in protect.c. With --no-sandbox
  * everything stays. */
 #include "math/elementary.h"
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

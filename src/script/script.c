@@ -1,10 +1,10 @@
 /* Runs one scene: a fresh Lua state on our allocator, one protected call around everything, then the state is closed
  * and after it the scene. Invariant: whatever fails, lua_close comes first, then the arenas; nothing else is owned
  * here. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/file.h"
-#include "script/order.h"
+#include "script/order_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

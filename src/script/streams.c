@@ -4,7 +4,7 @@
  * files only, below the folders of the list. Whatever is written counts towards the limit on output, on standard output
  * too. Refusals are returned like any failure of io.open: nil, a sentence, a number. */
 #define _GNU_SOURCE
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include "base/fault.h"
 

@@ -1,11 +1,11 @@
 /* The table of gr functions. One row a function; its documentation and every check of its arguments come from here. The
  * rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
-#include "script/table.h"
 #include "base/unreachable.h"
+#include "script/table_internal.h"
 
 #include "render/settings.h"
 #include "scene/change.h"
-#include "script/table_rows.h"
+#include "script/table_rows_internal.h"
 
 #include <assert.h>
 #include <string.h>

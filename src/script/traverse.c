@@ -3,7 +3,7 @@
  * our handles by age, then what is left in Lua's order. A table that is a pure sequence costs one pass and no memory;
  * others cost a list of their keys and a heap sort. Entries removed during the traversal are skipped, as with Lua's
  * own. */
-#include "script/context.h"
+#include "script/context_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

@@ -2,7 +2,7 @@
  * two t; the line is inside the box where it is inside all three slabs. Each t is one subtraction and one division,
  * both rounded once, so two boxes with a common face plane in one space get exactly the same t there, and the order of
  * t is the order of the planes. */
-#include "shape/box_shape.h"
+#include "shape/box_shape_internal.h"
 
 bool box_shape_crossings(const struct box *box, const struct ray *ray, struct crossing out[2]) {
     double enter = -INFINITY, leave = INFINITY;

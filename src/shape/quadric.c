@@ -7,7 +7,7 @@
 
 #include "geometry/crossing.h"
 #include "math/roots.h"
-#include "shape/box_shape.h"
+#include "shape/box_shape_internal.h"
 #include "shape/planar.h"
 #include "shape/span_internal.h"
 

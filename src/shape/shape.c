@@ -3,7 +3,7 @@
 
 #include "mesh/mesh.h"
 #include "shape/blob.h"
-#include "shape/box_shape.h"
+#include "shape/box_shape_internal.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"
 #include "shape/lathe.h"

@@ -5,7 +5,7 @@
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
 #include "output/progress.h"
-#include "viewer/view_overlay.h"
+#include "viewer/view_overlay_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Which pixels show a node is asked by one ray through the middle of each pixel of the rectangle that the boxes of the
  * node's primitives fill in the picture. What the ray meets first counts: a node behind another one has no outline
  * there. */
-#include "viewer/view_overlay.h"
+#include "viewer/view_overlay_internal.h"
 
 #include "base/mem.h"
 #include "csg/csg.h"

@@ -2,7 +2,7 @@
  * (saturating), so that a tree that doubles at every level is refused, or skipped where it places nothing, before any
  * memory is taken. Then every path from the root to a primitive makes one primitive. Temporary data of nodes are in
  * tables beside the nodes, which are only read. */
-#include "world/flatten.h"
+#include "world/flatten_internal.h"
 
 #include "base/mem.h"
 #include "world/path.h"

@@ -4,7 +4,7 @@
  *
  * A clipped primitive becomes the surface of its own program with the clips behind it. A union of opaque solids, or of
  * one material, becomes as many primitives as keep apart. */
-#include "world/flatten.h"
+#include "world/flatten_internal.h"
 
 #include "base/mem.h"
 #include "csg/csg_split.h"

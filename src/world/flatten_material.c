@@ -2,7 +2,7 @@
  * material is plain gray. Each distinct set gets one number, in order of first use, and one index for each layout of
  * shapes on which its images lie otherwise (material/material_mapping.h). The table that finds sets again is hashed by
  * address, which decides the position of an entry and never its number. */
-#include "world/flatten.h"
+#include "world/flatten_internal.h"
 
 #include "base/random.h"
 #include "material/material_inputs.h"

@@ -4,7 +4,7 @@
  * decides the position of an entry and never its index. */
 #include "base/mem.h"
 #include "base/random.h"
-#include "world/flatten.h"
+#include "world/flatten_internal.h"
 
 struct numbered {
     const void *authored; /* NULL: free */

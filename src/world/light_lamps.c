@@ -1,7 +1,7 @@
 /* What lamps need to know about the scene: the triangles of a lamp that is a mesh are gathered from every place where
  * the scene shows one of its meshes. What the scene does not show is flattened by itself, into a world that lasts as
  * long as its triangles are gathered. */
-#include "world/light_lamps.h"
+#include "world/light_lamps_internal.h"
 
 #include "light/light_mesh.h"
 #include "light/sky.h"

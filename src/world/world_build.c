@@ -1,7 +1,7 @@
 /* Builds a world: flattens the scene, works out lights and boxes, builds the accelerator; and destroys it. */
 #include "base/mem.h"
-#include "world/flatten.h"
-#include "world/light_lamps.h"
+#include "world/flatten_internal.h"
+#include "world/light_lamps_internal.h"
 #include "world/world_internal.h"
 
 #include <string.h>

@@ -8,7 +8,7 @@
 #include "light/light_mesh.h"
 #include "material/classic.h"
 #include "material/material_eval.h"
-#include "world/light_lamps.h"
+#include "world/light_lamps_internal.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Where primitives stand: their maps, at a time where they move, and their boxes in the world. */
 #include "base/hash.h"
 #include "base/mem.h"
-#include "world/flatten.h"
+#include "world/flatten_internal.h"
 #include "world/world_internal.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Any bytes as a Radiance, PFM or EXR picture (Radiance if they begin like none of them): an image whose every
  * level can be looked up, or one line that names the file. */
 #include "image/exr.h"
-#include "image/float_read.h"
+#include "image/float_read_internal.h"
 #include "image/levels.h"
 
 #include <math.h>

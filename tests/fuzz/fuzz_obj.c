@@ -1,5 +1,5 @@
 /* Any bytes as an OBJ file: a mesh or one line that names the file, nothing else. */
-#include "formats/obj.h"
+#include "formats/obj_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

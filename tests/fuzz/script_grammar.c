@@ -2,7 +2,7 @@
  * nodes. Most numbers are small; others are the ends of ranges and extreme values of double precision. */
 #include "tests/fuzz/script_grammar.h"
 
-#include "script/table.h"
+#include "script/table_internal.h"
 
 #include <math.h>
 #include <stdarg.h>

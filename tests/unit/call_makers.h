@@ -4,7 +4,7 @@
 #define GRAY_TESTS_CALL_MAKERS_H
 
 #include "formats/font.h"
-#include "script/table.h"
+#include "script/table_internal.h"
 #include "tests/harness.h"
 #include "tests/unit/file_makers.h"
 

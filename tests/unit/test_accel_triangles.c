@@ -1,5 +1,5 @@
 /* The index of triangles by itself: every instruction set, one voxel and many, any number of threads. */
-#include "accel/triangle_layout.h"
+#include "accel/triangle_layout_internal.h"
 #include "base/isa.h"
 #include "mesh_makers.h"
 

@@ -1,7 +1,7 @@
 /* Caustics: photons arrive where geometry says, in the unit of direct light. */
 #include "light/sky.h"
 #include "math/elementary.h"
-#include "render/photon_trace.h"
+#include "render/photon_trace_internal.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
 #include "tests/harness.h"

@@ -2,7 +2,7 @@
  */
 #include "accel/grid.h"
 #include "base/mem.h"
-#include "shape/box_shape.h"
+#include "shape/box_shape_internal.h"
 #include "tests/harness.h"
 #include "tests/unit/random_makers.h"
 

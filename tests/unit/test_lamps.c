@@ -2,7 +2,7 @@
 #include "base/random.h"
 #include "light/light.h"
 #include "light/light_mesh.h"
-#include "light/sky_light.h"
+#include "light/sky_light_internal.h"
 #include "math/sampling.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

@@ -1,6 +1,6 @@
 /* docs/language.md, the reference of the scene language, against the table of gr functions and against the program. */
 #define _GNU_SOURCE
-#include "script/table.h"
+#include "script/table_internal.h"
 #include "tests/harness.h"
 
 #include <stdio.h>

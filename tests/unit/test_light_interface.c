@@ -4,7 +4,7 @@
 #include "light/light_edit.h"
 #include "light/light_mesh.h"
 #include "light/light_sampler.h"
-#include "light/sky_light.h"
+#include "light/sky_light_internal.h"
 #include "math/frame.h"
 #include "tests/harness.h"
 #include "tests/unit/call_makers.h"

@@ -1,7 +1,7 @@
 /* The OBJ reader: every variant of the syntax, every error with its line, numbers correctly rounded. */
 #include "base/mem.h"
-#include "formats/decimal.h"
-#include "formats/obj.h"
+#include "formats/decimal_internal.h"
+#include "formats/obj_internal.h"
 #include "tests/harness.h"
 
 #include <math.h>

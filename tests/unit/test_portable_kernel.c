@@ -2,11 +2,11 @@
 #define GRAY_NO_SIMD
 #include "mesh_makers.h"
 
-#include "accel/triangle_kernels.h"
+#include "accel/triangle_kernels_internal.h"
 
 TRIANGLE_KERNELS(portable)
 #define KERNEL(name) triangle_##name##_portable
-#include "accel/triangle_kernel.h"
+#include "accel/triangle_kernel_internal.h"
 
 struct sum {
     uint64_t triangles;

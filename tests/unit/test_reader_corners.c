@@ -1,5 +1,5 @@
 /* Corner cases of the readers, one short file each: accepted, or refused with these words. */
-#include "formats/decimal.h"
+#include "formats/decimal_internal.h"
 #include "image/image.h"
 #include "model_makers.h"
 

@@ -3,7 +3,7 @@
 #include "tests/stage.h"
 
 #include "base/mem.h"
-#include "material/dielectric.h"
+#include "material/dielectric_internal.h"
 #include "material/material_inputs.h"
 #include "material/medium.h"
 #include "render/camera.h"

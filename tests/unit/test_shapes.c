@@ -1,5 +1,5 @@
 /* Spheres and boxes: closed forms, crossings on the surface, uv, bounds of the error, exactness under scaling. */
-#include "shape/box_shape.h"
+#include "shape/box_shape_internal.h"
 #include "shape/shape.h"
 #include "shape/sphere.h"
 #include "tests/harness.h"

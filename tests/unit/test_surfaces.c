@@ -1,5 +1,5 @@
 /* Surfaces beyond Phong: roughness, absorption, emission, by closed forms. */
-#include "material/microfacet.h"
+#include "material/microfacet_internal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -5,7 +5,7 @@
 #include "scene/traversal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "world/light_lamps.h"
+#include "world/light_lamps_internal.h"
 #include "world/path.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* The binary hierarchies from which an index is made: reinsertion keeps them valid and makes them cheaper, the collapse
  * into nodes of eight children is optimal, and no set of triangles makes them deeper than the traversal allows. */
-#include "accel/triangle_tree.h"
+#include "accel/triangle_tree_internal.h"
 
 #include "base/mem.h"
 #include "tests/harness.h"

@@ -1,5 +1,5 @@
 /* Triangulation: the triangles of a polygon cover it once, whatever its shape. */
-#include "mesh/triangulate.h"
+#include "mesh/triangulate_internal.h"
 
 #include "tests/harness.h"
 

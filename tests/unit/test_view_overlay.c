@@ -3,7 +3,7 @@
 #include "render/camera.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "viewer/view_overlay.h"
+#include "viewer/view_overlay_internal.h"
 
 #include <math.h>
 #include <string.h>

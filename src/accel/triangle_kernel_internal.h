@@ -1,0 +1,706 @@
+/* The search, compiled once per instruction set: a file defines KERNEL(name) and includes this one.
+ *
+ * Single precision proposes, doubles decide. A ray is taken into local space in double precision and rounded. One that
+ * starts farther than NEAR_BY from the middle is moved to where it enters the frame first (so its origin is at most
+ * 1 + VOXEL_MARGIN in size), and its direction made about one long. Hits are looked for with every comparison slack by
+ * more than all rounding can do, and what is found is tried again with the test of triangle.h on the original ray and
+ * vertices. So the answer is the same bits as trying every triangle, whatever the instruction set.
+ *
+ * A triangle is tried from t0 on the ray, where it enters the box of the triangle's block (0 in searches that do not
+ * keep that): what rounding can do then goes by the distances near the triangle and not by how far the ray has come,
+ * which for a dense mesh in a wide scene is thousands of times more.
+ *
+ * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with s = o + t0 d - corner, S = |s|, L the largest
+ * component of the two edges, M the largest of the direction's, R = |o| + t0 M, which bounds where on the ray that is,
+ * so that |corner| is at most R + S; D bounds what the double arithmetic of either side may move the line, about 2^-46
+ * times the distance of the origin:
+ *
+ * - s is off by (3 R + S) e + D (one R each for the origin and the direction, for their sum, and for the corner; one t0
+ *   M more without fused operations), and by S e from the subtraction;
+ * - p = d x e2 by 7 e L M, where |p| <= 2 L M;
+ * - u = s p by ((18 R + 51 S) e + 6 D) L M, and v = d q, with q = s x e1, by the same;
+ * - det = e1 p by 45 e L^2 M, so where its sign is wrong |det| is no more than that.
+ *
+ * So with W = (20 R + 146 S + 180 L) e + 8 D and E = W L M a true hit always has u, v >= -E and u + v <= |det| + 3 E. S
+ * counts, not its bound: a ray that starts on a surface would else find its own triangle doubtful too often.
+ *
+ * For T = e2 q that is not enough: where triangles are large, as floors are, so is S. But floors lie along the axes.
+ * With s_k, l_k and d_k for the components and p_k the product of the other two l, every product in T, and so what it
+ * is off by, is at most one of |s_k| p_k:
+ *
+ * - q by ((3 R + 5 |s_k|) e + D) l_j from each of its two products;
+ * - T by the sum over k of ((6 R + 18 |s_k|) e + 2 D) p_k;
+ * - (t - t0) det by the sum of 16 e |d_k| p_k (t - t0), where |d_k| (t - t0) <= |s_k| + l_k.
+ *
+ * So T is within F = sum of ((10 R + 36 |s_k| + 18 l_k) e + 4 D) p_k of (t - t0) det. What passes these comparisons
+ * with E and F reversed is certainly a hit.
+ *
+ * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit waits, with bounds of its
+ * t, until the search is over; what is not certain, or too close to say which is nearer, is decided at once. */
+
+#include "accel/simd_internal.h"
+#include "accel/triangle_kernels_internal.h"
+#include "accel/triangle_nodes_internal.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* How far from the middle of the mesh, in local units, BOX_GROWTH covers what the distance adds to the rounding. */
+#define FAR_AWAY 0x1p20
+
+/* W for each unit of |o| and of t0 M. */
+#define PLACE_ERROR (20 * 0x1p-24f)
+#if defined(GRAY_KERNEL_FMA)
+#define MOVING_ERROR PLACE_ERROR
+#else
+#define MOVING_ERROR (26 * 0x1p-24f)
+#endif
+
+/* Of L in the slack, local units: what is a point is never a certain hit. Edge functions of what is one are so large
+ * that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2 and doubts begin at 2^-49,
+ * but of the difference 95 (S + L) L e is left. (What the double arithmetic takes of it, 2^-48 (S + L) times the
+ * distance of the origin, is little: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.) */
+#define MIN_EXTENT 0x1p-24f
+
+/* The vertices of so few are at hand, and the index of so many is not. */
+enum { FEW_TRIANGLES = 50000, MANY_TRIANGLES = 400000 };
+
+/* The parts of a block that only a hit needs, while its triangles are tried. (A function that does nothing else gcc
+ * takes for one that does nothing, unless it is a part of its caller.) */
+static inline __attribute__((always_inline)) void fetch_vertex_numbers(const struct triangle_block *block) {
+    __builtin_prefetch(block->vertices[0]);
+    __builtin_prefetch(&block->vertices[2][WIDTH - 1]);
+}
+
+/* What is next on the stack, while something else is tried. */
+static inline __attribute__((always_inline)) void prefetch_block(const struct triangle_index *index,
+                                                                 uint32_t reference) {
+    const char *place = reference & REF_LEAF ? (const char *)(index->blocks + (reference & ~REF_LEAF))
+                                             : (const char *)(index->nodes + reference);
+    for (int i = 0; i < 5; i++)
+        __builtin_prefetch(place + 64 * i);
+}
+
+/* The axes of triangle_ray_axes by a table, as halves of lanes x, y, z, z: which of the direction's components are
+ * larger than those before (wide4_larger), and above that their signs. */
+#define LANE(i) 2 * (i), 2 * (i) + 1
+#define AXES(z, negative)                                                                                              \
+    { LANE(((z) + 1 + (negative)) % 3), LANE(((z) + 2 - (negative)) % 3), LANE(z), LANE(z) }
+#define AXES_4(s) AXES(0, (s)&1), AXES(1, (s) >> 1 & 1), AXES(2, (s) >> 2 & 1), AXES(2, (s) >> 2 & 1)
+static const _Alignas(32) uint32_t axes_of[32][8] = {AXES_4(0), AXES_4(1), AXES_4(2), AXES_4(3),
+                                                     AXES_4(4), AXES_4(5), AXES_4(6), AXES_4(7)};
+#undef AXES_4
+#undef AXES
+#undef LANE
+
+/* triangle_ray in vectors. */
+struct sheared_ray {
+    const uint32_t *axes;
+    wide4 origin; /* x, y, z, z */
+    wide4 shear;  /* of x, of y, and twice the factor that makes t of z */
+};
+
+/* triangle_ray_set with one division for all three. What lies behind the vectors of the ray is read with them. */
+static inline void sheared_set(struct sheared_ray *out, const struct ray *ray) {
+    const double *numbers = (const double *)(const void *)ray;
+    _Static_assert(offsetof(struct ray, direction) == 3 * sizeof(double) && sizeof(struct ray) > 7 * sizeof(double),
+                   "vectors of a ray are read four numbers at a time");
+    wide4 direction = wide4_load(numbers + 3);
+    const uint32_t *axes = axes_of[wide4_larger(wide4_size(direction)) | (wide4_negative(direction) & 7) << 2];
+    out->axes = axes;
+    out->origin = wide4_permuted(wide4_load(numbers), axes);
+    direction = wide4_permuted(direction, axes);
+    out->shear = wide4_div(wide4_with_last_two(direction, 1), wide4_third(direction));
+}
+
+struct search {
+    const struct triangle_index *index;
+    const struct triangle_set *set;
+    const struct ray *ray;
+    enum triangle_search kind;
+    /* In local space, single numbers: spreading one over a vector costs no more than loading the vector. */
+    _Alignas(16) float origin[4], direction[4];
+    simd4 reciprocal; /* 1 / direction */
+    simd4 middle;     /* origin / direction: a plane is met at plane * reciprocal - middle */
+    float widen[4];   /* for rays from far away: how much the boxes' growth falls short, in local t */
+    float longest;    /* the largest size of the direction's components, M */
+    uint32_t octant;  /* bit k: the direction is negative along axis k */
+    float error;      /* 15 e + 8 D */
+    float limit;      /* local t beyond which nothing matters */
+    float certain;    /* local t below which the ray's own interval surely has not ended */
+    float blur;       /* what a local t of a hit may be off, beyond its last places */
+    bool found, sheared_ready;
+    bool moved, far_away;        /* if moved: the ray was brought to the frame, maybe from FAR_AWAY */
+    double t_to_local, t_offset; /* if moved: local t = t * t_to_local - t_offset; else they are the same */
+    double best;                 /* as decided */
+    struct triangle_hit *hit;
+    triangle_visit *visit;
+    void *context;
+    struct triangle_cost *cost;
+    struct sheared_ray sheared; /* if it is ready */
+    /* A hit that is certain and the nearest so far, with bounds of its local t; NULL: none waits. */
+    const struct triangle_block *pending;
+    unsigned pending_lane;
+    float pending_from;
+};
+
+/* Rows of a node in which a ray of the octant meets the near and the far sides of boxes, in bytes. */
+struct sides {
+    size_t near_x, near_y, near_z, far_x, far_y, far_z;
+};
+#define ROW(i) (i) * WIDTH * sizeof(float)
+#define SIDES(x, y, z)                                                                                                 \
+    { ROW(0 + (x)), ROW(2 + (y)), ROW(4 + (z)), ROW(1 - (x)), ROW(3 - (y)), ROW(5 - (z)) }
+static const struct sides sides_of[8] = {SIDES(0, 0, 0), SIDES(1, 0, 0), SIDES(0, 1, 0), SIDES(1, 1, 0),
+                                         SIDES(0, 0, 1), SIDES(1, 0, 1), SIDES(0, 1, 1), SIDES(1, 1, 1)};
+#undef SIDES
+#undef ROW
+
+static inline simd8 sides_load(const struct wide_node *node, size_t row) {
+    return simd8_load((const float *)(const void *)((const char *)node + row));
+}
+
+/* The edge functions of triangle_cross, rounded, and the way to the corners along the ray's axis; lane 3 is not used.
+ */
+struct edges {
+    wide4 e, p, q, along;
+};
+
+static inline __attribute__((always_inline)) wide4 seen_from(const struct sheared_ray *ray, const double corner[3]) {
+    return wide4_sub(wide4_permuted(wide4_load_three(corner), ray->axes), ray->origin);
+}
+
+static inline __attribute__((always_inline)) wide4 sheared(const struct sheared_ray *ray, wide4 corner) {
+    return wide4_sub(corner, wide4_mul(ray->shear, wide4_third(corner)));
+}
+
+static inline __attribute__((always_inline)) struct edges edges_of(const struct sheared_ray *ray, const double a[3],
+                                                                   const double b[3], const double c[3]) {
+    wide4 from_a = seen_from(ray, a), from_b = seen_from(ray, b), from_c = seen_from(ray, c);
+    wide4 plane_a = sheared(ray, from_a), plane_b = sheared(ray, from_b), plane_c = sheared(ray, from_c);
+    wide4 px = wide4_firsts(plane_a, plane_b, plane_c), py = wide4_seconds(plane_a, plane_b, plane_c);
+    struct edges edges = {.p = wide4_mul(wide4_cab(px), wide4_bca(py)),
+                          .q = wide4_mul(wide4_cab(py), wide4_bca(px)),
+                          .along = wide4_thirds(from_a, from_b, from_c)};
+    edges.e = wide4_sub(edges.p, edges.q);
+    return edges;
+}
+
+static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *hit, const struct sheared_ray *ray,
+                                                          const struct edges *edges) {
+    _Static_assert(offsetof(struct triangle_hit, u) == sizeof(double) &&
+                       offsetof(struct triangle_hit, v) == 2 * sizeof(double) &&
+                       sizeof(struct triangle_hit) >= 4 * sizeof(double),
+                   "t, u and v are written with what is behind them");
+    wide4 found = wide4_weighted(edges->e, wide4_mul(edges->e, edges->along));
+    wide4_store_three(&hit->t, wide4_mul(found, wide4_with_first_of(wide4_all(1), wide4_third(ray->shear))));
+    unsigned enter = ~wide4_negative(edges->e) & 1;
+    hit->enter = enter;
+}
+
+/* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
+static inline __attribute__((always_inline)) bool cross(const struct search *s, const double a[3], const double b[3],
+                                                        const double c[3], struct triangle_hit *hit) {
+    struct edges edges = edges_of(&s->sheared, a, b, c);
+    wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(edges.p), wide4_size(edges.q)));
+    if (__builtin_expect((wide4_below(doubt, wide4_size(edges.e)) & 7) != 7, 0)) {
+        struct triangle_ray exactly;
+        triangle_ray_set(&exactly, s->ray); /* search_begin has seen that the ray is good */
+        return triangle_cross(&exactly, a, b, c, hit);
+    }
+    unsigned negative = wide4_negative(edges.e) & 7;
+    if (negative != 0 && negative != 7)
+        return false;
+    hit_set(hit, &s->sheared, &edges);
+    return true;
+}
+
+static inline bool is_crossed(const struct search *s, const struct triangle_block *block, unsigned lane,
+                              struct triangle_hit *hit) {
+    const double(*vertices)[3] = s->set->vertices;
+    bool crossed = cross(s, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+                         vertices[block->vertices[2][lane]], hit);
+    hit->triangle = block->ids[lane];
+    return crossed;
+}
+
+static inline bool is_nearer(const struct search *s, const struct triangle_hit *h) {
+    if (!(h->t > s->ray->t_min) || !(h->t <= s->best))
+        return false;
+    return h->t != s->best || (s->found && h->triangle < s->hit->triangle);
+}
+
+/* Field by field: what was stored in pieces is slow to load whole. */
+static inline void hit_copy(struct triangle_hit *to, const struct triangle_hit *from) {
+    to->t = from->t;
+    to->u = from->u;
+    to->v = from->v;
+    to->triangle = from->triangle;
+    to->enter = from->enter;
+}
+
+/* The answer for one proposed triangle. True when an "any" search is over. */
+static inline bool decide(struct search *s, const struct triangle_block *block, unsigned lane) {
+    struct triangle_hit h;
+    if (!is_crossed(s, block, lane, &h))
+        return false;
+    if (s->kind == TRIANGLE_ALL) {
+        struct triangle_hit visited = h;
+        s->visit(s->context, &visited);
+        return false;
+    }
+    if (!is_nearer(s, &h))
+        return false;
+    s->found = true;
+    if (s->kind == TRIANGLE_ANY)
+        return true;
+    s->best = h.t;
+    hit_copy(s->hit, &h);
+    double t = s->moved ? h.t * s->t_to_local - s->t_offset : h.t;
+    float local = (float)t * (1 + 0x1p-20f) + s->blur;
+    if (local < s->limit)
+        s->limit = local;
+    return false;
+}
+
+static inline void make_ready(struct search *s) {
+    if (s->sheared_ready)
+        return;
+    sheared_set(&s->sheared, s->ray);
+    s->sheared_ready = true;
+}
+
+/* The end of a "nearest" search. A hit that is certain, when nothing else has been found, is what it is: only its
+ * numbers are left to be worked out, and none of its edge functions is anywhere near zero (MIN_EXTENT). */
+static inline bool decide_last(struct search *s) {
+    const struct triangle_block *block = s->pending;
+    if (!block)
+        return s->found;
+    unsigned lane = s->pending_lane;
+    const double(*vertices)[3] = s->set->vertices;
+    if (__builtin_expect(s->found, 0)) {
+        struct triangle_hit h;
+        make_ready(s);
+        if (is_crossed(s, block, lane, &h) && is_nearer(s, &h))
+            hit_copy(s->hit, &h);
+        return true;
+    }
+    struct sheared_ray ray;
+    sheared_set(&ray, s->ray);
+    struct edges edges = edges_of(&ray, vertices[block->vertices[0][lane]], vertices[block->vertices[1][lane]],
+                                  vertices[block->vertices[2][lane]]);
+    hit_set(s->hit, &ray, &edges);
+    s->hit->triangle = block->ids[lane];
+    return true;
+}
+
+/* Decides a block's proposals. True when an "any" search is over. */
+static __attribute__((noinline)) bool decide_lanes(struct search *s, const struct triangle_block *block,
+                                                   unsigned lanes) {
+    make_ready(s);
+    do {
+        if (decide(s, block, (unsigned)__builtin_ctz(lanes)))
+            return true;
+        lanes &= lanes - 1;
+    } while (lanes);
+    return false;
+}
+
+static inline void decide_pending(struct search *s) {
+    if (!s->pending)
+        return;
+    make_ready(s);
+    (void)decide(s, s->pending, s->pending_lane);
+    s->pending = NULL;
+}
+
+/* The nearest hit so far, certain and with bounds of its t, waits: where the search may end is known well enough to go
+ * on, and its vertices are on their way when it is over. */
+static inline __attribute__((always_inline)) void keep(struct search *s, const struct triangle_block *block,
+                                                       unsigned lane, float from, float to) {
+    s->pending = block;
+    s->pending_lane = lane;
+    s->pending_from = from;
+    if (s->set->count > FEW_TRIANGLES)
+        for (int j = 0; j < 3; j++)
+            __builtin_prefetch(s->set->vertices[block->vertices[j][lane]]);
+    float limit = to * (1 + 0x1p-20f) + s->blur;
+    if (limit < s->limit)
+        s->limit = limit;
+}
+
+/* Several of them, or one more. */
+static __attribute__((noinline)) void keep_lanes(struct search *s, const struct triangle_block *block, unsigned lanes,
+                                                 simd8 from, simd8 to) {
+    _Alignas(32) float froms[WIDTH], tos[WIDTH];
+    simd8_store(froms, from);
+    simd8_store(tos, to);
+    do {
+        unsigned lane = (unsigned)__builtin_ctz(lanes);
+        lanes &= lanes - 1;
+        if (froms[lane] > s->limit)
+            continue;
+        if (s->pending && !(tos[lane] < s->pending_from)) { /* too close to say which is nearer */
+            decide_pending(s);
+            (void)decide_lanes(s, block, 1u << lane);
+            continue;
+        }
+        keep(s, block, lane, froms[lane], tos[lane]);
+    } while (lanes);
+}
+
+static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number, const float from_t,
+                                                            const enum triangle_search kind) {
+    const struct triangle_block *b = s->index->blocks + number;
+    simd8 ox = simd8_all(s->origin[0]), oy = simd8_all(s->origin[1]), oz = simd8_all(s->origin[2]);
+    if (kind == TRIANGLE_NEAREST)
+        fetch_vertex_numbers(b);
+    simd8 dx = simd8_all(s->direction[0]), dy = simd8_all(s->direction[1]), dz = simd8_all(s->direction[2]);
+    const simd8 moved = simd8_all(from_t);
+    float error = s->error;
+    if (kind == TRIANGLE_NEAREST) {
+        error += MOVING_ERROR * from_t * s->longest;
+        ox = simd8_multiply_add(moved, dx, ox);
+        oy = simd8_multiply_add(moved, dy, oy);
+        oz = simd8_multiply_add(moved, dz, oz);
+    }
+    simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
+    simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
+    simd8 px = simd8_multiply_sub(dy, e2z, simd8_mul(dz, e2y));
+    simd8 py = simd8_multiply_sub(dz, e2x, simd8_mul(dx, e2z));
+    simd8 pz = simd8_multiply_sub(dx, e2y, simd8_mul(dy, e2x));
+    simd8 det = simd8_multiply_add(e1x, px, simd8_multiply_add(e1y, py, simd8_mul(e1z, pz)));
+    simd8 sx = simd8_sub(ox, simd8_load(b->corner[0]));
+    simd8 sy = simd8_sub(oy, simd8_load(b->corner[1]));
+    simd8 sz = simd8_sub(oz, simd8_load(b->corner[2]));
+    simd8 qx = simd8_multiply_sub(sy, e1z, simd8_mul(sz, e1y));
+    simd8 qy = simd8_multiply_sub(sz, e1x, simd8_mul(sx, e1z));
+    simd8 qz = simd8_multiply_sub(sx, e1y, simd8_mul(sy, e1x));
+    simd8 u = simd8_multiply_add(sx, px, simd8_multiply_add(sy, py, simd8_mul(sz, pz)));
+    simd8 v = simd8_multiply_add(dx, qx, simd8_multiply_add(dy, qy, simd8_mul(dz, qz)));
+    simd8 t = simd8_multiply_add(e2x, qx, simd8_multiply_add(e2y, qy, simd8_mul(e2z, qz)));
+    simd8 sign = simd8_sign(det);
+    det = simd8_flip(det, sign);
+    u = simd8_flip(u, sign);
+    v = simd8_flip(v, sign);
+    t = simd8_flip(t, sign);
+    simd8 lx = simd8_max_size(e1x, e2x), ly = simd8_max_size(e1y, e2y), lz = simd8_max_size(e1z, e2z);
+    simd8 extent = simd8_max(simd8_max(lx, ly), lz);
+    extent = simd8_max(extent, simd8_all(MIN_EXTENT)); /* no slack at all would make points certain hits */
+    simd8 ax = simd8_size(sx), ay = simd8_size(sy), az = simd8_size(sz);
+    simd8 w = simd8_multiply_add(extent, simd8_all(180 * 0x1p-24f), simd8_all(error));
+    simd8 e = simd8_multiply_add(simd8_max(simd8_max(ax, ay), az), simd8_all(146 * 0x1p-24f), w);
+    e = simd8_mul(simd8_mul(e, extent), simd8_all(s->longest));
+    simd8 yz = simd8_mul(ly, lz), zx = simd8_mul(lz, lx), xy = simd8_mul(lx, ly);
+    simd8 min = simd8_all(error / 2), each = simd8_all(36 * 0x1p-24f);
+    simd8 slack = simd8_mul(simd8_multiply_add(lx, simd8_all(54 * 0x1p-24f), simd8_multiply_add(ax, each, min)), yz);
+    slack = simd8_multiply_add(simd8_multiply_add(ay, each, min), zx, slack);
+    slack = simd8_multiply_add(simd8_multiply_add(az, each, min), xy, slack);
+    simd8 smaller = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
+    simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
+    simd8 f = simd8_add(t, slack);
+    simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit - from_t), slack), t);
+    const unsigned all = (1 << WIDTH) - 1, missed = simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
+    unsigned doubtful = all;
+    if (__builtin_expect(missed == all, 1))
+        return false;
+    if (kind != TRIANGLE_ALL) {
+        a = simd8_sub(smaller, e);
+        c = simd8_sub(rest, simd8_mul(e, simd8_all(3)));
+        f = simd8_sub(t, slack);
+        g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain - from_t), slack), t);
+        doubtful = missed | simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
+        if (doubtful != all && kind == TRIANGLE_ANY)
+            return true;
+        if (doubtful != all) { /* |T - t det| <= slack */
+            unsigned certain = doubtful ^ all;
+            simd8 r = simd8_div(simd8_all(1), det);
+            simd8 from = simd8_mul(simd8_multiply_add(f, r, moved), simd8_all(1 - 0x1p-20f));
+            simd8 to = simd8_mul(simd8_multiply_add(simd8_add(t, slack), r, moved), simd8_all(1 + 0x1p-20f));
+            if (__builtin_expect(!(certain & (certain - 1)) && !s->pending, 1)) {
+                unsigned lane = (unsigned)__builtin_ctz(certain);
+                keep(s, b, lane, simd8_pick(from, lane), simd8_pick(to, lane));
+            } else {
+                keep_lanes(s, b, certain, from, to);
+            }
+            if (doubtful == missed)
+                return false;
+        }
+    }
+    return decide_lanes(s, b, doubtful ^ missed);
+}
+
+/* One hierarchy. True when an "any" search is over. */
+static inline __attribute__((always_inline)) bool
+descend(struct search *s, uint32_t reference, const enum triangle_search kind, const bool far_away, const bool many) {
+    struct node_stack stack;
+    size_t top = 0;
+    bool found = false;
+    if (kind == TRIANGLE_NEAREST)
+        stack.enter[0] = 0;
+    const struct wide_node *nodes = s->index->nodes;
+    const simd8 rx = simd8_lane(s->reciprocal, 0), ry = simd8_lane(s->reciprocal, 1), rz = simd8_lane(s->reciprocal, 2);
+    const simd8 mx = simd8_lane(s->middle, 0), my = simd8_lane(s->middle, 1), mz = simd8_lane(s->middle, 2);
+    uint64_t visited = 0, tried = 0;
+    simd8 limit = simd8_all(s->limit);
+    const uint32_t octant = s->octant;
+    const struct sides sides = sides_of[octant];
+    for (;;) {
+        if (!(reference & REF_LEAF)) {
+            const struct wide_node *n = nodes + reference;
+            visited++;
+            simd8 ax = simd8_multiply_sub(sides_load(n, sides.near_x), rx, mx);
+            simd8 ay = simd8_multiply_sub(sides_load(n, sides.near_y), ry, my);
+            simd8 az = simd8_multiply_sub(sides_load(n, sides.near_z), rz, mz);
+            simd8 bx = simd8_multiply_sub(sides_load(n, sides.far_x), rx, mx);
+            simd8 by = simd8_multiply_sub(sides_load(n, sides.far_y), ry, my);
+            simd8 bz = simd8_multiply_sub(sides_load(n, sides.far_z), rz, mz);
+            if (far_away) {
+                simd8 wx = simd8_all(s->widen[0]), wy = simd8_all(s->widen[1]), wz = simd8_all(s->widen[2]);
+                ax = simd8_sub(ax, wx);
+                ay = simd8_sub(ay, wy);
+                az = simd8_sub(az, wz);
+                bx = simd8_add(bx, wx);
+                by = simd8_add(by, wy);
+                bz = simd8_add(bz, wz);
+            }
+            /* Comparing bits is enough, though it turns the order of negative numbers round: the limit is none. Of a
+             * box that begins behind the ray's start `enter` is negative, whichever side it is taken from. If the box
+             * ends there as well, `leave` is the far side next to the start and `enter` no nearer to it than that
+             * side's near one, so as bits it is not less. */
+            simd8 enter = simd8_latest_bits(ax, ay, az);
+            simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, limit));
+            if (kind == TRIANGLE_NEAREST ? node_take_nearest(n, octant, enter, leave, &stack, &top, &reference)
+                                         : node_take_any(n, enter, leave, &stack, &top, &reference)) {
+                if (many && top)
+                    prefetch_block(s->index, stack.reference[top - 1]);
+                continue;
+            }
+        } else {
+            tried++;
+            float enter = kind == TRIANGLE_NEAREST && stack.enter[top] > 0 ? stack.enter[top] : 0;
+            if (try_block(s, reference & ~REF_LEAF, enter, kind)) {
+                found = true;
+                break;
+            }
+            if (kind == TRIANGLE_NEAREST)
+                limit = simd8_all(s->limit);
+        }
+        do {
+            if (!top)
+                goto done;
+            top--;
+        } while (kind == TRIANGLE_NEAREST && stack.enter[top] > simd8_first(limit));
+        reference = stack.reference[top];
+    }
+done:
+    s->cost->hierarchy_steps += visited;
+    s->cost->triangle_tests += tried * WIDTH;
+    return found;
+}
+
+static inline __attribute__((always_inline)) bool fly_camera_voxels(struct search *s, const enum triangle_search kind,
+                                                                    const bool many) {
+    const struct triangle_index *index = s->index;
+    if (!index->voxels)
+        return false;
+    if (index->big && descend(s, index->big, kind, true, many))
+        return true;
+    simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
+          place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
+    int32_t at[4];
+    simd4 start = simd4_max(simd4_all(0), simd4_min(place, simd4_load(index->last_cell)));
+    simd4_store_int(at, start);
+    start = simd4_whole(start);
+    simd4 across = simd4_mul(cell, reciprocal);
+    simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), place), across);
+    simd4 step_t = simd4_size(across);
+    next_t = simd4_add(next_t, simd4_make(0, 0, 0, INFINITY));
+    const int32_t *offset = index->offset[simd4_negative(reciprocal) & 7];
+    const uint32_t *voxel = index->voxels + 1 + index->stride[0] + index->stride[1] + (uint32_t)at[0] +
+                            (uint32_t)at[1] * index->stride[0] + (uint32_t)at[2] * index->stride[1];
+    for (;;) {
+        uint32_t reference = *voxel;
+        simd4 leave = simd4_min_of_three(next_t);
+        if (reference != REF_EMPTY) {
+            if (reference == REF_OUTSIDE)
+                return false;
+            s->cost->voxels++;
+            if (descend(s, reference, kind, true, many))
+                return true;
+        }
+        if (s->limit <= simd4_first(leave))
+            return false;
+        unsigned lanes;
+        next_t = simd4_add_where_reached(next_t, leave, step_t, &lanes);
+        voxel += offset[lanes & 7];
+    }
+}
+
+/* Rays that have been brought to the frame. */
+static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind) {
+    const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
+    if (s->index->only == REF_EMPTY)
+        return fly_camera_voxels(s, kind, many);
+    return s->far_away ? descend(s, s->index->only, kind, true, many) : descend(s, s->index->only, kind, false, many);
+}
+
+/* Apart from the kernel of the others, which needs its registers. */
+static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
+    return traversal(s, TRIANGLE_NEAREST);
+}
+
+static __attribute__((noinline)) bool fly_camera_any_apart(struct search *s) {
+    return traversal(s, TRIANGLE_ANY);
+}
+
+static inline double power_of_two(uint64_t exponent_bits) {
+    double x;
+    exponent_bits <<= 52;
+    memcpy(&x, &exponent_bits, sizeof x);
+    return x;
+}
+
+/* The ray is at `origin`; its local t ends at about `last`. */
+static inline void search_start(struct search *s, simd4 origin, simd4 direction, simd4 reciprocal, float last) {
+    simd4_store(s->origin, origin);
+    simd4_store(s->direction, direction);
+    s->reciprocal = reciprocal;
+    s->middle = simd4_mul(origin, reciprocal);
+    s->octant = simd4_negative(direction) & 7;
+    s->limit = last * (1 + 0x1p-20f) + s->blur;
+    s->certain = last * (1 - 0x1p-20f) - s->blur;
+    s->found = s->sheared_ready = false;
+    s->pending = NULL;
+    s->best = s->ray->t_max;
+}
+
+enum beginning { RAY_INSIDE, RAY_MISSES, RAY_UNUSABLE };
+
+/* In double precision, for rays that start far away or have odd directions. Those that are not finite, or so far away
+ * that the slack would swallow the mesh, are left to brute force. */
+static __attribute__((noinline)) enum beginning search_begin_far(struct search *s, wide4 o, wide4 d) {
+    const struct triangle_index *index = s->index;
+    /* A zero becomes so small that no way along it counts. */
+    wide4 d_size = wide4_size(d), r = wide4_div(wide4_all(1), wide4_signed(wide4_max(d_size, wide4_all(0x1p-980)), d));
+    wide4 half = wide4_load(index->half), o_size = wide4_with_last(wide4_size(o), 1);
+    wide4 a = wide4_mul(wide4_sub(wide4_sub(wide4_all(0), half), o), r), b = wide4_mul(wide4_sub(half, o), r);
+    double enter = wide4_largest(wide4_with_last(wide4_min(a, b), s->ray->t_min));
+    double leave = wide4_smallest(wide4_with_last(wide4_max(a, b), s->ray->t_max));
+    double largest = wide4_largest(d_size), far = wide4_largest(o_size);
+    if (!wide4_all_below(o_size, wide4_all(0x1p30)) || !wide4_all_below(d_size, wide4_all(0x1p900)) ||
+        !(largest > 0x1p-900))
+        return RAY_UNUSABLE;
+    if (!(enter <= leave))
+        return RAY_MISSES;
+    /* The local direction's largest component becomes at least 1/2 and less than 1, by a power of two. */
+    uint64_t exponent;
+    memcpy(&exponent, &largest, sizeof exponent);
+    exponent >>= 52;
+    double to_local = power_of_two(exponent + 1), shrink = power_of_two(2045 - exponent);
+    r = wide4_mul(r, wide4_all(to_local));
+    r = wide4_signed(wide4_min(wide4_size(r), wide4_all(0x1p60)), r);
+    simd4 r4 = wide4_to_single(r);
+    s->moved = true;
+    s->t_to_local = to_local;
+    s->t_offset = enter * to_local;
+    s->blur = 0x1p-20f;
+    search_start(s, wide4_to_single(wide4_add(o, wide4_mul(d, wide4_all(enter)))),
+                 wide4_to_single(wide4_mul(d, wide4_all(shrink))), r4, (float)((leave - enter) * to_local));
+    double certain = (s->ray->t_max - enter) * to_local * (1 - 0x1p-20) - 0x1p-20;
+    s->certain = certain < 16 ? (float)certain : 16;
+    s->longest = 1;
+    s->error = PLACE_ERROR + (float)(far * 8 * 0x1p-46);
+    s->far_away = far > FAR_AWAY;
+    simd4_store(s->widen, simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45))));
+    return RAY_INSIDE;
+}
+
+/* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on: nothing
+ * they meet first has to wait for where they enter the frame, and their t is the local one. */
+static inline __attribute__((always_inline)) enum beginning search_begin(struct search *s) {
+    const struct triangle_index *index = s->index;
+    const struct ray *ray = s->ray;
+    wide4 scale = wide4_all(index->scale);
+    wide4 o = wide4_mul(wide4_sub(wide4_load_singly(&ray->origin.x), wide4_load(index->centre)), scale);
+    wide4 d = wide4_mul(wide4_load_singly(&ray->direction.x), scale);
+    simd4 o4 = wide4_to_single(o), d4 = wide4_to_single(d);
+    simd8 sizes = simd8_size(simd8_of(o4, d4)), largest = simd8_largest_of_threes(sizes);
+    s->longest = simd4_first(simd8_high(largest));
+    uint64_t from_bits;
+    memcpy(&from_bits, &ray->t_min, sizeof from_bits);
+    bool usual = simd8_all_within(sizes, index->usual_from, index->usual_to) && s->longest > 0x1p-30f &&
+                 from_bits == 0 && ray->t_max > 0;
+    if (__builtin_expect(!usual, 0))
+        return search_begin_far(s, o, d);
+    simd4 r4 = simd4_div(simd4_all(1), d4), half = simd4_load(index->half_single);
+    float last = (float)(ray->t_max < 0x1p60 ? ray->t_max : 0x1p60);
+    if (simd4_any_of_three_below(half, simd8_low(sizes))) { /* from outside many rays miss the frame */
+        simd4 middle = simd4_mul(o4, r4), extent = simd4_mul(half, simd4_size(r4));
+        float enter = simd4_largest_of_three(simd4_sub(simd4_sub(simd4_all(0), middle), extent));
+        float leave = simd4_smallest_of_three(simd4_sub(extent, middle));
+        if (!(enter <= leave && leave >= 0 && enter <= last))
+            return RAY_MISSES;
+    }
+    s->blur = 0;
+    s->error = PLACE_ERROR * simd8_first(largest) + 0x1p-40f;
+    s->moved = false;
+    search_start(s, o4, d4, r4, last);
+    return RAY_INSIDE;
+}
+
+bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                     struct triangle_hit *hit, struct triangle_cost *cost) {
+    struct search s;
+    s.cost = cost;
+    s.index = index;
+    s.set = set;
+    s.ray = ray;
+    s.kind = TRIANGLE_NEAREST;
+    s.hit = hit;
+    enum beginning beginning = search_begin(&s);
+    if (beginning != RAY_INSIDE)
+        return beginning == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
+    if (s.moved)
+        fly_camera_nearest_apart(&s);
+    else if (set->count > MANY_TRIANGLES)
+        descend(&s, index->only, TRIANGLE_NEAREST, false, true);
+    else
+        descend(&s, index->only, TRIANGLE_NEAREST, false, false);
+    return decide_last(&s);
+}
+
+bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                 struct triangle_cost *cost) {
+    struct search s;
+    s.cost = cost;
+    s.index = index;
+    s.set = set;
+    s.ray = ray;
+    s.kind = TRIANGLE_ANY;
+    enum beginning beginning = search_begin(&s);
+    if (beginning != RAY_INSIDE)
+        return beginning == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
+    return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false);
+}
+
+void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                 triangle_visit *visit, void *context, struct triangle_cost *cost) {
+    struct search s;
+    struct ray line = *ray;
+    s.cost = cost;
+    line.t_min = -INFINITY;
+    line.t_max = INFINITY;
+    s.index = index;
+    s.set = set;
+    s.ray = &line;
+    s.kind = TRIANGLE_ALL;
+    s.visit = visit;
+    s.context = context;
+    enum beginning beginning = search_begin(&s);
+    if (beginning == RAY_UNUSABLE)
+        triangle_brute_all(set, &line, visit, context, cost);
+    if (beginning != RAY_INSIDE)
+        return;
+    traversal(&s, TRIANGLE_ALL);
+}

@@ -1,0 +1,659 @@
+/* The packet search, compiled once per instruction set: a file defines PACKET(name) and includes this one.
+ *
+ * Up to 64 rays of one origin traverse one hierarchy together. A node is first tried against the beam that holds all
+ * of them, eight children at once: the slopes of the rays over their longest axis bound it by four planes through the
+ * origin (as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005). A child that the beam
+ * meets waits on the stack with its box and the set of rays that met its parent; when it is its turn the box is tried
+ * against these rays, a vector of them at a time, with what they have found until then.
+ *
+ * With one origin o the Moeller-Trumbore test falls into a part of the triangle and a part of the ray: with the edges
+ * e1, e2 from the corner c and s = o - c, all of
+ *   det = d . (e2 x e1),  u = d . (e2 x s),  v = d . (s x e1),  T = e2 . (s x e1),  t = T / det
+ * are scalar products of the ray's direction d with vectors that are worked out once for the eight triangles of a
+ * block. Then either one ray meets eight triangles or one triangle many rays, whichever is less work.
+ *
+ * Single precision proposes, doubles decide, as in triangle_kernel_internal.h, with the same meaning of e, S, L and D.
+ * The rays are tried from their origin, which is not moved and up to FARTHEST from the middle; with R = |o| a corner is
+ * at most R + S:
+ *
+ * - s is off by (2 R + S) e + D (R for the origin, R + S for the corner), and by S e from the subtraction;
+ * - e2 x e1 by 8 e L^2 a component, det by 46 e L^2;
+ * - e2 x s and s x e1 by (4 R + 10 S) e L + 2 D L a component; u and v by (12 R + 52 S) e L + 6 D L;
+ * - T by (12 R + 58 S) e L^2 + 6 D L^2, and 46 e L^2 t from comparing it with t det; a direction's largest component is
+ *   1/4 to 1, so t <= 4 (S + 2 L).
+ *
+ * With E = ((13 R + 64 S + 64 L) e + 8 D) L a true hit has u, v >= -E, u + v <= |det| + 3 E, and T within 6 E L. What
+ * passes with these reversed is certainly a hit.
+ *
+ * A certain hit of a "nearest" search only waits as the ray's candidate, with bounds of its t. A nearer one takes its
+ * place; where bounds overlap, and for all that is not certain, doubles decide at once. What is left at the end is
+ * decided eight rays at a time. */
+
+#include "accel/simd_rays_internal.h"
+#include "accel/triangle_layout_internal.h"
+#include "accel/triangle_packet.h"
+
+#include <string.h>
+
+enum { GROUPS = PACKET_RAYS / LANES };
+
+/* Local units. */
+#define FARTHEST 64.0
+
+struct packet {
+    _Alignas(64) float dx[PACKET_RAYS], dy[PACKET_RAYS], dz[PACKET_RAYS];
+    float rx[PACKET_RAYS], ry[PACKET_RAYS], rz[PACKET_RAYS]; /* 1 / direction */
+    float limit[PACKET_RAYS];                                /* local t beyond which nothing matters */
+    float certain[PACKET_RAYS]; /* local t below which the ray's own interval surely has not ended */
+    float nearer[PACKET_RAYS];  /* the candidate's t is surely not below this; infinite: no candidate */
+    uint32_t candidate[PACKET_RAYS];
+    double best[PACKET_RAYS]; /* as decided */
+    float shifted[6];         /* origin moved out by the slack of boxes, in the order of a node's rows */
+    float origin[3];
+    float error; /* 13 R e + 8 D */
+    float begun; /* local t from which the rays' interval surely has begun */
+    /* The beam: over the axis `forward`, on which all rays go the same way. */
+    int forward, side[2];
+    bool backwards, mixed;                     /* mixed: the signs of the rays differ along other axes */
+    float slope_min[2], slope_max[2], soonest; /* of coordinate / |forward|; 1 / the largest |d| ahead */
+    bool negative[3];
+    double t_to_local;
+    const struct triangle_index *index;
+    const struct triangle_set *set;
+    const struct ray_packet *rays;
+    struct packet_hits *hits;
+    unsigned groups; /* vectors of rays in use */
+    int axes;        /* x, y, z of triangle_ray_set as base-4 digits where all rays have the same, else -1 */
+    uint64_t alive, found, pending; /* rays that search; that have an answer; that have a candidate */
+    uint64_t tests, nodes;
+};
+
+struct pending_box {
+    float bounds[6]; /* about the origin, grown */
+    uint32_t reference;
+    uint64_t rays;
+};
+
+/* ---- deciding ---- */
+
+static inline void answer(struct packet *p, unsigned i, const struct triangle_hit *h, const bool any) {
+    if (!(h->t > p->rays->t_min) || !(h->t <= p->best[i]))
+        return;
+    uint64_t bit = UINT64_C(1) << i;
+    if (h->t == p->best[i] && !((p->found & bit) && !any && h->triangle < p->hits->triangle[i]))
+        return;
+    p->found |= bit;
+    if (any) {
+        p->alive &= ~bit;
+        return;
+    }
+    p->best[i] = h->t;
+    packet_hits_set(p->hits, i, h);
+    float local = (float)(h->t * p->t_to_local) * (1 + 0x1p-20f);
+    if (local < p->limit[i])
+        p->limit[i] = local;
+}
+
+static __attribute__((noinline)) void decide(struct packet *p, unsigned i, uint32_t triangle, const bool any) {
+    struct triangle_ray sheared;
+    struct ray ray = ray_packet_get(p->rays, i);
+    triangle_ray_set(&sheared, &ray); /* the rays have been seen to be good */
+    const uint32_t *c = p->set->corners[triangle];
+    struct triangle_hit h = {.triangle = triangle};
+    if (triangle_cross(&sheared, p->set->vertices[c[0]], p->set->vertices[c[1]], p->set->vertices[c[2]], &h))
+        answer(p, i, &h, any);
+}
+
+/* A hit that is certain, at a local t between `from` and `to`. */
+static inline void keep(struct packet *p, unsigned i, uint32_t triangle, float from, float to) {
+    uint64_t bit = UINT64_C(1) << i;
+    if ((p->pending & bit) && !(to < p->nearer[i]))
+        decide(p, i, p->candidate[i], false);
+    p->pending |= bit;
+    p->candidate[i] = triangle;
+    p->nearer[i] = from;
+    if (to < p->limit[i])
+        p->limit[i] = to;
+}
+
+enum { BATCH = 8 };
+
+/* triangle_cross for the candidates of eight rays at once: the same operations in the same order, so the same bits.
+ * Where an edge function cancels triangle_cross itself is asked. */
+static inline __attribute__((always_inline)) void decide_batch(struct packet *p, unsigned first, unsigned pending,
+                                                               const int x, const int y, const int z) {
+    _Alignas(64) double a[3][BATCH], b[3][BATCH], c[3][BATCH], t[BATCH], hit_u[BATCH], hit_v[BATCH], sums[BATCH];
+    int64_t clear[BATCH];
+    const double *dx = p->rays->direction[x] + first, *dy = p->rays->direction[y] + first,
+                 *dz = p->rays->direction[z] + first;
+    const double origin[3] = {p->rays->origin.x, p->rays->origin.y, p->rays->origin.z};
+    const double ox = origin[x], oy = origin[y], oz = origin[z];
+    for (unsigned k = 0; k < BATCH; k++) {
+        const uint32_t *corner = p->set->corners[pending >> k & 1 ? p->candidate[first + k] : 0];
+        const double *va = p->set->vertices[corner[0]], *vb = p->set->vertices[corner[1]],
+                     *vc = p->set->vertices[corner[2]];
+        a[0][k] = va[x];
+        a[1][k] = va[y];
+        a[2][k] = va[z];
+        b[0][k] = vb[x];
+        b[1][k] = vb[y];
+        b[2][k] = vb[z];
+        c[0][k] = vc[x];
+        c[1][k] = vc[y];
+        c[2][k] = vc[z];
+    }
+    for (int k = 0; k < BATCH; k++) {
+        double scale_z = 1 / dz[k], shear_x = dx[k] / dz[k], shear_y = dy[k] / dz[k];
+        double az = a[2][k] - oz, bz = b[2][k] - oz, cz = c[2][k] - oz;
+        double ax = (a[0][k] - ox) - shear_x * az, ay = (a[1][k] - oy) - shear_y * az;
+        double bx = (b[0][k] - ox) - shear_x * bz, by = (b[1][k] - oy) - shear_y * bz;
+        double cx = (c[0][k] - ox) - shear_x * cz, cy = (c[1][k] - oy) - shear_y * cz;
+        double up = cx * by, uq = cy * bx, u = up - uq;
+        double vp = ax * cy, vq = ay * cx, v = vp - vq;
+        double wp = bx * ay, wq = by * ax, w = wp - wq;
+        double u_left = fabs(u) - 0x1p-49 * (fabs(up) + fabs(uq)), v_left = fabs(v) - 0x1p-49 * (fabs(vp) + fabs(vq)),
+               w_left = fabs(w) - 0x1p-49 * (fabs(wp) + fabs(wq));
+        double sum = u + v + w;
+        /* Signs alike: none of the three products with the sum is negative. */
+        clear[k] = (u_left > 0) & (v_left > 0) & (w_left > 0) & ((u > 0) == (v > 0)) & ((v > 0) == (w > 0));
+        sums[k] = sum;
+        t[k] = (u * az + v * bz + w * cz) / sum * scale_z;
+        hit_u[k] = v / sum;
+        hit_v[k] = w / sum;
+    }
+    for (; pending; pending &= pending - 1) {
+        unsigned k = (unsigned)__builtin_ctz(pending), i = first + k;
+        if (!clear[k]) {
+            decide(p, i, p->candidate[i], false);
+            continue;
+        }
+        struct triangle_hit h = {t[k], hit_u[k], hit_v[k], p->candidate[i], sums[k] > 0};
+        answer(p, i, &h, false);
+    }
+}
+
+static void decide_candidates(struct packet *p) {
+    for (unsigned first = 0; first < PACKET_RAYS; first += BATCH) {
+        unsigned pending = (unsigned)(p->pending >> first & 255);
+        if (!pending)
+            continue;
+        switch (p->axes) {
+        case 0:
+            decide_batch(p, first, pending, 1, 2, 0);
+            break;
+        case 1:
+            decide_batch(p, first, pending, 2, 0, 1);
+            break;
+        case 2:
+            decide_batch(p, first, pending, 0, 1, 2);
+            break;
+        case 3:
+            decide_batch(p, first, pending, 2, 1, 0);
+            break;
+        case 4:
+            decide_batch(p, first, pending, 0, 2, 1);
+            break;
+        case 5:
+            decide_batch(p, first, pending, 1, 0, 2);
+            break;
+        default:
+            for (; pending; pending &= pending - 1) {
+                unsigned i = first + (unsigned)__builtin_ctz(pending);
+                decide(p, i, p->candidate[i], false);
+            }
+        }
+    }
+}
+
+/* ---- blocks ---- */
+
+/* What rays of one origin need of eight triangles. */
+struct parts {
+    _Alignas(32) float n[3][WIDTH], a[3][WIDTH], q[3][WIDTH], t[WIDTH], e[WIDTH], slack[WIDTH];
+    const uint32_t *ids;
+    unsigned used; /* one bit a triangle */
+};
+
+static inline simd8 cross_part(simd8 ay, simd8 az, simd8 by, simd8 bz) {
+    return simd8_multiply_sub(ay, bz, simd8_mul(az, by));
+}
+
+static inline __attribute__((always_inline)) void split_block(const struct packet *p, uint32_t number,
+                                                              struct parts *out) {
+    const struct triangle_block *b = p->index->blocks + number;
+    simd8 e1x = simd8_load(b->edge1[0]), e1y = simd8_load(b->edge1[1]), e1z = simd8_load(b->edge1[2]);
+    simd8 e2x = simd8_load(b->edge2[0]), e2y = simd8_load(b->edge2[1]), e2z = simd8_load(b->edge2[2]);
+    simd8 sx = simd8_sub(simd8_all(p->origin[0]), simd8_load(b->corner[0]));
+    simd8 sy = simd8_sub(simd8_all(p->origin[1]), simd8_load(b->corner[1]));
+    simd8 sz = simd8_sub(simd8_all(p->origin[2]), simd8_load(b->corner[2]));
+    simd8_store(out->n[0], cross_part(e2y, e2z, e1y, e1z));
+    simd8_store(out->n[1], cross_part(e2z, e2x, e1z, e1x));
+    simd8_store(out->n[2], cross_part(e2x, e2y, e1x, e1y));
+    simd8_store(out->a[0], cross_part(e2y, e2z, sy, sz));
+    simd8_store(out->a[1], cross_part(e2z, e2x, sz, sx));
+    simd8_store(out->a[2], cross_part(e2x, e2y, sx, sy));
+    simd8 qx = cross_part(sy, sz, e1y, e1z), qy = cross_part(sz, sx, e1z, e1x), qz = cross_part(sx, sy, e1x, e1y);
+    simd8_store(out->q[0], qx);
+    simd8_store(out->q[1], qy);
+    simd8_store(out->q[2], qz);
+    simd8_store(out->t, simd8_multiply_add(e2x, qx, simd8_multiply_add(e2y, qy, simd8_mul(e2z, qz))));
+    simd8 extent = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
+    extent = simd8_max(extent, simd8_max(simd8_size(e2y), simd8_size(e2z)));
+    extent = simd8_max(extent, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
+    simd8 distance = simd8_max(simd8_size(sx), simd8_max(simd8_size(sy), simd8_size(sz)));
+    simd8 e = simd8_multiply_add(simd8_add(extent, distance), simd8_all(64 * 0x1p-24f), simd8_all(p->error));
+    e = simd8_mul(e, extent);
+    simd8_store(out->e, e);
+    simd8_store(out->slack, simd8_mul(simd8_mul(e, extent), simd8_all(6)));
+    out->ids = b->ids;
+    out->used = simd8_at_max(simd8_load(b->corner[0]), simd8_all(4)); /* an unused lane is outside of the frame */
+}
+
+/* One ray, eight triangles. */
+static inline __attribute__((always_inline)) void try_ray(struct packet *p, const struct parts *b, unsigned i,
+                                                          const bool any) {
+    simd8 dx = simd8_all(p->dx[i]), dy = simd8_all(p->dy[i]), dz = simd8_all(p->dz[i]);
+    simd8 det = simd8_multiply_add(dx, simd8_load(b->n[0]),
+                                   simd8_multiply_add(dy, simd8_load(b->n[1]), simd8_mul(dz, simd8_load(b->n[2]))));
+    simd8 u = simd8_multiply_add(dx, simd8_load(b->a[0]),
+                                 simd8_multiply_add(dy, simd8_load(b->a[1]), simd8_mul(dz, simd8_load(b->a[2]))));
+    simd8 v = simd8_multiply_add(dx, simd8_load(b->q[0]),
+                                 simd8_multiply_add(dy, simd8_load(b->q[1]), simd8_mul(dz, simd8_load(b->q[2]))));
+    simd8 sign = simd8_sign(det), t = simd8_flip(simd8_load(b->t), sign);
+    det = simd8_flip(det, sign);
+    u = simd8_flip(u, sign);
+    v = simd8_flip(v, sign);
+    simd8 e = simd8_load(b->e), e3 = simd8_mul(e, simd8_all(3)), slack = simd8_load(b->slack);
+    simd8 min = simd8_min(u, v), rest = simd8_sub(det, simd8_add(u, v));
+    simd8 before = simd8_sub(simd8_multiply_add(det, simd8_all(p->limit[i]), slack), t);
+    simd8 inside = simd8_min(simd8_add(min, e), simd8_add(rest, e3));
+    unsigned met = b->used & simd8_not_negative(simd8_min(inside, simd8_min(simd8_add(t, slack), before)));
+    if (!met)
+        return;
+    inside = simd8_min(simd8_sub(min, e), simd8_sub(rest, e3));
+    simd8 ends = simd8_sub(simd8_multiply_sub(det, simd8_all(p->certain[i]), slack), t);
+    simd8 begins = simd8_sub(simd8_sub(t, slack), simd8_mul(det, simd8_all(p->begun)));
+    unsigned certain = met & simd8_not_negative(simd8_min(inside, simd8_min(begins, ends)));
+    if (any) {
+        if (certain) {
+            p->found |= UINT64_C(1) << i;
+            p->alive &= ~(UINT64_C(1) << i);
+            return;
+        }
+        for (; met && (p->alive >> i & 1); met &= met - 1)
+            decide(p, i, b->ids[__builtin_ctz(met)], true);
+        return;
+    }
+    _Alignas(32) float from[WIDTH], to[WIDTH];
+    if (certain) {
+        simd8_store(from, simd8_div(simd8_sub(t, slack), det));
+        simd8_store(to, simd8_div(simd8_add(t, slack), det));
+    }
+    for (; met; met &= met - 1) {
+        unsigned k = (unsigned)__builtin_ctz(met);
+        if (certain >> k & 1)
+            keep(p, i, b->ids[k], from[k] * (1 - 0x1p-20f), to[k] * (1 + 0x1p-20f));
+        else
+            decide(p, i, b->ids[k], false);
+    }
+}
+
+/* One triangle, a vector of rays. */
+static inline __attribute__((always_inline)) void try_group(struct packet *p, const struct parts *b, unsigned k,
+                                                            unsigned first, unsigned active, const bool any) {
+    lanes dx = lanes_load(p->dx + first), dy = lanes_load(p->dy + first), dz = lanes_load(p->dz + first);
+    lanes det = lanes_multiply_add(dx, lanes_all(b->n[0][k]),
+                                   lanes_multiply_add(dy, lanes_all(b->n[1][k]), lanes_mul(dz, lanes_all(b->n[2][k]))));
+    lanes u = lanes_multiply_add(dx, lanes_all(b->a[0][k]),
+                                 lanes_multiply_add(dy, lanes_all(b->a[1][k]), lanes_mul(dz, lanes_all(b->a[2][k]))));
+    lanes v = lanes_multiply_add(dx, lanes_all(b->q[0][k]),
+                                 lanes_multiply_add(dy, lanes_all(b->q[1][k]), lanes_mul(dz, lanes_all(b->q[2][k]))));
+    lanes sign = lanes_sign(det), t = lanes_flip(lanes_all(b->t[k]), sign);
+    det = lanes_flip(det, sign);
+    u = lanes_flip(u, sign);
+    v = lanes_flip(v, sign);
+    lanes e = lanes_all(b->e[k]), e3 = lanes_mul(e, lanes_all(3)), slack = lanes_all(b->slack[k]);
+    lanes min = lanes_min(u, v), rest = lanes_sub(det, lanes_add(u, v));
+    lanes before = lanes_sub(lanes_multiply_add(det, lanes_load(p->limit + first), slack), t);
+    lanes inside = lanes_min(lanes_add(min, e), lanes_add(rest, e3));
+    unsigned met = active & lanes_not_negative(lanes_min(inside, lanes_min(lanes_add(t, slack), before)));
+    if (!met)
+        return;
+    inside = lanes_min(lanes_sub(min, e), lanes_sub(rest, e3));
+    lanes ends = lanes_sub(lanes_multiply_sub(det, lanes_load(p->certain + first), slack), t);
+    lanes begins = lanes_sub(lanes_sub(t, slack), lanes_mul(det, lanes_all(p->begun)));
+    unsigned certain = met & lanes_not_negative(lanes_min(inside, lanes_min(begins, ends)));
+    if (any) {
+        p->found |= (uint64_t)certain << first;
+        p->alive &= ~((uint64_t)certain << first);
+        for (met &= ~certain; met; met &= met - 1)
+            decide(p, first + (unsigned)__builtin_ctz(met), b->ids[k], true);
+        return;
+    }
+    _Alignas(64) float from[LANES], to[LANES];
+    lanes_store(from, lanes_div(lanes_sub(t, slack), det));
+    lanes_store(to, lanes_div(lanes_add(t, slack), det));
+    for (; met; met &= met - 1) {
+        unsigned lane = (unsigned)__builtin_ctz(met);
+        if (certain >> lane & 1)
+            keep(p, first + lane, b->ids[k], from[lane] * (1 - 0x1p-20f), to[lane] * (1 + 0x1p-20f));
+        else
+            decide(p, first + lane, b->ids[k], false);
+    }
+}
+
+static __attribute__((noinline)) void try_block(struct packet *p, uint32_t number, uint64_t rays, const bool any) {
+    struct parts parts;
+    split_block(p, number, &parts);
+    unsigned used = (unsigned)__builtin_popcount(parts.used), groups = 0; /* the unused ones come last */
+    for (unsigned g = 0; g < p->groups; g++)
+        groups += (rays >> g * LANES & ALL_LANES) != 0;
+    unsigned count = (unsigned)__builtin_popcountll(rays);
+    p->tests += (uint64_t)count * WIDTH;
+    if (count <= used * groups) {
+        for (; rays; rays &= rays - 1)
+            try_ray(p, &parts, (unsigned)__builtin_ctzll(rays), any);
+        return;
+    }
+    for (unsigned g = 0; g < p->groups; g++) {
+        unsigned active = (unsigned)(rays >> g * LANES & ALL_LANES);
+        for (unsigned k = 0; k < used && active; k++)
+            try_group(p, &parts, k, g * LANES, active, any);
+    }
+}
+
+/* ---- the hierarchy ---- */
+
+/* Which of the rays meet the box before their limits. */
+static inline __attribute__((always_inline)) uint64_t meet_box(const struct packet *p, const float box[6],
+                                                               uint64_t rays, const bool mixed) {
+    uint64_t met = 0;
+    lanes low_x = lanes_all(box[p->negative[0]]), high_x = lanes_all(box[!p->negative[0]]);
+    lanes low_y = lanes_all(box[2 + p->negative[1]]), high_y = lanes_all(box[2 + !p->negative[1]]);
+    lanes low_z = lanes_all(box[4 + p->negative[2]]), high_z = lanes_all(box[4 + !p->negative[2]]);
+    for (unsigned g = 0; g < p->groups; g++) {
+        unsigned first = g * LANES;
+        uint64_t active = rays & ALL_LANES << first;
+        if (!active)
+            continue;
+        lanes rx = lanes_load(p->rx + first), ry = lanes_load(p->ry + first), rz = lanes_load(p->rz + first);
+        lanes ax = lanes_mul(low_x, rx), ay = lanes_mul(low_y, ry), az = lanes_mul(low_z, rz);
+        lanes bx = lanes_mul(high_x, rx), by = lanes_mul(high_y, ry), bz = lanes_mul(high_z, rz);
+        lanes enter, leave;
+        if (mixed) {
+            enter =
+                lanes_max(lanes_max(lanes_min(ax, bx), lanes_min(ay, by)), lanes_max(lanes_min(az, bz), lanes_all(0)));
+            leave = lanes_min(lanes_min(lanes_max(ax, bx), lanes_max(ay, by)),
+                              lanes_min(lanes_max(az, bz), lanes_load(p->limit + first)));
+        } else {
+            enter = lanes_max(lanes_max(ax, ay), lanes_max(az, lanes_all(0)));
+            leave = lanes_min(lanes_min(bx, by), lanes_min(bz, lanes_load(p->limit + first)));
+        }
+        met |= active & (uint64_t)lanes_at_max(enter, leave) << first;
+    }
+    return met;
+}
+
+/* The children of a node that the beam meets, the farthest first on the stack. */
+static inline __attribute__((always_inline)) uint32_t push_children(struct packet *p, uint32_t number, uint64_t rays,
+                                                                    struct pending_box *stack, uint32_t top) {
+    const struct wide_node *n = p->index->nodes + number;
+    _Alignas(32) float box[6][WIDTH], t[WIDTH];
+    simd8 rows[6];
+    for (int i = 0; i < 6; i++) {
+        rows[i] = simd8_sub(simd8_load(n->bounds[i]), simd8_all(p->shifted[i]));
+        simd8_store(box[i], rows[i]);
+    }
+    simd8 zero = simd8_all(0), near = rows[2 * p->forward], far = rows[2 * p->forward + 1];
+    if (p->backwards) {
+        simd8 swap = simd8_sub(zero, near);
+        near = simd8_sub(zero, far);
+        far = swap;
+    }
+    simd8 outside = simd8_sub(zero, far);
+    for (int i = 0; i < 2; i++) {
+        simd8 low = rows[2 * p->side[i]], high = rows[2 * p->side[i] + 1];
+        simd8 max = simd8_mul(p->slope_max[i] > 0 ? far : near, simd8_all(p->slope_max[i]));
+        simd8 min = simd8_mul(p->slope_min[i] > 0 ? near : far, simd8_all(p->slope_min[i]));
+        outside = simd8_max(outside, simd8_max(simd8_sub(low, max), simd8_sub(min, high)));
+    }
+    unsigned met = simd8_at_max(outside, zero);
+    p->nodes++;
+    if (!met)
+        return top;
+    simd8_store(t, simd8_max(near, zero));
+    uint64_t order[WIDTH];
+    unsigned count = 0;
+    for (; met; met &= met - 1) {
+        unsigned i = (unsigned)__builtin_ctz(met), place = count++;
+        uint32_t bits;
+        memcpy(&bits, &t[i], sizeof bits);
+        uint64_t entry = (uint64_t)bits << 32 | i;
+        for (; place > 0 && order[place - 1] < entry; place--)
+            order[place] = order[place - 1];
+        order[place] = entry;
+    }
+    for (unsigned k = 0; k < count; k++) {
+        unsigned i = (unsigned)order[k] & (WIDTH - 1);
+        struct pending_box *w = &stack[top++];
+        for (int j = 0; j < 6; j++)
+            w->bounds[j] = box[j][i];
+        w->reference = n->child[i];
+        w->rays = rays;
+    }
+    return top;
+}
+
+static inline __attribute__((always_inline)) void fly_camera_all(struct packet *p, uint32_t root, const bool any,
+                                                                 const bool mixed) {
+    struct pending_box stack[STACK_ENTRIES];
+    uint32_t top = 0;
+    if (root & REF_LEAF) {
+        try_block(p, root & ~REF_LEAF, p->alive, any);
+        return;
+    }
+    top = push_children(p, root, p->alive, stack, top);
+    while (top > 0 && p->alive) {
+        const struct pending_box *w = &stack[--top];
+        uint64_t rays = meet_box(p, w->bounds, w->rays & p->alive, mixed);
+        uint32_t reference = w->reference;
+        if (!rays)
+            continue;
+        if (reference & REF_LEAF)
+            try_block(p, reference & ~REF_LEAF, rays, any);
+        else
+            top = push_children(p, reference, rays, stack, top);
+    }
+}
+
+static void traversal(struct packet *p, uint32_t root, const bool any) {
+    if (any && p->mixed)
+        fly_camera_all(p, root, true, true);
+    else if (any)
+        fly_camera_all(p, root, true, false);
+    else if (p->mixed)
+        fly_camera_all(p, root, false, true);
+    else
+        fly_camera_all(p, root, false, false);
+}
+
+/* ---- beginning ---- */
+
+/* The planes round the rays, over the axis that is the longest for all of them. False: there is none. */
+static bool set_beam(struct packet *p) {
+    const float *d[3] = {p->dx, p->dy, p->dz};
+    int z = fabsf(d[1][0]) > fabsf(d[0][0]);
+    z = fabsf(d[2][0]) > fabsf(d[z][0]) ? 2 : z;
+    p->forward = z;
+    p->side[0] = (z + 1) % 3;
+    p->side[1] = (z + 2) % 3;
+    p->backwards = d[z][0] < 0;
+    lanes min = lanes_all(INFINITY), slope_min[2], slope_max[2];
+    for (int k = 0; k < 2; k++) {
+        slope_min[k] = lanes_all(INFINITY);
+        slope_max[k] = lanes_all(-INFINITY);
+    }
+    lanes turn = lanes_all(p->backwards ? -0.0f : 0.0f);
+    const float *inverse[3] = {p->rx, p->ry, p->rz};
+    for (unsigned g = 0; g < p->groups; g++) {
+        min = lanes_min(min, lanes_flip(lanes_load(d[z] + g * LANES), turn));
+        lanes over = lanes_flip(lanes_load(inverse[z] + g * LANES), turn);
+        for (int k = 0; k < 2; k++) {
+            lanes slope = lanes_mul(lanes_load(d[p->side[k]] + g * LANES), over);
+            slope_min[k] = lanes_min(slope_min[k], slope);
+            slope_max[k] = lanes_max(slope_max[k], slope);
+        }
+    }
+    if (!(lanes_smallest(min) >= 0x1p-5f))
+        return false;
+    for (int k = 0; k < 2; k++) {
+        p->slope_min[k] = lanes_smallest(slope_min[k]) - 0x1p-20f;
+        p->slope_max[k] = lanes_largest(slope_max[k]) + 0x1p-20f;
+        p->slope_min[k] -= fabsf(p->slope_min[k]) * 0x1p-20f;
+        p->slope_max[k] += fabsf(p->slope_max[k]) * 0x1p-20f;
+    }
+    /* The axes of the double-precision test: all rays have their longest component ahead, or they differ. */
+    static const signed char kind[3][2] = {{0, 3}, {1, 4}, {2, 5}};
+    p->axes = kind[z][p->backwards];
+    const double *exact[3] = {p->rays->direction[0], p->rays->direction[1], p->rays->direction[2]};
+    int differ = 0;
+    for (unsigned i = 0; i < p->groups * LANES; i++)
+        differ |= (fabs(exact[p->side[0]][i]) >= fabs(exact[z][i])) | (fabs(exact[p->side[1]][i]) >= fabs(exact[z][i]));
+    if (differ)
+        p->axes = -1;
+    return true;
+}
+
+static double power_of_two(uint64_t exponent_bits) {
+    double x;
+    exponent_bits <<= 52;
+    memcpy(&x, &exponent_bits, sizeof x);
+    return x;
+}
+
+/* The largest component of the longest and of the shortest direction. False: one is not finite. */
+static bool measure_rays(const struct ray_packet *rays, unsigned count, double *longest, double *shortest) {
+    double max = 0, min = INFINITY;
+    int bad = 0;
+    for (unsigned i = 0; i < count; i++) {
+        double x = fabs(rays->direction[0][i]), y = fabs(rays->direction[1][i]), z = fabs(rays->direction[2][i]);
+        double size = x > y ? x : y;
+        size = z > size ? z : size;
+        max = size > max ? size : max;
+        min = size < min ? size : min;
+        bad |= !(x + y + z < INFINITY);
+    }
+    *longest = max;
+    *shortest = min;
+    return !bad;
+}
+
+/* False: these rays do not suit a packet. */
+static bool begin(struct packet *p, uint64_t active) {
+    const struct triangle_index *index = p->index;
+    const struct ray_packet *rays = p->rays;
+    double longest, shortest;
+    p->groups = (rays->count + LANES - 1) / LANES;
+    unsigned places = p->groups * LANES;
+    if (index->voxel_count != 27 || !(rays->t_min >= 0) || !measure_rays(rays, places, &longest, &shortest))
+        return false;
+    double scaled = longest * index->scale;
+    if (!(longest > 0x1p-900 && longest < 0x1p900) || !(shortest >= 0.5 * longest) ||
+        !(scaled > 0x1p-900 && scaled < 0x1p900))
+        return false;
+    double o[3] = {(rays->origin.x - index->centre[0]) * index->scale,
+                   (rays->origin.y - index->centre[1]) * index->scale,
+                   (rays->origin.z - index->centre[2]) * index->scale};
+    double away = 0;
+    for (int k = 0; k < 3; k++) {
+        if (!(fabs(o[k]) <= FARTHEST))
+            return false;
+        away = fabs(o[k]) > away ? fabs(o[k]) : away;
+    }
+    double far = away > 1 ? away : 1;
+    uint64_t exponent;
+    memcpy(&exponent, &scaled, sizeof exponent);
+    exponent >>= 52;
+    double shrink = index->scale * power_of_two(2045 - exponent), to_local = power_of_two(exponent + 1);
+    p->t_to_local = to_local;
+    float *const d[3] = {p->dx, p->dy, p->dz}, *const inverse[3] = {p->rx, p->ry, p->rz};
+    p->mixed = false;
+    for (int k = 0; k < 3; k++) {
+        for (unsigned i = 0; i < places; i++)
+            d[k][i] = (float)(rays->direction[k][i] * shrink);
+        unsigned any = 0, all = 1;
+        for (unsigned g = 0; g < p->groups; g++) {
+            lanes x = lanes_load(d[k] + g * LANES), sign = lanes_sign(x);
+            /* A zero becomes so small that no way along it counts. */
+            lanes size = lanes_min(lanes_size(lanes_div(lanes_all(1), x)), lanes_all(0x1p60f));
+            lanes_store(inverse[k] + g * LANES, lanes_flip(size, sign));
+            unsigned positive = lanes_not_negative(x);
+            any |= positive != ALL_LANES;
+            all &= positive == 0;
+        }
+        p->negative[k] = any && all;
+        p->mixed |= any && !all;
+    }
+    if (!set_beam(p))
+        return false;
+    for (unsigned i = 0; i < places; i++) {
+        double end = rays->t_max[i] * to_local;
+        end = end < 0x1p60 ? end : 0x1p60;
+        p->limit[i] = (float)end * (1 + 0x1p-20f);
+        p->certain[i] = (float)end * (1 - 0x1p-20f);
+        p->best[i] = rays->t_max[i];
+    }
+    double start = rays->t_min * to_local;
+    p->begun = start < 0x1p60 ? (float)start * (1 + 0x1p-20f) : 0x1p60f;
+    float slack = (float)(1 + far) * 0x1p-21f;
+    for (int k = 0; k < 3; k++) {
+        p->origin[k] = (float)o[k];
+        p->shifted[2 * k] = p->origin[k] + slack;
+        p->shifted[2 * k + 1] = p->origin[k] - slack;
+    }
+    p->error = (float)(away * 13 * 0x1p-24 + far * 8 * 0x1p-46);
+    p->alive = active;
+    p->found = p->pending = p->tests = p->nodes = 0;
+    return true;
+}
+
+static void search(struct packet *p, struct triangle_cost *cost, const bool any) {
+    const struct triangle_index *index = p->index;
+    if (index->big)
+        traversal(p, index->big, any);
+    if (index->only != REF_EMPTY)
+        traversal(p, index->only, any);
+    cost->triangle_tests += p->tests;
+    cost->hierarchy_steps += p->nodes;
+}
+
+bool PACKET(nearest)(const struct triangle_index *index, const struct triangle_set *set, const struct ray_packet *rays,
+                     uint64_t active, struct packet_hits *hits, uint64_t *answer_bits, struct triangle_cost *cost) {
+    struct packet p;
+    p.index = index;
+    p.set = set;
+    p.rays = rays;
+    p.hits = hits;
+    if (!begin(&p, active))
+        return false;
+    for (unsigned g = 0; g < p.groups; g++)
+        lanes_store(p.nearer + g * LANES, lanes_all(INFINITY));
+    search(&p, cost, false);
+    decide_candidates(&p);
+    *answer_bits = p.found;
+    return true;
+}
+
+bool PACKET(any)(const struct triangle_index *index, const struct triangle_set *set, const struct ray_packet *rays,
+                 uint64_t active, uint64_t *answer_bits, struct triangle_cost *cost) {
+    struct packet p;
+    p.index = index;
+    p.set = set;
+    p.rays = rays;
+    p.hits = NULL;
+    if (!begin(&p, active))
+        return false;
+    search(&p, cost, true);
+    *answer_bits = p.found;
+    return true;
+}

@@ -1,0 +1,33 @@
+/* Ranges of references to triangles, and how they are partitioned while a hierarchy is built. Private to
+ * src/accel/triangle_*. */
+#ifndef GRAY_ACCEL_TRIANGLE_SPLIT_INTERNAL_H
+#define GRAY_ACCEL_TRIANGLE_SPLIT_INTERNAL_H
+
+#include "accel/simd_internal.h"
+#include "accel/triangle_build_internal.h"
+
+/* References first .. first + count - 1, their box and the box of their centres (times two). */
+struct range {
+    simd4 min, max, centre_min, centre_max;
+    uint32_t first, count;
+};
+
+static inline float half_area(simd4 lo, simd4 hi) {
+    float e[4];
+    simd4_store(e, simd4_sub(hi, lo));
+    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+}
+
+/* The boxes of a range whose first and count are set. */
+void range_measure(const struct reference *references, struct range *range);
+
+/* Splits a range in two that are not empty; halve: in the middle of the list, not by surfaces. */
+void split_range(struct reference *references, const struct range *range, bool halve, struct range *left,
+                 struct range *right);
+
+/* Separates a floor, whose triangles have half the surface of the range each, from what is on it, if it is much
+ * thinner; false: there is none. The surface area heuristic sees no gain, but rays start on floors, and rays that leave
+ * a floor miss a flat box. */
+bool split_floor(struct reference *references, const struct range *range, struct range *floor, struct range *rest);
+
+#endif

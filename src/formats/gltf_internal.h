@@ -1,0 +1,76 @@
+/* What the files of the glTF reader share; no other file includes this. */
+#ifndef GRAY_FORMATS_GLTF_INTERNAL_H
+#define GRAY_FORMATS_GLTF_INTERNAL_H
+
+#include "base/file.h"
+#include "formats/model.h"
+#include "formats/scan_internal.h"
+
+#include <jansson.h>
+
+/* A buffer is fetched when something first looks into it. */
+struct gltf_buffer {
+    const uint8_t *data;
+    size_t size;
+    bool fetched;
+    uint8_t *decoded;       /* ours, from a data URI */
+    struct file_bytes file; /* ours, from a file beside the model */
+};
+
+struct gltf {
+    struct model *model;
+    const char *path;
+    struct error *error;
+    json_t *root;
+    const uint8_t *binary; /* the second chunk of a GLB, or NULL */
+    size_t binary_size;
+    struct gltf_buffer *buffers;
+    size_t buffer_count;
+    struct image **images; /* embedded ones, once decoded */
+    size_t image_count;
+    uint64_t bytes;    /* of the file and all that was fetched for it */
+    uint64_t produced; /* vertices and corners so far */
+};
+
+/* Some numbers of the file: count elements of a few components each. */
+struct gltf_accessor {
+    const uint8_t *data; /* NULL: zeros */
+    size_t stride;
+    uint64_t count;
+    int components;
+    enum number_type type;
+    bool normalized;
+    uint64_t sparse_count;
+    const uint8_t *sparse_indices, *sparse_values;
+    enum number_type sparse_type;
+};
+
+/* "FILE: WHERE: what", false. */
+bool gltf_fail(const struct gltf *g, const char *where, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* The array of that name at the root, or NULL. */
+json_t *gltf_array(const struct gltf *g, const char *name);
+/* A whole number >= 0; absent gives `otherwise`. False: something else stands there. */
+bool gltf_whole(const struct gltf *g, const json_t *object, const char *key, uint64_t otherwise, uint64_t *out,
+                const char *where);
+/* The same as an index into the array `of` at the root; absent gives MODEL_NONE. */
+bool gltf_index(const struct gltf *g, const json_t *object, const char *key, const char *of, uint32_t *out,
+                const char *where);
+/* The numbers of an array, all or none of them; what is not there stays as it was. */
+bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, double *out, int count,
+                  const char *where);
+
+/* gltf_data.c */
+bool gltf_view(struct gltf *g, uint32_t index, const uint8_t **data, size_t *size, size_t *stride);
+bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out);
+/* Elements first .. first + count - 1, `components` numbers each. */
+bool gltf_accessor_read(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint64_t first, uint64_t count,
+                        double *out);
+bool gltf_accessor_read_whole(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint32_t *out);
+/* Percent signs decoded, in the model's arena; NULL without memory. */
+char *gltf_decode_uri(const struct gltf *g, const char *uri);
+bool gltf_decode_data(const struct gltf *g, const char *uri, uint8_t **out, size_t *size, const char *where);
+
+/* gltf_material.c */
+bool gltf_read_materials(struct gltf *g);
+
+#endif

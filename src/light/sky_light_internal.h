@@ -1,0 +1,30 @@
+/* A sky as a light: directions in proportion to what comes from them. */
+#ifndef GRAY_LIGHT_SKY_LIGHT_INTERNAL_H
+#define GRAY_LIGHT_SKY_LIGHT_INTERNAL_H
+
+#include "base/arena.h"
+#include "base/pool.h"
+#include "light/sky.h"
+#include "math/sampling.h"
+
+/* Cells of height y and longitude; in the arena it was built in. */
+struct sky_table {
+    uint32_t rows, columns;
+    const double *row_until; /* share of the unit interval up to and with a row, from y = 1 down */
+    const double *until;     /* rows x columns: the same inside of a row */
+};
+
+/* NULL: no memory. A sky that is black everywhere gives a table of equal cells. */
+const struct sky_table *sky_table_build(const struct sky *sky, struct arena *arena, struct pool *pool);
+struct sky_sample {
+    struct vec3 direction; /* unit */
+    struct vec3 radiance;
+    double pdf;            /* of the direction, by solid angle */
+    struct vec3 intensity; /* radiance over pdf as classic light: its mean times (n.l) is what a white surface shows */
+};
+/* The sample for a place of the unit square. */
+struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place);
+/* Its density for a unit direction. */
+double sky_table_pdf(const struct sky_table *table, struct vec3 direction);
+
+#endif

@@ -1,0 +1,16 @@
+/* Relief without geometry: normals turned by textures. */
+#ifndef GRAY_MATERIAL_BUMP_INTERNAL_H
+#define GRAY_MATERIAL_BUMP_INTERNAL_H
+
+#include "material/material.h"
+
+/* A bump or a normal map (MATERIAL_BUMP, MATERIAL_NORMAL) over nothing, as high as one that says nothing of it: slopes
+ * as the colours have them; heights of BUMP_HEIGHT, of the size on the surface where the texture is an image alone. */
+struct bump bump_make(enum material_kind kind, const struct texture *texture);
+
+/* Turns *normal, a unit vector, by the bumps of the material, from the lowest on; leaves it bit by bit where there are
+ * none or their textures are flat. Needs hit->raise and the tangents of the mapping (material_has_bump); does nothing
+ * where a shape has none. */
+void bump_turn_normal(const struct material *material, const struct hit *hit, struct vec3 *normal);
+
+#endif

@@ -1,0 +1,20 @@
+/* Writes the pictures beside the picture (--aov). */
+#ifndef GRAY_OUTPUT_LAYERS_INTERNAL_H
+#define GRAY_OUTPUT_LAYERS_INTERNAL_H
+
+#include "base/file_output.h"
+#include "render/film.h"
+
+/* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. An EXR picture
+ * has them in itself (layers_write_exr), so that nothing is left to do. Depth is
+ * written with 16 bits always, the others with as many as the picture. */
+bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error);
+
+/* Light as R, G, B, and the layers as channels with their names: depth.Z, normal.X ... */
+bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error);
+
+enum { LAYER_NAME_LIMIT = 4096 };
+/* dir/foo.png with the layer depth is dir/foo.depth.png. */
+bool layers_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error);
+
+#endif

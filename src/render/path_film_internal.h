@@ -1,0 +1,39 @@
+/* What the film records of a path-traced pixel: sums over its samples, so that more samples can be added later and the
+ * error can be estimated.
+ *
+ * Even and odd samples are two halves whose random numbers are scrambled independently (render/sampler.h): the
+ * difference of their means measures the error of the pixel, correlations within a half included. Sums are rounded to
+ * what the record holds after every sample, so a pixel has the same bytes however its samples are cut into passes. */
+#ifndef GRAY_RENDER_PATH_FILM_INTERNAL_H
+#define GRAY_RENDER_PATH_FILM_INTERNAL_H
+
+#include "math/vec3.h"
+#include "render/film.h"
+
+/* The zero value is a pixel without samples. */
+struct path_pixel {
+    struct vec3 sums[2]; /* of the halves: weighted radiance */
+    double weights[2];   /* of the halves: sums of the samples' weights */
+    struct vec3 squares; /* of the weighted radiance of all samples */
+    uint32_t samples;    /* sample number k belongs to half k % 2 */
+};
+
+struct film_record path_film_record(void);
+
+/* at: index of the pixel in the film. Storing sets the colour of the pixel, too. */
+struct path_pixel path_film_load(const struct film *film, size_t at);
+void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel);
+
+/* Adds sample number pixel->samples; weight: of the reconstruction filter, 1 or -1. */
+void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight);
+
+/* The mean of all samples, and of one half (black while it has none). */
+struct vec3 path_pixel_mean(const struct path_pixel *pixel);
+struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
+/* The variance of path_pixel_mean by channel: from the difference of the halves, unbiased with one degree of freedom;
+ * and from the samples as if they were independent, which is smoother and too large where their strata help. 0 with
+ * less than two samples. */
+struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
+struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
+
+#endif

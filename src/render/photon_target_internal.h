@@ -1,0 +1,53 @@
+/* Where photons start: for each light the directions (of a distant light: the places across its rays) from which they
+ * can meet something specular, in cells; the projection maps of Jensen 1996. */
+#ifndef GRAY_RENDER_PHOTON_TARGET_INTERNAL_H
+#define GRAY_RENDER_PHOTON_TARGET_INTERNAL_H
+
+#include "base/arena.h"
+#include "base/pool.h"
+#include "light/light.h"
+#include "world/world.h"
+
+struct photon_cell {
+    double until;          /* sum of the importance of all cells up to this one */
+    uint32_t face, i, j;   /* of a cube round the light; of a distant light face 0 */
+    float strength, shine; /* reflectance of the strongest specular object there; the light's own in its middle */
+};
+
+/* One light, or one part of a light with an extent. */
+struct photon_target {
+    struct light_emitter emitter;
+    uint32_t number;                /* of the light */
+    double corner[2], size, behind; /* PARALLEL: the square across, and where photons start along the direction; of an
+                                       ENVIRONMENT size is that of the scene */
+    struct box across, scene;       /* ENVIRONMENT: what photons are to meet, and before what they start */
+    uint32_t level, cell_count;     /* 2^level cells along the side of a face */
+    struct photon_cell *cells;
+    double total;              /* importance of all cells */
+    double flux;               /* what they emit, as far as it is known before */
+    uint32_t first, count;     /* photons of the whole map that are its own */
+    struct medium_stack media; /* round the centre */
+};
+
+struct photon_targets {
+    struct photon_target *targets;
+    uint32_t count;
+};
+
+/* Finds the cells of every light of the world and shares `photons` among them by flux. Memory comes from the arena.
+ * Errors: no memory, cancelled. Without specular things there are no aims. */
+bool photon_targets_make(struct photon_targets *out, const struct world *world, uint32_t photons, struct arena *arena,
+                         struct world_scratch *scratch, struct pool *pool, struct error *error);
+
+struct photon_start {
+    struct vec3 origin, direction; /* direction: unit */
+    struct vec3 power;             /* before fading */
+    double strength;               /* of its cell: power is divided by it, and what is left after a thing as strong as
+                                      this is what all photons are to have */
+    bool from_afar;                /* something without end may lie behind its origin */
+    uint64_t key;
+};
+/* Photon `index` (0 .. count-1) of the aim; a function of its arguments. */
+struct photon_start photon_target_start(const struct photon_target *target, uint32_t index, uint64_t seed);
+
+#endif

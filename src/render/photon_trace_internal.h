@@ -1,0 +1,22 @@
+/* Caustics: light that went through or off something specular before it met something diffuse. Photons are sent before
+ * the picture is made, and kept in a map. */
+#ifndef GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
+#define GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
+
+#include "render/photon_map_internal.h"
+#include "render/render.h"
+
+/* More bounces than this end a photon's way; in lossless glass next to nothing is left by then. */
+enum { PHOTON_BOUNCES = 100 };
+
+struct photon_statistics {
+    uint64_t sent, landed, rays;
+    double seconds, map_seconds; /* in all; of these: making the map */
+};
+
+/* Sends the photons of the job's settings through its world and builds the map of them; the same for any number of
+ * threads. Errors: no memory, cancelled. */
+bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
+                  struct photon_statistics *statistics, struct error *error);
+
+#endif

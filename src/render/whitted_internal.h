@@ -1,0 +1,53 @@
+/* The recursive integrator of Whitted, "An Improved Illumination Model for Shaded Display", CACM 1980, with the rules
+ * of docs/language.md 5.2 and 5.3: own light, reflected and refracted rays with independent counters, media stack,
+ * Fresnel (whitted.c); and its adaptive anti-aliasing (whitted_pixels.c). */
+#ifndef GRAY_RENDER_WHITTED_INTERNAL_H
+#define GRAY_RENDER_WHITTED_INTERNAL_H
+
+#include "render/render.h"
+#include "render/render_internal.h"
+
+/* Of one worker. */
+struct whitted_worker {
+    uint64_t marked; /* pixels */
+    /* The first samples of a tile and its rim. */
+    struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
+};
+
+/* Of a run. Owns the photon map and the array of workers. */
+struct whitted {
+    double cutoff; /* cutoff_weight: rays of less weight are not followed */
+    /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
+    bool full;
+    struct photon_map caustics;
+    struct whitted_worker *workers;
+};
+
+/* See render/integrator_internal.h. `whitted` is zero. */
+struct film_record whitted_record(void);
+bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
+                    struct render_statistics *statistics, struct error *error);
+void whitted_destroy(struct whitted *whitted);
+bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
+                    const struct rectangle *part);
+bool whitted_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b);
+void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
+                    int64_t y);
+void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
+                            struct render_statistics *out);
+
+/* The colour a camera ray brings, clamped to the range of float; key: the random key of this pixel and sample. */
+struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                          uint64_t key);
+/* The same for a ray that went with a packet: what it has met, or NULL. */
+struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
+                              const struct packet_answer *met, uint64_t key);
+
+/* When a ray no longer counts. */
+
+/* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: that, over
+ * how bright things can be in this scene, and over how much the tone of the picture file raises small differences. 0:
+ * every ray counts. */
+double cutoff_weight(const struct render_job *job);
+
+#endif

@@ -1,0 +1,195 @@
+/* What one run of a script carries along: the Lua state, the scene it builds, the host it talks to. Private to
+ * src/script.
+ *
+ * How errors travel. An ordinary error is a Lua error with the complete first line as its string. What a script must
+ * not catch (out of memory, cancelled, os.exit) is kept in `fatal` and `ended` while nil is raised; whatever could
+ * catch it (pcall, xpcall, coroutine.resume, load ...) is replaced by a version that raises it again (protect.c). */
+#ifndef GRAY_SCRIPT_CONTEXT_INTERNAL_H
+#define GRAY_SCRIPT_CONTEXT_INTERNAL_H
+
+#include "base/list.h"
+#include "base/mem.h"
+#include "base/path_policy.h"
+#include "scene/change.h"
+#include "script/script.h"
+#include "script/table_internal.h"
+
+#include <lua.h>
+#include <stdio.h>
+
+enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
+
+/* Types, with their names in Lua and in messages. */
+#define HANDLE_LIST(X)                                                                                                 \
+    X(HANDLE_NODE, "node", "a node")                                                                                   \
+    X(HANDLE_MATERIAL, "material", "a material")                                                                       \
+    X(HANDLE_LIGHT, "light", "a light")                                                                                \
+    X(HANDLE_TEXTURE, "texture", "a texture")                                                                          \
+    X(HANDLE_FOG, "fog", "a fog")                                                                                      \
+    X(HANDLE_SKY, "sky", "a sky")                                                                                      \
+    X(HANDLE_GHOST, "ghost", "something this version does not have")
+enum handle_type { HANDLE_LIST(LIST_MEMBER) };
+enum { HANDLE_TYPES = LIST_COUNT(HANDLE_LIST) };
+
+/* What a userdata of ours holds; no finalizer. The serial gives tables with handles as keys a fixed order. */
+struct handle {
+    enum handle_type type;
+    uint32_t serial;
+    void *pointer;
+};
+
+/* Every file whose text was given to Lua, newest first: Lua shortens long names in messages, these are the full ones.
+ */
+struct source_name {
+    const char *path;
+    struct source_name *next;
+};
+
+/* What the script has used of what it was given (limits.c). */
+struct limits {
+    struct mem_account account; /* of everything allocated for the script; a limit of 0 is none */
+    struct mem_account *charged_before;
+    char memory_words[128];
+    const void *refused_block; /* the request that was refused last: Lua asks again after a collection */
+    size_t refused_size;
+    bool memory_out;               /* something was refused: the script ends, unless it is got at once */
+    bool refused_for_good;         /* it was asked for again in vain, or something else was */
+    double time_begun, time_limit; /* seconds of this thread's processor time; a limit of 0 is none */
+    uint64_t output, output_limit; /* bytes printed and written */
+};
+
+/* gr.change_view and gr.change_exposure: of the picture of that file name. */
+struct changed_view {
+    const char *picture;
+    bool has_camera, has_exposure;
+    struct camera camera;
+    double exposure;
+    struct changed_view *next;
+};
+
+struct script_context {
+    lua_State *lua; /* the thread that called last */
+    struct limits limits;
+    const struct path_policy *path_policy; /* what may be read and written; NULL: everything */
+    const struct script_options *options;
+    const struct script_host *host;
+    FILE *output, *errors; /* standard output and error of the script, where they are not those of the process */
+    struct scene scene;
+    struct arena keep;      /* lives as long as the context */
+    struct arena call;      /* arguments of one call */
+    struct arena *out;      /* the caller's: the traceback goes there */
+    const char *path;       /* the scene as the user named it */
+    char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
+    struct source_name *sources;
+    const void *metatables[HANDLE_TYPES];
+    uint32_t handle_count;
+    const struct script_function *function; /* the one that runs */
+    const char *subject;                    /* the node it is about, or NULL */
+    uint8_t *warned;                        /* WARNED_ bits by row of the table */
+    struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
+    uint32_t change_count, change_room, added, owned;
+    struct changed_view *views; /* the newest first */
+    bool changes_reported;      /* what was left out */
+    bool number_repaired;       /* the notice about ".0" was given */
+    struct error fatal;
+    bool ended; /* os.exit was called and all is well */
+    const char *traceback;
+    struct error failure; /* what the message handler made of a script error */
+};
+
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2 };
+
+struct script_context *context_of(lua_State *L);
+
+/* "scene.lua:12: " of the nearest Lua function on the stack, or "scene.lua: ". */
+void context_where(const struct script_context *context, char *out, size_t size);
+/* "scene.lua:12: warning: gr.sphere: TEXT (node 'x')" to the host. */
+void context_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* "gr.sphere" or "node:scale". */
+const char *function_title(const struct script_function *function, char out[96]);
+
+/* Raise "scene.lua:12: gr.sphere: TEXT (node 'x')". */
+_Noreturn void context_raise(struct script_context *context, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/* Raises an error of the middle paragraph: script errors as above, others so that no script catches them. */
+_Noreturn void context_raise_error(struct script_context *context, const struct error *error);
+_Noreturn void context_raise_fatal(lua_State *L);
+_Noreturn void context_raise_no_memory(struct script_context *context); /* in the call of a gr function */
+
+/* gr_changes.c: what gr.change_... has said is laid over a picture about to be made, and taken off again. */
+bool changes_begin(struct script_context *context, struct render_request *request, struct changed_scene *changed,
+                   struct error *error);
+
+/* limits.c */
+void limits_begin(struct script_context *context);
+void limits_end(struct script_context *context);
+void *limits_allocate(void *context, void *block, size_t old_size, size_t size); /* a lua_Alloc */
+void limits_open(lua_State *L);                                                  /* sets the hook */
+void limits_check(lua_State *L); /* raises when time or memory is used up or a stop is requested */
+_Noreturn void limits_end_for_memory(lua_State *L);
+void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
+void limits_count_output(struct script_context *context,
+                         size_t size); /* the same without raising; the next check does */
+/* Around what is not the script's own work. */
+void limits_pause(struct script_context *context);
+void limits_resume(struct script_context *context);
+
+/* context.c */
+void handles_open(lua_State *L);
+void handle_push(lua_State *L, enum handle_type type, void *pointer);
+/* The handle at a stack index, or NULL when there is something else. */
+const struct handle *handle_at(lua_State *L, int index);
+const char *handle_words(enum handle_type type);
+const void *handle_key(enum handle_type type); /* the metatable is in the registry under this pointer */
+/* The name of what stands at an index: "a number", "a material", "nothing". */
+const char *value_words(lua_State *L, int index);
+
+/* dispatch.c */
+void dispatch_open(lua_State *L); /* the global gr */
+
+/* arguments.c: the first paragraph; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
+ * so the call is left undone. `first` is the stack index of the first argument. */
+bool arguments_read(struct script_context *context, const struct script_function *function, int first,
+                    struct script_value *args);
+
+/* context.c: the nearest of the words by Damerau-Levenshtein distance when it is near enough, else NULL. */
+struct suggestion {
+    const char *word, *best;
+    size_t distance;
+};
+void suggest_begin(struct suggestion *suggestion, const char *word);
+void suggest_offer(struct suggestion *suggestion, const char *candidate);
+
+/* files.c */
+void files_open(lua_State *L);
+/* Looks for a file the scene names; docs/language.md 12.3. */
+bool files_find(struct script_context *context, const char *name, char out[PATH_SIZE]);
+/* The same with the number in its name repaired, and with an error that names the folders that were searched. */
+bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error);
+/* The templates of package.path with `file` in the place of the question marks, the first that may be read. */
+bool files_on_path(const struct script_context *context, const char *templates, const char *file, char path[PATH_SIZE]);
+/* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
+const char *files_repair_number(struct script_context *context, const char *name);
+/* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
+int files_load(lua_State *L, const char *path);
+/* The names Lua shortened are written out again at the start of a message. */
+const char *files_unshorten(struct script_context *context, const char *message); /* NULL without memory */
+
+/* Others that add to a fresh state. All run protected and may raise. */
+void sandbox_open(lua_State *L); /* sandbox.c: the libraries, less what a stranger's script must not have */
+void streams_open(lua_State *L); /* streams.c: files and printing within what the scene was given */
+void streams_close(struct script_context *context); /* after the state */
+void protect_open(lua_State *L);                    /* protect.c */
+/* Puts `function` in the place of library.name; its upvalue is what was there. */
+void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);
+void compat_open(lua_State *L);   /* compat.c: old Lua */
+void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */
+void library_open(lua_State *L);  /* files.c: remembers the globals for our own modules; after all of these */
+void define_open(lua_State *L);   /* script.c: -D */
+
+/* files.c: the chunk on top of the stack, from the file `path`, sees the remembered globals if it is one of ours. */
+void library_adopt(lua_State *L, const char *path);
+
+#endif

@@ -1,0 +1,45 @@
+/* What the files with rows of the table of gr functions share: the words of its columns. */
+#ifndef GRAY_SCRIPT_TABLE_ROWS_INTERNAL_H
+#define GRAY_SCRIPT_TABLE_ROWS_INTERNAL_H
+
+#include "script/bindings_internal.h"
+
+#include <math.h>
+
+/* The range of a parameter, and no choices. */
+#define ANY 0, 0, NULL
+#define ABOVE(low) (low), (double)INFINITY, NULL
+#define IN_RANGE(low, high) (low), (high), NULL
+
+#define NAME_HELP "Name of the node, for messages."
+#define MATERIAL_HELP "Material of the surface."
+
+#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+#define GR(name, parameters, result, run, help, ...)                                                                   \
+    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
+#define NODE(name, parameters, result, run, help, ...)                                                                 \
+    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
+
+/* Every shape begins with these parameters; its own are counted from SHAPE_FIRST. */
+enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
+#define SHAPE(otherwise)                                                                                               \
+    [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
+    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
+
+/* What every light begins with. */
+#define LIGHT_LISTS                                                                                                    \
+    [LIGHT_INCLUDE] =                                                                                                  \
+        {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "Nodes that it lights, with their children."},             \
+    [LIGHT_EXCLUDE] = {                                                                                                \
+        "exclude", KIND_NODES, OPTIONAL, ANY, NULL, "none", "Nodes that it does not light, with their children."}
+#define LIGHT_FIELDS(colour_flags)                                                                                     \
+    [LIGHT_COLOUR] = {"colour",                                                                                        \
+                      KIND_COLOUR,                                                                                     \
+                      colour_flags,                                                                                    \
+                      ANY,                                                                                             \
+                      NULL,                                                                                            \
+                      colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \
+                      "Colour and strength."},                                                                         \
+    LIGHT_LISTS
+
+#endif
