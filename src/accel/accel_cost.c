@@ -1,13 +1,13 @@
-/* The cost model of the frame. Two kinds of rays represent all: lines through the frame at random, of which the share
- * S(voxel) / S(frame) visits a voxel (S: surface; Cauchy and Crofton, as in the surface area heuristic of MacDonald and
- * Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990), and lines to a random thing, since cameras look
- * at objects and light comes from them: for those a crowded voxel counts by how much is in it. Where a ray ends does
- * not matter to the choice: steps and nodes end with it.
+/* The cost model of the grid of voxels ("frame"). Two kinds of rays represent all: random lines through the frame, of
+ * which the share S(voxel) / S(frame) visits a voxel (S: surface; Cauchy and Crofton, as in the surface area heuristic
+ * of MacDonald and Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990), and lines to a random item,
+ * since cameras look at objects and light comes from them: for those a voxel counts in proportion to its number of
+ * items. The end of a ray does not affect the choice: steps and nodes end with it.
  *
- * A hierarchy is taken for the occupied voxels of all levels, 2, 4, 8 ... along the longest axis; from one to the next
- * it needs log(growth of their number) / log(children) nodes on top of each other. With lists in the voxels nothing has
- * to be started, and in clouds of like things a step, about 0.35 visits of a node, spares more than it costs; but one
- * crowded voxel (a heap on a wide floor) costs whoever looks at it all that it holds. */
+ * A hierarchy is modelled as the occupied voxels of all levels, 2, 4, 8 ... along the longest axis; from one level to
+ * the next it needs log(growth of their number) / log(children) levels of nodes. Lists in voxels have no start cost,
+ * and in clouds of similar items a step, about 0.35 visits of a node, saves more than it costs; but one crowded voxel
+ * (a cluster on a wide floor) costs every ray that visits it a test of all its items. */
 #include "accel/accel_cost.h"
 
 #include "base/mem.h"
@@ -16,10 +16,10 @@
 /* In visits of a node; measured (docs/performance.md). */
 #define STEP_COST 0.35 /* one voxel on */
 #define LIST_COST 0.3  /* an entry of a list: its box */
-#define OVERLAP 1.5    /* nodes over boxes that overlap, and are not full, for those that would do */
+#define OVERLAP 1.5    /* factor for nodes that overlap or are not full */
 #define START_COST 1.2 /* of a hierarchy in a voxel */
-/* Of a ray that traverses voxels over a mesh, once: it is brought to the frame and less sure of its hits (2.5), and
- * goes alone where rays of one origin go together (a third of them, at half the price: 1.5). */
+/* Once per ray that traverses voxels over a mesh: it is moved to the frame and its error bounds are larger (2.5), and
+ * it cannot be part of a packet (a third of the rays, at half the cost: 1.5). */
 #define FLY_COST 4.0
 
 enum { BIG_ITEM = 64 /* voxels */, SAMPLE_LIMIT = 4 /* samples to an occupied voxel */ };
@@ -51,7 +51,7 @@ static uint32_t cells_along(const struct cost_level *level, const struct box *bo
 struct sample {
     const struct box *boxes;
     uint32_t count;
-    double each; /* items that one of them represents */
+    double each; /* items that one sample represents */
 };
 
 /* False: the sample is too small for the level. */
@@ -85,7 +85,7 @@ static bool count_level(struct cost_level *level, const struct box *bounds, cons
     level->visited = (double)all * share;
     level->occupied = occupied * share;
     level->listed = listed * sample->each * share;
-    /* One of them is the thing itself; the others represent as many more. */
+    /* One of them is the item itself; the others represent the rest. */
     level->around = entries > 0 ? 1 + (squares / entries - 1) * sample->each : 0;
     return sample->each == 1 || entries >= SAMPLE_LIMIT * occupied;
 }
@@ -120,7 +120,7 @@ void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds,
         level_shape(level, size, UINT32_C(1) << l);
         for (size_t v = 0; v < largest; v++)
             counts[v] = 0;
-        /* Of finer levels a sample would find too few that are occupied. */
+        /* At finer levels a sample would find too few occupied voxels. */
         if (!count_level(level, bounds, &sample, counts))
             break;
         cost_sample->level_count = l + 1;
@@ -129,14 +129,14 @@ void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds,
     mem_free(counts);
 }
 
-/* Levels of a hierarchy with so many children to a node that part what is in level - 1 into what is in level. */
+/* Levels of a hierarchy with this many children per node that divide the voxels of level - 1 into those of level. */
 static double growth(const struct cost_sample *cost_sample, uint32_t level, uint32_t children) {
     double before = cost_sample->levels[level - 1].filled, after = cost_sample->levels[level].filled;
     return after > before ? el_log(after / before) / el_log(children) : 0;
 }
 
 struct accel_scene_cost accel_lists_or_hierarchy(const struct cost_sample *cost_sample) {
-    /* The level of three voxels to an item, which may be finer than the cost sample is. */
+    /* The level with three voxels per item, which may be finer than the levels of the cost sample. */
     double wanted = el_log(3 * cost_sample->items) / el_log(8);
     uint32_t last = cost_sample->level_count - 1, level = wanted < last ? (uint32_t)(wanted + 0.5) : last;
     double beyond = wanted > level ? wanted - level : 0, finer = el_exp2(beyond);
@@ -149,7 +149,7 @@ struct accel_scene_cost accel_lists_or_hierarchy(const struct cost_sample *cost_
     return (struct accel_scene_cost){.lists = lists / 2, .hierarchy = (nodes + depth) / 2};
 }
 
-/* Both kinds of rays; the one that looks at a thing goes through all levels above it. */
+/* Both kinds of rays; a ray to an item passes all levels above it. */
 struct accel_mesh_cost accel_over_mesh(const struct cost_sample *cost_sample) {
     struct accel_mesh_cost frame = {.level = 0};
     uint32_t last = cost_sample->level_count - 1;

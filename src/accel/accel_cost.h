@@ -14,34 +14,33 @@ struct cost_level {
     uint32_t cells[3];
     double filled;   /* voxels that are not empty, by the sample */
     double visited;  /* voxels that a random line through the frame visits */
-    double occupied; /* those of them that hold something */
+    double occupied; /* those of them that are occupied */
     double listed;   /* entries of their lists that it passes */
-    double around;   /* things in the voxel of a random thing */
+    double around;   /* items in the voxel of a random item */
 };
 
 struct cost_sample {
     struct cost_level levels[MESSAGE_LEVELS];
-    uint32_t level_count; /* 1: nothing to choose from, or no memory */
+    uint32_t level_count; /* 1: no choice, or no memory */
     double items;
 };
 
 typedef struct box cost_box(const void *context, uint32_t item);
 
-/* Looks at `samples` of the `count` items at most; empty and infinite boxes are left out. Levels 0 .. levels - 1, fewer
+/* Samples at most `samples` of the `count` items; empty and infinite boxes are left out. Levels 0 .. levels - 1, fewer
  * where voxels would be many times as many as items. Deterministic. */
 void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds, cost_box *box_of, const void *context,
                       uint32_t count, uint32_t samples, uint32_t levels);
 
-/* A frame of about three voxels to an item with lists in them, against one voxel with a hierarchy of four children to a
- * node; in visits of its nodes. */
+/* Costs, in visits of a node, of a frame with about three voxels per item and lists in them, and of one voxel with a
+ * hierarchy of four children per node. */
 struct accel_scene_cost {
     double lists, hierarchy;
 };
 struct accel_scene_cost accel_lists_or_hierarchy(const struct cost_sample *cost_sample);
 
-/* A frame over a mesh: for every level of the cost sample what a ray costs through voxels with hierarchies of eight
- * children to a node in them, in visits of a node and beyond what all levels have in common; and the level that costs
- * least. */
+/* A frame over a mesh: for every level of the cost sample, the cost of a ray through voxels with hierarchies of eight
+ * children per node, in visits of a node, without the cost common to all levels; and the level with the lowest cost. */
 struct accel_mesh_cost {
     double costs[MESSAGE_LEVELS];
     uint32_t level;

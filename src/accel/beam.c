@@ -1,6 +1,6 @@
 /* See beam.h; as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005. A box lies outside
- * of the beam when its corner nearest to one of the planes is outside. Slopes are widened by 2^-40, which is far more
- * than rounding moves anything that is not about the origin itself; slack is for that. */
+ * of the beam when its corner nearest to one of the planes is outside. Slopes are widened by 2^-40, far more than
+ * rounding errors away from the origin; `slack` covers those near it. */
 #include "accel/beam.h"
 
 #include "accel/box_tree.h"
@@ -51,7 +51,7 @@ void beam_traversal_begin(struct beam_traversal *traversal, const struct box_tre
     }
 }
 
-/* Which children the beam meets, and how far ahead each begins. A NaN, of infinite sides, is never outside. */
+/* The children that the beam meets, and the distance to each. A NaN, from infinite sides, is never outside. */
 static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double forward[BOX_TREE_WIDTH],
                               double behind[BOX_TREE_WIDTH]) {
     unsigned met = 0;
@@ -92,7 +92,7 @@ bool beam_traversal_next(struct beam_traversal *traversal, double t_max, uint32_
         for (; met; met &= met - 1) {
             int i = __builtin_ctz(met), at = traversal->top++;
             double enter = forward[i] > 0 ? forward[i] * traversal->beam->soonest : 0;
-            /* What ends first comes first, as in box_tree_traversal_next. */
+            /* The child whose box ends first comes first, as in box_tree_traversal_next. */
             for (; at > base && order[at - 1 - base] < behind[i]; at--) {
                 order[at - base] = order[at - 1 - base];
                 traversal->enter[at] = traversal->enter[at - 1];
@@ -106,8 +106,8 @@ bool beam_traversal_next(struct beam_traversal *traversal, double t_max, uint32_
     return false;
 }
 
-/* Shafts: what can be between a point and a parallelogram. Only ever conservative: an item is left out when its box
- * is certainly outside of one plane, with slack for the rounding of plane and box. */
+/* Shafts: the items that can be between a point and a parallelogram. Always conservative: an item is excluded only if
+ * its box is certainly outside one plane, with a tolerance for the rounding of plane and box. */
 
 static void add_plane(struct shaft *shaft, struct vec3 normal, struct vec3 on_plane, struct vec3 inside, double size) {
     double length = vec3_length(normal);

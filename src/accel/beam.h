@@ -1,5 +1,5 @@
-/* The beam round rays of one origin, in double precision: four planes through the origin, from the smallest and the
- * largest slope of the rays over the axis that is the longest for the first of them. Only ever conservative. */
+/* The beam around rays of one origin, in double precision: four planes through the origin, from the smallest and the
+ * largest slope of the rays over the axis that is the longest for the first of them. Always conservative. */
 #ifndef GRAY_ACCEL_BEAM_H
 #define GRAY_ACCEL_BEAM_H
 
@@ -11,15 +11,15 @@ struct beam {
     int forward, side[2];
     bool backwards;
     double slope_min[2], slope_max[2]; /* of coordinate / |forward| */
-    double soonest;                    /* 1 / the largest |direction| ahead: t is at least way ahead times this */
+    double soonest; /* 1 / the largest |direction| ahead: t is at least the distance ahead times this */
 };
 
-/* False: the rays do not go the same way. */
+/* False: the rays do not point in the same direction along that axis. */
 bool beam_make(struct beam *out, const struct ray_packet *rays);
 
 /* Items whose box the beam meets, nearest boxes first:
  *   beam_traversal_begin(&traversal, tree, &beam); while (beam_traversal_next(&traversal, t_max, &item)) ...
- * t_max: beyond it no ray wants anything; it may shrink between calls. */
+ * t_max: the largest t of interest to any ray; it may shrink between calls. */
 struct beam_traversal {
     const struct box_tree *tree;
     const struct beam *beam;

@@ -1,4 +1,4 @@
-/* Building and walking the hierarchy over boxes. Rounding: with t = (plane - origin) * inverse, each t is wrong by a
+/* Building and traversing the hierarchy over boxes. Rounding: with t = (plane - origin) * inverse, each t is wrong by a
  * few units in its last place, so the far ends are moved outwards by 2^-50 of themselves before they are compared (Ize,
  * "Robust BVH Ray Traversal", JCGT 2013). A direction component of zero makes its slab's t infinite on the right side,
  * or NaN when the ray lies in the very plane, which every comparison here ignores. */
@@ -22,7 +22,7 @@ struct builder {
     struct pool *pool;
 };
 
-/* A run of items that is to become a child. */
+/* A run of items that will become a child. */
 struct run {
     uint32_t first, count;
     struct box box;
@@ -40,7 +40,7 @@ static struct box run_box(const struct builder *b, uint32_t first, uint32_t coun
     return box;
 }
 
-/* Where an item counts as being. Infinite boxes have no middle; a finite value replaces them. */
+/* The position of an item for splits. Infinite boxes have no centre; a finite value replaces it. */
 static double middle(double lo, double hi) {
     if (isfinite(lo) && isfinite(hi))
         return lo + (hi - lo) * 0.5;
@@ -67,7 +67,7 @@ struct split {
     struct box sides[2];
 };
 
-/* What falls into the bins of one axis. */
+/* The contents of the bins of one axis. */
 struct bins {
     double lo, scale; /* scale 0: the axis cannot be split */
     int number;
@@ -87,7 +87,7 @@ static void clear_bins(struct bins *bins, double lo, double hi, int number) {
     }
 }
 
-/* Every item is looked at twice, whatever the number of axes: for the box of the centres, and to fill the bins. */
+/* Every item is read twice, for any number of axes: for the box of the centres, and to fill the bins. */
 static void fill_bins(const struct builder *b, const struct run *run, struct bins bins[3]) {
     const struct build_item *items = b->items + run->first;
     struct box centres = box_empty();
@@ -107,7 +107,7 @@ static void fill_bins(const struct builder *b, const struct run *run, struct bin
     }
 }
 
-/* What so many items cost a ray that meets their box: nodes of four, of which the last may be half full. */
+/* The cost of this many items for a ray that meets their box: nodes of four children, the last perhaps half full. */
 static double cost_of(uint32_t items) {
     return (items + 3) / 4;
 }
@@ -148,7 +148,7 @@ static struct split best_split(const struct builder *b, const struct run *run) {
     return best;
 }
 
-/* By exchange, in place: the order depends on the boxes alone, not on addresses or time. */
+/* By exchange, in place: the order depends only on the boxes, not on addresses or time. */
 static uint32_t partition(struct builder *b, const struct run *run, const struct split *split) {
     struct build_item *items = b->items + run->first;
     uint32_t left = 0, end = run->count;
@@ -175,7 +175,7 @@ static void split_run(struct builder *b, const struct run *run, bool halve, stru
         out[1] = (struct run){run->first + left, run->count - left, split.sides[1]};
         return;
     }
-    uint32_t left = run->count / 2; /* all centres in one place: halves by order */
+    uint32_t left = run->count / 2; /* all centres at one point: halves by order */
     out[0] = (struct run){run->first, left, run_box(b, run->first, left)};
     out[1] = (struct run){run->first + left, run->count - left, run_box(b, run->first + left, run->count - left)};
 }
@@ -238,7 +238,7 @@ struct task {
 };
 
 /* Nodes of one part of the tree; they grow with it, so that memory while building stays close to that of the tree. Runs
- * of at most `leave` items are left to others: their child index is the number of an entry in `left`, marked by
+ * of at most `leave` items are left to other jobs: their child index is the number of an entry in `left`, marked by
  * LEFT_OVER. */
 struct part {
     struct box_tree_node *nodes;
@@ -311,7 +311,7 @@ static void build_part(struct builder *b, struct part *part, struct run root, ui
     }
 }
 
-/* --- in parallel: the top of the tree by one thread, what is under it by all --- */
+/* --- in parallel: the top of the tree by one thread, the parts below by all --- */
 
 enum { PARTS = 64, PART_ITEMS = 4096 };
 
@@ -327,7 +327,7 @@ static void build_root(void *context, uint32_t item, int worker) {
     build_part(forest->builder, &forest->parts[item], forest->roots[item].run, forest->roots[item].depth);
 }
 
-/* Puts the top and the parts behind each other; the numbers do not depend on which thread made what. */
+/* Concatenates the top and the parts; the numbers do not depend on which thread built which part. */
 static bool join_parts(struct box_tree *tree, const struct part *top, const struct part *parts) {
     uint32_t total = top->node_count;
     for (uint32_t i = 0; i < top->left_count; i++)
@@ -391,7 +391,7 @@ static bool build_forest(struct builder *b, struct box_tree *tree, uint32_t coun
         ok = parts || error_no_memory(error, "the hierarchy of the scene");
     }
     ok = ok && build_parts(b, &top, parts, error);
-    mem_free(b->items); /* nothing is kept that the joined tree does not need */
+    mem_free(b->items); /* frees what the joined tree does not need */
     b->items = NULL;
     if (ok && !join_parts(tree, &top, parts))
         ok = error_no_memory(error, "the hierarchy of the scene");
@@ -433,7 +433,7 @@ size_t box_tree_memory(const struct box_tree *tree) {
     return tree->node_count * sizeof *tree->nodes;
 }
 
-/* --- walking --- */
+/* --- traversal --- */
 
 void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct box_tree *tree,
                               const struct ray *ray) {

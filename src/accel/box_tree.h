@@ -1,8 +1,8 @@
 /* A four-wide hierarchy over boxes in double precision: every child of a node is an inner node or one item, so an
- * item's own box is tested on the way to it and nowhere else. Built by binned surface-area splits (Wald, "On fast
- * Construction of SAH-based Bounding Volume Hierarchies", RT 2007) and collapsed to four children (Dammertz, Hanika,
- * Keller, "Shallow Bounding Volume Hierarchies", EGSR 2008). Knows boxes and indices only. Deterministic; scaling all
- * boxes by a power of two gives the same tree. */
+ * item's own box is tested only in its parent node. Built by binned surface-area splits (Wald, "On fast Construction of
+ * SAH-based Bounding Volume Hierarchies", RT 2007) and collapsed to four children (Dammertz, Hanika, Keller, "Shallow
+ * Bounding Volume Hierarchies", EGSR 2008). Knows boxes and indices only. Deterministic; scaling all boxes by a power
+ * of two gives the same tree. */
 #ifndef GRAY_ACCEL_BOX_TREE_H
 #define GRAY_ACCEL_BOX_TREE_H
 
@@ -55,8 +55,8 @@ struct box_tree_traversal {
     double enter[BOX_TREE_STACK];
 };
 void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct box_tree *tree, const struct ray *ray);
-/* Takes what is on top of a traversal. False: t_max ends before it, or it is nothing, which is met by rays that are not
- * finite (of NaN nothing can be said). */
+/* Takes what is on top of a traversal. False: t_max is before it, or it is an empty child, which only rays that are not
+ * finite meet (comparisons with NaN). */
 static inline bool box_tree_take(struct box_tree_traversal *traversal, double t_max, uint32_t *child) {
     *child = traversal->child[--traversal->top];
     double enter = traversal->enter[traversal->top];
@@ -79,10 +79,10 @@ static inline bool box_tree_traversal_next(struct box_tree_traversal *traversal,
     return false;
 }
 
-/* The same without order, for questions that any item may answer. */
+/* The same without order, for any-hit queries. */
 bool box_tree_traversal_any(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 
-/* Both in each instruction set. */
+/* Both functions for each instruction set. */
 bool box_tree_traversal_down_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 bool box_tree_traversal_any_base(struct box_tree_traversal *traversal, double t_max, uint32_t *item);
 bool box_tree_traversal_down_avx2(struct box_tree_traversal *traversal, double t_max, uint32_t *item);

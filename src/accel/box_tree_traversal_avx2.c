@@ -1,5 +1,5 @@
-/* The traversal with four doubles to a vector. This file is compiled for AVX2, and nothing in it runs before system.c
- * has asked the processor. */
+/* The traversal with vectors of four doubles. This file is compiled for AVX2, and nothing in it runs before system.c
+ * has detected AVX2. */
 #if defined(__AVX2__)
 #define TRAVERSAL(name) box_tree_traversal_##name##_avx2
 #include "accel/box_tree_traversal_internal.h"

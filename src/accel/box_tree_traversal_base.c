@@ -1,3 +1,3 @@
-/* The traversal for the processor every build runs on. */
+/* The traversal for the baseline processor. */
 #define TRAVERSAL(name) box_tree_traversal_##name##_base
 #include "accel/box_tree_traversal_internal.h"

@@ -21,7 +21,7 @@ static inline unsigned meet_children(const struct box_tree_traversal *traversal,
     }
     _mm256_storeu_pd(enter_out, enter);
     _mm256_storeu_pd(leave_out, leave);
-    /* Whichever of the two factors moves outwards. */
+    /* The factor that moves the bound outwards. */
     __m256d less = _mm256_set1_pd(1 - 0x1p-50), more = _mm256_set1_pd(1 + 0x1p-50);
     __m256d early = _mm256_min_pd(_mm256_mul_pd(enter, less), _mm256_mul_pd(enter, more));
     __m256d late = _mm256_max_pd(_mm256_mul_pd(leave, less), _mm256_mul_pd(leave, more));
@@ -43,7 +43,7 @@ static unsigned meet_children(const struct box_tree_traversal *traversal, const 
         }
         _mm_storeu_pd(enter_out + half, enter);
         _mm_storeu_pd(leave_out + half, leave);
-        /* Whichever of the two factors moves outwards. */
+        /* The factor that moves the bound outwards. */
         __m128d less = _mm_set1_pd(1 - 0x1p-50), more = _mm_set1_pd(1 + 0x1p-50);
         __m128d early = _mm_min_pd(_mm_mul_pd(enter, less), _mm_mul_pd(enter, more));
         __m128d late = _mm_max_pd(_mm_mul_pd(leave, less), _mm_mul_pd(leave, more));
@@ -88,9 +88,9 @@ bool TRAVERSAL(down)(struct box_tree_traversal *traversal, double t_max, uint32_
         double enter[BOX_TREE_WIDTH], leave[BOX_TREE_WIDTH], order[BOX_TREE_WIDTH];
         unsigned met = meet_children(traversal, node, t_max, enter, leave);
         traversal->steps++;
-        /* The first one left must be on top: insertion into the few that were met, the last at the bottom. Where boxes
-         * are apart that is the order in which they are entered; of two one in the other the inner one comes first, and
-         * what it finds shortens the ray through the outer one (a teapot in a stadium). */
+        /* The child that the ray leaves first must be on top: insertion sort of the few that were met. For disjoint
+         * boxes this is also the order of entry; of two nested boxes the inner one comes first, and its hit shortens
+         * the ray through the outer one (a teapot in a stadium). */
         int base = traversal->top;
         for (; met; met &= met - 1) {
             int i = __builtin_ctz(met), at = traversal->top++;
@@ -111,7 +111,7 @@ bool TRAVERSAL(any)(struct box_tree_traversal *traversal, double t_max, uint32_t
     while (traversal->top > 0) {
         uint32_t child = traversal->child[--traversal->top];
         if (child & BOX_TREE_ITEM) {
-            if (child == BOX_TREE_NONE) /* met by rays that are not finite: of NaN nothing can be said */
+            if (child == BOX_TREE_NONE) /* met only by rays that are not finite, through comparisons with NaN */
                 continue;
             *item = child & ~BOX_TREE_ITEM;
             return true;

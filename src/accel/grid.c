@@ -1,16 +1,16 @@
-/* The grid. Three numbers per voxel boundary are not the same in exact arithmetic: where the builder thinks the
- * boundary is, where the traversal thinks the ray crosses it, and where the ray meets an item. The invariant that makes
- * the traversal safe:
+/* The grid. Three numbers per voxel boundary are not the same in exact arithmetic: the boundary as computed by the
+ * builder, the point where the traversal computes that the ray crosses it, and the point where the ray hits an item.
+ * The invariant that makes the traversal safe:
  *
  *   Every item is listed in every voxel that its box, grown by `slack` on each axis, touches; and whenever the ray is
- * at q inside an item's box, the traversal stands, at that t, in a voxel whose distance from q is below the slack on
- * each axis.
+ * at q inside an item's box, the traversal is, at that t, in a voxel whose distance from q is below the slack on each
+ * axis.
  *
  * Per axis the traversal's index at t is the start index plus the number of boundaries whose t_next is <= t. It is
  * wrong only while q is within d of a boundary, d being the error of t_next times the speed: at most (steps + 8) 2^-53
  * (|origin| + |q|) on that axis, the steps because t_next is a running sum. With at most 2^12 steps and a slack of
- * 2^-12 of a voxel, d < slack as long as |origin| < 2^26 voxels. Rays from farther away do not traverse it: they are
- * given all items at once. Worlds far from the origin get voxels so large that the same holds for their coordinates.
+ * 2^-12 of a voxel, d < slack as long as |origin| < 2^26 voxels. Rays from farther away do not traverse the grid: they
+ * get all items at once. Worlds far from the origin get voxels so large that the same is true for their coordinates.
  *
  * Everything is relative to the boxes, so scaling by a power of two changes no index and no step. */
 #include "accel/grid.h"
@@ -22,7 +22,7 @@ enum { FLY_UNBOUNDED, FLY_VOXELS, FLY_EVERYTHING, FLY_DONE };
 enum { POLL_ITEMS = 4096 }; /* how often building asks whether it was cancelled */
 
 #define SLACK 0x1p-12   /* of a voxel */
-#define FAR_AWAY 0x1p26 /* voxels between the origin of a walking ray and the origin of the space */
+#define FAR_AWAY 0x1p26 /* voxels between the origin of a traversing ray and the origin of the space */
 #define CELLS_PER_AXIS 4096.0
 #define CELLS_PER_ITEM 3.0
 #define CELLS_IN_ALL 0x1p24
@@ -41,7 +41,7 @@ static void set3(struct vec3 *v, int axis, double value) {
     *component = value;
 }
 
-/* About `wanted` cubic voxels; axes too thin for a second voxel leave theirs to the others. extent[] is relative to the
+/* About `wanted` cubic voxels; axes too thin for a second voxel give theirs to the others. extent[] is relative to the
  * longest one. */
 static void choose_cells(const double extent[3], double wanted, uint32_t cells[3]) {
     bool thin[3] = {false, false, false};
@@ -173,7 +173,7 @@ static bool list_unbounded(struct grid *grid, const struct box *boxes, uint32_t 
 /* Bounds, resolution and lists of the bounded items. */
 static bool build_voxels(struct grid *grid, const struct box *boxes, uint32_t count, uint32_t bounded,
                          const struct pool *pool, struct error *error) {
-    /* A margin on every axis, flat ones too, that a ray's rounding error at the border cannot cross. */
+    /* A margin on every axis, also on axes without extent, larger than a ray's rounding error at the border. */
     double largest = fmax(vec3_max_abs(grid->bounds.min), vec3_max_abs(grid->bounds.max));
     double longest = vec3_max_abs(vec3_sub(grid->bounds.max, grid->bounds.min));
     struct vec3 margin = vec3_all(fmax(longest * 0x1p-20 + largest * 0x1p-40, 0x1p-1000));
@@ -233,9 +233,9 @@ size_t grid_memory(const struct grid *grid) {
     return bytes;
 }
 
-/* ---- walking ---- */
+/* ---- traversal ---- */
 
-/* Puts the traversal on the voxel where the ray comes in; false when it misses the grid. */
+/* Starts the traversal at the voxel where the ray enters; false if it misses the grid. */
 static bool enter_grid(struct grid_traversal *traversal, const struct grid *grid, const struct ray *ray) {
     double t_enter, t_exit;
     if (!grid->cell_start || !box_clip(&grid->bounds, ray, &t_enter, &t_exit))
@@ -270,7 +270,7 @@ static bool enter_grid(struct grid_traversal *traversal, const struct grid *grid
     return true;
 }
 
-/* Stands on a voxel: offers its list. */
+/* At a voxel: offers its list. */
 static bool offer(struct grid_traversal *traversal) {
     const uint32_t *start = traversal->grid->cell_start + traversal->cell;
     traversal->items = traversal->grid->cell_items + start[0];

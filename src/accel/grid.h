@@ -1,6 +1,6 @@
-/* A uniform voxel grid over boxes, walked with the steps of Amanatides and Woo, "A Fast Voxel Traversal Algorithm for
- * Ray Tracing", Eurographics 1987. Invariant: every item is listed in every voxel its box touches. Knows boxes and
- * indices only. Infinite boxes are kept in a list of their own that every ray looks at first. */
+/* A uniform voxel grid over boxes, traversed by the algorithm of Amanatides and Woo, "A Fast Voxel Traversal Algorithm
+ * for Ray Tracing", Eurographics 1987. Invariant: every item is listed in every voxel its box touches. Knows boxes and
+ * indices only. Infinite boxes are in a separate list that every ray tests first. */
 #ifndef GRAY_ACCEL_GRID_H
 #define GRAY_ACCEL_GRID_H
 
@@ -23,14 +23,14 @@ struct grid {
     uint32_t item_count;
 };
 
-/* boxes[i] belongs to item i; empty boxes are left out. Owner: the caller, grid_destroy gives it back. */
+/* boxes[i] belongs to item i; empty boxes are left out. Owner: the caller, grid_destroy frees it. */
 bool grid_build(struct grid *grid, const struct box *boxes, uint32_t count, struct pool *pool, struct error *error);
 void grid_destroy(struct grid *grid);
 size_t grid_memory(const struct grid *grid);
 
 /* for (ok = grid_traversal_begin(&w, grid, ray); ok; ok = grid_traversal_next(&w)) { w.items[0 .. w.count-1]; if (best
  * t <= w.t_exit) stop }: visits the unbounded list first (t_exit = -infinity), then voxels in order along the ray;
- * empty voxels are skipped. w.t_exit is where the ray leaves the voxel: an answer with t <= t_exit is final. */
+ * empty voxels are skipped. w.t_exit is where the ray leaves the voxel: a hit with t <= t_exit is final. */
 struct grid_traversal {
     const uint32_t *items;
     uint32_t count;

@@ -1,12 +1,12 @@
-/* Building the kd-tree. Three lists of events, one for each axis, are sorted once; every split goes through them in
- * order and hands them on in order, so that nothing is sorted again but the few events of items that the plane cuts.
+/* Building the kd-tree. Three lists of events, one for each axis, are sorted once; every split reads them in order and
+ * passes them on in order, so that only the few events of items cut by the plane are sorted again.
  *
  * Invariant: at a node each of its items has, on every axis, either one PLANAR event or an END and a START, at the ends
  * of the box of its part inside the node's cell; each list is ordered by position, then END before PLANAR before START,
  * then item. A plane at p leaves END <= p to the lower side and START >= p to the upper one.
  *
  * Costs: a step from node to node is 1, a test of an item 1.5; a split that cuts off empty space is a fifth cheaper, as
- * in the paper. There is no minimal number of items: a leaf is what no plane makes cheaper. */
+ * in the paper. There is no minimal number of items: a node becomes a leaf if no plane reduces the cost. */
 #include "accel/kd_tree.h"
 
 #include "base/mem.h"
@@ -44,7 +44,7 @@ struct builder {
     int depth_limit;
 };
 
-/* What a recursion step works on. It owns the lists. */
+/* The state of a recursion step. It owns the lists. */
 struct cell {
     struct box box;
     struct event_list lists[3];
@@ -141,7 +141,7 @@ static bool lists_sort(struct event_list lists[3]) {
 struct plane {
     int axis; /* -1: none is better than a leaf */
     double position, cost;
-    bool planar_lower; /* what lies in the plane itself goes below it */
+    bool planar_lower; /* items in the plane itself go to the lower side */
 };
 
 static double half_area(struct vec3 size) {
@@ -224,7 +224,7 @@ static bool part_of(const struct builder *b, uint32_t item, const struct box *bo
     return !box_is_empty(part);
 }
 
-/* What goes wholly to one side keeps its events, in order; what is cut gets new ones, which are sorted and merged. */
+/* Items completely on one side keep their events, in order; cut items get new ones, which are sorted and merged. */
 static bool fill_side(struct builder *b, const struct cell *cell, int own_side, uint32_t whole, uint32_t cut,
                       struct cell *out) {
     struct event_list fresh[3] = {{0}};
@@ -315,7 +315,7 @@ static bool build_node(struct builder *b, struct cell *cell, int depth) {
     ok = fill_side(b, cell, SIDE_LOWER, counts[SIDE_LOWER], counts[SIDE_BOTH], &lower) &&
          fill_side(b, cell, SIDE_UPPER, counts[SIDE_UPPER], counts[SIDE_BOTH], &upper);
     cell_free(cell);
-    /* What may still be added is shared by the number of items. */
+    /* The remaining allowance of entries is divided in proportion to the number of items. */
     uint64_t spare = cell->spare - counts[SIDE_BOTH], all = (uint64_t)lower.items + upper.items;
     lower.spare = all > 0 ? (uint64_t)((double)spare * ((double)lower.items / (double)all)) : 0;
     upper.spare = spare - lower.spare;
@@ -339,7 +339,7 @@ static bool is_bounded(const struct box *b) {
     return vec3_max_abs(b->min) <= LARGEST && vec3_max_abs(b->max) <= LARGEST;
 }
 
-/* Levels a balanced tree of so many items would have, and half as many again for uneven ones. */
+/* The number of levels of a balanced tree with this many items, and half as many again for uneven trees. */
 static int depth_for(uint32_t items) {
     int levels = 0;
     for (; items > 0; items /= 2)

@@ -1,8 +1,8 @@
 /* A kd-tree over items with boxes, in double precision: space is halved by planes across the axes, an item is listed in
  * every leaf that a part of it touches. Built along the surface area heuristic with exact splits in O(n log n) (Wald
  * and Havran, "On building fast kd-Trees for Ray Tracing, and on doing that in O(N log N)", RT 2006). Knows boxes,
- * indices and whoever can clip an item. For teaching and for doubt: --accel kdtree. Deterministic; scaling everything
- * by a power of two gives the same tree. */
+ * indices and a function that clips an item. For teaching and for verification: --accel kdtree. Deterministic; scaling
+ * everything by a power of two gives the same tree. */
 #ifndef GRAY_ACCEL_KD_TREE_H
 #define GRAY_ACCEL_KD_TREE_H
 
@@ -39,7 +39,7 @@ struct kd_tree {
 typedef bool kd_clip(const void *context, uint32_t item, const struct box *cell, struct box *part);
 
 /* boxes[i] belongs to item i; empty ones are left out. clip: NULL for items that are their boxes. False: no memory or
- * cancelled; the tree is then empty. pool may be NULL; it is only asked whether to stop. */
+ * cancelled; the tree is then empty. pool may be NULL; it is only polled for cancellation. */
 bool kd_tree_build(struct kd_tree *tree, const struct box *boxes, uint32_t count, kd_clip *clip, const void *context,
                    const struct pool *pool, struct error *error);
 void kd_tree_destroy(struct kd_tree *tree);
@@ -48,8 +48,8 @@ size_t kd_tree_memory(const struct kd_tree *tree);
 /* Leaves along a ray, in the order of the ray:
  *   kd_traversal_begin(&traversal, tree, ray, slack); while (kd_traversal_next(&traversal, t_max)) ...
  * traversal.items[0 .. traversal.count - 1] ... t_max may shrink between calls. An item whose part is nearer than
- * `slack` (a length) to a point of the ray at t <= t_max is offered, whatever is rounded on the way. An item may be
- * offered several times. */
+ * `slack` (a length) to a point of the ray at t <= t_max is offered in spite of rounding. An item may be offered
+ * several times. */
 struct kd_traversal {
     const uint32_t *items;
     uint32_t count;

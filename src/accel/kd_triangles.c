@@ -1,10 +1,10 @@
-/* Triangles in a kd-tree. Exact splits: what counts of a triangle in a cell is the box of the polygon that is left when
- * it is clipped to the cell (Sutherland and Hodgman, "Reentrant Polygon Clipping", CACM 1974).
+/* Triangles in a kd-tree. Exact splits: the extent of a triangle in a cell is the box of the polygon that remains after
+ * clipping to the cell (Sutherland and Hodgman, "Reentrant Polygon Clipping", CACM 1974).
  *
  * The point where a ray meets a triangle, as computed, is off the triangle by some 2^-49 of the coordinates involved:
  * the test of triangle.h takes t as a mean of the corners' z with weights of one sign, so it lies among them, and x and
- * y are wrong by the rounding of corner - origin and of the weights. The traversal is given 2^-46 of origin and mesh as
- * its slack. Clipping is done against cells larger by 2^-44 of the mesh, so that its own rounding loses nothing. */
+ * y are wrong by the rounding of corner - origin and of the weights. The slack of the traversal is 2^-46 of origin and
+ * mesh. Clipping is done against cells larger by 2^-44 of the mesh, so that its own rounding loses nothing. */
 #include "accel/kd_triangles.h"
 
 #include "accel/kd_tree.h"
@@ -111,7 +111,7 @@ struct search {
     struct kd_traversal traversal;
     struct triangle_ray sheared;
     const struct triangle_set *set;
-    uint32_t seen[MAILBOX]; /* triangles tried last: one may be in many leaves */
+    uint32_t seen[MAILBOX]; /* triangles tested recently: one may be in many leaves */
     uint64_t tests;
 };
 

@@ -1,4 +1,4 @@
-/* A kd-tree over the triangles of one mesh: --accel kdtree. The answers are those of triangle_brute_*, bit for bit. */
+/* A kd-tree over the triangles of one mesh: --accel kdtree. The results are those of triangle_brute_*, bit for bit. */
 #ifndef GRAY_ACCEL_KD_TRIANGLES_H
 #define GRAY_ACCEL_KD_TRIANGLES_H
 

@@ -1,4 +1,4 @@
-/* Rays of one origin, number by number in arrays, so that vectors of them load as they lie. */
+/* Rays of one origin, as arrays of components, so that vectors can be loaded directly. */
 #ifndef GRAY_ACCEL_RAY_PACKET_H
 #define GRAY_ACCEL_RAY_PACKET_H
 
@@ -8,8 +8,8 @@
 
 enum { PACKET_RAYS = 64, PACKET_STEP = 16 };
 
-/* Rays 0 .. count - 1; their interval is (t_min, t_max[i]). Places from there to the next multiple of PACKET_STEP
- * repeat ray 0 (ray_packet_pad): searches read them and answer nothing for them. */
+/* Rays 0 .. count - 1; their interval is (t_min, t_max[i]). Entries from there to the next multiple of PACKET_STEP
+ * repeat ray 0 (ray_packet_pad): searches read them but return no results for them. */
 struct ray_packet {
     _Alignas(64) double direction[3][PACKET_RAYS];
     double t_max[PACKET_RAYS];

@@ -1,7 +1,7 @@
 /* Four and eight floats at a time, under one set of names for three targets: AVX (files compiled with -mavx2), SSE2
- * (every x86-64) and plain loops (any processor). Only what the kernels use. Results of single operations are the same
- * on all of them except for simd8_multiply_sub and simd8_multiply_add, which may round once or twice: nothing exact may
- * depend on them. */
+ * (every x86-64) and plain loops (any processor). Only the operations that the kernels use. Results of single
+ * operations are the same on all of them except for simd8_multiply_sub and simd8_multiply_add, which may round once or
+ * twice: nothing exact may depend on them. */
 #ifndef GRAY_ACCEL_SIMD_INTERNAL_H
 #define GRAY_ACCEL_SIMD_INTERNAL_H
 
@@ -253,16 +253,16 @@ static inline unsigned simd8_at_max(simd8 a, simd8 b) {
     return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ));
 }
 #if defined(__AVX2__)
-/* As integers of the same bits, which takes a quarter of the time and is right where it matters: what is less than a
- * number that is not negative stays so. Lanes must not hold NaN. */
+/* As integers of the same bits, which takes a quarter of the time and is correct for the kernels: a number less than a
+ * non-negative one stays less. Lanes must not hold NaN. */
 static inline simd8 simd8_min_bits(simd8 a, simd8 b) {
     return _mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
 }
 static inline simd8 simd8_max_bits(simd8 a, simd8 b) {
     return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
 }
-/* The largest of three, or, if all are negative, the one farthest below 0, which simd8_at_max_bits takes for more than
- * any negative number that is nearer to 0. (Without integers: 0.) */
+/* The largest of three, or, if all are negative, the one farthest below 0, which simd8_at_max_bits treats as larger
+ * than any negative number nearer to 0. (Without integers: 0.) */
 static inline simd8 simd8_latest_bits(simd8 a, simd8 b, simd8 c) {
     return simd8_max_bits(simd8_max_bits(a, b), c);
 }
@@ -274,7 +274,7 @@ static inline unsigned simd8_at_max_bits(simd8 a, simd8 b) {
     return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(above)) ^ 255u;
 #endif
 }
-/* The same but for lanes where both are equal, and from vectors rather than masks. */
+/* The same except for lanes where both are equal, and from vectors instead of masks. */
 static inline unsigned simd8_below_bits(simd8 a, simd8 b) {
     __m256i below = _mm256_cmpgt_epi32(_mm256_castps_si256(b), _mm256_castps_si256(a));
     return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(below));
@@ -474,7 +474,7 @@ static inline unsigned simd8_not_negative(simd8 a) {
     return simd8_negative(a) ^ 255u;
 }
 
-/* One lane, whose number is not known before. */
+/* One lane, with an index known only at run time. */
 static inline float simd8_pick(simd8 a, unsigned lane) {
     _Alignas(32) float all[8];
     simd8_store(all, a);
@@ -502,7 +502,7 @@ static inline unsigned simd8_at_max_bits(simd8 a, simd8 b) {
 }
 #endif
 
-/* Four doubles, for taking a ray into local space. */
+/* Four doubles, to transform a ray into local space. */
 #if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
 
 typedef __m256d wide4;
@@ -549,14 +549,14 @@ static inline wide4 wide4_load_three(const double *p) {
     return _mm256_maskload_pd(p, _mm256_setr_epi64x(-1, -1, -1, 0));
 #endif
 }
-/* The same, number by number: the caller has just stored them one by one, and a wider load would have to wait until the
- * stores are through. The compiler, which would join the loads, is not to know that they belong together. */
+/* The same, number by number: the caller has just stored them one by one, and a wider load would wait for the stores.
+ * `volatile` keeps the compiler from joining the loads. */
 static inline wide4 wide4_load_singly(const double *p) {
     __m128d low = _mm_load_sd(p);
     __asm__("" : "+x"(low));
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadh_pd(low, p + 1)), _mm_load_sd(p + 2), 1);
 }
-/* Lanes in another order: halves says where each half of the four comes from. */
+/* Lanes in another order: `halves` is the source of each half of the four. */
 static inline wide4 wide4_permuted(wide4 a, const uint32_t halves[8]) {
     __m256i order = _mm256_load_si256((const __m256i *)(const void *)halves);
     return _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(a), order));
@@ -565,8 +565,8 @@ static inline wide4 wide4_permuted(wide4 a, const uint32_t halves[8]) {
 static inline wide4 wide4_third(wide4 a) {
     return _mm256_permute4x64_pd(a, _MM_SHUFFLE(2, 2, 2, 2));
 }
-/* Lanes 0, 1 and 2 of three vectors, each in a vector of its own; lane 3 is anything. For the last the vectors must
- * have the same in lane 3 as in lane 2. */
+/* Lanes 0, 1 and 2 of three vectors, each in a separate vector; lane 3 is undefined. For the last one, lanes 3 and 2 of
+ * the vectors must be equal. */
 static inline wide4 wide4_firsts(wide4 a, wide4 b, wide4 c) {
     return _mm256_insertf128_pd(_mm256_unpacklo_pd(a, b), _mm256_castpd256_pd128(c), 1);
 }
@@ -583,7 +583,7 @@ static inline wide4 wide4_with_last_two(wide4 a, double last) {
 static inline wide4 wide4_with_first_of(wide4 a, wide4 first) {
     return _mm256_blend_pd(a, first, 1);
 }
-/* (b0 + b1) + b2 in lane 0 and a1, a2 behind it, all over (a0 + a1) + a2. */
+/* (b0 + b1) + b2 in lane 0, followed by a1 and a2, all divided by (a0 + a1) + a2. */
 static inline wide4 wide4_weighted(wide4 a, wide4 b) {
     __m128d a_low = _mm256_castpd256_pd128(a), b_low = _mm256_castpd256_pd128(b);
     __m128d a_high = _mm256_extractf128_pd(a, 1), b_high = _mm256_extractf128_pd(b, 1);
@@ -617,7 +617,7 @@ static inline int wide4_all_below(wide4 a, wide4 b) {
 static inline simd4 wide4_to_single(wide4 a) {
     return _mm256_cvtpd_ps(a);
 }
-/* Lanes 0 to 2; a fourth number may be written behind them. */
+/* Lanes 0 to 2; a fourth number may be written after them. */
 static inline void wide4_store_three(double *p, wide4 a) {
     _mm256_storeu_pd(p, a);
 }

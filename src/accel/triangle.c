@@ -61,7 +61,7 @@ int triangle_edge_tie(double ax, double ay, double bx, double by) {
     return 0;
 }
 
-/* Searches without an index, the measure of all others: every triangle is tried. */
+/* Searches without an index, the reference for all others: every triangle is tested. */
 
 static bool cross(const struct triangle_set *set, uint32_t triangle, const struct triangle_ray *ray,
                   struct triangle_hit *hit) {

@@ -2,15 +2,15 @@
  * index end here, so they cannot disagree.
  *
  * Sven Woop, Carsten Benthin, Ingo Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: the ray becomes the z
- * axis by a shear, which takes each vertex to a point of the plane by itself, the same point for every triangle around
- * it. What is left is whether the origin of that plane lies inside the projected triangle, by the signs of three edge
- * functions x1 y2 - y1 x2. Two things make the answer exact for the (rounded) plane points:
- *   - rounding is monotonic, so a difference of products has the right sign or is zero; where it cancels, the
- * difference is worked out with integers;
+ * axis by a shear, which maps each vertex to a point of the plane independently, the same point for every triangle
+ * around it. The rest is a test whether the origin of that plane is inside the projected triangle, by the signs of
+ * three edge functions x1 y2 - y1 x2. Two things make the answer exact for the (rounded) plane points:
+ *   - rounding is monotonic, so a difference of products has the right sign or is zero; if it cancels, the difference
+ * is computed with integers;
  *   - a true zero (the ray meets an edge or a vertex) is decided as if the ray had been moved by (e, e^2) for an
  *     infinitely small e (Edelsbrunner and Muecke, "Simulation of Simplicity", 1990), the same for all triangles.
- * So a line crosses a closed surface as often inwards as outwards, through edges and vertices too, and never slips
- * between two triangles that share an edge. A triangle seen exactly edge-on is not met. */
+ * So a line crosses a closed surface as often inwards as outwards, through edges and vertices too, and never passes
+ * between two triangles that share an edge. A triangle seen exactly edge-on is not hit. */
 #ifndef GRAY_ACCEL_TRIANGLE_H
 #define GRAY_ACCEL_TRIANGLE_H
 
@@ -33,16 +33,16 @@ struct triangle_hit {
     bool enter; /* against the normal (b - a) x (c - a) */
 };
 
-/* False for a direction that is zero or not finite: such a ray meets nothing. */
+/* False for a direction that is zero or not finite: such a ray hits nothing. */
 bool triangle_ray_init(struct triangle_ray *out, const struct ray *ray);
 /* The same for a ray known to be good. */
 void triangle_ray_set(struct triangle_ray *out, const struct ray *ray);
-/* The axes alone; without branches, since which one is the longest is anybody's guess. */
+/* Only the axes; without branches, since the longest axis is unpredictable. */
 static inline void triangle_ray_axes(struct triangle_ray *out, const double d[3]) {
     int z = fabs(d[1]) > fabs(d[0]);
     z = fabs(d[2]) > fabs(d[z]) ? 2 : z;
     static const int after[4] = {1, 2, 0, 1};
-    int backwards = d[z] < 0; /* then x and y change places, which keeps the winding as it is seen along the ray */
+    int backwards = d[z] < 0; /* then x and y are exchanged, which keeps the winding as seen along the ray */
     out->z = z;
     out->x = after[z + backwards];
     out->y = after[z + !backwards];
@@ -50,7 +50,7 @@ static inline void triangle_ray_axes(struct triangle_ray *out, const double d[3]
 
 /* ax * by - ay * bx, exact up to the last rounding. */
 double triangle_edge_exact(double ax, double ay, double bx, double by);
-/* What the sign of a vanishing edge function counts as; 0 when both points are the same. */
+/* The sign that replaces a zero edge function; 0 if both points are equal. */
 int triangle_edge_tie(double ax, double ay, double bx, double by);
 
 static inline double triangle_edge(double ax, double ay, double bx, double by) {
@@ -58,7 +58,7 @@ static inline double triangle_edge(double ax, double ay, double bx, double by) {
     return fabs(e) > 0x1p-49 * (fabs(p) + fabs(q)) ? e : triangle_edge_exact(ax, ay, bx, by);
 }
 
-/* Whether the whole line meets the triangle, and where. hit->triangle is left alone. */
+/* Whether the whole line meets the triangle, and where. hit->triangle does not change. */
 static inline bool triangle_cross(const struct triangle_ray *ray, const double a[3], const double b[3],
                                   const double c[3], struct triangle_hit *hit) {
     int x = ray->x, y = ray->y, z = ray->z;

@@ -1,10 +1,10 @@
-/* Hierarchies of eight children to a node (Wald, Benthin, Boulos, "Getting Rid of Packets", RT 2008), cut from binary
+/* Hierarchies of eight children per node (Wald, Benthin, Boulos, "Getting Rid of Packets", RT 2008), cut from binary
  * ones (triangle_tree_internal.h).
  *
- * Parallel and deterministic: ranges above a size that only the data decides are partitioned by all threads together,
- * round by round, until the rest can be distributed; the parts are built by jobs, put together, made better by
- * reinsertion on one thread, weighed from below by jobs and on top of them, and written by jobs to where a count of all
- * before them says. The binary hierarchy is a third as large as what is made, and gone by the time the references are.
+ * Parallel and deterministic: ranges above a size that depends only on the data are partitioned by all threads
+ * together, round by round, until the rest can be distributed; the parts are built by jobs, joined, improved by
+ * reinsertion on one thread, weighed bottom-up by jobs and then at the top, and written by jobs to offsets from a
+ * prefix sum. The binary hierarchy is a third as large as the result, and is freed together with the references.
  */
 #include "accel/triangle_build_internal.h"
 
@@ -13,9 +13,9 @@
 
 #include <string.h>
 
-enum { JOB_REFERENCES = 4096 /* small pieces are gathered into jobs of about so many */ };
+enum { JOB_REFERENCES = 4096 /* small pieces are collected into jobs of about this many */ };
 
-/* Something that one worker works on: a range, before there is a branch over it, and then a branch. */
+/* A unit of work for one worker: first a range without a branch, later a branch. */
 struct piece {
     struct range range;
     uint32_t depth;
@@ -29,7 +29,7 @@ struct pieces {
     uint32_t count, capacity;
 };
 
-/* Pieces that follow each other. */
+/* Consecutive pieces. */
 struct job {
     uint32_t first, count;
     struct tree tree;
@@ -58,7 +58,7 @@ struct top_node {
     uint32_t child[WIDTH]; /* a piece, or the number of a top node */
 };
 
-/* What is a piece rather than something above them. */
+/* Whether a number is a piece and not a node above them. */
 #define PIECE (UINT32_C(1) << 31)
 
 static bool reserve(void **array, uint32_t *capacity, uint32_t used, size_t size) {
@@ -88,7 +88,7 @@ static struct piece *add_piece(struct builder *builder, uint32_t references) {
     return piece;
 }
 
-/* Gathers the pieces into jobs. */
+/* Collects the pieces into jobs. */
 static bool make_jobs(struct builder *builder) {
     const struct pieces *pieces = &builder->pieces;
     uint64_t gathered = UINT64_MAX / 2;
@@ -139,7 +139,7 @@ struct front {
     uint32_t count, capacity;
 };
 
-/* What becomes of a range: a piece, or a branch that joins the front. */
+/* Turns a range into a piece, or into a branch of the front. */
 static bool store_range(struct builder *builder, struct front *front, const struct range *range, uint32_t depth,
                         uint32_t parent, uint32_t *result) {
     if (range->count <= builder->job_limit) {
@@ -165,7 +165,7 @@ static void part_open(void *context, uint32_t item, int worker) {
     tree_part(builder->references, &open->range, open->depth, open->part);
 }
 
-/* Parts all branches of a front at once; what is not small enough then is the next one. */
+/* Splits all branches of a front together; parts that are still too large form the next front. */
 static bool part_front(struct builder *builder, const struct front *front, struct front *next) {
     bool go_on = true;
     builder->open = front->items;
@@ -223,7 +223,7 @@ static void build_job(void *context, uint32_t item, int worker) {
     }
 }
 
-/* Puts the trees of all jobs behind what is above them. */
+/* Appends the trees of all jobs after the top. */
 static bool join_trees(struct builder *builder, struct hierarchy *hierarchies, uint32_t count) {
     struct tree *tree = &builder->tree;
     uint32_t top = tree->count;
@@ -312,7 +312,8 @@ static bool is_node(const struct branch *branch) {
     return branch->height > 0 && !branch->is_block;
 }
 
-/* Nodes above what becomes a piece: what branch `number` is, a piece or the number of a top node, is *result. */
+/* Creates the nodes above the pieces: *result is the reference for branch `number`, a piece or the number of a top
+ * node. */
 static bool store_top(struct builder *builder, uint32_t number, uint32_t *result) {
     const struct branch *branch = &builder->tree.branches[number];
     if (branch->count <= builder->job_limit || !is_node(branch)) {
@@ -364,8 +365,8 @@ static float child_area(const struct wide_node *node, uint32_t j) {
     return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
 }
 
-/* By the middles of the boxes along the diagonal of each octant, those that hold nothing first, and next what has more
- * than half of the surface of all (a floor): what stands before or in it is met first, and mostly ends the ray. */
+/* By the centres of the boxes along the diagonal of each octant; empty lanes come first, then a box with more than half
+ * of the surface of all (a floor): objects in front of it or in it are hit first and mostly end the ray. */
 static void node_set_order(struct wide_node *node, uint32_t parts, float area) {
     for (uint32_t octant = 0; octant < 8; octant++) {
         float along[WIDTH];
@@ -429,8 +430,8 @@ static void set_unused_lane(struct triangle_block *block, uint32_t lane) {
         block->vertices[j][lane] = 0;
 }
 
-/* Nodes and blocks in one table: a search jumps about in both, and a table on large pages, where the system has them,
- * has the nodes on them however few they are. */
+/* Nodes and blocks are in one table: a search accesses both at random, and with large pages, if the system has them,
+ * even a few nodes are on large pages. */
 static bool alloc_tables(struct triangle_index *index, uint32_t nodes, uint32_t blocks) {
     size_t node_bytes = nodes * sizeof *index->nodes, size = node_bytes + blocks * sizeof *index->blocks;
     char *table = mem_alloc_aligned(size < MEM_LARGE_PAGE ? 64 : MEM_LARGE_PAGE, size);
@@ -456,7 +457,7 @@ static uint32_t fill_lanes(const struct builder *builder, uint32_t number, struc
     return lane;
 }
 
-/* Writes what is below a branch behind what its piece has written so far; the reference to it. */
+/* Writes the nodes and blocks below a branch after those that its piece has written so far; returns the reference. */
 static uint32_t write_branch(const struct builder *builder, struct piece *piece, uint32_t number) {
     struct triangle_index *index = builder->index;
     if (!is_node(&builder->tree.branches[number])) {

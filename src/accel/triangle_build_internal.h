@@ -19,7 +19,7 @@ struct hierarchy {
 };
 
 /* Makes nodes and blocks of `index` (centre and scale are set) for all hierarchies; `references` is reordered.
- * The same bytes for any pool. False: no memory or cancelled; what was made stays with the index. */
+ * The same bytes for any pool. False: no memory or cancelled; partial results stay in the index. */
 bool hierarchies_build(struct triangle_index *index, const struct triangle_set *set, struct reference *references,
                        struct hierarchy *hierarchies, uint32_t count, struct pool *pool, struct error *error);
 

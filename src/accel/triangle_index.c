@@ -1,14 +1,14 @@
 /* The index of a mesh: frame, voxels, searches.
  *
- * How many voxels? The caller says, or the cost model of accel_cost.c, which looks at a sample of the triangles. A
- * voxel spares a ray the upper levels of the hierarchy and costs it a step (about a third of a node visit), every
- * occupied voxel on its way the start of a hierarchy (about one), and memory for what lies in several. With eight
- * children to a node the levels spared are log8 of the number of occupied voxels, at best, that is, if all are filled
- * alike: 1.3 for 16 of them, 2 for 64; but a ray through a body of that many meets 2 to 4 occupied ones before it is
- * done. That much is about even for compact bodies. But with one voxel a ray need not be brought to the frame, and rays
- * of one origin traverse the hierarchy together, which is worth four visits of a node to a ray; so one voxel is what
- * the model answers for every mesh that was measured, and each was fastest so (docs/performance-notebook.md has what
- * the model says, and the times of 8 to 4,096 voxels). The frame is then only the box every ray is cut to. */
+ * How many voxels? The caller decides, or the cost model of accel_cost.c, which uses a sample of the triangles. Voxels
+ * save a ray the upper levels of the hierarchy. They cost a step per voxel (about a third of a node visit), the start
+ * of a hierarchy per occupied voxel on its path (about one), and memory for triangles in several voxels. With eight
+ * children per node the saved levels are at most log8 of the number of occupied voxels, if all are equally full: 1.3
+ * for 16 of them, 2 for 64; but a ray through a body of that many visits 2 to 4 occupied ones. For compact bodies this
+ * is about even. But with one voxel a ray need not be moved to the frame, and rays of one origin traverse the hierarchy
+ * together, which saves four visits of a node per ray; so the model chooses one voxel for every measured mesh, and each
+ * was fastest with it (docs/performance-notebook.md has the estimates and the times of 8 to 4,096 voxels). The frame is
+ * then only the box to which every ray is clipped. */
 #include "accel/triangle_index.h"
 
 #include "accel/accel_cost.h"
@@ -22,7 +22,10 @@
 
 #include <string.h>
 
-enum { MAX_CELLS = 128 /* along one axis */, BIG_VOXELS = 8 /* a triangle in more of them is kept apart */ };
+enum {
+    MAX_CELLS = 128 /* along one axis */,
+    BIG_VOXELS = 8 /* a triangle in more of them goes to a separate hierarchy */
+};
 
 static void set_space(struct triangle_index *index, const struct triangle_set *set) {
     struct vec3 extent = vec3_sub(set->bounds.max, set->bounds.min);
@@ -125,7 +128,7 @@ static size_t voxel_at(const struct triangle_index *index, uint32_t x, uint32_t 
     return (size_t)(z + 1) * index->stride[1] + (size_t)(y + 1) * index->stride[0] + x + 1;
 }
 
-/* Asked for every triangle, answered every few thousand. */
+/* Called for every triangle, polls every few thousand. */
 static bool is_time_to_stop(const struct pool *pool, uint32_t i) {
     return i % 4096 == 0 && pool && pool_cancelled(pool);
 }
@@ -322,9 +325,9 @@ void triangle_index_all(const struct triangle_index *index, const struct triangl
     search[cpu_isa()](index, set, ray, visit, context, cost);
 }
 
-/* Chooses the packet search for the processor; single rays where a packet does not pay or does not fit. */
+/* Chooses the packet search for the processor; traces single rays if a packet is not worthwhile or not possible. */
 
-/* Below this the common work of a packet costs more than it saves. */
+/* With fewer rays the common work of a packet costs more than it saves. */
 enum { FEWEST = 4 };
 
 uint64_t triangle_packet_nearest(const struct triangle_index *index, const struct triangle_set *set,

@@ -1,4 +1,4 @@
-/* An index over the triangles of one mesh: finds what a ray meets, with the same bits as trying every triangle. */
+/* An index over the triangles of one mesh: finds the hits of a ray, with the same bits as a test of every triangle. */
 #ifndef GRAY_ACCEL_TRIANGLE_INDEX_H
 #define GRAY_ACCEL_TRIANGLE_INDEX_H
 
@@ -20,13 +20,14 @@ struct triangle_set {
 
 struct triangle_index;
 
-/* What a search cost; sums, only ever added to. */
+/* The cost of searches, as sums; searches only add to them. */
 struct triangle_cost {
     uint64_t triangle_tests, voxels, hierarchy_steps;
 };
 
-/* `voxels`: about how many the frame is to have; 0: as many as the cost model of accel_cost.h says. Owner: the caller,
- * triangle_index_destroy. False: no memory or cancelled. pool may be NULL; the bytes of the index do not depend on it.
+/* `voxels`: the approximate number of voxels of the frame; 0: chosen by the cost model of accel_cost.h. Owner: the
+ * caller, triangle_index_destroy. False: no memory or cancelled. pool may be NULL; the bytes of the index do not depend
+ * on it.
  */
 bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,
                           struct pool *pool, struct error *error);
@@ -43,7 +44,7 @@ typedef void triangle_visit(void *context, const struct triangle_hit *hit);
 void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         triangle_visit *visit, void *context, struct triangle_cost *cost);
 
-/* The same answers by trying every triangle. */
+/* The same results by testing every triangle. */
 bool triangle_brute_nearest(const struct triangle_set *set, const struct ray *ray, struct triangle_hit *hit,
                             struct triangle_cost *cost);
 bool triangle_brute_any(const struct triangle_set *set, const struct ray *ray, struct triangle_cost *cost);

@@ -1,19 +1,19 @@
 /* The search, compiled once per instruction set: a file defines KERNEL(name) and includes this one.
  *
- * Single precision proposes, doubles decide. A ray is taken into local space in double precision and rounded. One that
- * starts farther than NEAR_BY from the middle is moved to where it enters the frame first (so its origin is at most
- * 1 + VOXEL_MARGIN in size), and its direction made about one long. Hits are looked for with every comparison slack by
- * more than all rounding can do, and what is found is tried again with the test of triangle.h on the original ray and
- * vertices. So the answer is the same bits as trying every triangle, whatever the instruction set.
+ * Single precision proposes, doubles decide. A ray is taken into local space in double precision and rounded. A ray
+ * that starts farther than NEAR_BY from the middle is first moved to where it enters the frame (so its origin is at
+ * most 1 + VOXEL_MARGIN in size), and its direction is scaled to about length one. Every comparison has a tolerance
+ * larger than all rounding errors, and candidates are tested again with the test of triangle.h on the original ray and
+ * vertices. So the result has the same bits as a test of every triangle, on any instruction set.
  *
- * A triangle is tried from t0 on the ray, where it enters the box of the triangle's block (0 in searches that do not
- * keep that): what rounding can do then goes by the distances near the triangle and not by how far the ray has come,
- * which for a dense mesh in a wide scene is thousands of times more.
+ * A triangle is tested from t0 on the ray, where it enters the box of the triangle's block (0 in searches without this
+ * value): rounding errors then depend on the distances near the triangle and not on the length of the ray, which for a
+ * dense mesh in a wide scene is thousands of times more.
  *
  * How far rounding reaches, in units of e = 2^-24 (unit roundoff), with s = o + t0 d - corner, S = |s|, L the largest
- * component of the two edges, M the largest of the direction's, R = |o| + t0 M, which bounds where on the ray that is,
- * so that |corner| is at most R + S; D bounds what the double arithmetic of either side may move the line, about 2^-46
- * times the distance of the origin:
+ * component of the two edges, M the largest of the direction's, R = |o| + t0 M, which bounds the point of the ray at
+ * t0, so that |corner| is at most R + S; D bounds what the double arithmetic of either side may move the line, about
+ * 2^-46 times the distance of the origin:
  *
  * - s is off by (3 R + S) e + D (one R each for the origin and the direction, for their sum, and for the corner; one t0
  *   M more without fused operations), and by S e from the subtraction;
@@ -22,21 +22,22 @@
  * - det = e1 p by 45 e L^2 M, so where its sign is wrong |det| is no more than that.
  *
  * So with W = (20 R + 146 S + 180 L) e + 8 D and E = W L M a true hit always has u, v >= -E and u + v <= |det| + 3 E. S
- * counts, not its bound: a ray that starts on a surface would else find its own triangle doubtful too often.
+ * itself is used, not a bound: otherwise a ray that starts on a surface would too often find its own triangle
+ * uncertain.
  *
- * For T = e2 q that is not enough: where triangles are large, as floors are, so is S. But floors lie along the axes.
- * With s_k, l_k and d_k for the components and p_k the product of the other two l, every product in T, and so what it
- * is off by, is at most one of |s_k| p_k:
+ * For T = e2 q that is not enough: for large triangles, such as floors, S is large, too. But floors are mostly parallel
+ * to the axes. With s_k, l_k and d_k for the components and p_k the product of the other two l, every product in T, and
+ * so its error, is bounded by one of |s_k| p_k:
  *
  * - q by ((3 R + 5 |s_k|) e + D) l_j from each of its two products;
  * - T by the sum over k of ((6 R + 18 |s_k|) e + 2 D) p_k;
  * - (t - t0) det by the sum of 16 e |d_k| p_k (t - t0), where |d_k| (t - t0) <= |s_k| + l_k.
  *
- * So T is within F = sum of ((10 R + 36 |s_k| + 18 l_k) e + 4 D) p_k of (t - t0) det. What passes these comparisons
- * with E and F reversed is certainly a hit.
+ * So T is within F = sum of ((10 R + 36 |s_k| + 18 l_k) e + 4 D) p_k of (t - t0) det. A triangle that passes these
+ * comparisons with E and F reversed is certainly a hit.
  *
- * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit waits, with bounds of its
- * t, until the search is over; what is not certain, or too close to say which is nearer, is decided at once. */
+ * A certain hit ends an "any" search at once. In a "nearest" search the nearest certain hit is kept, with bounds of its
+ * t, until the search is over; hits that are not certain, or whose order is not, are decided at once. */
 
 #include "accel/simd_internal.h"
 #include "accel/triangle_kernels_internal.h"
@@ -45,7 +46,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* How far from the middle of the mesh, in local units, BOX_GROWTH covers what the distance adds to the rounding. */
+/* The distance from the middle of the mesh, in local units, up to which BOX_GROWTH covers the additional rounding. */
 #define FAR_AWAY 0x1p20
 
 /* W for each unit of |o| and of t0 M. */
@@ -56,23 +57,24 @@
 #define MOVING_ERROR (26 * 0x1p-24f)
 #endif
 
-/* Of L in the slack, local units: what is a point is never a certain hit. Edge functions of what is one are so large
- * that the products they are differences of do not cancel: their sizes are below 4 (S + L)^2 and doubts begin at 2^-49,
- * but of the difference 95 (S + L) L e is left. (What the double arithmetic takes of it, 2^-48 (S + L) times the
- * distance of the origin, is little: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.) */
+/* The minimum of L in the slack, local units, so that a degenerate triangle is never a certain hit. Edge functions of a
+ * certain hit are so large that their products do not cancel: the products are below 4 (S + L)^2 and cancellation
+ * begins at 2^-49 of them, but their difference is at least 95 (S + L) L e. (The error of the double arithmetic, 2^-48
+ * (S + L) times the distance of the origin, is small: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.)
+ */
 #define MIN_EXTENT 0x1p-24f
 
-/* The vertices of so few are at hand, and the index of so many is not. */
+/* The vertices of this few triangles stay in the caches, and the index of this many does not. */
 enum { FEW_TRIANGLES = 50000, MANY_TRIANGLES = 400000 };
 
-/* The parts of a block that only a hit needs, while its triangles are tried. (A function that does nothing else gcc
- * takes for one that does nothing, unless it is a part of its caller.) */
+/* Prefetches the parts of a block that only a hit needs, while its triangles are tested. (gcc removes calls of a
+ * function that only prefetches, unless it is inlined.) */
 static inline __attribute__((always_inline)) void fetch_vertex_numbers(const struct triangle_block *block) {
     __builtin_prefetch(block->vertices[0]);
     __builtin_prefetch(&block->vertices[2][WIDTH - 1]);
 }
 
-/* What is next on the stack, while something else is tried. */
+/* Prefetches the next entry of the stack. */
 static inline __attribute__((always_inline)) void prefetch_block(const struct triangle_index *index,
                                                                  uint32_t reference) {
     const char *place = reference & REF_LEAF ? (const char *)(index->blocks + (reference & ~REF_LEAF))
@@ -81,8 +83,8 @@ static inline __attribute__((always_inline)) void prefetch_block(const struct tr
         __builtin_prefetch(place + 64 * i);
 }
 
-/* The axes of triangle_ray_axes by a table, as halves of lanes x, y, z, z: which of the direction's components are
- * larger than those before (wide4_larger), and above that their signs. */
+/* The axes of triangle_ray_axes by a table, as halves of lanes x, y, z, z: the index is which of the direction's
+ * components are larger than those before (wide4_larger), and above that their signs. */
 #define LANE(i) 2 * (i), 2 * (i) + 1
 #define AXES(z, negative)                                                                                              \
     { LANE(((z) + 1 + (negative)) % 3), LANE(((z) + 2 - (negative)) % 3), LANE(z), LANE(z) }
@@ -100,7 +102,7 @@ struct sheared_ray {
     wide4 shear;  /* of x, of y, and twice the factor that makes t of z */
 };
 
-/* triangle_ray_set with one division for all three. What lies behind the vectors of the ray is read with them. */
+/* triangle_ray_set with one division for all three. Reads the values after the vectors of the ray with them. */
 static inline void sheared_set(struct sheared_ray *out, const struct ray *ray) {
     const double *numbers = (const double *)(const void *)ray;
     _Static_assert(offsetof(struct ray, direction) == 3 * sizeof(double) && sizeof(struct ray) > 7 * sizeof(double),
@@ -122,15 +124,15 @@ struct search {
     _Alignas(16) float origin[4], direction[4];
     simd4 reciprocal; /* 1 / direction */
     simd4 middle;     /* origin / direction: a plane is met at plane * reciprocal - middle */
-    float widen[4];   /* for rays from far away: how much the boxes' growth falls short, in local t */
+    float widen[4];   /* for rays from far away: the additional growth of boxes, in local t */
     float longest;    /* the largest size of the direction's components, M */
     uint32_t octant;  /* bit k: the direction is negative along axis k */
     float error;      /* 15 e + 8 D */
-    float limit;      /* local t beyond which nothing matters */
+    float limit;      /* local t beyond which hits do not matter */
     float certain;    /* local t below which the ray's own interval surely has not ended */
-    float blur;       /* what a local t of a hit may be off, beyond its last places */
+    float blur;       /* absolute error of a hit's local t, beyond its last places */
     bool found, sheared_ready;
-    bool moved, far_away;        /* if moved: the ray was brought to the frame, maybe from FAR_AWAY */
+    bool moved, far_away;        /* if moved: the ray was moved to the frame, maybe from FAR_AWAY */
     double t_to_local, t_offset; /* if moved: local t = t * t_to_local - t_offset; else they are the same */
     double best;                 /* as decided */
     struct triangle_hit *hit;
@@ -138,13 +140,13 @@ struct search {
     void *context;
     struct triangle_cost *cost;
     struct sheared_ray sheared; /* if it is ready */
-    /* A hit that is certain and the nearest so far, with bounds of its local t; NULL: none waits. */
+    /* The nearest certain hit so far, with bounds of its local t; NULL: none. */
     const struct triangle_block *pending;
     unsigned pending_lane;
     float pending_from;
 };
 
-/* Rows of a node in which a ray of the octant meets the near and the far sides of boxes, in bytes. */
+/* Byte offsets of the rows of a node with the near and the far sides of boxes for rays of an octant. */
 struct sides {
     size_t near_x, near_y, near_z, far_x, far_y, far_z;
 };
@@ -160,7 +162,8 @@ static inline simd8 sides_load(const struct wide_node *node, size_t row) {
     return simd8_load((const float *)(const void *)((const char *)node + row));
 }
 
-/* The edge functions of triangle_cross, rounded, and the way to the corners along the ray's axis; lane 3 is not used.
+/* The edge functions of triangle_cross, rounded, and the distance to the corners along the ray's axis; lane 3 is not
+ * used.
  */
 struct edges {
     wide4 e, p, q, along;
@@ -198,14 +201,14 @@ static inline __attribute__((always_inline)) void hit_set(struct triangle_hit *h
     hit->enter = enter;
 }
 
-/* triangle_cross, its three edge functions at a time and with the same bits; what is near zero is left to it. */
+/* triangle_cross with its three edge functions at once and the same bits; cases near zero call triangle_cross. */
 static inline __attribute__((always_inline)) bool cross(const struct search *s, const double a[3], const double b[3],
                                                         const double c[3], struct triangle_hit *hit) {
     struct edges edges = edges_of(&s->sheared, a, b, c);
     wide4 doubt = wide4_mul(wide4_all(0x1p-49), wide4_add(wide4_size(edges.p), wide4_size(edges.q)));
     if (__builtin_expect((wide4_below(doubt, wide4_size(edges.e)) & 7) != 7, 0)) {
         struct triangle_ray exactly;
-        triangle_ray_set(&exactly, s->ray); /* search_begin has seen that the ray is good */
+        triangle_ray_set(&exactly, s->ray); /* search_begin has checked the ray */
         return triangle_cross(&exactly, a, b, c, hit);
     }
     unsigned negative = wide4_negative(edges.e) & 7;
@@ -230,7 +233,7 @@ static inline bool is_nearer(const struct search *s, const struct triangle_hit *
     return h->t != s->best || (s->found && h->triangle < s->hit->triangle);
 }
 
-/* Field by field: what was stored in pieces is slow to load whole. */
+/* Field by field: loading a whole struct that was stored in pieces is slow. */
 static inline void hit_copy(struct triangle_hit *to, const struct triangle_hit *from) {
     to->t = from->t;
     to->u = from->u;
@@ -239,7 +242,7 @@ static inline void hit_copy(struct triangle_hit *to, const struct triangle_hit *
     to->enter = from->enter;
 }
 
-/* The answer for one proposed triangle. True when an "any" search is over. */
+/* Decides one proposed triangle. True when an "any" search is over. */
 static inline bool decide(struct search *s, const struct triangle_block *block, unsigned lane) {
     struct triangle_hit h;
     if (!is_crossed(s, block, lane, &h))
@@ -270,8 +273,8 @@ static inline void make_ready(struct search *s) {
     s->sheared_ready = true;
 }
 
-/* The end of a "nearest" search. A hit that is certain, when nothing else has been found, is what it is: only its
- * numbers are left to be worked out, and none of its edge functions is anywhere near zero (MIN_EXTENT). */
+/* The end of a "nearest" search. If only one certain hit was found, it is final: only its numbers remain to be
+ * computed, and none of its edge functions is near zero (MIN_EXTENT). */
 static inline bool decide_last(struct search *s) {
     const struct triangle_block *block = s->pending;
     if (!block)
@@ -314,8 +317,8 @@ static inline void decide_pending(struct search *s) {
     s->pending = NULL;
 }
 
-/* The nearest hit so far, certain and with bounds of its t, waits: where the search may end is known well enough to go
- * on, and its vertices are on their way when it is over. */
+/* Keeps the nearest certain hit so far, with bounds of its t: they limit the search well enough to continue, and its
+ * vertices are prefetched meanwhile. */
 static inline __attribute__((always_inline)) void keep(struct search *s, const struct triangle_block *block,
                                                        unsigned lane, float from, float to) {
     s->pending = block;
@@ -464,10 +467,9 @@ descend(struct search *s, uint32_t reference, const enum triangle_search kind, c
                 by = simd8_add(by, wy);
                 bz = simd8_add(bz, wz);
             }
-            /* Comparing bits is enough, though it turns the order of negative numbers round: the limit is none. Of a
-             * box that begins behind the ray's start `enter` is negative, whichever side it is taken from. If the box
-             * ends there as well, `leave` is the far side next to the start and `enter` no nearer to it than that
-             * side's near one, so as bits it is not less. */
+            /* Comparing bits is enough although it reverses the order of negative numbers, because the limit is not
+             * negative. For a box that begins behind the ray's start `enter` is negative. If the box also ends there,
+             * `leave` is negative, too, and `enter` is not nearer to 0, so as bits it is not less. */
             simd8 enter = simd8_latest_bits(ax, ay, az);
             simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, limit));
             if (kind == TRIANGLE_NEAREST ? node_take_nearest(n, octant, enter, leave, &stack, &top, &reference)
@@ -537,7 +539,7 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
     }
 }
 
-/* Rays that have been brought to the frame. */
+/* Rays that have been moved to the frame. */
 static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind) {
     const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     if (s->index->only == REF_EMPTY)
@@ -545,7 +547,7 @@ static inline __attribute__((always_inline)) bool traversal(struct search *s, co
     return s->far_away ? descend(s, s->index->only, kind, true, many) : descend(s, s->index->only, kind, false, many);
 }
 
-/* Apart from the kernel of the others, which needs its registers. */
+/* Separate from the kernel of the others, which needs its registers. */
 static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
     return traversal(s, TRIANGLE_NEAREST);
 }
@@ -577,11 +579,11 @@ static inline void search_start(struct search *s, simd4 origin, simd4 direction,
 
 enum beginning { RAY_INSIDE, RAY_MISSES, RAY_UNUSABLE };
 
-/* In double precision, for rays that start far away or have odd directions. Those that are not finite, or so far away
- * that the slack would swallow the mesh, are left to brute force. */
+/* In double precision, for rays that start far away or have odd directions. Rays that are not finite, or so far away
+ * that the tolerance would exceed the mesh, use brute force. */
 static __attribute__((noinline)) enum beginning search_begin_far(struct search *s, wide4 o, wide4 d) {
     const struct triangle_index *index = s->index;
-    /* A zero becomes so small that no way along it counts. */
+    /* A zero becomes so small that any distance along it is negligible. */
     wide4 d_size = wide4_size(d), r = wide4_div(wide4_all(1), wide4_signed(wide4_max(d_size, wide4_all(0x1p-980)), d));
     wide4 half = wide4_load(index->half), o_size = wide4_with_last(wide4_size(o), 1);
     wide4 a = wide4_mul(wide4_sub(wide4_sub(wide4_all(0), half), o), r), b = wide4_mul(wide4_sub(half, o), r);
@@ -616,8 +618,8 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
     return RAY_INSIDE;
 }
 
-/* Most rays start near the mesh and at t = 0. They are taken as they are, in single precision from here on: nothing
- * they meet first has to wait for where they enter the frame, and their t is the local one. */
+/* Most rays start near the mesh and at t = 0. They are not moved, and are in single precision from here on: the first
+ * node does not wait for the entry into the frame, and their t is the local one. */
 static inline __attribute__((always_inline)) enum beginning search_begin(struct search *s) {
     const struct triangle_index *index = s->index;
     const struct ray *ray = s->ray;

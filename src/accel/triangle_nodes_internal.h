@@ -1,11 +1,9 @@
-/* What a search does at a node once it knows where it enters and leaves each child's box: the nearest child is visited
- * next, the others go on the stack.
- *
- * Which child is nearest is not sorted out but read: the node lists its lanes for the octant of the direction
- * (triangle_layout_internal.h). Then there is nothing to compare and no branch but whether any child was met; the list
- * is right nearly as often as sorting would be (T. Fuetterling et al., "Accelerated Single Ray Tracing for Wide Vector
- * Units", HPG 2017, order lanes in a similar way). The child to take up does not come from the stack just written,
- * which would cost the next node its load's wait for that store. */
+/* The step of a search at a node, after the tests of the children's boxes: the nearest child is visited next, the
+ * others go on the stack. * The nearest child is not found by sorting: the node has a list of its lanes for the octant
+ * of the direction (triangle_layout_internal.h). So there are no comparisons, and the only branch is whether any child
+ * was hit; the list is correct nearly as often as sorting (T. Fuetterling et al., "Accelerated Single Ray Tracing for
+ * Wide Vector Units", HPG 2017, order lanes in a similar way). The next child does not come from the stack just
+ * written, since its load would wait for that store. */
 #ifndef GRAY_ACCEL_TRIANGLE_NODES_INTERNAL_H
 #define GRAY_ACCEL_TRIANGLE_NODES_INTERNAL_H
 
@@ -14,8 +12,9 @@
 
 enum { STACK_ROOM = STACK_ENTRIES + WIDTH }; /* pushing writes whole vectors */
 
-/* References still to be visited, and where the ray enters them (only kept for a nearest search). How many there are is
- * kept apart, or it would not stay in a register. enter[top], above them, is where the ray enters what it visits. */
+/* References still to be visited, and where the ray enters them (only kept for a nearest search). Their number is a
+ * separate variable, so that it stays in a register. enter[top], above them, is where the ray enters the visited node.
+ */
 struct node_stack {
     float enter[STACK_ROOM];
     uint32_t reference[STACK_ROOM];
@@ -36,7 +35,7 @@ static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 e
     _mm256_storeu_ps(stack->enter + top, _mm256_maskz_compress_ps((__mmask8)lanes, enter));
 }
 #else
-/* For every set of lanes their numbers in a row, a byte each. */
+/* For every set of lanes, a list of their numbers, one byte each. */
 #define LANE(set, i) ((set) >> (i)&1 ? UINT64_C(i) << 8 * __builtin_popcount((set) & ((1 << (i)) - 1)) : 0)
 #define LANES(set)                                                                                                     \
     (LANE(set, 0) | LANE(set, 1) | LANE(set, 2) | LANE(set, 3) | LANE(set, 4) | LANE(set, 5) | LANE(set, 6) |          \
@@ -63,7 +62,7 @@ static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 e
 }
 #endif
 
-/* False: no child is met. Else *reference is the first child on the ray's way and the others are on the stack, the next
+/* False: no child is hit. Else *reference is the first child along the ray and the others are on the stack, the next
  * one on top. */
 static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, simd8 enter, simd8 leave,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
@@ -77,7 +76,7 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     unsigned lanes = simd8_at_max_bits(enter, leave);
     if (!lanes)
         return false;
-    /* With the first, which comes to lie above the top. */
+    /* Including the first one, which is stored above the top. */
     node_push_enter(stack, *top, enter, lanes);
     node_push_lanes(stack, *top, children, lanes);
     *top += (unsigned)__builtin_popcount(lanes) - 1;
@@ -85,8 +84,8 @@ static inline bool node_take_nearest(const struct wide_node *node, uint32_t octa
     return true;
 }
 
-/* The same in any order and without where the ray enters. Boxes are larger than what is in them by more than rounding
- * can do, so one that the ray leaves where it enters holds nothing that it meets. */
+/* The same in any order and without where the ray enters. Boxes are larger than their contents by more than all
+ * rounding errors, so a box that the ray leaves where it enters has no hit. */
 static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd8 leave, struct node_stack *stack,
                                  size_t *top, uint32_t *reference) {
     unsigned lanes = simd8_below_bits(enter, leave);

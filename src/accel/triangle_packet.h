@@ -1,13 +1,12 @@
-/* Many rays of one origin at once: the camera rays of a few pixels, or the shadow rays of one hit. The answers are the
- * same bits as one ray after the other gets from triangle_index.h; rays that do not go well together are sent one after
- * the other. */
+/* Many rays of one origin at once: the camera rays of a few pixels, or the shadow rays of one hit. The results have the
+ * same bits as those of single rays (triangle_index.h); rays that do not suit a packet are traced one by one. */
 #ifndef GRAY_ACCEL_TRIANGLE_PACKET_H
 #define GRAY_ACCEL_TRIANGLE_PACKET_H
 
 #include "accel/ray_packet.h"
 #include "accel/triangle_index.h"
 
-/* What each ray of a packet has met; meaningful where the bit of the ray is set in the answer. */
+/* The hit of each ray of a packet; valid if the bit of the ray is set in the result. */
 struct packet_hits {
     _Alignas(64) double t[PACKET_RAYS], u[PACKET_RAYS], v[PACKET_RAYS];
     uint32_t triangle[PACKET_RAYS];
@@ -22,7 +21,7 @@ static inline void packet_hits_set(struct packet_hits *hits, unsigned i, const s
     hits->enter[i] = hit->enter;
 }
 
-/* For each ray whose bit is set in `active`, what triangle_index_nearest says: its bit of the answer, and hits. */
+/* triangle_index_nearest for each ray whose bit is set in `active`: returns a bit per ray, and fills hits. */
 uint64_t triangle_packet_nearest(const struct triangle_index *index, const struct triangle_set *set,
                                  const struct ray_packet *rays, uint64_t active, struct packet_hits *hits,
                                  struct triangle_cost *cost);

@@ -1,20 +1,20 @@
 /* The packet search, compiled once per instruction set: a file defines PACKET(name) and includes this one.
  *
- * Up to 64 rays of one origin traverse one hierarchy together. A node is first tried against the beam that holds all
- * of them, eight children at once: the slopes of the rays over their longest axis bound it by four planes through the
- * origin (as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005). A child that the beam
- * meets waits on the stack with its box and the set of rays that met its parent; when it is its turn the box is tried
- * against these rays, a vector of them at a time, with what they have found until then.
+ * Up to 64 rays of one origin traverse one hierarchy together. A node is first tested against the beam that contains
+ * all of them, eight children at once: the slopes of the rays over their longest axis bound it by four planes through
+ * the origin (as in Reshetov, Soupikov, Hurley, "Multi-Level Ray Tracing Algorithm", SIGGRAPH 2005). A child that the
+ * beam hits goes on the stack with its box and the set of rays that hit its parent; when it is popped, its box is
+ * tested against these rays, a vector of them at a time, with their current limits.
  *
  * With one origin o the Moeller-Trumbore test falls into a part of the triangle and a part of the ray: with the edges
  * e1, e2 from the corner c and s = o - c, all of
  *   det = d . (e2 x e1),  u = d . (e2 x s),  v = d . (s x e1),  T = e2 . (s x e1),  t = T / det
- * are scalar products of the ray's direction d with vectors that are worked out once for the eight triangles of a
- * block. Then either one ray meets eight triangles or one triangle many rays, whichever is less work.
+ * are scalar products of the ray's direction d with vectors that are computed once for the eight triangles of a block.
+ * Then either one ray is tested against eight triangles or one triangle against many rays, whichever is less work.
  *
  * Single precision proposes, doubles decide, as in triangle_kernel_internal.h, with the same meaning of e, S, L and D.
- * The rays are tried from their origin, which is not moved and up to FARTHEST from the middle; with R = |o| a corner is
- * at most R + S:
+ * The rays are tested from their origin, which is not moved and is up to FARTHEST from the middle; with R = |o| a
+ * corner is at most R + S:
  *
  * - s is off by (2 R + S) e + D (R for the origin, R + S for the corner), and by S e from the subtraction;
  * - e2 x e1 by 8 e L^2 a component, det by 46 e L^2;
@@ -22,12 +22,12 @@
  * - T by (12 R + 58 S) e L^2 + 6 D L^2, and 46 e L^2 t from comparing it with t det; a direction's largest component is
  *   1/4 to 1, so t <= 4 (S + 2 L).
  *
- * With E = ((13 R + 64 S + 64 L) e + 8 D) L a true hit has u, v >= -E, u + v <= |det| + 3 E, and T within 6 E L. What
- * passes with these reversed is certainly a hit.
+ * With E = ((13 R + 64 S + 64 L) e + 8 D) L a true hit has u, v >= -E, u + v <= |det| + 3 E, and T within 6 E L. A
+ * triangle that passes with these reversed is certainly a hit.
  *
- * A certain hit of a "nearest" search only waits as the ray's candidate, with bounds of its t. A nearer one takes its
- * place; where bounds overlap, and for all that is not certain, doubles decide at once. What is left at the end is
- * decided eight rays at a time. */
+ * A certain hit of a "nearest" search becomes the ray's candidate, with bounds of its t. A nearer one replaces it; if
+ * bounds overlap, and for all uncertain hits, doubles decide at once. The remaining candidates are decided at the end,
+ * eight rays at a time. */
 
 #include "accel/simd_rays_internal.h"
 #include "accel/triangle_layout_internal.h"
@@ -43,7 +43,7 @@ enum { GROUPS = PACKET_RAYS / LANES };
 struct packet {
     _Alignas(64) float dx[PACKET_RAYS], dy[PACKET_RAYS], dz[PACKET_RAYS];
     float rx[PACKET_RAYS], ry[PACKET_RAYS], rz[PACKET_RAYS]; /* 1 / direction */
-    float limit[PACKET_RAYS];                                /* local t beyond which nothing matters */
+    float limit[PACKET_RAYS];                                /* local t beyond which hits do not matter */
     float certain[PACKET_RAYS]; /* local t below which the ray's own interval surely has not ended */
     float nearer[PACKET_RAYS];  /* the candidate's t is surely not below this; infinite: no candidate */
     uint32_t candidate[PACKET_RAYS];
@@ -52,7 +52,7 @@ struct packet {
     float origin[3];
     float error; /* 13 R e + 8 D */
     float begun; /* local t from which the rays' interval surely has begun */
-    /* The beam: over the axis `forward`, on which all rays go the same way. */
+    /* The beam: over the axis `forward`, along which all rays have the same sign. */
     int forward, side[2];
     bool backwards, mixed;                     /* mixed: the signs of the rays differ along other axes */
     float slope_min[2], slope_max[2], soonest; /* of coordinate / |forward|; 1 / the largest |d| ahead */
@@ -64,7 +64,7 @@ struct packet {
     struct packet_hits *hits;
     unsigned groups; /* vectors of rays in use */
     int axes;        /* x, y, z of triangle_ray_set as base-4 digits where all rays have the same, else -1 */
-    uint64_t alive, found, pending; /* rays that search; that have an answer; that have a candidate */
+    uint64_t alive, found, pending; /* rays that search; that have a hit; that have a candidate */
     uint64_t tests, nodes;
 };
 
@@ -97,7 +97,7 @@ static inline void answer(struct packet *p, unsigned i, const struct triangle_hi
 static __attribute__((noinline)) void decide(struct packet *p, unsigned i, uint32_t triangle, const bool any) {
     struct triangle_ray sheared;
     struct ray ray = ray_packet_get(p->rays, i);
-    triangle_ray_set(&sheared, &ray); /* the rays have been seen to be good */
+    triangle_ray_set(&sheared, &ray); /* the rays have been checked */
     const uint32_t *c = p->set->corners[triangle];
     struct triangle_hit h = {.triangle = triangle};
     if (triangle_cross(&sheared, p->set->vertices[c[0]], p->set->vertices[c[1]], p->set->vertices[c[2]], &h))
@@ -119,7 +119,7 @@ static inline void keep(struct packet *p, unsigned i, uint32_t triangle, float f
 enum { BATCH = 8 };
 
 /* triangle_cross for the candidates of eight rays at once: the same operations in the same order, so the same bits.
- * Where an edge function cancels triangle_cross itself is asked. */
+ * If an edge function cancels, triangle_cross itself is called. */
 static inline __attribute__((always_inline)) void decide_batch(struct packet *p, unsigned first, unsigned pending,
                                                                const int x, const int y, const int z) {
     _Alignas(64) double a[3][BATCH], b[3][BATCH], c[3][BATCH], t[BATCH], hit_u[BATCH], hit_v[BATCH], sums[BATCH];
@@ -154,7 +154,7 @@ static inline __attribute__((always_inline)) void decide_batch(struct packet *p,
         double u_left = fabs(u) - 0x1p-49 * (fabs(up) + fabs(uq)), v_left = fabs(v) - 0x1p-49 * (fabs(vp) + fabs(vq)),
                w_left = fabs(w) - 0x1p-49 * (fabs(wp) + fabs(wq));
         double sum = u + v + w;
-        /* Signs alike: none of the three products with the sum is negative. */
+        /* Equal signs: none of the three products with the sum is negative. */
         clear[k] = (u_left > 0) & (v_left > 0) & (w_left > 0) & ((u > 0) == (v > 0)) & ((v > 0) == (w > 0));
         sums[k] = sum;
         t[k] = (u * az + v * bz + w * cz) / sum * scale_z;
@@ -207,7 +207,7 @@ static void decide_candidates(struct packet *p) {
 
 /* ---- blocks ---- */
 
-/* What rays of one origin need of eight triangles. */
+/* The part of the test of eight triangles that depends only on the origin. */
 struct parts {
     _Alignas(32) float n[3][WIDTH], a[3][WIDTH], q[3][WIDTH], t[WIDTH], e[WIDTH], slack[WIDTH];
     const uint32_t *ids;
@@ -239,7 +239,7 @@ static inline __attribute__((always_inline)) void split_block(const struct packe
     simd8_store(out->t, simd8_multiply_add(e2x, qx, simd8_multiply_add(e2y, qy, simd8_mul(e2z, qz))));
     simd8 extent = simd8_max(simd8_max(simd8_size(e1x), simd8_size(e1y)), simd8_max(simd8_size(e1z), simd8_size(e2x)));
     extent = simd8_max(extent, simd8_max(simd8_size(e2y), simd8_size(e2z)));
-    extent = simd8_max(extent, simd8_all(0x1p-40f)); /* no slack at all would make points certain hits */
+    extent = simd8_max(extent, simd8_all(0x1p-40f)); /* zero slack would make degenerate triangles certain hits */
     simd8 distance = simd8_max(simd8_size(sx), simd8_max(simd8_size(sy), simd8_size(sz)));
     simd8 e = simd8_multiply_add(simd8_add(extent, distance), simd8_all(64 * 0x1p-24f), simd8_all(p->error));
     e = simd8_mul(e, extent);
@@ -364,7 +364,7 @@ static __attribute__((noinline)) void try_block(struct packet *p, uint32_t numbe
 
 /* ---- the hierarchy ---- */
 
-/* Which of the rays meet the box before their limits. */
+/* The rays that hit the box before their limits. */
 static inline __attribute__((always_inline)) uint64_t meet_box(const struct packet *p, const float box[6],
                                                                uint64_t rays, const bool mixed) {
     uint64_t met = 0;
@@ -394,7 +394,7 @@ static inline __attribute__((always_inline)) uint64_t meet_box(const struct pack
     return met;
 }
 
-/* The children of a node that the beam meets, the farthest first on the stack. */
+/* Pushes the children of a node that the beam hits, the farthest first. */
 static inline __attribute__((always_inline)) uint32_t push_children(struct packet *p, uint32_t number, uint64_t rays,
                                                                     struct pending_box *stack, uint32_t top) {
     const struct wide_node *n = p->index->nodes + number;
@@ -479,7 +479,7 @@ static void traversal(struct packet *p, uint32_t root, const bool any) {
 
 /* ---- beginning ---- */
 
-/* The planes round the rays, over the axis that is the longest for all of them. False: there is none. */
+/* The planes around the rays, over the axis that is the longest for all of them. False: there is none. */
 static bool set_beam(struct packet *p) {
     const float *d[3] = {p->dx, p->dy, p->dz};
     int z = fabsf(d[1][0]) > fabsf(d[0][0]);

@@ -1,4 +1,4 @@
-/* Parting the triangles of a range in two by the surface area heuristic in bins: Ingo Wald, "On fast Construction of
+/* Splits the triangles of a range by the binned surface area heuristic: Ingo Wald, "On fast Construction of
  * SAH-based Bounding Volume Hierarchies", RT 2007. The cost of a leaf counts blocks of eight triangles, not triangles.
  */
 #include "accel/triangle_split_internal.h"
@@ -33,7 +33,7 @@ void range_measure(const struct reference *references, struct range *range) {
     }
 }
 
-/* Half blocks, so that filling a block is worth something and a few more triangles are not free. */
+/* Counts half blocks, so that full blocks are favoured and a few more triangles are not free. */
 static float leaf_cost(uint32_t triangles) {
     return (float)((triangles + 3) / 4);
 }

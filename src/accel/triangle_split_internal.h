@@ -21,13 +21,13 @@ static inline float half_area(simd4 lo, simd4 hi) {
 /* The boxes of a range whose first and count are set. */
 void range_measure(const struct reference *references, struct range *range);
 
-/* Splits a range in two that are not empty; halve: in the middle of the list, not by surfaces. */
+/* Splits a range into two that are not empty; halve: in the middle of the list, not by surface. */
 void split_range(struct reference *references, const struct range *range, bool halve, struct range *left,
                  struct range *right);
 
-/* Separates a floor, whose triangles have half the surface of the range each, from what is on it, if it is much
- * thinner; false: there is none. The surface area heuristic sees no gain, but rays start on floors, and rays that leave
- * a floor miss a flat box. */
+/* Separates a floor, whose triangles each have half the surface of the range, from the rest if it is much thinner;
+ * false: there is none. The surface area heuristic sees no gain, but rays start on floors, and rays that leave a floor
+ * miss a flat box. */
 bool split_floor(struct reference *references, const struct range *range, struct range *floor, struct range *rest);
 
 #endif

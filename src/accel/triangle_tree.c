@@ -1,17 +1,15 @@
-/* From the top downwards the surface area heuristic sees one split at a time, and where large and small triangles are
- * mixed (a statue in a stadium) a small one is soon in a box that is as large as the large ones beside it. Reinsertion
- * takes such a branch out and puts it where the sum of all surfaces becomes smallest: J. Bittner, M. Hapala, V. Havran,
- * "Fast Insertion-Based Optimization of Bounding Volume Hierarchies", CGF 32(1), 2013; the search from the branch
- * upwards, into each sibling on the way, is that of D. Meister, J. Bittner, "Parallel Reinsertion for Bounding Volume
- * Hierarchy Optimization", CGF 37(2), 2018. One after the other, so that the outcome is always the same; and only the
- * branches that promise most, which is a tenth of the time of building: those whose parent is large, by itself and
- * beside them.
+/* From the top downwards the surface area heuristic sees one split at a time, and if large and small triangles are
+ * mixed (a statue in a stadium), a small one is soon in a box with large ones. Reinsertion takes such a branch out and
+ * puts it where the sum of all surfaces becomes smallest: J. Bittner, M. Hapala, V. Havran, "Fast Insertion-Based
+ * Optimization of Bounding Volume Hierarchies", CGF 32(1), 2013; the search from the branch upwards, into each sibling
+ * on the way, is that of D. Meister, J. Bittner, "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", CGF
+ * 37(2), 2018. Branches are moved one after the other, so that the result is deterministic, and only the most promising
+ * ones, which takes a tenth of the build time: those whose parent is large, absolutely and relative to them.
  *
  * Which branches become nodes of eight children, and which blocks, is the cheapest choice of all: H. Ylitie, T. Karras,
  * S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1. For every
- * branch and 1 .. 8 lanes the least cost of standing in so many lanes of a node is known when that of both children is.
- *
- * What it brings: docs/performance-notebook.md. */
+ * branch and 1 .. 8 lanes, the minimal cost of occupying this many lanes of a node follows from the costs of both
+ * children. * Measurements: docs/performance-notebook.md. */
 #include "accel/triangle_tree_internal.h"
 
 #include "base/mem.h"
@@ -20,20 +18,20 @@
 #include <string.h>
 
 enum {
-    HALVE_DEPTH = 60,       /* below so many branches ranges are halved, so 31 more are the most */
-    FLOOR_STEP = 3,         /* a floor is looked for at every third branch: where nodes of eight would begin */
+    HALVE_DEPTH = 60,       /* below this depth ranges are halved, so there are at most 31 more levels */
+    FLOOR_STEP = 3,         /* search for a floor at every third level: where nodes of eight begin */
     REINSERTION_ROUNDS = 2, /* of reinsertion, */
     PASS_SHARE = 7,         /* each over a seventh of all branches */
-    KEY_BITS = 12,          /* of a promise, in which it is counted */
+    KEY_BITS = 12,          /* bits of the estimate used for counting */
     POLL_COUNT = 2000       /* references that are split without asking whether to stop */
 };
 
-/* What a ray pays for a node and for a block that it meets, the time of a node (docs/performance-notebook.md: 30
+/* The cost of a node and of a block for a ray that hits it, relative to a node (docs/performance-notebook.md: 30
  * cycles, 60). */
 #define NODE_COST 1.0f
 #define BLOCK_COST 2.0f
 
-/* A move must bring that much of the surface of the parent: less is rounding, or not worth its time. */
+/* A move must save this fraction of the parent's surface: less is rounding, or not worth the time. */
 #define MIN_GAIN 1e-3f
 
 static void set_box(struct branch *branch, simd4 min, simd4 max) {
@@ -119,7 +117,7 @@ static uint32_t depth_of(const struct branch *branches, uint32_t number) {
     return depth;
 }
 
-/* The branch beside which `number` would lie best, or NO_BRANCH: where it is. Its parent goes with it. */
+/* The best new sibling for branch `number`, or NO_BRANCH to leave it. Its parent moves with it. */
 static uint32_t best_position(const struct branch *branches, uint32_t number) {
     struct {
         uint32_t number;
@@ -184,7 +182,7 @@ static void reinsert(struct tree *tree, uint32_t number) {
     tree_refit(tree, parent);
 }
 
-/* How much a branch may bring, as bits that order like the number; 0: it stays. */
+/* The possible gain of a branch, as bits that order like the number; 0: it stays. */
 static uint32_t promise(const struct tree *tree, uint32_t number) {
     uint32_t parent = tree->branches[number].parent, bits;
     if (parent == NO_BRANCH || tree->branches[parent].parent == NO_BRANCH)
@@ -197,7 +195,7 @@ static uint32_t promise(const struct tree *tree, uint32_t number) {
     return bits;
 }
 
-/* The branches that promise most, about `wanted`, the best first: words whose lower half is a branch. NULL: no memory.
+/* About `wanted` most promising branches, the best first: words whose lower half is a branch. NULL: no memory.
  */
 static uint64_t *best_candidate(const struct tree *tree, uint32_t wanted, uint32_t *count) {
     uint32_t number_of[1 << KEY_BITS] = {0}, min = (1 << KEY_BITS) - 1, found = 0;
@@ -205,7 +203,7 @@ static uint64_t *best_candidate(const struct tree *tree, uint32_t wanted, uint32
         number_of[promise(tree, i) >> (32 - KEY_BITS)]++;
     for (; min > 0 && found + number_of[min] <= wanted; min--)
         found += number_of[min];
-    min++; /* the last number that could be counted whole */
+    min++; /* the lowest counter that fits completely */
     uint64_t *words = mem_alloc(((size_t)found + 1) * sizeof *words);
     *count = 0;
     for (uint32_t i = 0; words && i < tree->count; i++) {

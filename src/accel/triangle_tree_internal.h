@@ -1,5 +1,5 @@
-/* The binary hierarchies of an index while it is built: made from the top downwards, made better by reinsertion, and
- * cut into nodes of eight children. Private to src/accel/triangle_*. */
+/* The binary hierarchies of an index while it is built: built from the top downwards, improved by reinsertion, and
+ * collapsed into nodes of eight children. Private to src/accel/triangle_*. */
 #ifndef GRAY_ACCEL_TRIANGLE_TREE_INTERNAL_H
 #define GRAY_ACCEL_TRIANGLE_TREE_INTERNAL_H
 
@@ -19,8 +19,8 @@ struct branch {
     uint32_t first; /* of a leaf: its references */
     float area;     /* half of the surface */
     uint8_t height;
-    /* By tree_weigh: whether it is one block; how many of its eight lanes child 0 gets where it is a node; and where
-     * it is given i + 1 lanes of its parent, how many child 0 gets of them (0: i lanes do as well). */
+    /* Set by tree_weigh: whether it is one block; how many of its eight lanes child 0 gets if it is a node; and, if it
+     * gets i + 1 lanes of its parent, how many of them child 0 gets (0: i lanes are as good). */
     bool is_block;
     uint8_t as_node, as_part[WIDTH];
 };
@@ -44,7 +44,7 @@ static inline uint8_t branch_height(const struct branch *a, const struct branch 
 
 /* A branch without children over a range; its number is *out. False: no memory. */
 bool tree_add(struct tree *tree, const struct range *range, uint32_t parent, uint32_t *out);
-/* Parts a range that lies `depth` branches below its root. */
+/* Splits a range that is `depth` branches below its root. */
 void tree_part(struct reference *references, const struct range *range, uint32_t depth, struct range part[2]);
 /* A whole hierarchy over a range, whose root would lie `depth` branches below another. False: no memory, or cancelled.
  */
@@ -56,8 +56,8 @@ void tree_refit(struct tree *tree, uint32_t number);
 /* Moves branches to where they cost less. False: no memory, or cancelled. */
 bool tree_improve(struct tree *tree, const struct pool *pool);
 
-/* What branch `number` costs as 1 .. WIDTH lanes of a node. costs: of branches of at most `limit` references, by their
- * `first`, unless they are leaves; those are not gone into. NULL: there are none. */
+/* The cost of branch `number` as 1 .. WIDTH lanes of a node. costs: known costs of branches with at most `limit`
+ * references, by their `first`, except leaves; the recursion stops at them. NULL: there are none. */
 struct lane_costs {
     float of[WIDTH];
 };

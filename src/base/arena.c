@@ -32,7 +32,7 @@ static bool arena_grow(struct arena *arena, size_t size) {
     uint64_t refusals = mem_refusals();
     struct arena_block *block = mem_alloc_zero(1, bytes);
     if (!block && mem_refusals() != refusals && wanted > size && wanted > ARENA_FIRST_BLOCK) {
-        /* Near a limit on memory blocks stop growing, so that all of it can be used. */
+        /* Near a memory limit blocks stop growing, so that all of the memory can be used. */
         wanted = size > ARENA_FIRST_BLOCK ? size : ARENA_FIRST_BLOCK;
         block = mem_alloc_zero(1, wanted + sizeof(struct arena_block));
     }
@@ -46,7 +46,7 @@ static bool arena_grow(struct arena *arena, size_t size) {
 
 void *arena_alloc(struct arena *arena, size_t size) {
     size_t rounded;
-    /* Where failures are asked for, every piece is one that can fail, not only the few that need a new block. */
+    /* In builds with fault injection every allocation can fail, not only the few that need a new block. */
     if (fault_now(FAULT_OF_ALLOCATION))
         return NULL;
     if (!checked_add(size ? size : 1, ARENA_ALIGNMENT - 1, &rounded))

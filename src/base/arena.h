@@ -16,6 +16,6 @@ void *arena_alloc_array(struct arena *arena, size_t count, size_t size);
 char *arena_copy_text(struct arena *arena, const char *text, size_t length); /* adds the final NUL */
 char *arena_format(struct arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void arena_reset(struct arena *arena);   /* forgets everything, keeps the largest block for reuse */
-void arena_destroy(struct arena *arena); /* gives everything back; the arena may be used again */
+void arena_destroy(struct arena *arena); /* frees everything; the arena may be used again */
 
 #endif

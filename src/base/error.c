@@ -1,5 +1,5 @@
-/* Filling of struct error. Text that does not fit ends in "...", never in half a UTF-8 character. It is one line,
- * whatever names of files and nodes in it hold. */
+/* Filling of struct error. Text that does not fit ends in "...", never in half a UTF-8 character. It is always one
+ * line, whatever characters the names of files and nodes contain. */
 #include "base/error.h"
 
 #include "base/mem.h"
@@ -24,7 +24,7 @@ static bool fill(struct error *error, enum error_kind kind, const char *format, 
         cut_text(error->text, sizeof error->text);
     for (char *end = error->text; (end = strpbrk(end, "\n\r"));)
         *end = '?';
-    /* A name at the beginning must not look like the program's; a format says what it is. */
+    /* A name at the beginning must not look like a message of the program; the format shows who wrote it. */
     const char *mark = strncmp(format, "gray:", 5) == 0 ? "" : scene_mark(error->text);
     if (mark[0] != '\0') {
         char text[sizeof error->text];
@@ -103,7 +103,7 @@ bool error_prefix(struct error *error, const char *format, ...) {
     return false;
 }
 
-/* Units are powers of 1024, with "B" and with "iB": one letter has one meaning. */
+/* Units are powers of 1024, with "B" as well as with "iB". */
 
 const char *size_words(uint64_t bytes, char out[SIZE_WORDS]) {
     static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
@@ -116,7 +116,7 @@ const char *size_words(uint64_t bytes, char out[SIZE_WORDS]) {
     return out;
 }
 
-/* The power of 1024 of a unit; -1 for what is none. */
+/* The power of 1024 of a unit; -1 for an unknown one. */
 static int unit_power(const char *text) {
     static const char letters[] = "kmgt";
     if (text[0] == '\0')

@@ -1,7 +1,7 @@
-/* Failures on demand, for tests: in builds with GRAY_FAULTS every allocation and every call to the system that can fail
- * is counted, over both processes of a run in the order in which they happen, and one of them can be made to fail by
- * its number: GRAY_FAIL_ALLOC=k or GRAY_FAIL_CALL=k in the environment, GRAY_FAULT_COUNT=FILE writes how many there
- * were, GRAY_FAIL_ERRNO=n is the error that a failing call gives (EIO without it). Other builds have none of this. */
+/* Failures on demand, for tests: in builds with GRAY_FAULTS every allocation and every system call that can fail is
+ * counted, over both processes of a run in the order in which they happen, and one of them can be made to fail by its
+ * number: GRAY_FAIL_ALLOC=k or GRAY_FAIL_CALL=k in the environment, GRAY_FAULT_COUNT=FILE writes their number,
+ * GRAY_FAIL_ERRNO=n is the error of a failing call (default EIO). Other builds have none of this. */
 #ifndef GRAY_BASE_FAULT_H
 #define GRAY_BASE_FAULT_H
 
@@ -17,11 +17,11 @@ bool fault_now(enum fault_kind kind);
 /* From now on number `number` (1 is the next) fails once; 0 turns it off. */
 void fault_at(enum fault_kind kind, uint64_t number);
 uint64_t fault_count(enum fault_kind kind);
-/* What errno says of a call that is made to fail; 0 as the new one changes nothing. Answers the one before. */
+/* Sets errno for calls that are made to fail; 0 changes nothing. Returns the previous value. */
 int fault_errno(int number);
-/* Just before the call to the system with that number (1 is the next) `act` happens, as another process could do it. */
+/* Calls `act` just before the system call with that number (1 is the next), in the role of another process. */
 void fault_before(uint64_t number, void (*act)(void));
-/* This process, and those it starts from now on, count apart from the others, from 0, and nothing fails. */
+/* This process and its later children count separately from the others, from 0, and no call fails. */
 void fault_apart(void);
 #else
 static inline bool fault_now(enum fault_kind kind) {
@@ -48,7 +48,7 @@ static inline void fault_apart(void) {
 }
 #endif
 
-/* A call that gives a negative number, or a null pointer, when it fails. */
+/* A call that returns a negative number, or a null pointer, when it fails. */
 #define MAY_FAIL(call) (fault_now(FAULT_OF_CALL) ? (errno = fault_errno(0), -1) : (call))
 #define MAY_GIVE_NULL(call) (fault_now(FAULT_OF_CALL) ? (errno = fault_errno(0), NULL) : (call))
 

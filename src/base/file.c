@@ -1,5 +1,5 @@
-/* Reading files. A file is taken as a private copy, so that one that shrinks meanwhile harms nothing, and every read is
- * reported to whoever asked for it. */
+/* Reading files. A file is read as a private copy, so that it may shrink meanwhile without harm, and every read is
+ * reported to the listener. */
 #define _GNU_SOURCE
 #include "base/file.h"
 
@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Where file_set_read_log and file_set_listener say: the two things here that outlive a call. */
+/* Set by file_set_read_log and file_set_listener: the only state that outlives a call. */
 static struct file_read_log *file_read_log;
 static const struct file_listener *file_listener;
 
@@ -73,7 +73,7 @@ bool file_set_add(struct file_set *set, struct file_identity identity) {
     return true;
 }
 
-/* What follows in the same run of slots moves up, so that nothing is searched past a hole. */
+/* Later entries of the same run of slots move up, so that no search has to pass a hole. */
 void file_set_remove(struct file_set *set, struct file_identity identity) {
     if (!file_set_has(set, identity))
         return;
@@ -351,7 +351,7 @@ int file_open_folder_of(const char *path) {
 
 void file_fill_standard(void) {
     for (int descriptor = 0; descriptor <= 2; descriptor++) {
-        /* The lowest free one is taken; opened for reading only, so that writing is the error it should be. */
+        /* open returns the lowest free descriptor; it is read-only, so that writing to it is an error. */
         if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0)
             return;
     }
@@ -374,7 +374,7 @@ bool file_canonical(const char *path, char *out, size_t size) {
     return true;
 }
 
-/* A place that cannot hold the file is a wrong name; a full disk is none. */
+/* A location where the file cannot be created is a wrong name; a full disk is not. */
 enum error_kind file_refusal_kind(int number) {
     switch (number) {
     case ENOENT:

@@ -9,13 +9,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A whole file in memory, read-only. Owner: whoever called file_map; file_unmap gives it back. */
+/* A whole file in memory, read-only. Owner: the caller of file_map; file_unmap frees it. */
 struct file_bytes {
     const uint8_t *data;
     size_t size;
 };
 
-/* What makes a file the same under all its names. */
+/* The identity of a file, the same under all its names. */
 struct file_identity {
     uint64_t device, inode;
 };
@@ -28,30 +28,30 @@ bool file_set_add(struct file_set *set, struct file_identity identity); /* false
 bool file_set_has(const struct file_set *set, struct file_identity identity);
 void file_set_remove(struct file_set *set, struct file_identity identity);
 void file_set_destroy(struct file_set *set);
-/* Of what the name leads to; false: nothing is there. */
+/* The identity of the file with this name, links followed; false: there is none. */
 bool file_identity_of(const char *path, struct file_identity *out);
 bool file_identity_of_descriptor(int descriptor, struct file_identity *out);
 
 /* Maps a regular file; an empty file gives size 0. A pipe or device is refused as "not a regular file".
  * A file larger than `limit` bytes is an error. Errors name the path. */
 bool file_map(const char *path, size_t limit, struct file_bytes *out, struct error *error);
-/* The same of an open descriptor, which is closed in any case; `path` is what it is called. */
+/* The same for an open descriptor, which is always closed; `path` is its name in messages. */
 bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct file_bytes *out, struct error *error);
 void file_unmap(struct file_bytes *bytes);
 
-/* A regular file that is read piece by piece, whatever its size. Zero value: closed. */
+/* A regular file of any size that is read in blocks. Zero value: closed. */
 struct file_source {
     int descriptor;
     bool open;
     uint64_t size; /* when it was opened */
 };
 bool file_source_open(struct file_source *source, const char *path, struct error *error); /* as file_map */
-/* False: not all of these bytes are there. */
+/* False: the file has fewer bytes. */
 bool file_source_read(const struct file_source *source, uint64_t at, void *out, size_t size);
 void file_source_close(struct file_source *source);
 
-/* The contents of all files that this process has read, each once, whatever its name: whether a picture that was half
- * made elsewhere or earlier was made of the same. Zero-initialise; file_read_log_destroy gives the list back. */
+/* Digests of all files that this process has read, each once under any name. They show whether a partial picture was
+ * made from the same files. Zero-initialise; file_read_log_destroy frees the list. */
 struct file_read_log {
     struct digest *contents;
     size_t count, room;
@@ -60,7 +60,7 @@ struct file_read_log {
 /* From now on every file that is read is noted in `witness`, which must stay; NULL: none is. Set once, before the first
  * scene, by the thread that reads files. */
 void file_set_read_log(struct file_read_log *witness);
-/* What a file held, and when: two versions with different size or time need not be read again. */
+/* The content of a file and its time: versions with different size or time need not be compared byte by byte. */
 struct file_version {
     struct file_identity identity;
     struct digest content; /* zero unless the listener wants contents */
@@ -76,35 +76,35 @@ struct file_listener {
 };
 /* As file_set_read_log. */
 void file_set_listener(const struct file_listener *listener);
-/* The version that has this name now; false: none that can be read. `known`, or NULL: when size and time are
- * its own the content is taken to be, too. */
+/* The current version of the file with this name; false: it cannot be read. `known` (or NULL): if size and time equal
+ * its own, the content is assumed equal, too. */
 bool file_version_of(const char *path, const struct file_version *known, struct file_version *out);
 /* Notes the content of an open regular file without moving its position. For readers beside file_map. */
 void file_note_read(int descriptor, const char *path);
 /* The same for a file that was opened for writing. */
 void file_note_write(int descriptor, const char *path);
-/* The content of a regular file, which is opened only when it is one; false: there is none that can be read. */
+/* The content of a file, which is opened only if it is regular; false: it cannot be read. */
 bool file_digest(const char *path, struct digest *digest);
 /* Does not depend on the order in which the files were read. */
 struct digest file_read_log_sum(const struct file_read_log *witness);
 void file_read_log_destroy(struct file_read_log *witness);
 
-/* Anything of this name, a link that leads nowhere too. */
+/* Whether anything has this name, even a dangling link. */
 bool file_exists(const char *path);
 bool file_is_regular(const char *path);
 bool file_is_folder(const char *path);
-/* A descriptor (O_PATH) that only names a place in the file system; -1 when there is none. */
+/* A descriptor (O_PATH) that only names a location in the file system; -1 if there is none. */
 int file_open_folder_of(const char *path);
-/* Standard input gives nothing from now on: a scene that waits for it would wait for ever. */
+/* Makes standard input empty from now on: a scene that reads it would wait for ever. */
 bool file_null_input(void);
 /* If descriptors 0, 1 or 2 are closed at the start, they are replaced by one that supports neither reading nor writing:
  * a file that is opened later must not get their number, and with it the output for the terminal. */
 void file_fill_standard(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */
 bool file_canonical(const char *path, char *out, size_t size);
-/* ERROR_SCENE for a place that cannot hold a file (a wrong name), ERROR_MACHINE for the rest (a full disk). */
+/* ERROR_SCENE for a location where no file can be created (a wrong name), ERROR_MACHINE otherwise (a full disk). */
 enum error_kind file_refusal_kind(int number);
-/* Removes one file; fine when there is none. */
+/* Removes one file; succeeds if there is none. */
 bool file_remove(const char *path, struct error *error);
 /* mkdir -p of the folder part of `path`. */
 bool file_make_folders_for(const char *path, struct error *error);

@@ -1,11 +1,11 @@
-/* A file is written without a name (O_TMPFILE, Linux 3.11), synced, and then gets its name. A new name is given by
- * linkat(2), which fails if the name exists; an existing file is exchanged with the new one (RENAME_EXCHANGE, Linux
- * 3.15), looked at once more under the temporary name, and only then removed. So whatever another process does to the
+/* A file is written without a name (O_TMPFILE, Linux 3.11), synced, and then given its name. A new name is given by
+ * linkat(2), which fails if the name exists; an existing file is exchanged with the new one (RENAME_EXCHANGE,
+ * Linux 3.15), inspected again under the temporary name, and only then removed. So whatever another process does to the
  * name in between, nothing is removed that was not inspected.
  *
  * A temporary name exists only between linkat and the removal of the old file. A kill in between leaves it; the next
  * run that writes into the folder removes it. Every temporary file is locked (flock) by the process that writes it, so
- * that what is not locked is a leftover, whichever machine left it. */
+ * that an unlocked one is a leftover, from any machine. */
 #define _GNU_SOURCE
 #include "base/file_output.h"
 
@@ -137,7 +137,7 @@ static bool is_standard_stream(struct file_identity identity) {
            (file_identity_of_descriptor(STDERR_FILENO, &stream) && same_file(stream, identity));
 }
 
-/* What this run wrote in the same role is replaced even after it was read. */
+/* A file that this run wrote in the same role may be replaced even after it was read. */
 static bool is_kept(const struct file_rules *rules, struct file_identity identity) {
     const struct file_guard *guard = rules->guard;
     if (rules->role != FILE_ROLE_NONE && file_set_has(&guard->own[rules->role], identity))
@@ -170,7 +170,7 @@ static bool may_replace(const struct file_output *file, int place, const struct 
                      rules->named_by_user ? "; --force replaces it" : advice_of(rules));
 }
 
-/* A name that could be exchanged or removed by this process in the end, as far as that can be known. */
+/* Whether this process could later exchange or remove the file with this name, as far as can be known. */
 static bool can_be_renamed(const struct file_output *file, const struct stat *status, struct error *error) {
     struct statx more;
     struct stat folder;
@@ -192,8 +192,8 @@ static const char *kind_of_file(mode_t mode) {
     return S_ISFIFO(mode) ? "a named pipe" : S_ISSOCK(mode) ? "a socket" : "a device";
 }
 
-/* Inspects the file with this name; opens only regular files. *there: something that may be
- * replaced, with this status. */
+/* Inspects the file with this name; opens only regular files. *there: there is a file that may be replaced, with this
+ * status. */
 static bool inspect(const struct file_output *file, bool *there, struct stat *status, struct error *error) {
     char text[96];
     *there = false;
@@ -239,7 +239,7 @@ static bool is_old_and_ours(const struct stat *status) {
     return now.tv_sec - changed > LEFTOVER_SECONDS;
 }
 
-/* The lock decides: whoever writes the file holds it, on whichever machine. */
+/* The lock decides: the process that writes the file holds it, on any machine. */
 static void remove_leftover(int folder, const char *name) {
     struct stat before, after;
     if (fstatat(folder, name, &before, AT_SYMLINK_NOFOLLOW) != 0 || !is_old_and_ours(&before))
@@ -338,7 +338,7 @@ static void close_all(struct file_output *file) {
 
 enum wait_end { WAIT_READY, WAIT_TIME, WAIT_STOPPED };
 
-/* Until the descriptor is ready (-1: only the time counts), the time is over, or the run has to end. */
+/* Waits until the descriptor is ready (-1: only the time counts), the time is over, or the run must end. */
 static enum wait_end wait_for(const struct file_output *file, short events, int milliseconds) {
     const struct file_interrupt *interrupt = file->rules->interrupt;
     for (;;) {
@@ -346,7 +346,7 @@ static enum wait_end wait_for(const struct file_output *file, short events, int 
                                     {.fd = interrupt ? interrupt->descriptor : -1, .events = POLLIN}};
         int ready = poll(watched, 2, milliseconds);
         if (ready < 0 && errno != EINTR)
-            return WAIT_READY; /* the write says what is wrong */
+            return WAIT_READY; /* the write reports the error */
         if (ready > 0 && watched[1].revents && interrupt->stopped(interrupt->context))
             return WAIT_STOPPED;
         if (ready > 0 && watched[0].revents)
@@ -360,7 +360,7 @@ static bool interrupted(struct error *error, const struct file_output *file) {
     return error_set(error, ERROR_CANCELLED, "%.600s: interrupted while it was written", file->target);
 }
 
-/* A named pipe without a reader is waited for. */
+/* Waits for the reader of a named pipe. */
 static bool open_direct(struct file_output *file, struct error *error) {
     struct stat status;
     for (;;) {
@@ -380,7 +380,7 @@ static bool open_direct(struct file_output *file, struct error *error) {
     return error_set(error, ERROR_SCENE, "%.600s: has become a regular file while it was opened", file->target);
 }
 
-/* What -o names: standard output, or what its links lead to when that is a pipe or device. */
+/* Opens the target of -o: standard output, or the pipe or device at the end of its links. */
 static bool find_direct(struct file_output *file, const struct file_target *target, struct error *error) {
     struct stat status, link;
     struct file_identity stream;
@@ -389,7 +389,7 @@ static bool find_direct(struct file_output *file, const struct file_target *targ
     bool standard = strcmp(target->path, "-") == 0;
     if (!standard && stat(target->path, &status) == 0) {
         bool is_link = lstat(target->path, &link) == 0 && S_ISLNK(link.st_mode);
-        /* /dev/stdout that leads to a file: the shell has opened it for us. */
+        /* /dev/stdout leads to a file: the shell has already opened it. */
         standard = is_link && S_ISREG(status.st_mode) && file_identity_of_descriptor(STDOUT_FILENO, &stream) &&
                    same_file(stream, identity_of(&status));
         if (S_ISSOCK(status.st_mode))
@@ -399,7 +399,7 @@ static bool find_direct(struct file_output *file, const struct file_target *targ
     if (standard) {
         file->direct = true;
         (void)snprintf(file->target, sizeof file->target, "standard output");
-        /* Where standard output was closed, something that is no file may have its number (a library's epoll). */
+        /* If standard output was closed, another descriptor may have its number (a library's epoll). */
         int flags = fcntl(STDOUT_FILENO, F_GETFL);
         if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY || fstat(STDOUT_FILENO, &status) != 0 ||
             (status.st_mode & S_IFMT) == 0)
@@ -448,7 +448,8 @@ bool file_output_open(struct file_output *file, const struct file_target *target
     return ok;
 }
 
-/* What a pipe takes at once once poll reports it writable, so that a descriptor that waits does not wait here. */
+/* The size that a pipe accepts without blocking once poll reports it writable, so that a blocking descriptor does not
+ * block here. */
 static size_t piece_of(const struct file_output *file, size_t size) {
     return file->direct && size > PIPE_BUF ? PIPE_BUF : size;
 }
@@ -478,7 +479,7 @@ bool file_output_write(struct file_output *file, const void *data, size_t size, 
 /* The final name. */
 
 static void sync_folder(const struct file_output *file) {
-    /* Some file systems refuse to sync a folder; that is no loss of ours. */
+    /* Some file systems refuse to sync a folder; gray ignores that. */
     int descriptor = openat(file->folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor >= 0) {
         (void)fsync(descriptor);
@@ -496,7 +497,7 @@ static bool flush(const struct file_output *file) {
 
 enum step { STEP_DONE, STEP_AGAIN, STEP_FAILED /* errno */, STEP_REFUSED /* error is set */ };
 
-/* Gives a name that nothing has. */
+/* Links the file to a name that does not exist. */
 static enum step publish_new(struct file_output *file) {
     if (file->nameless) {
         if (link_as(file, file->leaf)) {
@@ -513,7 +514,7 @@ static enum step publish_new(struct file_output *file) {
         return STEP_AGAIN;
     if (errno != EINVAL && errno != ENOSYS)
         return STEP_FAILED;
-    /* A file system that knows no such rename. */
+    /* The file system does not support such a rename. */
     if (MAY_FAIL(linkat(file->folder, file->temporary, file->folder, file->leaf, 0)) == 0)
         return STEP_DONE; /* file_output_commit removes the temporary name */
     if (errno == EEXIST)
@@ -531,24 +532,24 @@ static bool is_at(const struct file_output *file, const char *name) {
            same_file(identity_of(&there), identity_of(&own));
 }
 
-/* The temporary name has something that was not inspected: it gets its name back, and the file its temporary one. If
- * another process has taken our file away meanwhile there is none to exchange with, and the file has no name. */
+/* A file that was not inspected is under the temporary name: exchange both again. If another process has meanwhile
+ * removed the new file, there is nothing to exchange with, and the new file has no name. */
 static void put_back(struct file_output *file) {
     for (int i = 0; i < 1000 * TRIES; i++) {
         if (renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_EXCHANGE) == 0) {
             if (is_at(file, file->temporary))
                 return;
-            continue; /* something else came back: once more */
+            continue; /* another file came back: exchange again */
         }
         if (errno != ENOENT)
             break;
         if (renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_NOREPLACE) == 0)
             break;
     }
-    file->named = false; /* what has that name now is not ours to remove */
+    file->named = false; /* the file that has this name now must not be removed */
 }
 
-/* Puts the file in the place of the one that was inspected; *old: what it has replaced. */
+/* Replaces the inspected file by the new one; *old: the replaced file. */
 static enum step publish_over(struct file_output *file, struct stat *old, struct error *error) {
     struct stat now;
     bool there;
@@ -557,7 +558,7 @@ static enum step publish_over(struct file_output *file, struct stat *old, struct
     if (MAY_FAIL(renameat2(file->folder, file->temporary, file->folder, file->leaf, RENAME_EXCHANGE)) == 0) {
         bool same = fstatat(file->folder, file->temporary, &now, AT_SYMLINK_NOFOLLOW) == 0 &&
                     same_file(identity_of(&now), identity_of(old));
-        /* Another run may have written the same picture meanwhile: what came out may be replaced, too. */
+        /* Another run may have written the same picture meanwhile: the file that was exchanged may be replaced, too. */
         struct file_output out = *file;
         struct error ignored;
         out.leaf = file->temporary;
@@ -570,7 +571,7 @@ static enum step publish_over(struct file_output *file, struct stat *old, struct
     }
     if (errno == ENOENT)
         return STEP_AGAIN;
-    /* Without exchange: the moment between looking and renaming is short, but it is there. */
+    /* Without exchange a short moment remains between inspection and rename. */
     if (!inspect(file, &there, &now, error))
         return STEP_REFUSED;
     if (!there || !same_file(identity_of(&now), identity_of(old)))
@@ -589,7 +590,7 @@ static enum step publish(struct file_output *file, struct error *error) {
         bool there;
         if (!inspect(file, &there, &old, error))
             return STEP_REFUSED;
-        if (there) /* x, setuid and the like do not belong to a picture */
+        if (there) /* a picture needs no x or setuid bits */
             (void)fchmod(file->descriptor, old.st_mode & 0666);
         step = there ? publish_over(file, &old, error) : publish_new(file);
         for (int role = 0; step == STEP_DONE && there && guard && role < FILE_ROLES; role++)
@@ -621,7 +622,8 @@ bool file_output_commit(struct file_output *file, struct error *error) {
             *file->identity = identity_of(&status);
         if (rules->guard && rules->role != FILE_ROLE_NONE)
             (void)file_set_add(&rules->guard->own[rules->role], identity_of(&status));
-        remove_temporary(file); /* before the folder is synced, which may take long: a kill leaves nothing then */
+        remove_temporary(
+            file); /* before the folder is synced, which may take long: after a kill then, no file remains */
         sync_folder(file);
     }
     close_all(file);

@@ -1,8 +1,8 @@
-/* Writing files. A file appears whole or not at all, and only in the place of something that may be lost: a picture
- * replaces pictures, a checkpoint replaces checkpoints, nothing replaces a file that the run has read.
+/* Writing files. A file is written atomically and replaces only files that may be lost: a picture replaces pictures, a
+ * checkpoint replaces checkpoints, nothing replaces a file that the run has read.
  *
  * The name is resolved once: the folder is opened and everything after that happens relative to its descriptor, so a
- * folder or link that is exchanged meanwhile leads nowhere else. */
+ * folder or link that is exchanged meanwhile cannot redirect the write. */
 #ifndef GRAY_BASE_FILE_OUTPUT_H
 #define GRAY_BASE_FILE_OUTPUT_H
 
@@ -14,14 +14,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What a run writes a file as. */
+/* The role of a file that a run writes. */
 enum file_role { FILE_ROLE_NONE, FILE_ROLE_PICTURE, FILE_ROLE_BESIDE, FILE_ROLES };
 
-/* Which files a run has to keep, and which are its own. Zero-initialise; file_guard_destroy releases the sets. */
+/* The files that a run must not replace, and those that it wrote itself. Zero-initialise; file_guard_destroy releases
+ * the sets. */
 struct file_guard {
-    struct file_set kept;            /* read, or written for another purpose: never replaced */
-    struct file_set own[FILE_ROLES]; /* what this run wrote: replaced again in the same role, also after it was read */
-    struct file_set cleaned;         /* folders in which leftovers of earlier runs were removed */
+    struct file_set kept; /* read, or written for another purpose: never replaced */
+    struct file_set
+        own[FILE_ROLES]; /* files that this run wrote: may be replaced in the same role, also after they were read */
+    struct file_set cleaned; /* folders in which leftovers of earlier runs have been removed */
 };
 void file_guard_destroy(struct file_guard *guard);
 
@@ -32,7 +34,7 @@ struct file_interrupt {
     void *context;
 };
 
-/* A limit on what is written into all files whose rules have it; what exceeds it is an error with these words. */
+/* A limit on the bytes written into all files whose rules refer to it; exceeding it is an error with this text. */
 struct file_quota {
     uint64_t written, limit; /* bytes */
     char words[128];
@@ -42,10 +44,10 @@ struct file_quota {
 struct file_rules {
     /* Decides by the first FILE_HEAD_SIZE bytes of an existing file that is not empty; NULL: every regular file. */
     bool (*may_replace)(const uint8_t *head, size_t size);
-    const char *expected; /* what may_replace looks for, as in "a picture" */
+    const char *expected; /* the kind of file that may_replace accepts, as in "a picture" */
     const char *advice;   /* added to a refusal: " (-o FILE chooses another one)", or NULL */
     enum file_role role;
-    bool never_replace;                     /* an existing file of any kind is an error */
+    bool never_replace;                     /* any existing file is an error */
     bool is_direct;                         /* "-" is standard output; pipes and devices are written in place */
     bool named_by_user;                     /* the messages name --force */
     bool force;                             /* may_replace does not matter */
@@ -61,25 +63,24 @@ enum { FILE_HEAD_SIZE = 16, FILE_NAME_SIZE = 4096 };
 struct file_target {
     const char *path;
     const struct file_rules *rules;
-    struct file_identity *written; /* NULL, or receives what the file is once it has its name */
+    struct file_identity *written; /* NULL, or receives the identity of the file once it has its name */
 };
 #define FILE_AT(name) (&(const struct file_target){.path = (name)})
 
 /* Whether the file could be written now: folder, length of the name, file system, and the existing file. Creates
  * missing folders and nothing else. Removes leftovers of killed runs in the folder, once for each guard. */
 bool file_output_check(const struct file_target *target, struct error *error);
-/* Whether two names are one place: the same folder, however it is named, and the same last part. The folders must
- * exist. */
+/* Whether two names denote the same location: the same folder, under any name, and the same last component. The folders
+ * must exist. */
 bool file_is_same_folder(const char *a, const char *b);
-/* Removes the file if it is still the one with this identity and one that the rules let replace. Fine when there is
- * none. */
+/* Removes the file if it still has this identity and the rules allow its replacement. Succeeds if there is none. */
 bool file_output_remove(const struct file_target *target, struct file_identity identity, struct error *error);
 
 /* A file being written. Zero value = closed. After file_output_open either commit or abandon must follow. */
 struct file_output {
     int descriptor, folder;
     bool open, direct;    /* direct: a pipe, a device or standard output, written in place */
-    bool nameless, named; /* how the temporary file is named in the folder; neither: it has its final name */
+    bool nameless, named; /* the state of the temporary name; neither: the file has its final name */
     uint64_t written;
     const struct file_rules *rules; /* not owned */
     struct file_identity *identity; /* target->written */
@@ -91,6 +92,6 @@ bool file_output_write(struct file_output *file, const void *data, size_t size, 
 /* fsync, the final name (mode bits of a replaced file are kept, but for x, setuid and the like), fsync of the folder.
  */
 bool file_output_commit(struct file_output *file, struct error *error);
-void file_output_abandon(struct file_output *file); /* removes the temporary file; fine on a closed one */
+void file_output_abandon(struct file_output *file); /* removes the temporary file; may be called on a closed one */
 
 #endif

@@ -9,7 +9,7 @@
 
 uint64_t hash_bytes(const void *data, size_t size, uint64_t seed);
 
-/* 128 bits, for telling whether something is still the same; the value is part of our tile files (render/tile_file.h),
+/* 128 bits, to detect changes; the value is part of tile files (render/tile_file.h),
  * whose readers check the version of the program that wrote them. */
 struct digest {
     uint64_t a, b;

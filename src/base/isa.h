@@ -1,4 +1,4 @@
-/* Which instruction set the kernels use: the best the processor has, unless pinned. The answers do not depend on it. */
+/* Which instruction set the kernels use: the best the processor has, unless pinned. The results do not depend on it. */
 #ifndef GRAY_BASE_ISA_H
 #define GRAY_BASE_ISA_H
 

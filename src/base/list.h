@@ -9,12 +9,12 @@
 #ifndef GRAY_BASE_LIST_H
 #define GRAY_BASE_LIST_H
 
-/* A list may have one column: the 0 is what clang wants for the second parameter. */
+/* A list may have one column: clang requires the 0 for the second parameter. */
 #define LIST_FIRST(member, ...) member,
 #define LIST_MEMBER(...) LIST_FIRST(__VA_ARGS__, 0)
 #define LIST_WORD(member, word) [member] = (word),
 #define LIST_ONE(...) +1
-/* How many members a list has: a constant. */
+/* The number of members of a list, as a constant. */
 #define LIST_COUNT(list) (0 list(LIST_ONE))
 
 /* All words as one literal: separated by blanks, for parameters of gr functions, and by '|', for options. */

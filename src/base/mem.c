@@ -1,9 +1,8 @@
 /* Allocation with failures on demand (base/fault.h) and with a limit.
  *
- * A request is added to the account before malloc is asked, as the block's size will be, and what malloc has given
- * corrects the number afterwards. So threads that allocate at the same time cannot exceed the limit together. The
- * account in charge belongs to the process and not to a thread or a caller: libraries allocate through hooks that know
- * neither. */
+ * The expected size of a block is added to the account before malloc is called; the real size corrects the number
+ * afterwards. So threads that allocate at the same time cannot exceed the limit together. The charged account belongs
+ * to the process and not to a thread or a caller: libraries allocate through hooks that know neither. */
 #include "base/mem.h"
 
 #include "base/checked.h"
@@ -19,7 +18,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-/* The account in charge, or NULL. */
+/* The charged account, or NULL. */
 static _Atomic(struct mem_account *) charged;
 
 struct mem_account *mem_charge(struct mem_account *account) {
@@ -39,7 +38,8 @@ const struct mem_account *mem_charged(void) {
     return account_in_charge();
 }
 
-/* What malloc takes for a block of this size: its header, multiples of 16, 32 at least (glibc's layout). */
+/* The memory that malloc uses for a block of this size: a header, rounded up to multiples of 16, at least 32 (glibc's
+ * layout). */
 static uint64_t block_cost(size_t size) {
     uint64_t whole = ((uint64_t)size + 8 + 15) & ~UINT64_C(15);
     return size > SIZE_MAX / 2 ? size : whole < 32 ? 32 : whole;
@@ -53,7 +53,7 @@ static void account_add(struct mem_account *account, uint64_t more, uint64_t les
     (void)atomic_fetch_add_explicit(&account->held, (int64_t)(more - less), memory_order_relaxed);
 }
 
-/* False: refused, and nothing is counted. */
+/* False: refused and not counted. */
 static bool account_take(struct mem_account *account, uint64_t size) {
     if (size <= account->limit) {
         int64_t held = atomic_fetch_add_explicit(&account->held, (int64_t)size, memory_order_relaxed);
@@ -77,7 +77,8 @@ void mem_unreserve(uint64_t size) {
 }
 
 #ifdef GRAY_FAULTS
-/* What blocks hold now, and at most since mem_peak_begin; only builds that inject faults count, and only tests read. */
+/* Bytes in blocks now, and their maximum since mem_peak_begin; counted only in builds with fault injection, for tests.
+ */
 static _Atomic uint64_t bytes_held, bytes_max;
 
 static void *taken(void *block) {
@@ -186,7 +187,7 @@ void *mem_resize(void *block, size_t size) {
     return resized;
 }
 
-/* Without the cost of atomic additions; false: refused, and nothing is counted. */
+/* Without atomic additions; false: refused and not counted. */
 static bool account_change(struct mem_account *account, int64_t more) {
     int64_t held = atomic_load_explicit(&account->held, memory_order_relaxed) + more;
     if (more > 0 && held > (int64_t)account->limit) {
@@ -229,8 +230,8 @@ void mem_free(void *block) {
     free(block);
 }
 
-/* Otherwise glibc keeps blocks of up to 32 MiB in its heap once one of them was freed, and holes between lists that
- * grow there count in no account: a tenth more than what is held. */
+/* Otherwise glibc keeps blocks of up to 32 MiB in its heap once one of them was freed, and holes between growing lists
+ * there count in no account: a tenth more than the blocks. */
 void mem_return_large(void) {
 #ifdef M_MMAP_THRESHOLD
     enum { LARGE = 1 << 20 };
@@ -310,7 +311,7 @@ void sort_words(uint64_t *items, size_t count) {
     }
 }
 
-/* The counters live in a page that the processes of one run share, from before the first allocation on. */
+/* The counters are in a page that the processes of one run share; it exists before the first allocation. */
 
 #ifdef GRAY_FAULTS
 #include <fcntl.h>

@@ -16,33 +16,33 @@ void *mem_alloc_aligned(size_t alignment, size_t size); /* released with mem_fre
 void *mem_resize(void *block, size_t size);                     /* as realloc: the old block survives a failure */
 void *mem_resize_array(void *block, size_t count, size_t size); /* the same with the product checked */
 void mem_free(void *block);                                     /* NULL is fine */
-/* mem_resize, or with a size of 0 mem_free, for who knows the old size (0 of NULL) and is the only thread that
- * allocates as long as its account is charged: cheaper. Its blocks go through this function alone. */
+/* A cheaper mem_resize, or mem_free with a size of 0, for a caller that knows the old size (0 for NULL) and is the only
+ * thread that allocates while its account is charged. Its blocks must use only this function. */
 void *mem_resize_known(void *block, size_t old_size, size_t size);
 
-/* A limit on the memory that this process holds. While an account is charged, every block that is allocated, resized or
- * freed counts in it, whatever thread or library the call comes from; what is beyond the limit is refused, as if there
- * were no memory. Owner: the caller, who keeps it as long as it is charged. */
+/* A limit on the memory of this process. While an account is charged, every block that is allocated, resized or
+ * freed counts in it, whatever thread or library the call comes from; requests beyond the limit are refused, as if
+ * there were no memory. Owner: the caller, who keeps it while it is charged. */
 struct mem_account {
     uint64_t limit;            /* bytes; above 0 */
     const char *option;        /* that sets it, for errors */
     const char *words;         /* the whole reason, as in "the script used up its memory of 64 MiB" */
-    _Atomic int64_t held;      /* bytes, as malloc rounds them; below 0 when older blocks were freed */
+    _Atomic int64_t held;      /* bytes, rounded like malloc does; below 0 if older blocks were freed */
     _Atomic uint64_t refusals; /* requests beyond the limit */
 };
-/* From now on this account is charged; NULL: none. Returns the one before. No other thread may allocate meanwhile. */
+/* Charges this account from now on; NULL: none. Returns the previous one. No other thread may allocate meanwhile. */
 struct mem_account *mem_charge(struct mem_account *account);
-/* How often the account in charge has refused memory; 0 without one. */
+/* How often the charged account has refused memory; 0 without one. */
 uint64_t mem_refusals(void);
-const struct mem_account *mem_charged(void); /* the account in charge, or NULL */
-/* Counts memory that does not come from here: a library's own, a film. False: it is refused. */
+const struct mem_account *mem_charged(void); /* the charged account, or NULL */
+/* Counts memory from elsewhere: a library's own, a film. False: refused. */
 bool mem_reserve(uint64_t size);
 void mem_unreserve(uint64_t size);
 
-/* For a process that works within limits: from now on large blocks go back to the system as soon as they are freed. */
+/* For a process with limits: from now on freed large blocks return to the system at once. */
 void mem_return_large(void);
 
-/* Zeroed memory shared with child processes forked later. The film lives in such a block. */
+/* Zeroed memory shared with child processes forked later. */
 void *mem_share(size_t size);
 void mem_unshare(void *block, size_t size);
 

@@ -1,4 +1,4 @@
-/* How much memory all blocks together take, for tests. */
+/* The memory of all blocks together, for tests. */
 #ifndef GRAY_BASE_MEM_PEAK_INTERNAL_H
 #define GRAY_BASE_MEM_PEAK_INTERNAL_H
 

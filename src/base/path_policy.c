@@ -1,8 +1,8 @@
-/* Two steps. Deciding: a name is resolved part by part, links included (path_resolution(7)), and the moment it leaves
- * the folders of the list it is refused, before the file system is asked about that part: the answer is the same
- * whether something is there or not. Opening: openat2 below that folder's descriptor with RESOLVE_BENEATH and
- * RESOLVE_NO_SYMLINKS (Linux 5.6, openat2(2)); a canonical path holds no links, so one that is met was put there in
- * between and is refused by the kernel. On kernels without openat2 the opened descriptor is asked for its path instead.
+/* Two steps. Deciding: a name is resolved part by part, links included (path_resolution(7)), and as soon as it leaves
+ * the folders of the list it is refused, before that part is looked up in the file system: the result does not depend
+ * on what exists there. Opening: openat2 below that folder's descriptor with RESOLVE_BENEATH and RESOLVE_NO_SYMLINKS
+ * (Linux 5.6, openat2(2)); a canonical path contains no links, so a link must have been created in between, and the
+ * kernel refuses it. On kernels without openat2 the path of the opened descriptor is checked instead.
  */
 #define _GNU_SOURCE
 #include "base/path_policy.h"
@@ -20,7 +20,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* An absolute name without ".", ".." and doubled slashes, by the letter; "" for the root. */
+/* Textually, an absolute name without ".", ".." and double slashes; "" for the root. */
 static bool make_plain(const char *path, char *plain, size_t size) {
     size_t used = 0;
     for (const char *at = path; *at;) {
@@ -42,8 +42,8 @@ static bool make_plain(const char *path, char *plain, size_t size) {
     return true;
 }
 
-/* The name under which a folder was given, when it is absolute and not the canonical one: a home behind a link. Without
- * memory it is left out, and names that begin so are refused. */
+/* The name under which a folder was given if it is absolute and not canonical, such as a home directory behind a link.
+ * Without memory it is left out, and names that begin with it are refused. */
 static void add_spelling(struct path_policy_folder *folder, const char *given) {
     char plain[PATH_MAX], canonical[PATH_MAX];
     if (folder->spelling || given[0] != '/' || !make_plain(given, plain, sizeof plain) ||
@@ -98,7 +98,7 @@ bool path_policy_add(struct path_policy *path_policy, const char *folder, enum p
         return true;
     if (!there)
         return error_set(error, ERROR_USAGE, "%s: is not a folder", folder);
-    /* The working directory as the shell calls it; add_spelling looks whether that is true. */
+    /* The shell's name for the working directory; add_spelling verifies it. */
     const char *shown = strcmp(folder, ".") == 0 ? getenv("PWD") : NULL;
     return add_canonical(path_policy, shown ? shown : folder, canonical, kind, error);
 }
@@ -151,7 +151,7 @@ static const struct path_policy_folder *find(const struct path_policy *path_poli
     return NULL;
 }
 
-/* A folder of the list, or one above it: it is there, and no part of it is a link. */
+/* Whether this is a folder of the list, or an ancestor of one: it exists, and no component is a link. */
 static bool leads_to_folder(const struct path_policy *path_policy, const char *canonical) {
     size_t length = strlen(canonical);
     for (size_t i = 0; i < path_policy->count; i++) {
@@ -163,7 +163,7 @@ static bool leads_to_folder(const struct path_policy *path_policy, const char *c
     return false;
 }
 
-/* The name as an absolute one, with the canonical path of a folder in the place of what it was given as. */
+/* The absolute name, in which the canonical path of a folder replaces the path under which it was given. */
 static bool make_absolute(const struct path_policy *path_policy, const char *path, char whole[2 * PATH_MAX + 2]) {
     char here[PATH_MAX];
     size_t length = 0, begin = 0;
@@ -189,7 +189,7 @@ static bool make_absolute(const struct path_policy *path_policy, const char *pat
     return true;
 }
 
-/* Where a name is on its way to what it means. */
+/* The state of a path resolution. */
 struct resolution {
     char at[PATH_MAX];           /* canonical so far; "" for the root */
     char rest[2 * PATH_MAX + 2]; /* what follows */
@@ -197,9 +197,9 @@ struct resolution {
     bool last_is_link; /* a link in the last place was followed */
 };
 
-/* The link at `at` plus `name` takes the place of the name. */
+/* Replaces the name by the target of the link at `at` plus `name`. */
 static bool follow_link(struct resolution *r, const char *link, const char *rest) {
-    enum { LINKS = 40 }; /* as the kernel's limit */
+    enum { LINKS = 40 }; /* like the kernel's limit */
     char target[PATH_MAX];
     ssize_t size = readlink(link, target, sizeof target - 1);
     if (size < 0)
@@ -221,7 +221,7 @@ static bool follow_link(struct resolution *r, const char *link, const char *rest
     return true;
 }
 
-/* One part of the name. False with errno: EACCES outside, or what the file system says of what is inside. `rest` begins
+/* Resolves one component. False with errno: EACCES outside, or the error of the file system inside. `rest` begins
  * with the slash after the part, or is empty. */
 static bool take_part(const struct path_policy *path_policy, struct resolution *r, const char *part, size_t length,
                       const char *rest, bool follow) {
@@ -251,9 +251,9 @@ static bool take_part(const struct path_policy *path_policy, struct resolution *
     return true;
 }
 
-/* Goes as far as the parts exist. True: all of them do, `at` is the canonical path. False with errno; with ENOENT `at`
- * is what exists, inside of the list or above it, and `rest` the part that does not, with what follows. follow: a link
- * in the last place, too. */
+/* Resolves components while they exist. True: all exist, and `at` is the canonical path. False with errno; with ENOENT
+ * `at` is the existing part, inside the list or above it, and `rest` the first missing component and all after it.
+ * follow: also follows a link in the last component. */
 static bool resolve(const struct path_policy *path_policy, const char *path, bool follow, struct resolution *r) {
     r->at[0] = '\0';
     r->links = 0;
@@ -296,7 +296,7 @@ bool path_policy_is_outside(const struct path_policy *path_policy, const char *p
                            !find(path_policy, plain, false, &rest));
 }
 
-/* The descriptor of a canonical path below a folder; the flags say what for. */
+/* Opens a canonical path below a folder with these flags. */
 static int open_below(const struct path_policy_folder *folder, const char *rest, const char *canonical, int flags) {
     struct open_how how = {.flags = (unsigned)flags | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW,
                            .mode = flags & O_CREAT ? 0666u : 0u,
@@ -304,7 +304,7 @@ static int open_below(const struct path_policy_folder *folder, const char *rest,
     long descriptor = MAY_FAIL(syscall(SYS_openat2, folder->descriptor, rest, &how, sizeof how));
     if (descriptor >= 0 || (errno != ENOSYS && errno != EPERM))
         return (int)descriptor;
-    /* Opened by name, then asked where it is. */
+    /* Opens by name, then checks the real path of the descriptor. */
     int opened = MAY_FAIL(open(canonical, (int)how.flags & ~O_TRUNC, 0666));
     char link[64], reported[PATH_MAX];
     if (opened < 0)
@@ -352,7 +352,7 @@ static int open_checked(const struct path_policy *path_policy, const char *path,
     char canonical[PATH_MAX];
     const char *rest = NULL;
     bool write = (flags & O_ACCMODE) != O_RDONLY;
-    /* A link in the last place is followed to see where it leads; one that leads nowhere is not written through. */
+    /* A link in the last component is followed to find its target; nothing is written through a dangling link. */
     bool there = resolve(path_policy, path, true, &r);
     if (!there && (errno != ENOENT || !write || r.last_is_link || !canonical_parent(path_policy, path, canonical)))
         return -1;
@@ -383,7 +383,7 @@ bool path_policy_map(const struct path_policy *path_policy, const char *path, si
     return file_map_descriptor(descriptor, path, limit, out, error);
 }
 
-/* fopen's modes; -1 for what is none. */
+/* fopen's modes; -1 for an unknown one. */
 static int flags_of(const char *mode) {
     bool plus = strchr(mode, '+') != NULL;
     int direction = plus ? O_RDWR : mode[0] == 'r' ? O_RDONLY : O_WRONLY;
@@ -436,14 +436,14 @@ static const struct path_policy_folder *writable(const struct path_policy *path_
     return folder;
 }
 
-/* A name for a new file on its way to its folder; too large for a small stack. */
+/* The state while the folder of a new file is resolved; too large for a small stack. */
 struct new_name {
     char canonical[3 * PATH_MAX + 4];
     struct resolution r;
 };
 
-/* The folder below which a file of this name may be made, and the name below it, canonical. The part that exists is
- * followed, but for a link in the last place; what follows must be plain. */
+/* The folder below which a file of this name may be created, and the canonical name below it. Links are followed in the
+ * existing part, except in the last component; the rest must be plain names. */
 static const struct path_policy_folder *find_new(const struct path_policy *path_policy, const char *path,
                                                  struct new_name *name, const char **rest) {
     struct resolution *r = &name->r;

@@ -1,4 +1,4 @@
-/* The pool: threads sleep on a condition until a run begins; then everybody, the caller too, claims items from one
+/* The pool: threads sleep on a condition until a run begins; then all of them and the caller claim items from one
  * atomic counter until none is left. The run is over when the last worker that joined it has left. */
 #include "base/pool.h"
 #include "base/clock.h"
@@ -81,8 +81,8 @@ static void *thread_main(void *argument) {
     return NULL;
 }
 
-/* Not left to the system: its default follows `ulimit -s`, and is 2 MiB where that is unlimited. Only what is used is
- * taken. */
+/* The system's default is not used: it follows `ulimit -s`, and is 2 MiB if that is unlimited. Only used pages take
+ * memory. */
 static const size_t stack_size = (size_t)32 << 20;
 
 static int start_thread(pthread_t *thread, void *(*fn)(void *argument), void *argument) {
@@ -189,7 +189,7 @@ int pool_workers(const struct pool *pool) {
 }
 
 bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *context) {
-    /* One item is not worth waking anybody. */
+    /* One item is not worth waking threads. */
     bool is_serial = pool->workers == 1 || count <= 1;
     pool->runs++;
     (void)pthread_mutex_lock(&pool->mutex);
@@ -211,7 +211,7 @@ bool pool_run(struct pool *pool, uint32_t count, pool_function *fn, void *contex
                 (void)pthread_cond_wait(&pool->finish, &pool->mutex);
                 continue;
             }
-            /* Others still work on long items: keep polling for a wish to stop. */
+            /* Other threads still work on long items: keep polling for a request to stop. */
             struct timespec until;
             (void)clock_gettime(CLOCK_REALTIME, &until);
             until.tv_nsec += 5000000;

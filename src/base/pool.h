@@ -1,5 +1,5 @@
 /* A blocking parallel-for on pthreads. The caller works too (worker 0); items are claimed with an atomic counter.
- * Cancelling makes the remaining items be skipped: the functions themselves poll pool_cancelled in long items.
+ * Cancelling skips the remaining items; the functions poll pool_cancelled in long items.
  * Results must not depend on which worker ran an item. */
 #ifndef GRAY_BASE_POOL_H
 #define GRAY_BASE_POOL_H
@@ -12,13 +12,14 @@
 
 struct pool;
 
-/* threads: 1..1024 in all, the caller included; 0 = one per online processor. Fewer threads than asked for are used
- * (and *warning set to a sentence, else "") when the system refuses to start some. NULL only without memory. */
+/* threads: 1..1024 in all, the caller included; 0 = one per online processor. If the system refuses to start some
+ * threads, fewer are used and *warning is set to a sentence, else to "". NULL only without memory. */
 struct pool *pool_create(int threads, char warning[256]);
 void pool_destroy(struct pool *pool);
 /* Calls the function with a stack of the size that threads of a pool have: a path may be reflected and refracted a
- * thousand times, solids are nested ten thousand deep, each time a deeper call. Where `ulimit -s` does not let the
- * calling thread have it, on a thread that is waited for. False: there is no such thread, nothing was called. */
+ * thousand times, solids are nested ten thousand deep, each time a deeper call. If `ulimit -s` does not allow this for
+ * the calling thread, the function runs on another thread while the caller waits. False: no such thread could be
+ * created, and the function was not called. */
 bool pool_call_with_stack(void (*fn)(void *context), void *context, struct error *error);
 int pool_workers(const struct pool *pool); /* worker indices are 0 .. pool_workers - 1 */
 
@@ -36,7 +37,7 @@ bool pool_cancelled(const struct pool *pool);
 /* Called (from worker 0's thread, every 10 ms or so while it works) during pool_run; may call pool_cancel. */
 void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context);
 
-/* Of the run under way, or the last one; for the thread that calls pool_run, and its poll. */
+/* Counts of the current run, or of the last one; for the thread that calls pool_run, and its poll. */
 struct pool_progress {
     uint64_t runs;         /* since the pool was made */
     uint32_t begun, count; /* items */

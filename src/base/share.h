@@ -1,6 +1,6 @@
 /* Memory that two processes share through a descriptor, for blocks whose size is known only after the fork (the film).
- * The one that creates it passes the descriptor on; the size is sealed, so neither process can shrink it while the
- * other uses it.
+ * The process that creates it sends the descriptor to the other; the size is sealed, so neither process can shrink it
+ * while the other uses it.
  */
 #ifndef GRAY_BASE_SHARE_H
 #define GRAY_BASE_SHARE_H
@@ -10,14 +10,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Zeroed. Owner: the caller, share_destroy gives both the mapping and the descriptor back. Zero value: nothing. */
+/* Zeroed. Owner: the caller, share_destroy frees both the mapping and the descriptor. Zero value: nothing. */
 struct share {
     void *block;
     size_t size;
     int descriptor; /* valid while block is not NULL */
 };
 
-/* Takes the memory at once: when there is not enough the answer is an error now, not a crash later. */
+/* Allocates the memory at once: if there is not enough, this is an error now and not a crash later. */
 bool share_create(struct share *share, size_t size, struct error *error);
 /* Maps what another process created; takes over the descriptor, also when it fails. Checks the size. */
 bool share_attach(struct share *share, int descriptor, size_t size, struct error *error);

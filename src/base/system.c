@@ -26,7 +26,7 @@ static char thread_state(int tasks, const char *thread) {
     ssize_t got = read(file, text, sizeof text - 1);
     (void)close(file);
     text[got > 0 ? got : 0] = '\0';
-    const char *end = strrchr(text, ')'); /* the name before it may hold anything */
+    const char *end = strrchr(text, ')'); /* the name before it may contain anything */
     return end && end[1] == ' ' ? end[2] : '\0';
 }
 
@@ -57,14 +57,15 @@ double process_time(pid_t pid) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Sharing through memfd: a file without a name in memory. It is filled with pages when it is made (fallocate), since a
- * page that is missing later would end the process that touches it. */
+/* Sharing through memfd: a file without a name in memory. Its pages are allocated when it is created (fallocate), since
+ * a missing page would later kill the process that touches it. */
 
 static bool no_memory(struct error *error, size_t size, const char *why) {
     return error_set(error, ERROR_MACHINE, "out of memory: the picture needs %.1f MB: %s", 1e-6 * (double)size, why);
 }
 
-/* More than the machine has would not fail in time: the kernel hands out pages until it has to kill a process. */
+/* A size above the machine's memory would not fail in time: the kernel hands out pages until it has to kill a process.
+ */
 static bool fits_machine(size_t size) {
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
     return pages <= 0 || page <= 0 || size / (size_t)page < (size_t)pages;
@@ -80,7 +81,7 @@ static bool map_block(struct share *share, struct error *error) {
         *share = (struct share){0};
         return false;
     }
-    /* Shared through the descriptor alone: a process forked later has no business with it. */
+    /* Shared only through the descriptor, not with processes forked later. */
     (void)madvise(block, share->size, MADV_DONTFORK);
     share->block = block;
     return true;
@@ -123,7 +124,7 @@ void share_destroy(struct share *share) {
     *share = (struct share){0};
 }
 
-/* The instruction set is asked of the processor once, when the program starts. */
+/* The processor's instruction set is queried once, when the program starts. */
 
 enum cpu_isa cpu_isa_chosen;
 

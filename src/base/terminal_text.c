@@ -2,7 +2,7 @@
  * Standard Annex 9); invisible ones have the property Default_Ignorable_Code_Point or are combining marks (Unicode
  * 15.1). A terminal of eight bits takes a lone byte of 0x80 to 0x9f for a C1 control.
  *
- * The guard holds back as much as could still become "gray:", at most a few bytes; everything else passes at once. */
+ * The guard holds back text that could still become "gray:", at most a few bytes; everything else passes at once. */
 #include "base/terminal_text.h"
 
 #include <string.h>
@@ -97,7 +97,7 @@ static void put(struct line_guard *guard, const char *text, size_t size) {
     guard->open = text[size - 1] != '\n';
 }
 
-/* The letters that are held back are those of something else. */
+/* The held letters belong to another word. */
 static void release(struct line_guard *guard) {
     put(guard, guard->held, guard->held_size);
     guard->begun = guard->begun || guard->matched > 0;
@@ -170,7 +170,7 @@ static void take_character(struct line_guard *guard, const char *text, size_t le
     }
 }
 
-/* How long the sequence is that begins with this byte, if it is one. */
+/* The length of the sequence that begins with this byte, if it is valid. */
 static size_t promised_length(unsigned char first) {
     return first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc0 ? 2 : 1;
 }

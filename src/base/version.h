@@ -1,4 +1,4 @@
-/* The version number, in this one place. */
+/* The version number. */
 #ifndef GRAY_BASE_VERSION_H
 #define GRAY_BASE_VERSION_H
 

@@ -61,7 +61,7 @@ bool exr_can_write(void) {
     return true;
 }
 
-/* What the library says goes into `message`, not to standard error. */
+/* Messages of the library go into `message`, not to standard error. */
 struct stream {
     uint8_t *bytes; /* written: grows; read: borrowed */
     size_t size, capacity;
@@ -70,7 +70,7 @@ struct stream {
 };
 
 /* The library reports some errors with its own lock held, so its context must not be queried for our data then: that
- * waits for ever. Hence this one variable, which lives while a picture is written or read. */
+ * would wait for ever. Hence this one variable, which lives while a picture is written or read. */
 static _Thread_local struct stream *to_report;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message) {
@@ -88,7 +88,7 @@ static int64_t on_write(exr_const_context_t context, void *data, const void *buf
     (void)context, (void)report_error;
     uint64_t end = offset + size;
     if (end > stream->capacity) {
-        size_t capacity = (size_t)end * 2; /* a picture that is in memory is no half of what addresses can name */
+        size_t capacity = (size_t)end * 2; /* a picture in memory is smaller than half of the address space */
         uint8_t *bytes = mem_resize(stream->bytes, capacity);
         stream->no_memory = !bytes;
         if (!bytes)
@@ -96,7 +96,7 @@ static int64_t on_write(exr_const_context_t context, void *data, const void *buf
         stream->bytes = bytes;
         stream->capacity = capacity;
     }
-    if (offset > stream->size) /* what is jumped over is filled in later */
+    if (offset > stream->size) /* skipped bytes are filled in later */
         memset(stream->bytes + stream->size, 0, (size_t)offset - stream->size);
     memcpy(stream->bytes + offset, buffer, (size_t)size);
     stream->size = end > stream->size ? (size_t)end : stream->size;
@@ -149,7 +149,7 @@ static bool add_channels(exr_context_t context, int part) {
     return true;
 }
 
-/* Which of red, green, blue a channel is; 3: another. Y counts as red. */
+/* The index of a channel: red, green, blue; 3: another. Y counts as red. */
 static int channel_number(const char *name) {
     static const char *const names[] = {"R", "G", "B"};
     for (int i = 0; i < 3; i++) {
@@ -159,7 +159,7 @@ static int channel_number(const char *name) {
     return strcmp(name, "Y") == 0 ? 0 : 3;
 }
 
-/* Where the values come from: rows that are asked for, put into `lines`, which holds one chunk; or channels in memory.
+/* The source of the values: rows on demand, stored in `lines`, which has room for one chunk; or channels in memory.
  */
 struct source {
     float_rows *rows;
@@ -179,7 +179,7 @@ static bool add_all_channels(exr_context_t context, int part, const struct sourc
     return true;
 }
 
-/* The library keeps channels in the order of their names. */
+/* The library orders channels by name. */
 static void set_encoder(exr_coding_channel_info_t *channel, const struct source *source, uint32_t width, uint32_t y) {
     uint32_t stride = 3;
     const float *from = source->lines;
@@ -283,7 +283,7 @@ static float bounded(float light) {
     return light > 0 ? fminf(light, FLT_MAX) : 0; /* NaN too */
 }
 
-/* The three channels of the picture are decoded in place; the others have nowhere to go. Returns which were met. */
+/* The three channels of the picture are decoded in place; the others are skipped. Returns which were found. */
 static unsigned set_channels(exr_decode_pipeline_t *decoder, float *out, uint32_t width) {
     unsigned met = 0;
     for (int16_t i = 0; i < decoder->channel_count; i++) {
@@ -307,7 +307,7 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
     uint32_t width = image->levels[0].width, height = image->levels[0].height;
     int step = 0;
     bool ok = MAY_FAIL(exr_get_scanlines_per_chunk(context, 0, &step)) == EXR_ERR_SUCCESS, begun = false;
-    assert(!ok || step > 0); /* 1 to 256, as the compression says */
+    assert(!ok || step > 0); /* 1 to 256, depending on the compression */
     for (uint32_t y = 0; ok && y < height; y += (uint32_t)step) {
         exr_chunk_info_t chunk;
         ok = exr_read_scanline_chunk_info(context, 0, window->min.y + (int)y, &chunk) == EXR_ERR_SUCCESS;
@@ -325,8 +325,8 @@ static bool decode_chunks(exr_context_t context, const exr_attr_box2i_t *window,
     return ok;
 }
 
-/* The largest number of pixels per byte of the file: one channel of two bytes through zlib (1032 : 1), and with
- * the lossy codings that for one number of a block of 8 x 8. */
+/* The largest number of pixels per byte of the file: one channel of two bytes through zlib (1032 : 1), and with lossy
+ * compression the same for one number per block of 8 x 8. */
 static uint64_t pixels_per_byte(exr_context_t context) {
     const uint64_t zipped = 520;
     exr_compression_t compression;
@@ -349,7 +349,8 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
     }
     int64_t width = (int64_t)window.max.x - window.min.x + 1, height = (int64_t)window.max.y - window.min.y + 1;
     /* Every row costs a few bytes even when it is black, in chunks of at most 256 rows. */
-    assert(width >= 1 && height >= 1 && width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE); /* it was told so */
+    assert(width >= 1 && height >= 1 && width <= IMAGE_MAX_SIDE &&
+           height <= IMAGE_MAX_SIDE); /* the header claims this */
     if ((uint64_t)height / 256 > stream->size / 8 ||
         (uint64_t)width * (uint64_t)height / pixels_per_byte(context) > stream->size) {
         error_set(error, ERROR_SCENE, "%s: broken EXR: the file is too short for its pixels", path);
@@ -374,7 +375,7 @@ static struct image *decode(exr_context_t context, const char *path, struct stre
         return NULL;
     }
     bool built = image_build_levels(image, error);
-    assert(built); /* floats take no memory for it */
+    assert(built); /* floats need no extra memory for it */
     (void)built;
     return image;
 }

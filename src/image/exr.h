@@ -1,4 +1,4 @@
-/* OpenEXR pictures, where the C library of OpenEXR was found when gray was built (HAVE_EXR). */
+/* OpenEXR pictures, if the C library of OpenEXR was found when gray was built (HAVE_EXR). */
 #ifndef GRAY_IMAGE_EXR_H
 #define GRAY_IMAGE_EXR_H
 
@@ -28,7 +28,7 @@ enum { EXR_CHANNELS = 64 };
 bool exr_write_channels(const struct file_target *target, uint32_t width, uint32_t height,
                         const struct exr_channel *channels, uint32_t count, struct error *error);
 bool exr_is(const uint8_t *data, size_t size);
-/* R, G, B or Y of the first part, in scan lines; anything else in it is passed over. NaN and negative light become 0.
+/* R, G, B or Y of the first part, in scan lines; other channels are ignored. NaN and negative light become 0.
  * Errors name the path. */
 struct image *image_parse_exr(const char *path, const uint8_t *data, size_t size, struct error *error);
 

@@ -28,7 +28,7 @@ static bool report_error(struct reading *r, const char *what) {
     return error_set(r->error, ERROR_SCENE, "%s: %s (before byte %zu)", r->path, what, r->at);
 }
 
-/* The next line without its end; false when there is none that fits. */
+/* The next line without its end; false if there is none, or it is too long. */
 static bool next_line(struct reading *r, char line[LINE_LIMIT]) {
     size_t length = 0;
     while (r->at + length < r->size && r->data[r->at + length] != '\n')
@@ -41,7 +41,7 @@ static bool next_line(struct reading *r, char line[LINE_LIMIT]) {
     return memchr(line, 0, length) == NULL;
 }
 
-/* The sides have at most nine digits; those that are 0 or too large are refused in the words of all images. */
+/* The sides have at most nine digits; those that are 0 or too large are refused with the messages for all images. */
 static struct image *allocate(struct reading *r, unsigned long long width, unsigned long long height) {
     if (width > 0 && height > 0 && width <= IMAGE_MAX_SIDE && height <= IMAGE_MAX_SIDE &&
         width * height / PIXELS_PER_BYTE > r->size) {
@@ -70,7 +70,7 @@ static float bounded(double light) {
 /* --- Radiance --- */
 
 struct hdr_header {
-    double factor; /* light of a unit of the file */
+    double factor; /* radiance of one unit of the file */
     unsigned long long width, height;
     bool from_below, from_right;
 };
@@ -79,7 +79,7 @@ struct hdr_header {
 static bool hdr_size(struct reading *r, const char *line, struct hdr_header *header) {
     char sign_y, sign_x, letter_y, letter_x, rest;
     unsigned long long y, x;
-    bool negative = false; /* which sscanf would take for a large number */
+    bool negative = false; /* which sscanf would read as a large number */
     for (const char *p = line; *p; p++)
         negative = negative || ((*p == '-' || *p == '+') && p[1] >= '0' && p[1] <= '9');
     if (negative || strspn(line, "+-XY0123456789 ") != strlen(line) ||
@@ -142,7 +142,8 @@ static bool hdr_read_runs(struct reading *r, uint8_t *row, size_t width) {
     return true;
 }
 
-/* One row of pixels; (1, 1, 1, n) repeats the one before, times 256 for each such mark in a row. */
+/* One row of pixels; (1, 1, 1, n) repeats the previous one n times; each directly following mark counts 256 times as
+ * much. */
 static bool hdr_read_flat(struct reading *r, uint8_t *row, size_t width) {
     unsigned shift = 0;
     for (size_t x = 0; x < width;) {
@@ -217,7 +218,7 @@ bool pfm_is(const uint8_t *data, size_t size) {
            (data[2] == '\n' || data[2] == ' ' || data[2] == '\r');
 }
 
-/* The next word of the header and the one white byte behind it. */
+/* The next word of the header and the one white-space byte after it. */
 static bool next_word(struct reading *r, char word[64]) {
     size_t length = 0;
     while (r->at < r->size && length < 63 && !strchr(" \t\r\n", r->data[r->at]))

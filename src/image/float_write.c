@@ -1,4 +1,4 @@
-/* PFM is the floats as they are. Radiance pictures have 8 bits a channel and a common exponent; each row is coded
+/* PFM stores the floats unchanged. Radiance pictures have 8 bits a channel and a common exponent; each row is coded
  * channel by channel in runs (more than 2 equal bytes) and literal stretches, as the Radiance file format reference
  * says for widths from 8 to 32767; other widths are written flat. */
 #include "image/float_write.h"
@@ -25,7 +25,7 @@ static bool begin(struct writing *writing, const struct file_target *target, uin
     size_t channels = (size_t)width * 3;
     writing->line = mem_alloc_zero(channels, sizeof *writing->line);
     writing->bytes = mem_alloc_zero((size_t)width, 4 * sizeof(float)); /* either format's row */
-    writing->coded = mem_alloc_zero((size_t)width + 64, 8);            /* a literal costs one byte in 128 more */
+    writing->coded = mem_alloc_zero((size_t)width + 64, 8);            /* literals cost one more byte per 128 */
     if (writing->line && writing->bytes && writing->coded)
         return true;
     return error_no_memory(error, target->path);
@@ -66,7 +66,7 @@ bool pfm_write(const struct file_target *target, uint32_t width, uint32_t height
 void hdr_pixel(const float rgb[3], uint8_t out[4]) {
     double c[3], max = 0;
     for (int i = 0; i < 3; i++) {
-        c[i] = rgb[i] > 0 ? fmin((double)rgb[i], 0x1p126) : 0; /* NaN is 0, infinity the largest there is */
+        c[i] = rgb[i] > 0 ? fmin((double)rgb[i], 0x1p126) : 0; /* NaN is 0, infinity the largest value */
         max = fmax(max, c[i]);
     }
     memset(out, 0, 4);
@@ -84,7 +84,7 @@ static size_t code_channel(const uint8_t *bytes, uint32_t width, uint8_t *out) {
     size_t used = 0;
     for (uint32_t at = 0; at < width;) {
         uint32_t begun = at, run = 0;
-        /* Literal bytes up to the next run that is worth its two bytes. */
+        /* Literal bytes up to the next run that is longer than its two bytes. */
         while (at < width && at - begun < LITERAL_MAX) {
             run = 1;
             while (run < RUN_MAX && at + run < width && bytes[4 * (at + run)] == bytes[4 * at])

@@ -1,10 +1,10 @@
 /* Images as assets: creation, mip levels, ownership.
  *
  * Idea: a level halves the one below with a box filter. Sizes need not be powers of two: texel i of the smaller level
- * averages exactly the interval of the larger one that it covers, with fractional weights at both ends (in whole
- * numbers, so nothing is rounded before the final division). Colours are averaged weighted by alpha. Invariant: a size
- * divisible by 4 (width) or 3 (height) stays so until a quarter or third is a single texel. So the faces of a sky cross
- * are whole texels in every level, and no level mixes two of them. */
+ * averages exactly the interval of the larger one that it covers, with fractional weights at both ends (as integers, so
+ * nothing is rounded before the final division). Colours are averaged weighted by alpha. Invariant: a size divisible by
+ * 4 (width) or 3 (height) stays so until a quarter or third is a single texel. So the faces of a sky cross are whole
+ * texels in every level, and no level mixes two of them. */
 #include "base/file.h"
 #include "image/exr.h"
 #include "image/float_read_internal.h"
@@ -94,7 +94,7 @@ static void add_row(const struct image *image, int level, uint32_t y, uint64_t w
             uint64_t alpha = t[3] * weight;
             r += t[0] * alpha, g += t[1] * alpha, b += t[2] * alpha, a += alpha;
             if (right >= end) {
-                j += right == end; /* a texel that reaches over the end is met again by the next one */
+                j += right == end; /* a texel that extends beyond the end is also used by the next one */
                 break;
             }
         }
@@ -113,7 +113,7 @@ static void finish_row(const uint64_t *sums, uint32_t width, uint64_t area, uint
     }
 }
 
-/* One level from the one below. `sums` has room for four numbers a texel of one row. */
+/* One level from the one below. `sums` has room for four numbers per texel of one row. */
 static void build_level(struct image *image, int level, uint64_t *sums) {
     const struct image_level *from = &image->levels[level - 1], *to = &image->levels[level];
     uint64_t area = (uint64_t)from->width * from->height;
@@ -140,7 +140,7 @@ static double overlap(uint32_t i, uint32_t j, uint32_t small, uint32_t large) {
     return (double)((right < end ? right : end) - (left > start ? left : start));
 }
 
-/* The same for floats, which need no care for digits: a double has twice theirs. */
+/* The same for floats, without precautions: a double has twice their digits. */
 static void build_float_level(struct image *image, int level) {
     const struct image_level *from = &image->levels[level - 1], *to = &image->levels[level];
     for (uint32_t y = 0; y < to->height; y++) {
@@ -267,7 +267,7 @@ struct image *image_parse(const char *path, const uint8_t *data, size_t size, st
     return image_parse_png(path, data, size, error);
 }
 
-/* Stricter than the readers where their words are short: what it finds is replaced. */
+/* Stricter than the readers for short signatures, because files that it accepts may be replaced. */
 bool image_is_picture(const uint8_t *head, size_t size) {
     static const struct {
         size_t size;

@@ -1,5 +1,5 @@
-/* A picture as a texture: an immutable asset with its mip levels. Texels hold what the file holds (no gamma), 8 or 16
- * bits a channel, always expanded to RGBA; lookups are in premultiplied doubles so that transparent texels have no
+/* A picture as a texture: an immutable asset with its mip levels. Texels have the values of the file (no gamma), 8 or
+ * 16 bits per channel, always expanded to RGBA; lookups are in premultiplied doubles so that transparent texels have no
  * colour. u counts from the left edge to the right in [0,1], v from the top edge down. Owner: the asset store, counted.
  */
 #ifndef GRAY_IMAGE_IMAGE_H
@@ -34,7 +34,8 @@ struct image;
 struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
                            struct error *error);
 /* A whole PNG file: every colour type, bit depth and interlace; gAMA, sRGB and iCCP are ignored; tRNS gives alpha.
- * Errors name the path and what libpng said; sizes over 2^15 a side or 2^28 pixels are errors before memory is taken.
+ * Errors name the path and what libpng said; sizes over 2^15 per side or 2^28 pixels are errors before memory is
+ * allocated.
  */
 struct image *image_read_png(const char *path, struct error *error);
 struct image *image_share(struct image *image);
@@ -44,9 +45,9 @@ uint32_t image_height(const struct image *image);
 int image_bits(const struct image *image); /* of a channel: 8 or 16 */
 size_t image_memory(const struct image *image);
 const char *image_name(const struct image *image);
-/* Level 0 texel, not premultiplied, 0..1 (more where a picture has light); x, y in range. */
+/* Level 0 texel, not premultiplied, 0..1 (more in high dynamic range images); x, y in range. */
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
-/* The largest value of a colour channel; 1 for pictures that are not of light. */
+/* The largest value of a colour channel; 1 except for high dynamic range images. */
 double image_brightest(const struct image *image);
 /* Filtered, premultiplied. width_u, width_v: size of the footprint in u and v (0 = unknown: level 0 is used). Finite u,
  * v of any size. */
@@ -59,7 +60,7 @@ struct rgba image_lookup_part(const struct image *image, uint32_t x0, uint32_t y
 
 /* Pictures of any format that this build reads; the first bytes select the format. */
 
-/* Errors name the path. What JPEG stores is 8 bits a channel, without alpha. */
+/* Errors name the path. JPEG files have 8 bits per channel, without alpha. */
 struct image *image_read(const char *path, struct error *error);
 /* From memory; `path` is for messages. */
 struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error);

@@ -1,11 +1,10 @@
 /* JPEG in ("Information technology - Digital compression and coding of continuous-tone still images", ITU-T T.81).
  *
- * libjpeg reports errors by a callback that must not return: it jumps. So everything that must be given back is held by
- * one struct reader in image_parse_jpeg, and decode, the function with the setjmp, has no variables of its own that
- * change after it. What libjpeg only warns of (data that end early, codes that do not exist) means missing or wrong
- * texels, so it is an error here. Sizes that the bytes of the file cannot possibly fill are refused before memory is
- * taken: a block of 64 texels costs at least a bit. A progressive file may repaint itself as often as it likes: that is
- * counted. */
+ * libjpeg reports errors by a callback that must not return: it jumps. So one struct reader in image_parse_jpeg owns
+ * everything that must be freed, and decode, the function with the setjmp, has no local variables that change after it.
+ * libjpeg only warns of truncated data and unknown codes; they mean missing or wrong texels, so here they are errors.
+ * Sizes that the bytes of the file cannot fill are refused before memory is allocated: a block of 64 texels needs at
+ * least a bit. The scans of a progressive file are limited. */
 #include "image/jpeg_read.h"
 
 #ifndef HAVE_JPEG
@@ -75,25 +74,24 @@ static void on_progress(j_common_ptr jpeg) {
     }
 }
 
-/* From what libjpeg gave, 1, 3 or 4 bytes a texel, to RGBA; the row may lie at the end of its own target. */
+/* Converts libjpeg's output, 1, 3 or 4 bytes per texel, to RGBA; the row may be at the end of its own target. */
 static __attribute__((noinline)) void to_rgba(const uint8_t *from, int components, uint32_t width, uint8_t *to) {
     for (uint32_t x = 0; x < width; x++, from += components, to += 4) {
         uint8_t c[4] = {from[0], components > 1 ? from[1] : from[0], components > 1 ? from[2] : from[0], 255};
-        if (components == 4) /* CMYK as everybody writes it: 255 is no ink */
+        if (components == 4) /* CMYK as commonly written: 255 is no ink */
             for (int k = 0; k < 3; k++)
                 c[k] = (uint8_t)((c[k] * from[3] + 127) / 255);
         memcpy(to, c, 4);
     }
 }
 
-/* What libjpeg will hold: rows of samples in several stages, and all coefficients where a picture comes in several
- * scans. */
+/* The memory of libjpeg: rows of samples in several stages, and all coefficients of a picture with several scans. */
 static uint64_t library_memory(struct jpeg_decompress_struct *jpeg) {
     enum { STAGES = 8 };
     uint64_t rows = (uint64_t)jpeg->max_v_samp_factor * DCTSIZE, bytes = 0;
     for (int i = 0; i < jpeg->num_components; i++) {
         const jpeg_component_info *component = &jpeg->comp_info[i];
-        /* In whole groups of blocks. */
+        /* Rounded up to complete groups of blocks. */
         uint64_t wide = component->width_in_blocks + (uint64_t)component->h_samp_factor;
         uint64_t high = component->height_in_blocks + (uint64_t)component->v_samp_factor;
         bytes += wide * DCTSIZE * rows * STAGES;
@@ -102,7 +100,7 @@ static uint64_t library_memory(struct jpeg_decompress_struct *jpeg) {
     return bytes;
 }
 
-/* Whatever is wrong leaves this function through on_error. */
+/* Every error leaves this function through on_error. */
 static bool decode_to_the_end(struct reader *reader, const uint8_t *data, struct error *error) {
     struct jpeg_decompress_struct *const jpeg = &reader->jpeg;
     jpeg_create_decompress(jpeg);
@@ -135,7 +133,7 @@ static bool decode_to_the_end(struct reader *reader, const uint8_t *data, struct
         return false;
     while (jpeg->output_scanline < height) {
         uint8_t *target = (uint8_t *)reader->image->levels[0].texels + (size_t)jpeg->output_scanline * width * 4;
-        /* At the end of its place: expanding from the front never overtakes what is still to be read. */
+        /* At the end of its target: expansion from the front never overwrites unread data. */
         JSAMPROW row = target + (size_t)width * (size_t)(4 - components);
         (void)jpeg_read_scanlines(jpeg, &row, 1);
         to_rgba(row, components, width, target);
@@ -166,7 +164,7 @@ struct image *image_parse_jpeg(const char *path, const uint8_t *data, size_t siz
                       "%s: truncated JPEG: the file ends at byte %zu, before the picture is complete", path, size);
         else {
             size_t left = reader.jpeg.src ? reader.jpeg.src->bytes_in_buffer : 0; /* of an empty file */
-            assert(left <= size); /* no more than there is, or the two bytes of an end of its own */
+            assert(left <= size); /* no more than there is, or the two bytes of an artificial end */
             error_set(error, ERROR_SCENE, "%s: broken JPEG: %s (before byte %zu)", path, reader.message, size - left);
         }
     }

@@ -1,4 +1,4 @@
-/* JPEG in, through libjpeg (libjpeg-turbo), where the build found it. */
+/* Reading JPEG with libjpeg (libjpeg-turbo), if the build found it. */
 #ifndef GRAY_IMAGE_JPEG_READ_H
 #define GRAY_IMAGE_JPEG_READ_H
 

@@ -1,11 +1,11 @@
-/* The inside of an image, for src/image and for filters that know more than a rectangle (the sky's cube): the mip
- * levels and single texels of them.
+/* The inside of an image, for src/image and for filters of more than a rectangle (the sky's cube): the mip levels and
+ * their texels.
  *
- * Every level keeps straight (not premultiplied) RGBA, so that one colour over all of an image is exactly that colour
- * in every level. Level 0 has the file's 8 or 16 bits; the levels above always have 16, so that rounding does not add
- * up from level to level. Pictures of light have floats in every level, 1 for what is 65535 elsewhere. Everything is
- * measured in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in units squared (alpha times 65535).
- * A double holds all of these exactly. */
+ * Every level keeps straight (not premultiplied) RGBA, so that an image of one colour has exactly that colour in every
+ * level. Level 0 has the file's 8 or 16 bits; the levels above always have 16, so that rounding does not add up from
+ * level to level. High dynamic range images have floats in every level, where 1 corresponds to 65535 elsewhere.
+ * Everything is measured in "units": 0 .. 65535 for a channel, premultiplied colours and alpha in units squared (alpha
+ * times 65535). A double holds all of these exactly. */
 #ifndef GRAY_IMAGE_LEVELS_H
 #define GRAY_IMAGE_LEVELS_H
 
@@ -40,7 +40,8 @@ bool image_build_levels(struct image *image, struct error *error);
 /* As image_read_png, from memory; `path` is for messages. */
 struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
 
-/* Is the rectangle of level-0 texels cut by no texel of this level? If so, the rectangle in texels of this level. */
+/* Whether no texel of this level crosses the border of the rectangle of level-0 texels; if so, the rectangle in texels
+ * of this level. */
 bool image_level_part(const struct image *image, int level, const uint32_t part[4], uint32_t out[4]);
 
 /* One texel, premultiplied, in units squared. */

@@ -1,18 +1,18 @@
 /* Filtered lookups.
  *
  * Texel (i, j) has its centre at ((i + .5) / width, (j + .5) / height), so u = 0 is the left edge of the first texel.
- * A footprint wider in one direction than in the other takes several samples along the wide one, each from the level
- * that suits a piece of it (the axis-aligned case of Feline: McCormack, Perry, Farkas, Jouppi, "Feline: fast elliptical
- * lines for anisotropic texture mapping", SIGGRAPH 1999): a floor seen at a grazing angle stays sharp across, and the
- * poles of a sphere do not blur. Lookups work on a rectangle of a level; the whole image is the rectangle that can wrap
- * around. Nothing outside the rectangle is ever read, whatever u and v are. */
+ * A footprint that is wider in one direction takes several samples along that direction, each from the level that fits
+ * a piece of it (the axis-aligned case of Feline: McCormack, Perry, Farkas, Jouppi, "Feline: fast elliptical lines for
+ * anisotropic texture mapping", SIGGRAPH 1999): a floor seen at a grazing angle stays sharp across, and the poles of a
+ * sphere do not blur. Lookups work on a rectangle of a level; the whole image is the rectangle that can wrap around.
+ * Nothing outside the rectangle is ever read, whatever u and v are. */
 #include "image/levels.h"
 
 #include <math.h>
 
 enum { MAX_TAPS = 8 };
 
-/* What a lookup reads: for every level up to `last` the rectangle that the same part of the picture has there. */
+/* The input of a lookup: for every level up to `last`, the rectangle of the same part of the picture. */
 struct view {
     const struct image *image;
     int last;
@@ -59,7 +59,7 @@ static double fold(double u, enum image_wrap wrap) {
     return u > 0 ? (u < 1 ? u : 1) : 0;
 }
 
-/* The texel under u in [0, 1]; u = 1 is the first one again where the picture repeats. */
+/* The texel at u in [0, 1]; u = 1 is the first one again if the image repeats. */
 static uint32_t nearest(double u, uint32_t size, enum image_wrap wrap) {
     uint32_t i = (uint32_t)(u * size);
     return i < size ? i : wrap == IMAGE_REPEAT ? 0 : size - 1;
@@ -95,7 +95,7 @@ static struct rgba trilinear(const struct view *view, double level, double u, do
     return image_mix(fine, bilinear(view, lower + 1, u, v), level - lower);
 }
 
-/* Several trilinear samples along the wider side of the footprint, each wide enough for its share. */
+/* Several trilinear samples along the wider side of the footprint, each as wide as its share. */
 static struct rgba mipmapped(const struct view *view, double u, double v, double width_u, double width_v) {
     double texels_u = width_u * view->parts[0][2], texels_v = width_v * view->parts[0][3];
     double wide = fmax(texels_u, texels_v), narrow = fmin(texels_u, texels_v);

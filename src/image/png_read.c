@@ -1,10 +1,10 @@
 /* PNG in, through libpng ("Portable Network Graphics Specification (Second Edition)", ISO/IEC 15948:2003).
  *
- * libpng reports errors by longjmp. So everything that must be given back is held by one struct reader that lives in
- * image_parse_png; decode, the function with the setjmp, has no variables of its own that change after it.
- * Nothing is used before it is checked: sizes are refused before memory is taken, and so is a picture that the
- * bytes of the file cannot possibly fill (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little
- * memory. Chunks that do not change a texel are skipped unread, except for their check sums. */
+ * libpng reports errors by longjmp. So one struct reader in image_parse_png owns everything that must be freed; decode,
+ * the function with the setjmp, has no local variables that change after it. Nothing is used before it is checked:
+ * invalid sizes are refused before memory is allocated, and so is a picture that the bytes of the file cannot fill
+ * (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little memory. Chunks that do not change texels
+ * are skipped, except for their checksums. */
 #include "image/levels.h"
 
 #include "base/file.h"
@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Larger files cannot hold a picture of the largest size in any sensible way. */
+/* Larger files are not reasonable even for the largest size. */
 #define FILE_LIMIT ((size_t)1 << 32)
 
 enum { SIGNATURE = 8, HEADER = 33 }; /* the signature; with the IHDR chunk that must follow */
@@ -68,7 +68,7 @@ static uint32_t big_endian(const uint8_t *bytes) {
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* What a file without PNG's signature seems to be. */
+/* The probable format of a file without PNG's signature. */
 static const char *guess_kind(const uint8_t *data, size_t size) {
     static const struct {
         const char *kind, *bytes;
@@ -100,7 +100,7 @@ static bool report_truncated(const struct reader *reader, struct error *error) {
                      reader->path, reader->size);
 }
 
-/* Signature and sizes, read by hand so that the messages are ours. */
+/* Reads signature and sizes without libpng, for better error messages. */
 static bool check_header(const struct reader *reader, struct error *error) {
     static const uint8_t signature[SIGNATURE] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     const uint8_t *data = reader->data;
@@ -123,13 +123,13 @@ static bool check_header(const struct reader *reader, struct error *error) {
     return true;
 }
 
-/* Could the bytes after the header inflate to this many? Generous: anything of 1040 : 1 and 64 bytes passes. */
+/* Whether the bytes after the header could inflate to this size, with a tolerance: up to 1040 : 1 plus 64 bytes. */
 static bool can_hold(const struct reader *reader, uint64_t bytes) {
     return bytes <= (reader->size - HEADER) * UINT64_C(1040) + 64;
 }
 
-/* The picture as RGBA rows in reader->image, levels not yet built. Only through `reader` does anything outlive a
- * longjmp. False: reader->message or *error is set. */
+/* The picture as RGBA rows in reader->image, levels not yet built. Only `reader` survives a longjmp. False:
+ * reader->message or *error is set. */
 static bool decode(struct reader *reader, struct error *error) {
     if (setjmp(png_jmpbuf(reader->png)))
         return false;
@@ -138,7 +138,7 @@ static bool decode(struct reader *reader, struct error *error) {
     png_set_read_fn(png, reader, on_read);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(png, IMAGE_MAX_SIDE, IMAGE_MAX_SIDE);
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); /* the known but useless ones as well */
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1); /* including known chunks without use */
     png_read_info(png, info);
 
     png_uint_32 const width = png_get_image_width(png, info), height = png_get_image_height(png, info);
@@ -157,7 +157,7 @@ static bool decode(struct reader *reader, struct error *error) {
     int const passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
     size_t const row = (size_t)width * (bits == 16 ? 8 : 4);
-    assert(png_get_rowbytes(png, info) == row); /* what was asked for above */
+    assert(png_get_rowbytes(png, info) == row); /* as requested above */
 
     reader->image = image_allocate(reader->path, width, height, bits, error);
     if (!reader->image)

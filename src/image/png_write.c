@@ -1,8 +1,8 @@
-/* PNG out. The rows are cut into stripes of about 64 kB; each is filtered and deflated by itself, so that all threads
- * of a pool can work on one picture, and ends on a whole byte (a sync flush), so that the stripes one behind the other
- * are one zlib stream (RFC 1950, 1951; the way of pigz). The first row of a stripe leans on nothing above it. Stripes
- * depend on the size of the picture alone, and the file has no time in it: the bytes are the same for any number of
- * threads. */
+/* Writing PNG. The rows are divided into stripes of about 64 kB. Each is filtered and deflated separately, so that all
+ * threads of a pool can work on one picture, and ends on a byte boundary (a sync flush), so that the concatenated
+ * stripes are one zlib stream (RFC 1950, 1951; as in pigz). The first row of a stripe does not refer to the row above.
+ * Stripes depend only on the size of the picture, and the file contains no time: the bytes are the same for any number
+ * of threads. */
 #include "image/png_write.h"
 #include "base/clock.h"
 
@@ -21,11 +21,11 @@ enum { LEVEL = 5, WINDOW = -15, MEMORY_LEVEL = 9, STRIPE = 1 << 16, IN_FLIGHT = 
 struct stripe {
     uint8_t *bytes;
     size_t size;
-    uint32_t crc, adler; /* of the chunk's kind and these bytes; of what they unpack to */
-    size_t raw;          /* bytes that they unpack to */
+    uint32_t crc, adler; /* checksums: of the chunk's kind and these bytes; of the uncompressed data */
+    size_t raw;          /* size of the uncompressed data */
 };
 
-/* One worker's own. */
+/* Memory of one worker. */
 struct packer {
     z_stream stream;
     bool begun;
@@ -62,7 +62,7 @@ static unsigned size_of(uint8_t difference) {
     return (unsigned)abs((int8_t)difference);
 }
 
-/* Of the filters Sub and Up the one whose differences are smaller in all (the rule of thumb in the standard). */
+/* Chooses the filter, Sub or Up, with the smaller sum of differences (the heuristic of the standard). */
 static void filter_row(const struct text_writer *writer, const struct packer *packer, bool has_above, uint8_t *out) {
     const uint8_t *row = packer->row, *above = packer->above;
     size_t pixel = writer->rows->words ? 6 : 3, size = writer->row_bytes;
@@ -179,7 +179,7 @@ static bool begin_packer(const struct text_writer *writer, struct packer *packer
     return (packer->words || !writer->rows->words) && packer->row && packer->above && packer->filtered && packer->begun;
 }
 
-/* Everything that is needed, before any thread works. */
+/* Allocates everything before any thread works. */
 static bool begin(struct text_writer *writer) {
     writer->packers = mem_alloc_zero((size_t)writer->workers, sizeof *writer->packers);
     writer->stripes = mem_alloc_zero((size_t)writer->in_flight, sizeof *writer->stripes);
@@ -188,7 +188,7 @@ static bool begin(struct text_writer *writer) {
         ok = begin_packer(writer, &writer->packers[i]);
     if (!ok)
         return false;
-    /* What deflate says a whole stream may need, and room for the mark of the flush. */
+    /* The bound of deflate for a whole stream, plus the flush marker. */
     writer->packed_limit = (size_t)deflateBound(&writer->packers[0].stream, (uLong)writer->stripe_bytes) + 64;
     for (int i = 0; ok && i < writer->in_flight; i++)
         ok = (writer->stripes[i].bytes = mem_alloc(writer->packed_limit)) != NULL;
@@ -231,7 +231,7 @@ double png_write_trial(const struct png_source *source) {
     struct text_writer writer = writer_for(source, NULL);
     double begun = 0;
     bool ready = begin(&writer);
-    for (int round = 0; round < 2; round++) { /* the first one warms what a long run has warm */
+    for (int round = 0; round < 2; round++) { /* the first one warms the caches, as in a long run */
         begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
         for (writer.first = 0; ready && writer.first < writer.stripe_count; writer.first++)
             pack_stripe(&writer, 0, 0);

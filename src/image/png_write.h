@@ -1,4 +1,4 @@
-/* PNG out: RGB through a struct file_output, so the old picture stays until the new one is whole. */
+/* Writing PNG: RGB through a struct file_output, so the old picture stays until the new one is complete. */
 #ifndef GRAY_IMAGE_PNG_WRITE_H
 #define GRAY_IMAGE_PNG_WRITE_H
 
@@ -9,8 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Where the rows come from: bytes(context, y, line) fills 3 * width bytes for row y, words the same with 16 bits a
- * channel in the machine's own order; one of the two. */
+/* The source of the rows: bytes(context, y, line) fills 3 * width bytes for row y, words the same with 16 bits per
+ * channel in native byte order; one of the two. */
 struct png_source {
     uint32_t width, height;
     void (*bytes)(void *context, uint32_t y, uint8_t *line);
@@ -18,14 +18,14 @@ struct png_source {
     void *context;
 };
 
-/* Missing folders of the target are made. The bytes of the file depend on the pixels only. With a pool its threads ask
- * for rows at the same time; without one they come once each from the top. */
+/* Creates missing folders of the target. The bytes of the file depend only on the pixels. With a pool, its threads
+ * request rows at the same time; without one, each row is requested once, from the top. */
 bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,
                     struct error *error);
-/* Into how many parts a picture of that size falls: more threads have nothing to do. Sides from 1. */
+/* The number of stripes of a picture of that size: more threads have no work. Sides from 1. */
 uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 
-/* Seconds of processor time that packing such a picture takes this thread; nothing is written. Negative: no memory. */
+/* Seconds of processor time to compress such a picture on this thread; writes nothing. Negative: no memory. */
 double png_write_trial(const struct png_source *source);
 
 /* Writing in this thread alone, with 8 and with 16 bits. */

@@ -1,5 +1,5 @@
-/* From linear light to what a picture file of limited range holds: exposure, tone curve, transfer. The zero value
- * changes nothing. */
+/* From linear light to the values of a picture file with limited range: exposure, tone curve, transfer function. The
+ * zero value changes nothing. */
 #ifndef GRAY_IMAGE_TONE_H
 #define GRAY_IMAGE_TONE_H
 

@@ -106,7 +106,7 @@ struct transform transform_rotate_about(struct vec3 axis, double degrees) {
 }
 
 /* Euler and Rodrigues; W. R. Hamilton, "On Quaternions", 1844. Divided by the square of the length, so that the length
- * of q has no say in it. */
+ * of q does not matter. */
 struct transform transform_rotate_quaternion(double w, struct vec3 v) {
     double max = fmax(fabs(w), vec3_max_abs(v));
     int exponent;
@@ -135,7 +135,7 @@ double transform_stretch(const struct transform *t) {
 }
 
 bool transform_is_finite(const struct transform *t) {
-    double sum = 0; /* 0 times what is not finite is NaN */
+    double sum = 0; /* 0 times infinity or NaN is NaN */
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
             sum += 0 * t->forward.m[i][j] + 0 * t->inverse.m[i][j];

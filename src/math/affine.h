@@ -26,7 +26,7 @@ static inline struct vec3 affine_vector(const struct affine *a, struct vec3 v) {
                          a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
                          a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z};
 }
-/* v times the linear part from the left: carries a normal when `a` is the inverse of the point map. */
+/* v times the linear part from the left: transforms a normal if `a` is the inverse of the point map. */
 static inline struct vec3 affine_transpose_vector(const struct affine *a, struct vec3 v) {
     return (struct vec3){a->m[0][0] * v.x + a->m[1][0] * v.y + a->m[2][0] * v.z,
                          a->m[0][1] * v.x + a->m[1][1] * v.y + a->m[2][1] * v.z,
@@ -48,7 +48,7 @@ struct transform transform_rotate(int axis, double degrees);
 struct transform transform_rotate_about(struct vec3 axis, double degrees);
 /* The turn of the quaternion w + x i + y j + z k of any length but 0: about {x, y, z} by 2 atan2(|xyz|, w). */
 struct transform transform_rotate_quaternion(double w, struct vec3 xyz);
-/* The largest sum of sizes in a row of the linear part: no coordinate of a vector grows more. */
+/* The largest row sum of absolute values of the linear part: a bound on the growth of any coordinate. */
 double transform_stretch(const struct transform *t);
 /* Whether all numbers of the map and of its inverse are finite. */
 bool transform_is_finite(const struct transform *t);

@@ -43,7 +43,7 @@ struct box box_pad(struct box b);
  * zero direction components and infinite boxes. */
 bool box_clip(const struct box *b, const struct ray *ray, double *t_enter, double *t_exit);
 
-/* The same question asked of many boxes by one ray: reciprocals are taken once. */
+/* The same for many boxes and one ray: reciprocals are computed once. */
 struct box_probe {
     double origin[3][2];       /* twice, for both planes of a slab */
     double inverse[3][2];      /* of the direction, and its negative; infinite where it is 0 */
@@ -65,9 +65,9 @@ static inline struct box_probe box_probe_make(const struct ray *ray) {
     return probe;
 }
 
-/* Where the line is between the planes of all three axes, widened by the rounding errors of the quotients: an order
- * that no rounding breaks is taken first, so that one widening serves all. Planes that the line lies in or is parallel
- * to inside do not count (their quotients are infinite or NaN). enter > leave: nowhere. */
+/* Where the line is between the planes of all three axes, widened by the rounding errors of the quotients: the
+ * comparison, which rounding cannot change, comes first, so that one widening is enough. Planes that the line lies in
+ * or is parallel to inside do not count (their quotients are infinite or NaN). enter > leave: nowhere. */
 struct box_span {
     double enter, leave;
 };
@@ -86,8 +86,8 @@ static inline struct box_span box_probe_span_plain(const struct box_probe *probe
     return (struct box_span){near_less < near_more ? near_less : near_more, far_less > far_more ? far_less : far_more};
 }
 
-/* The same to the bit, with both planes of a slab at once: the nearest far one is minus the largest of what the
- * negatives give. Of a NaN the maximum is its second operand. */
+/* The same to the bit, with both planes of a slab at once: the nearest far plane is minus the maximum of the negated
+ * values. For a NaN the maximum is its second operand. */
 static inline struct box_span box_probe_span(const struct box_probe *probe, const struct box *b) {
     _Static_assert(sizeof(struct box) == 6 * sizeof(double), "a box is its six numbers");
 #ifdef __SSE2__
@@ -106,7 +106,7 @@ static inline struct box_span box_probe_span(const struct box_probe *probe, cons
 #endif
 }
 
-/* Whether some t of [t_min, t_max] may lie inside the box; never wrong by rounding in the negative. A direction
+/* Whether some t of [t_min, t_max] may lie inside the box; rounding never makes it false by mistake. A direction
  * component of 0 makes the slab's t infinite on the right side, or NaN on its very plane, which every comparison
  * ignores. */
 static inline bool box_span_meets(struct box_span span, double t_min, double t_max) {

@@ -16,7 +16,7 @@
  *
  * The algebraic ones (cube root, hypotenuse, remainder) are in elementary.c.
  *
- * Invariant: no operation here depends on the processor, the compiler's freedom or the library. The build must keep
+ * Invariant: no operation here depends on the processor, the compiler or the library. The build must keep
  * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in elementary_tables_internal.h.
  */
 #include "math/elementary.h"
@@ -591,7 +591,7 @@ double el_acos(double x) {
 static inline struct pair atan_ratio(double over, double under) {
     double ratio = over / under;
     if (ratio < 1.0 / 16) {
-        /* Here the quotient itself decides the last bit: its remainder counts, and the table would not help. */
+        /* Here the quotient itself decides the last bit: its remainder counts, and a table does not help. */
         struct pair back = exact_product(ratio, under);
         double rest = ((over - back.hi) - back.lo) / under;
         double z = ratio * ratio;

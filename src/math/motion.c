@@ -1,12 +1,12 @@
-/* A linear part M is a turn R times a stretch S, which is symmetric: the polar decomposition, found by Newton's
+/* A linear part M is a rotation R times a symmetric stretch S: the polar decomposition, found by Newton's
  * iteration R <- (g R + (g R)^-T) / 2 with the factor g of Higham, "Computing the Polar Decomposition - with
- * Applications", SIAM J. Sci. Stat. Comput. 1986. Stretches with positive eigenvalues mix linearly without ever
- * becoming singular, and turns about one axis at constant speed (Shoemake and Duff, "Matrix Animation and Polar
- * Decomposition", Graphics Interface 1992), so nothing collapses on its way. A mirror image is a turn times a stretch
- * whose eigenvalues are all negative.
+ * Applications", SIAM J. Sci. Stat. Comput. 1986. Stretches with positive eigenvalues are interpolated linearly and
+ * never become singular; the rotation turns about one axis at constant speed (Shoemake and Duff, "Matrix Animation and
+ * Polar Decomposition", Graphics Interface 1992), so the object never collapses. A mirror image is a rotation times a
+ * stretch whose eigenvalues are all negative.
  *
- * Bounds: a point of the box moves on a straight line under the stretch and the translation, so the ends hold the way
- * between; under a turn it is off the chord between two moments by at most r (1 - cos(angle / 2)). */
+ * Bounds: a point of the box moves on a straight line under the stretch and the translation, so the box of both ends
+ * contains its path; under a rotation it leaves the chord between two moments by at most r (1 - cos(angle / 2)). */
 #include "math/motion.h"
 
 #include "math/elementary.h"
@@ -27,7 +27,7 @@ static double norm_product(const struct affine *a) {
     return rows * columns;
 }
 
-/* The turn of a linear map with positive determinant. */
+/* The rotation of a linear map with positive determinant. */
 static struct affine polar_turn(const struct affine *linear) {
     struct affine turn = *linear;
     for (int step = 0; step < POLAR_STEPS; step++) {
@@ -71,8 +71,8 @@ static struct affine scaled(const struct affine *a, double factor) {
     return out;
 }
 
-/* Axis and angle of a turn, by way of the quaternion whose largest component is found first (Shepperd, "Quaternion from
- * Rotation Matrix", 1978). */
+/* Axis and angle of a rotation, through the quaternion, of which the largest component is computed first (Shepperd,
+ * "Quaternion from Rotation Matrix", 1978). */
 static double turn_about(const struct affine *turn, struct vec3 *axis) {
     const double(*m)[4] = turn->m;
     double trace = m[0][0] + m[1][1] + m[2][2], q[4], largest = trace;
@@ -136,7 +136,7 @@ static double clamped(double time) {
     return time > 0 ? (time < 1 ? time : 1) : 0;
 }
 
-/* The first turn and the stretch of a moment. */
+/* The first rotation times the stretch at a moment. */
 static struct affine stretch_at(const struct motion *motion, double share) {
     struct affine out = motion->first;
     for (int i = 0; i < 3; i++)
@@ -160,7 +160,7 @@ struct transform motion_at(const struct motion *motion, double time) {
     double share = clamped(time);
     struct affine linear = stretch_at(motion, share);
     struct transform stretch;
-    /* Stretches of one sign mix to one of that sign; only rounding at the edge of the representable can fail. */
+    /* Interpolated stretches of one sign keep that sign; only rounding near the limits of double can fail. */
     if (!transform_from_affine(&linear, &stretch))
         stretch = motion->rest;
     if (motion->degrees > 0) {
@@ -174,7 +174,7 @@ static bool is_finite(const struct box *box) {
     return vec3_finite(box->min) && vec3_finite(box->max);
 }
 
-/* Everything that a box covers while it turns about an axis through the origin. */
+/* The box of the region that a box covers while it rotates about an axis through the origin. */
 static struct box turned_bounds(const struct box *box, struct vec3 axis, double from, double to) {
     double radius = 0;
     for (int i = 0; i < 8; i++) {
@@ -209,7 +209,7 @@ struct box motion_bounds(const struct motion *motion, const struct box *box, str
             out = turned_bounds(&out, motion->axis, open * motion->degrees, close * motion->degrees);
     }
     struct vec3 low = translation_at(motion, shutter.open), high = low;
-    /* A motion between poses begins and ends at 0 and 1: two more corners of the way, if the shutter is open then. */
+    /* A motion between poses begins at 0 and ends at 1: two more corners of the path if the shutter is open then. */
     const double moments[3] = {shutter.close, 0, 1};
     for (int i = 0; i < 3; i++) {
         if (moments[i] >= shutter.open && moments[i] <= shutter.close) {

@@ -15,7 +15,7 @@ static inline double shutter_time(struct shutter shutter, double ray_time) {
     return shutter.open + ray_time * (shutter.close - shutter.open);
 }
 
-/* parent_from_node(t) = translation(t) turn(t) stretch(t); without `between` a translation is all there is. */
+/* parent_from_node(t) = translation(t) turn(t) stretch(t); without `between` only a translation. */
 struct motion {
     struct vec3 velocity;  /* at all times */
     bool between;          /* two poses: from time 0 to time 1, at rest before and after */
@@ -28,13 +28,14 @@ struct motion {
 };
 
 struct motion motion_of_velocity(struct vec3 velocity);
-/* The linear parts are pulled apart into a turn and a stretch; the turn goes the short way round one axis, stretch and
- * translation change linearly. False: one pose is a mirror image of the other, there is no way between them. */
+/* The linear parts are split into a rotation and a stretch; the rotation follows the shorter arc about one axis,
+ * stretch and translation change linearly. False: one pose is a mirror image of the other, and no rotation connects
+ * them. */
 bool motion_interpolate(const struct transform *from, const struct transform *to, struct vec3 velocity,
                         struct motion *out);
 /* The transform at a time. */
 struct transform motion_at(const struct motion *motion, double time);
-/* A box that holds everything that `box` (in node space) covers from time `open` to `close`. */
+/* A box that contains the region that `box` (in node space) covers from time `open` to `close`. */
 struct box motion_bounds(const struct motion *motion, const struct box *box, struct shutter shutter);
 
 #endif

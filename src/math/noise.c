@@ -1,4 +1,4 @@
-/* Gradient noise: each lattice point owns one of 16 gradients (the 12 edge directions of a cube, four of them twice),
+/* Gradient noise: each lattice point has one of 16 gradients (the 12 edge directions of a cube, four of them twice),
  * chosen by a permutation of 0..255; the eight corners' ramps are blended by a fade curve without first and second
  * derivative at the corners. Ken Perlin, "Improving Noise", SIGGRAPH 2002; the permutation is the one published with
  * it, since the pictures depend on it.
@@ -59,8 +59,8 @@ static const double gradients[16][3] = {
     {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1},
 };
 
-/* The gradient times the offset. Products with 1 and 0 are exact, so this is the reference's choice of signed summands
- * without its branches, which no processor could predict. */
+/* The gradient times the offset. Products with 1 and 0 are exact, so this equals the reference's selection of signed
+ * summands without its unpredictable branches. */
 static inline double ramp(unsigned h, double x, double y, double z) {
     const double *g = gradients[h & 15];
     return g[0] * x + g[1] * y + g[2] * z;
@@ -101,7 +101,7 @@ double noise_perlin(double x, double y, double z, int interpolation) {
     return mix(w, mix(v, near_low, near_high), mix(v, far_low, far_high));
 }
 
-/* Rounding may leave [0, 1] by a last bit, NaN leaves it altogether. */
+/* Rounding may exceed [0, 1] by a last bit, and NaN is outside. */
 static double share(double ratio) {
     if (!(ratio < 1.0))
         return 1.0;

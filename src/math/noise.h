@@ -1,5 +1,5 @@
-/* Perlin's improved noise of 2002 and the patterns made of it. Every coordinate is allowed: where one of the (scaled)
- * coordinates is not finite the noise is 0, its value at every lattice point. The same bits on every machine. */
+/* Perlin's improved noise of 2002 and the patterns made of it. Every coordinate is allowed: if one of the (scaled)
+ * coordinates is not finite, the noise is 0, its value at every lattice point. The same bits on every machine. */
 #ifndef GRAY_MATH_NOISE_H
 #define GRAY_MATH_NOISE_H
 
@@ -10,7 +10,7 @@ double noise_cosine_mix(double t, double a, double b);
  * then linear; anything else: noise_cosine_mix on the faded parameter. */
 double noise_perlin(double x, double y, double z, int interpolation);
 
-/* The share in [0, 1] of a pattern's first colour at the point (x, y, z); the rest belongs to the mix colour.
+/* The weight in [0, 1] of a pattern's first colour at the point (x, y, z); the rest is the weight of the mix colour.
  * factor multiplies the coordinates before the noise is taken. A NaN parameter gives share 1. */
 double noise_wood(double x, double y, double z, double factor, double density, int interpolation);
 double noise_marble(double x, double y, double z, double factor, double multiplier, double vein_frequency,

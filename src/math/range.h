@@ -1,5 +1,5 @@
-/* The range of numbers from scripts and files, and the way of light into single precision. A number beyond the limit is
- * an error where it enters. Products of numbers within it can still leave single precision: what a film stores is
+/* The range of numbers from scripts and files, and the conversion of light to single precision. A number beyond the
+ * limit is an error where it enters. Products of legal numbers can still exceed single precision: values in a film are
  * clamped. */
 #ifndef GRAY_MATH_RANGE_H
 #define GRAY_MATH_RANGE_H

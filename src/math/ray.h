@@ -10,7 +10,7 @@
 
 struct medium_stack; /* of the solids the ray is inside of; material/medium.h */
 
-/* A cone round the ray: its diameter at t is width + spread * t * |direction| (world units). */
+/* A cone around the ray: its diameter at t is width + spread * t * |direction| (world units). */
 struct footprint {
     double width, spread;
 };
@@ -21,13 +21,13 @@ struct ray {
     double time; /* 0 at shutter open, 1 at shutter close */
     struct footprint footprint;
     const struct medium_stack *media;
-    uint32_t skip_primitive; /* 1 + the number of a primitive that the ray is known not to meet; 0: none */
+    uint32_t skip_primitive; /* 1 + the number of a primitive that the ray is known not to hit; 0: none */
 };
 
 static inline struct vec3 ray_at(const struct ray *ray, double t) {
     return vec3_add_scaled(ray->origin, ray->direction, t);
 }
-/* The same ray in another space; t, interval, time and footprint are kept as they are. */
+/* The same ray in another space; t, interval, time and footprint do not change. */
 static inline struct ray ray_transform(const struct affine *to_from, const struct ray *ray) {
     struct ray out = *ray;
     out.origin = affine_point(to_from, ray->origin);

@@ -4,15 +4,15 @@
  * precise arithmetic", 2004; products by Dekker 1971), the root without cancellation first, the other by Vieta.
  *
  * Higher degrees: between neighbouring roots of its derivative a polynomial is monotonic, so the signs there determine
- * which pieces hold a root, and each such root is bracketed; the derivative's roots come from the same method, one
+ * which pieces contain a root, and each such root is bracketed; the derivative's roots come from the same method, one
  * degree lower, down to the quadratic. In a bracket Newton's steps are taken while they stay inside and shrink, else
  * the bit patterns are halved, which needs at most 64 steps whatever the magnitudes.
  *
- * Why this and no other: it cannot fail to converge, and its count always has the parity of the signs at the ends,
- * which CSG lives on. The remainders of Sturm's chain cancel, so their signs are noise just where roots are close; the
- * eigenvalues of a companion matrix come by iteration, in conjugate pairs that rounding splits, and not in the same
- * bits for a scaled scene. What can be missed is a pair that rounding of the coefficients may have taken away; tests
- * count them by their gap.
+ * Reasons for this method: it always converges, and its count has the parity of the signs at the ends, which CSG
+ * requires. The remainders of Sturm's chain cancel, so their signs are noise exactly where roots are close; the
+ * eigenvalues of a companion matrix need iteration, rounding splits conjugate pairs, and a scaled scene does not give
+ * the same bits. The method can miss a pair of roots that rounding of the coefficients may have removed; tests count
+ * these by their gap.
  *
  * Invariant: x is measured in a power of two such that every root in range lies in [-1, 1], and the largest coefficient
  * is in [1/2, 1): nothing overflows, and a scene scaled by a power of two takes exactly the same steps. */
@@ -32,7 +32,7 @@ static int exponent_of(double x) {
     return exponent;
 }
 
-/* Two roots in any order to the answer; those that overflowed are left out. */
+/* Adds two roots in any order to the result; those that overflowed are left out. */
 static int two_roots(double r, double s, double out[2]) {
     int count = 0;
     if (isfinite(fmin(r, s)))
@@ -42,7 +42,7 @@ static int two_roots(double r, double s, double out[2]) {
     return count;
 }
 
-/* Coefficients, the outer ones not zero, whose squares and products are far from both ends of the range. */
+/* Coefficients whose squares and products are far from both ends of the range; the outer ones are not zero. */
 static inline int quadratic_moderate(double a, double b, double c, double out[2]) {
     struct pair bb = exact_product(b, b), ac = exact_product(4.0 * a, c);
     double discriminant = (bb.hi - ac.hi) + (bb.lo - ac.lo);
@@ -141,7 +141,8 @@ static double bracketed_root(const double *c, int degree, double l, double r, bo
     }
 }
 
-/* Rounding can show more sign changes than the degree allows; they come in close pairs. Removing pairs keeps parity. */
+/* Rounding can produce more sign changes than the degree allows; they come in close pairs. Removing pairs keeps the
+ * parity. */
 static int drop_pairs(double *roots, int count, int limit) {
     while (count > limit) {
         int closest = 0;
@@ -230,7 +231,7 @@ static int roots_scaled(const double *c, int degree, double lo, double hi, doubl
 
 /* The power of two in which all roots in [lo, hi] are at most 1. The leading coefficient is not zero. */
 static int choose_shift(const double *c, int degree, double lo, double hi) {
-    /* No root is larger than 2 max |c(n-i) / c(n)|^(1/i) (Fujiwara 1916); nor does one beyond the bounds matter. */
+    /* No root is larger than 2 max |c(n-i) / c(n)|^(1/i) (Fujiwara 1916); and roots beyond the bounds do not matter. */
     int shift = -1074;
     int lead = exponent_of(c[degree]);
     for (int i = 1; i <= degree; i++) {
@@ -284,8 +285,8 @@ static int roots_ranged(const double *c, int degree, double lo, double hi, doubl
     if (degree <= 2 || largest - smallest < 960 || shift < -1000) {
         return roots_shifted(scaled, degree, shift, lo, hi, out);
     }
-    /* A coefficient underflows that may decide small roots: those are sought in units of their own. For |y| >= 2^-60 it
-     * is far below the largest term (2^-60 to the power 12). */
+    /* A coefficient that may decide small roots underflows: these roots are computed in another unit. For |y| >= 2^-60
+     * it is far below the largest term (2^-60 to the power 12). */
     double edge = ldexp(1.0, shift - 60), all[3 * ROOTS_MAX_DEGREE];
     int count = roots_shifted(scaled, degree, shift, lo, fmin(hi, nextafter(-edge, -INFINITY)), all);
     if (lo <= edge && hi >= -edge)

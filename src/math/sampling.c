@@ -1,8 +1,8 @@
 /* The concentric map of Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 1997, and the keyed
  * permutation of Kensler, "Correlated Multi-Jittered Sampling", Pixar Technical Memo 13-01, 2013: bijective mixing
  * steps within the next power of two, repeated until the result is in range (cycle walking). Multi-jittered sets are
- * those of Chiu, Shirley, Wang, "Multi-Jittered Sampling", Graphics Gems IV, 1994, every column and every row with a
- * permutation of its own. */
+ * those of Chiu, Shirley, Wang, "Multi-Jittered Sampling", Graphics Gems IV, 1994, with a separate permutation for
+ * every column and every row. */
 #include "math/sampling.h"
 
 #include "math/elementary.h"
@@ -67,12 +67,12 @@ struct sample2 sample_disc(struct sample2 square) {
     return (struct sample2){radius * cosine, radius * sine};
 }
 
-/* A rectangle sampled by the solid angle that it fills: Urena, Fajardo, King, "An Area-Preserving Parametrization for
- * Spherical Rectangles", EGSR 2013. The rectangle lies at z = z0 < 0 of a frame whose origin is the point that looks;
- * the four planes through the point and an edge meet at the corners of a spherical polygon, whose area is the excess of
- * its angles. The first number of a sample picks how much of that area lies to the left, the second how far up. */
+/* A rectangle sampled by its solid angle: Urena, Fajardo, King, "An Area-Preserving Parametrization for
+ * Spherical Rectangles", EGSR 2013. The rectangle is at z = z0 < 0 of a frame whose origin is the viewing point; the
+ * four planes through the point and an edge meet at the corners of a spherical polygon, whose area is the excess of its
+ * angles. The first number of a sample selects the area to its left, the second the height. */
 
-/* Below this solid angle the excess has lost half of its digits, and samples by area are as good. */
+/* Below this solid angle the excess has lost half of its digits, and sampling by area is as good. */
 static const double min_angle = 0x1p-12;
 
 static double limited(double x, double low, double high) {
@@ -135,7 +135,7 @@ struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, st
 /* See sampling.h. The line from the point enters the box through the face whose plane it crosses last (Kay and Kajiya,
  * "Ray Tracing Complex Scenes", SIGGRAPH 1986). */
 
-/* How far the point is along an edge, in lengths of it: below 0 or above 1 it is on the outer side of a face. */
+/* The position of the point along an edge, relative to its length: below 0 or above 1 it is outside a face. */
 static double along_edge(const struct light_box *box, int axis, struct vec3 point) {
     const struct vec3 *edge = &box->edges[axis];
     return vec3_dot(vec3_sub(point, box->corner), *edge) / vec3_length_squared(*edge);

@@ -28,23 +28,23 @@ static inline struct sample2 sample_cell_part(uint64_t key, uint32_t i, uint32_t
 }
 
 /* Part (part % side, part / side) of cell (i, j) of n x n cells, so that all parts of all cells together are one
- * multi-jittered set: with m = n * side, each of the m x m parts holds one point, and so does each of the m^2 columns
- * and each of the m^2 rows. `set` is the key of the set, `key` that of the jitter. */
+ * multi-jittered set: with m = n * side, each of the m x m parts has one point, and so has each of the m^2 columns and
+ * each of the m^2 rows. `set` is the key of the set, `key` that of the jitter. */
 struct sample2 sample_multi(uint64_t set, uint64_t key, uint32_t i, uint32_t j, uint32_t n, uint32_t part,
                             uint32_t side);
 /* Element `index` of a random order of 0 .. count-1 (a bijection for every key). */
 uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key);
-/* The unit square onto the unit disc, areas kept in proportion, neighbours kept neighbours. */
+/* Maps the unit square onto the unit disc; keeps the ratio of areas, and is continuous. */
 struct sample2 sample_disc(struct sample2 square);
 
-/* Rectangles and boxes sampled by the solid angle that they fill. */
+/* Rectangles and boxes sampled by their solid angle. */
 
 /* A rectangle as a point sees it. */
 struct spherical_rectangle {
     struct vec3 from, x, y, z;
     double x0, x1, y0, y1, z0, b0, b1, k, angle; /* angle: the solid angle */
 };
-/* False: its edges are not at right angles, or it is seen too small for it to matter. */
+/* False: its edges are not at right angles, or its solid angle is too small. */
 bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
                               struct spherical_rectangle *out);
 struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place);
@@ -57,17 +57,18 @@ struct light_box {
 
 /* A box as a point sees it. */
 struct spherical_box {
-    uint32_t count; /* of faces; those seen too small are left out, and directions through them have density 0 */
+    uint32_t count; /* of faces; those with a very small solid angle are left out, and directions through them have
+                       density 0 */
     struct spherical_rectangle faces[3];
     int axes[3];  /* the edge across each face */
     double angle; /* the solid angle of all faces */
 };
 
-/* False: the point is inside, or every face is seen too small. */
+/* False: the point is inside, or all solid angles are too small. */
 bool spherical_box_make(const struct light_box *box, struct vec3 from, struct spherical_box *out);
 /* A point on a face; equal areas of the unit square are equal solid angles. */
 struct vec3 spherical_box_point(const struct spherical_box *seen, struct sample2 place);
-/* The density of the directions to such points, by solid angle, of a direction (of any length) that meets the box. */
+/* The density by solid angle of a direction (of any length) that meets the box. */
 double spherical_box_pdf(const struct light_box *box, const struct spherical_box *seen, struct vec3 from,
                          struct vec3 direction);
 
