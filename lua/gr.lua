@@ -1532,6 +1532,9 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): How light becomes a picture: whitted for rays that mirrors and glass send on, path for light that goes from wall to wall.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples of a pixel, of integrator path; the option wins.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error with which a tile of integrator path is done; the option wins.
+---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path, 0: any; a limit makes the picture darker.
+---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
@@ -1601,6 +1604,9 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): How light becomes a picture: whitted for rays that mirrors and glass send on, path for light that goes from wall to wall.
 ---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples of a pixel, of integrator path; the option wins.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error with which a tile of integrator path is done; the option wins.
+---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path, 0: any; a limit makes the picture darker.
+---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.

@@ -206,6 +206,27 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
             inspect_pixels(&picture, options->pixels, options->pixel_count, &writer, error));
 }
 
+/* With --time-limit how many samples there were room for, with --noise how many were wanted. */
+static void report_samples(const struct picture_work *work) {
+    const struct settings *settings = &work->job.settings;
+    const struct render_statistics *rays = &work->report.rays;
+    char line[4096 + 512];
+    if (settings->integrator != INTEGRATOR_PATH || work->asked.in_window || rays->pixels == 0)
+        return;
+    double mean = (double)rays->samples / (double)rays->pixels;
+    if (settings->noise > 0)
+        (void)snprintf(line, sizeof line, "%s: %s: %.1f samples per pixel, for a noise of %g", work->process->script,
+                       work->request->file, mean, settings->noise);
+    else if (settings->time_limit > 0)
+        (void)snprintf(line, sizeof line,
+                       "%s: %s: %llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
+                       work->process->script, work->request->file, (unsigned long long)rays->passes_samples,
+                       rays->render_seconds, (unsigned long long)rays->passes_samples);
+    else
+        return;
+    report_scene(work->process, LINE_NOTICE, line);
+}
+
 static bool build_world(struct picture_work *work, const struct light *lights, uint32_t light_count,
                         struct error *error) {
     struct render_process *process = work->process;
@@ -300,6 +321,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
     fill_report(work, job->film, report);
     world_destroy(&work->world);
+    if (ok && !is_asked(process->options) && !process->options->check)
+        report_samples(work);
     if (ok)
         report_world(process, work->request->file, report);
     return ok;

@@ -92,7 +92,7 @@ static size_t pixel_at(const struct film *film, uint32_t x, uint32_t y) {
 
 void film_clear_unfinished(struct film *film) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE)
+        if (film_tile_shows(atomic_load_explicit(&film->tiles[tile], memory_order_acquire)))
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0; y < r.y1; y++) {

@@ -51,8 +51,16 @@ enum film_tile {
     FILM_TILE_DONE,
     FILM_TILE_ELSEWHERE, /* another shard's, or handed on */
     FILM_TILE_LATER,     /* in a farm: not handed out yet */
-    FILM_TILE_TAKEN,     /* in a farm: being made, here or elsewhere */
+    FILM_TILE_TAKEN,     /* being made, here or, in a farm, elsewhere */
+    /* With the number of the pass added: some samples are in the pixels, more will come. */
+    FILM_TILE_PASSED = 0x80
 };
+enum { FILM_PASSES = 0x80 }; /* numbers of passes, which begin again then */
+
+/* Whether there is something to be seen of a tile in that state. */
+static inline bool film_tile_shows(uint8_t state) {
+    return state == FILM_TILE_DONE || state >= FILM_TILE_PASSED;
+}
 
 /* Rectangle of pixels of the whole picture: x0 <= x < x1. */
 struct film_rectangle {
@@ -87,7 +95,7 @@ uint32_t film_tile_count(const struct film *film);
 struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile);
 /* How many tiles are in that state. */
 uint32_t film_tiles_in(const struct film *film, enum film_tile state);
-/* Black where tiles are not done. */
+/* Black where nothing is to be seen of a tile. */
 void film_clear_unfinished(struct film *film);
 
 /* Whether a final colour is as large as a float can be, which is what clamped light is. */

@@ -1,4 +1,5 @@
-/* The pixels of the path tracer: the mean of `samples` samples each, added in their order. See path_internal.h. */
+/* The pixels of the path tracer: the mean of their samples, added in their order, as many as the pass of the renderer
+ * says or until a tile has little enough noise. See path_internal.h. */
 #include "render/path_internal.h"
 
 #include "render/integrator_internal.h"
@@ -14,10 +15,23 @@ struct film_record path_tracer_record(void) {
  * not depend on how many samples it will have. The rest of the filtering is the mean over the samples. */
 static const double footprint_share = 0.125;
 
+/* Of a pixel, at most. */
+static uint32_t samples_of(const struct settings *settings) {
+    if (settings->path_samples > 0)
+        return (uint32_t)settings->path_samples;
+    return settings->noise > 0        ? PATH_SAMPLES_NOISE
+           : settings->time_limit > 0 ? PATH_SAMPLES_MAX
+                                      : PATH_SAMPLES_DEFAULT;
+}
+
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
     const struct settings *settings = &renderer->job->settings;
-    tracer->samples = settings->path_samples > 0 ? (uint32_t)settings->path_samples : PATH_SAMPLES_DEFAULT;
+    tracer->samples = samples_of(settings);
+    renderer->pass = (struct sample_pass){.end = tracer->samples};
     tracer->max_depth = settings->max_depth;
+    tracer->noise = settings->noise;
+    tracer->clamp = settings->clamp;
+    filter_init(&tracer->filter, settings->filter);
     renderer->sampler = SAMPLER_SOBOL;
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
@@ -36,11 +50,12 @@ void path_tracer_destroy(struct path_tracer *tracer) {
 
 /* --- pixels --- */
 
-static struct pixel_sample sample_place(const struct renderer *renderer, int64_t x, int64_t y, uint32_t number) {
+static struct pixel_sample sample_place(const struct path_tracer *tracer, const struct renderer *renderer, int64_t x,
+                                        int64_t y, uint32_t number) {
     uint64_t pixel = (uint64_t)y * renderer->job->width + (uint64_t)x;
     struct sampler sampler = sampler_make_sobol(renderer->job->settings.seed, pixel, number);
-    struct sample2 at = sampler_point(&sampler, SAMPLER_PIXEL);
-    return (struct pixel_sample){x, y, at.x, at.y, number};
+    struct filter_sample at = filter_sample(&tracer->filter, sampler_point(&sampler, SAMPLER_PIXEL));
+    return (struct pixel_sample){x, y, at.x, at.y, number, at.weight};
 }
 
 static size_t pixel_index(const struct film *film, int64_t x, int64_t y) {
@@ -53,37 +68,112 @@ static void finish_pixel(struct film *film, const struct worker *worker, int64_t
     observe_pixel(worker->state.observer, &(struct observed_pixel){.colour = path_pixel_mean(pixel), .full = true});
 }
 
-/* The samples of a row, pixel by pixel, batch by batch: a batch may hold samples of several pixels. */
-bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                        const struct rectangle *part) {
+/* The pixel's sums before a pass: those of the film, unless it is the first one. */
+static struct path_pixel begin_pixel(const struct film *film, int64_t x, int64_t y, uint32_t begin) {
+    return begin > 0 ? path_film_load(film, pixel_index(film, x, y)) : (struct path_pixel){0};
+}
+
+/* Adds the samples from number `begin` on to that before `end` to the pixels of a row, pixel by pixel, batch by batch:
+ * a batch may hold samples of several pixels. */
+static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t y,
+                       const struct rectangle *part, uint32_t begin, uint32_t end) {
     struct batch *batch = &worker->batch;
-    for (int64_t y = part->y0; y < part->y1; y++) {
-        uint64_t all = (uint64_t)(part->x1 - part->x0) * tracer->samples, next = 0;
-        struct path_pixel pixel = {0};
-        while (next < all) {
-            for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
-                batch->places[batch->count++] = sample_place(renderer, part->x0 + (int64_t)(next / tracer->samples), y,
-                                                             (uint32_t)(next % tracer->samples));
-            renderer_sample_batch(renderer, worker);
-            if (renderer_stopped(renderer, worker))
-                return false;
-            for (uint32_t i = 0; i < batch->count; i++) {
-                path_pixel_add(&pixel, batch->colours[i], 1);
-                if (pixel.samples < tracer->samples)
-                    continue;
-                finish_pixel(renderer->job->film, worker, batch->places[i].x, y, &pixel);
-                pixel = (struct path_pixel){0};
-            }
+    struct film *film = renderer->job->film;
+    uint32_t each = end - begin;
+    uint64_t all = (uint64_t)(part->x1 - part->x0) * each, next = 0;
+    struct path_pixel pixel = begin_pixel(film, part->x0, y, begin);
+    while (next < all) {
+        for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
+            batch->places[batch->count++] =
+                sample_place(tracer, renderer, part->x0 + (int64_t)(next / each), y, begin + (uint32_t)(next % each));
+        renderer_sample_batch(renderer, worker);
+        if (renderer_stopped(renderer, worker))
+            return false;
+        for (uint32_t i = 0; i < batch->count; i++) {
+            int64_t x = batch->places[i].x;
+            path_pixel_add(&pixel, batch->colours[i], batch->places[i].weight);
+            if (pixel.samples < end)
+                continue;
+            finish_pixel(film, worker, x, y, &pixel);
+            if (x + 1 < part->x1)
+                pixel = begin_pixel(film, x + 1, y, begin);
         }
-        renderer_tile_goes_on(renderer, worker, 1, (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0));
     }
     return true;
 }
 
+static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                        const struct rectangle *part, uint32_t begin, uint32_t end) {
+    for (int64_t y = part->y0; y < part->y1; y++) {
+        if (!sample_row(tracer, renderer, worker, y, part, begin, end))
+            return false;
+        double done =
+            (double)(end - begin) / tracer->samples * (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0);
+        renderer_tile_goes_on(renderer, worker, 1, (double)begin / tracer->samples + done);
+    }
+    return true;
+}
+
+/* --- noise --- */
+
+/* Tiles are looked at after 16, 24, 32, 48, 64 ... samples; the next of these after `samples`. */
+static uint32_t next_look(uint32_t samples) {
+    uint32_t power = 16;
+    while (power <= samples / 2)
+        power *= 2;
+    return samples < power ? power : samples < power + power / 2 ? power + power / 2 : 2 * power;
+}
+
+static bool is_look(uint32_t samples) {
+    return samples >= 16 && next_look(samples - 1) == samples;
+}
+
+static bool is_quiet(const struct path_tracer *tracer, const struct film *film, const struct rectangle *part) {
+    double sum = 0, pixels = (double)((part->x1 - part->x0) * (part->y1 - part->y0));
+    for (int64_t y = part->y0; y < part->y1; y++) {
+        for (int64_t x = part->x0; x < part->x1; x++) {
+            struct path_pixel pixel = path_film_load(film, pixel_index(film, x, y));
+            sum += path_pixel_noise(&pixel);
+        }
+    }
+    return sum <= tracer->noise * tracer->noise * pixels;
+}
+
+/* The samples of a pass until the tile has little enough noise. A tile that an earlier pass has left with that gets no
+ * more. */
+static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                               const struct rectangle *part) {
+    const struct film *film = renderer->job->film;
+    uint32_t done = renderer->pass.begin, end = renderer->pass.end;
+    if (done > 0 && path_film_load(film, pixel_index(film, part->x0, part->y0)).samples < done)
+        return true;
+    while (!(is_look(done) && is_quiet(tracer, film, part))) {
+        if (done == end) {
+            atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
+            return true;
+        }
+        uint32_t look = next_look(done), next = look < end ? look : end;
+        if (!sample_part(tracer, renderer, worker, part, done, next))
+            return false;
+        done = next;
+    }
+    return true;
+}
+
+bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                        const struct rectangle *part) {
+    if (tracer->noise > 0)
+        return sample_until_quiet(tracer, renderer, worker, part);
+    atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
+    return sample_part(tracer, renderer, worker, part, renderer->pass.begin, renderer->pass.end);
+}
+
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,
                         int64_t y) {
-    for (uint32_t i = 0; i < tracer->samples && !renderer_stopped(renderer, worker); i++) {
-        struct pixel_sample place = sample_place(renderer, x, y, i);
+    const struct film *film = renderer->job->film;
+    uint32_t samples = path_film_load(film, pixel_index(film, x, y)).samples;
+    for (uint32_t i = 0; i < samples && !renderer_stopped(renderer, worker); i++) {
+        struct pixel_sample place = sample_place(tracer, renderer, x, y, i);
         (void)renderer_sample(renderer, worker, &place);
     }
 }

@@ -118,3 +118,11 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
     struct vec3 variance = vec3_sub(vec3_scale(pixel->squares, 1 / count), vec3_mul(mean, mean));
     return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
 }
+
+double path_pixel_noise(const struct path_pixel *pixel) {
+    const double dark = 0.01; /* the square of what counts as black */
+    struct vec3 mean = path_pixel_mean(pixel), variance = path_pixel_variance_of_halves(pixel);
+    return (variance.x / (mean.x * mean.x + dark) + variance.y / (mean.y * mean.y + dark) +
+            variance.z / (mean.z * mean.z + dark)) /
+           3;
+}

@@ -36,4 +36,8 @@ struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
 struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
 
+/* What a pixel adds to the noise of its tile: the mean over the channels of Var / (mean^2 + .01), Var from the halves.
+ * The noise of a tile is the square root of the mean over its pixels, an estimate of its relative error. */
+double path_pixel_noise(const struct path_pixel *pixel);
+
 #endif

@@ -8,15 +8,19 @@
 #define GRAY_RENDER_PATH_INTERNAL_H
 
 #include "base/arena.h"
+#include "render/filter.h"
 #include "render/render_internal.h"
 #include "world/world_lights.h"
 
 /* Of a run. Owns the arena. */
 struct path_tracer {
-    uint32_t samples; /* of a pixel */
+    uint32_t samples; /* of a pixel, at most */
     int max_depth;    /* scattering events of a path: 0 emission, 1 direct light */
     enum path_strategy strategy;
-    bool built; /* the lights are there */
+    struct filter filter;
+    double noise; /* a tile with that is done; 0: all samples */
+    double clamp; /* largest component of a sample; 0: any */
+    bool built;   /* the lights are there */
     struct arena arena;
     struct world_lights lights; /* immutable while the render runs */
 };

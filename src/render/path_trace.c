@@ -153,6 +153,12 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     return scatter(state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
 }
 
+/* --clamp: with its colour kept. This takes light away from the picture wherever samples differ much. */
+static struct vec3 limited(struct vec3 colour, double limit) {
+    double largest = vec3_max_abs(colour);
+    return limit > 0 && largest > limit ? vec3_scale(colour, limit / largest) : colour;
+}
+
 static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colour) {
     if (vec3_within(colour, (double)FLT_MAX))
         return colour;
@@ -174,7 +180,7 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
     }
-    struct vec3 light = clamp_light(state, path->light);
+    struct vec3 light = limited(clamp_light(state, path->light), tracer->clamp);
     observe_ray_end(state->observer, &(struct observed_end){true, light, vec3_all(1), none, light});
     return light;
 }

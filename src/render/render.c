@@ -91,6 +91,28 @@ static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
              make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
 }
 
+void renderer_pass_item(void *context, uint32_t place, int index) {
+    struct renderer *renderer = context;
+    struct film *film = renderer->job->film;
+    uint32_t tile = renderer->order[place];
+    uint8_t before = atomic_load(&film->tiles[tile]);
+    if (renderer_is_done(renderer) || (before != FILM_TILE_WANTED && before < FILM_TILE_PASSED))
+        return;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    bool whole = make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
+    uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
+    atomic_store_explicit(&film->tiles[tile], whole ? after : before, memory_order_release);
+}
+
+/* All passes are made. */
+static void end_passes(struct renderer *renderer) {
+    struct film *film = renderer->job->film;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        if (atomic_load(&film->tiles[tile]) >= FILM_TILE_PASSED)
+            end_tile(renderer, tile, true);
+    }
+}
+
 /* The last tiles of the order are made in quarters, so that no thread waits long for another one's last tile. Who comes
  * first takes the tile, who ends last ends it; once it is begun, its other quarters are made even when it is enough. */
 enum { QUARTERS = 4, QUARTER_FAILED = 0x80, TAIL_SHARE = 16, TAIL_LIMIT = 64 };
@@ -340,23 +362,35 @@ static bool order_tiles(struct renderer *renderer) {
         return true;
     uint32_t tail = (count + TAIL_SHARE - 1) / TAIL_SHARE;
     tail = tail < TAIL_LIMIT ? tail : TAIL_LIMIT;
+    if (renderer->job->settings.noise > 0) /* the noise of the whole tile decides */
+        tail = 0;
     renderer->whole_tiles = count - tail;
     renderer->order = mem_alloc_zero(count, sizeof *renderer->order);
-    renderer->quarters = mem_alloc_zero(tail, sizeof *renderer->quarters);
+    renderer->quarters = mem_alloc_zero((size_t)tail + 1, sizeof *renderer->quarters);
     return renderer->order && renderer->quarters && tile_order(film, renderer->job->settings.order, renderer->order);
 }
 
 static bool is_unfinished(const struct renderer *renderer) {
     const struct film *film = renderer->job->film;
-    return film_tiles_in(film, FILM_TILE_WANTED) > 0;
+    return film_tiles_in(film, FILM_TILE_DONE) + film_tiles_in(film, FILM_TILE_ELSEWHERE) < film_tile_count(film);
+}
+
+static bool make_passes(struct renderer *renderer, struct render_statistics *statistics) {
+    if (!renderer_make_passes(renderer))
+        return false;
+    end_passes(renderer);
+    statistics->passes_samples = renderer->pass.end;
+    return true;
 }
 
 static bool make_tiles(struct renderer *renderer, struct render_statistics *statistics, struct error *error) {
     if (!order_tiles(renderer))
         return error_no_memory(error, "the order of the tiles");
     count_tiles(renderer);
-    bool whole = renderer_cost_prepass(renderer) && render_tiles(renderer, statistics) &&
-                 !(renderer_is_done(renderer) && is_unfinished(renderer));
+    bool whole = renderer_makes_passes(renderer)
+                     ? make_passes(renderer, statistics)
+                     : renderer_cost_prepass(renderer) && render_tiles(renderer, statistics) &&
+                           !(renderer_is_done(renderer) && is_unfinished(renderer));
     if (whole && renderer->job->progress_estimate)
         renderer_report_end(renderer);
     if (!atomic_load(&renderer->failed))
@@ -368,9 +402,9 @@ static bool make_tiles(struct renderer *renderer, struct render_statistics *stat
 
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error) {
-    struct renderer renderer = {.job = job, .pool = pool};
-    int workers = pool_workers(pool);
     double begin = clock_seconds(CLOCK_MONOTONIC);
+    struct renderer renderer = {.job = job, .pool = pool, .begun = begin};
+    int workers = pool_workers(pool);
     bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
               make_tiles(&renderer, statistics, error);
     if (renderer.integrator)

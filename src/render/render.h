@@ -18,7 +18,8 @@ struct render_statistics {
     uint64_t pixels, marked_pixels, samples;
     uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
     uint64_t photons, photons_landed, photon_rays;
-    uint64_t clamped; /* not 0: light beyond the largest float is clamped to it */
+    uint64_t passes_samples; /* of each pixel where the samples came in passes, else 0 */
+    uint64_t clamped;        /* not 0: light beyond the largest float is clamped to it */
     /* Photons are part of the render, their map is part of them. */
     double build_seconds, render_seconds, photon_seconds, photon_map_seconds;
     double idle_seconds; /* of all threads: no tile was left, and others still made theirs */

@@ -34,6 +34,12 @@ struct worker {
     uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
 };
 
+/* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */
+struct sample_pass {
+    uint32_t number, begin, end;
+    bool open; /* more passes may follow */
+};
+
 struct renderer {
     const struct render_job *job;
     struct pool *pool;
@@ -43,8 +49,11 @@ struct renderer {
     bool together;            /* camera rays start in one place and at one moment */
     bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */
     enum sampler_kind sampler;
-    double sample_share; /* of a pixel's width, what a sample stands for; SAMPLER_STRATA: as the settings say */
-    uint32_t *closed;    /* the solids that can contain the eye */
+    struct sample_pass pass;  /* the integrator states all samples as one pass; paths only */
+    _Atomic bool unsatisfied; /* a tile of the pass is to have more samples (--noise) */
+    double begun;             /* seconds of the clock that never jumps */
+    double sample_share;      /* of a pixel's width, what a sample stands for; SAMPLER_STRATA: as the settings say */
+    uint32_t *closed;         /* the solids that can contain the eye */
     uint32_t closed_count;
     struct integrator *integrator;
     struct worker *workers;
@@ -87,6 +96,13 @@ void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
 void renderer_report_estimate(struct renderer *renderer);
 void renderer_report_end(struct renderer *renderer); /* all tiles are done */
+
+/* Makes the tiles pass by pass (passes.c), until they have all samples, little enough noise, or the time is over.
+ * False: stopped. */
+bool renderer_makes_passes(const struct renderer *renderer);
+bool renderer_make_passes(struct renderer *renderer);
+/* A pool_function of passes: the tile of that place in the order. */
+void renderer_pass_item(void *context, uint32_t place, int worker);
 
 /* No further tile is to be begun. */
 bool renderer_is_done(const struct renderer *renderer);

@@ -129,5 +129,5 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y) {
     double at = renderer->job->settings.pixel_corner ? 0 : 0.5;
-    return (struct pixel_sample){x, y, at, at, 0};
+    return (struct pixel_sample){x, y, at, at, 0, 1};
 }

@@ -62,12 +62,26 @@ enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
     X(INTEGRATOR_WHITTED, "whitted")                                                                                   \
     X(INTEGRATOR_PATH, "path")
 enum integrator_kind { INTEGRATORS(LIST_MEMBER) };
-enum { PATH_SAMPLES_DEFAULT = 64, PATH_SAMPLES_MAX = 1 << 24, DEPTH_DEFAULT = 16, DEPTH_MAX = 1000000 };
+/* NOISE: where --noise alone says when it is enough. */
+enum {
+    PATH_SAMPLES_DEFAULT = 64,
+    PATH_SAMPLES_NOISE = 1 << 16,
+    PATH_SAMPLES_MAX = 1 << 24,
+    DEPTH_DEFAULT = 16,
+    DEPTH_MAX = 1000000
+};
 #define OVERLAYS(X)                                                                                                    \
     X(OVERLAY_NONE, "none")                                                                                            \
     X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
     X(OVERLAY_OF_GRID, "grid")
 enum overlay { OVERLAYS(LIST_MEMBER) };
+/* Reconstruction filters (render/filter.h). */
+#define FILTERS(X)                                                                                                     \
+    X(FILTER_BOX, "box")                                                                                               \
+    X(FILTER_TENT, "tent")                                                                                             \
+    X(FILTER_GAUSSIAN, "gaussian")                                                                                     \
+    X(FILTER_MITCHELL, "mitchell")
+enum filter_kind { FILTERS(LIST_MEMBER) };
 #define TILE_ORDERS(X)                                                                                                 \
     X(ORDER_SPREAD, "spread")                                                                                          \
     X(ORDER_CENTRE, "centre")                                                                                          \
@@ -95,6 +109,11 @@ struct settings {
     int area_samples; /* -al-samples: N x N shadow rays; 1..64 */
     int path_samples; /* --spp: samples of a pixel; 0: nobody chose, PATH_SAMPLES_DEFAULT */
     int max_depth;    /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
+    enum filter_kind filter;
+    double noise;      /* --noise: a tile whose relative standard error is not larger is done; 0: all samples */
+    double time_limit; /* --time-limit: seconds, for whole passes of paths over the picture; 0: none */
+    double clamp;      /* --clamp: the largest component that a sample of a path may have; 0: any */
+    bool passes;       /* paths: the picture is looked at while it is made, so its samples come in passes */
     uint64_t seed;
     bool view_is_target;         /* --view target */
     bool pixel_corner;           /* --pixel-sample corner */

@@ -4,6 +4,7 @@
 #ifndef GRAY_RENDER_WHITTED_INTERNAL_H
 #define GRAY_RENDER_WHITTED_INTERNAL_H
 
+#include "render/filter.h"
 #include "render/render.h"
 #include "render/render_internal.h"
 
@@ -19,6 +20,7 @@ struct whitted {
     double cutoff; /* cutoff_weight: rays of less weight are not followed */
     /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
     bool full;
+    struct filter filter;
     struct photon_map caustics;
     struct whitted_worker *workers;
 };

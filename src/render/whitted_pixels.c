@@ -65,6 +65,7 @@ static bool send_photons(struct whitted *whitted, struct renderer *renderer, int
 bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
                     struct render_statistics *statistics, struct error *error) {
     whitted->cutoff = cutoff_weight(renderer->job);
+    filter_init(&whitted->filter, renderer->job->settings.filter);
     whitted->full = renderer->job->settings.full || renderer->timed || renderer->camera.lens.aperture > 0;
     whitted->workers = mem_alloc_zero((size_t)workers, sizeof *whitted->workers);
     if (!whitted->workers)
@@ -155,17 +156,20 @@ static bool first_counts(const struct renderer *renderer) {
 }
 
 /* Sample k of N x N. */
-static struct pixel_sample sample_of_grid(int64_t x, int64_t y, int k, int n) {
-    return (struct pixel_sample){x, y, (k % n + 0.5) / n, (k / n + 0.5) / n, (uint64_t)(k + 1)};
+static struct pixel_sample sample_of_grid(const struct whitted *whitted, int64_t x, int64_t y, int k, int n) {
+    struct filter_sample at = filter_sample(&whitted->filter, (struct sample2){(k % n + 0.5) / n, (k / n + 0.5) / n});
+    return (struct pixel_sample){x, y, at.x, at.y, (uint64_t)(k + 1), at.weight};
 }
 
-/* Mean of the N x N samples; where one of them is the first sample again it is not traced twice. */
+/* Mean of the N x N samples, weighted by the filter; where one of them is the first sample again it is not traced
+ * twice. */
 static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first) {
     struct renderer *renderer = part->renderer;
     int n = renderer->job->settings.samples;
     bool reuse = first_counts(renderer);
     struct batch *batch = &part->worker->batch;
     struct vec3 sum = {0, 0, 0};
+    double weights = 0;
     int centre = reuse ? n / 2 * n + n / 2 : -1;
     for (int begin = 0; begin < n * n; begin += PACKET_RAYS) {
         int end = begin + PACKET_RAYS < n * n ? begin + PACKET_RAYS : n * n;
@@ -174,14 +178,18 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
             if (k == centre && !first)
                 batch->places[batch->count++] = renderer_first_sample(renderer, x, y);
             else if (k != centre)
-                batch->places[batch->count++] = sample_of_grid(x, y, k, n);
+                batch->places[batch->count++] = sample_of_grid(part->whitted, x, y, k, n);
         }
         renderer_sample_batch(renderer, part->worker);
         uint32_t next = 0;
-        for (int k = begin; k < end; k++)
-            sum = vec3_add(sum, k == centre && first ? *first : batch->colours[next++]);
+        for (int k = begin; k < end; k++) {
+            bool is_first = k == centre && first;
+            double weight = is_first ? 1 : batch->places[next].weight;
+            sum = vec3_add(sum, vec3_scale(is_first ? *first : batch->colours[next++], weight));
+            weights += weight;
+        }
     }
-    return vec3_scale(sum, 1 / ((double)n * (double)n));
+    return vec3_scale(sum, 1 / weights);
 }
 
 void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
@@ -196,7 +204,7 @@ void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, st
     for (int k = 0; marked && k < n * n && !renderer_stopped(renderer, worker); k++) {
         if (reuse && k == n / 2 * n + n / 2)
             continue;
-        place = sample_of_grid(x, y, k, n);
+        place = sample_of_grid(whitted, x, y, k, n);
         (void)renderer_sample(renderer, worker, &place);
     }
 }

@@ -66,6 +66,12 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->path_samples = (int)args[RENDER_SPP].number;
     if (args[RENDER_MAX_DEPTH].given)
         settings->max_depth = (int)args[RENDER_MAX_DEPTH].number;
+    if (args[RENDER_NOISE].given && settings->noise == 0) /* so it does here */
+        settings->noise = args[RENDER_NOISE].number;
+    if (args[RENDER_CLAMP].given)
+        settings->clamp = args[RENDER_CLAMP].number;
+    if (args[RENDER_FILTER].given)
+        settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
     /* Light that goes from wall to wall is computed in linear colours, which a screen shows by the sRGB curve. */
     if (settings->integrator == INTEGRATOR_PATH && !args[RENDER_SRGB].given)
         settings->tone.srgb = true;

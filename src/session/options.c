@@ -420,7 +420,11 @@ struct digest options_digest(const struct options *options) {
                       option->offset == offsetof(struct options, isa);
         bool path = option->offset == offsetof(struct options, settings.integrator) ||
                     option->offset == offsetof(struct options, settings.path_samples) ||
-                    option->offset == offsetof(struct options, settings.max_depth);
+                    option->offset == offsetof(struct options, settings.max_depth) ||
+                    option->offset == offsetof(struct options, settings.noise) ||
+                    option->offset == offsetof(struct options, settings.time_limit) ||
+                    option->offset == offsetof(struct options, settings.clamp) ||
+                    option->offset == offsetof(struct options, settings.filter);
         if (picture && option->size > 0 && !search && !path)
             digest = digest_option(option, options, digest);
     }
@@ -432,6 +436,12 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->path_samples, sizeof settings->path_samples, digest);
     if (settings->max_depth != DEPTH_DEFAULT)
         digest = digest_bytes(&settings->max_depth, sizeof settings->max_depth, digest);
+    if (settings->filter != FILTER_BOX)
+        digest = digest_bytes(&settings->filter, sizeof settings->filter, digest);
+    if (settings->noise > 0 || settings->clamp > 0) {
+        digest = digest_bytes(&settings->noise, sizeof settings->noise, digest);
+        digest = digest_bytes(&settings->clamp, sizeof settings->clamp, digest);
+    }
     const int64_t numbers[] = {options->width,          options->height,
                                (int64_t)settings->seed, settings->cropped,
                                settings->crop_x,        settings->crop_y,

@@ -135,6 +135,17 @@ static bool check_parts(struct options *options, struct error *error) {
     return true;
 }
 
+/* --time-limit: how many samples a picture has is known when it is done. */
+static bool check_time(const struct options *options, struct error *error) {
+    if (options->settings.time_limit > 0 &&
+        (options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE))
+        return error_set(error, ERROR_USAGE,
+                         "--time-limit takes no --shard, --mpi, --checkpoint, --resume or merge: their parts would "
+                         "have different numbers of samples (--spp N is for them)");
+    return true;
+}
+
 bool options_check(struct options *options, struct error *error) {
-    return check_together(options, error) && check_questions(options, error) && check_parts(options, error);
+    return check_together(options, error) && check_questions(options, error) && check_parts(options, error) &&
+           check_time(options, error);
 }

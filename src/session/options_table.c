@@ -55,6 +55,17 @@ const struct option option_table[] = {
      "N samples for a pixel, with --integrator path"},
     {OPTION_GROUP_PICTURE, "--max-depth", OPTION_INTEGER, "N", 0, DEPTH_MAX, FIELD(settings.max_depth), "16",
      "a path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one bounce more"},
+    {OPTION_GROUP_PICTURE, "--noise", OPTION_NUMBER, "X", 1e-6, 10, FIELD(settings.noise), "all samples",
+     "with --integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative "
+     "standard error is X"},
+    {OPTION_GROUP_PICTURE, "--time-limit", OPTION_NUMBER, "SECONDS", 0.001, 1e9, FIELD(settings.time_limit), "none",
+     "with --integrator path, add samples to all pixels for SECONDS and report how many they are; the picture is that "
+     "of --spp with this number"},
+    {OPTION_GROUP_PICTURE, "--clamp", OPTION_NUMBER, "X", 0, HUGE_VAL, FIELD(settings.clamp), "0",
+     "with --integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture "
+     "becomes darker than it should be (bias)"},
+    {OPTION_GROUP_PICTURE, "--filter", OPTION_CHOICE, LIST_BARS(FILTERS), NO_RANGE, FIELD(settings.filter), "box",
+     "reconstruction filter of a pixel"},
     {OPTION_GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "seed of all random numbers, including math.random in scripts"},
 

@@ -195,7 +195,7 @@ TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
     stage_begin(&s, 1);
     stage_sphere(&s, s.root, stage_glass(&s, 0.5, 0.5, 1.5));
     pixel_trace_init(&pixel_trace, 0, 0);
-    struct pixel_sample place = {0, 0, 0.5, 0.5, 0};
+    struct pixel_sample place = {0, 0, 0.5, 0.5, 0, 1};
     struct ray ray = {.direction = {0, 0, -1}};
     struct observed_end end = {true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1)};
     observe_sample_begin(&pixel_trace.observer, &place);

@@ -1,0 +1,194 @@
+/* Samples that come in passes, until a time is over or a tile has little enough noise. */
+#include "render/path_film_internal.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 70, HEIGHT = 50 };
+
+/* A ball in a room that is lit by a lamp, and a mirror: tiles of different noise. */
+static void begin(struct stage *s, int threads) {
+    stage_begin(s, threads);
+    s->settings.integrator = INTEGRATOR_PATH;
+    s->settings.max_depth = 5;
+    s->camera = (struct camera){{0, 0, 3.5}, {0, 0, -1}, {0, 1, 0}, 50};
+    struct material *white = stage_phong(s, vec3_make(0.7, 0.6, 0.5), vec3_all(0), 1);
+    white->phong.two_sided = true;
+    struct node *room = stage_sphere(s, s->root, white);
+    stage_scale(s, room, 4, 4, 4);
+    struct material *glowing = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    glowing->phong.emission = vec3_all(20);
+    struct node *lamp = stage_sphere(s, s->root, glowing);
+    stage_scale(s, lamp, 0.4, 0.4, 0.4);
+    stage_move(s, lamp, 1, 2.2, 0.5);
+    struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_all(0.3), vec3_all(0), 1));
+    stage_move(s, ball, -1, -1, -1);
+}
+
+static size_t film_bytes(const struct film *film) {
+    return (size_t)film->width * film->height * film_record_size(film->record);
+}
+
+static void *film_copy(const struct stage *s) {
+    return memcpy(malloc(film_bytes(&s->film)), s->film.pixels, film_bytes(&s->film));
+}
+
+static struct path_pixel pixel_at(const struct stage *s, uint32_t x, uint32_t y) {
+    return path_film_load(&s->film, (size_t)y * s->film.width + x);
+}
+
+TEST(a_picture_of_passes_has_the_bytes_of_one_whose_tiles_get_all_samples_in_one_go) {
+    struct stage s;
+    begin(&s, 3);
+    s.settings.path_samples = 23;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK_EQ_INT(s.statistics.passes_samples, 0);
+    void *whole = film_copy(&s);
+    s.settings.passes = true;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK_EQ_INT(s.statistics.passes_samples, 23);
+    CHECK(memcmp(whole, s.film.pixels, film_bytes(&s.film)) == 0);
+    CHECK_EQ_INT(film_tiles_in(&s.film, FILM_TILE_DONE), film_tile_count(&s.film));
+    CHECK(stage_pixel(&s, 5, 5).x > 0 && stage_pixel(&s, WIDTH - 5, 5).y > 0);
+    free(whole);
+    stage_end(&s);
+}
+
+TEST(a_picture_of_a_time_limit_has_the_bytes_of_one_with_the_number_of_samples_that_it_reports) {
+    struct stage s;
+    begin(&s, 2);
+    s.settings.time_limit = 0.2;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    uint64_t samples = s.statistics.passes_samples;
+    CHECK(samples >= 1 && samples < PATH_SAMPLES_MAX);
+    void *limited = film_copy(&s);
+    s.settings.time_limit = 0;
+    s.settings.path_samples = (int)samples;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(memcmp(limited, s.film.pixels, film_bytes(&s.film)) == 0);
+    free(limited);
+    stage_end(&s);
+}
+
+TEST(a_time_limit_ends_with_the_samples_of_spp_where_these_are_few) {
+    struct stage s;
+    begin(&s, 1);
+    s.settings.time_limit = 1000;
+    s.settings.path_samples = 3;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK_EQ_INT(s.statistics.passes_samples, 3);
+    stage_end(&s);
+}
+
+/* --- noise --- */
+
+static double tile_noise(const struct stage *s, struct film_rectangle r) {
+    double sum = 0;
+    for (uint32_t y = r.y0; y < r.y1; y++) {
+        for (uint32_t x = r.x0; x < r.x1; x++) {
+            struct path_pixel pixel = pixel_at(s, x, y);
+            sum += path_pixel_noise(&pixel);
+        }
+    }
+    return sqrt(sum / ((r.x1 - r.x0) * (r.y1 - r.y0)));
+}
+
+TEST(every_tile_gets_at_least_16_samples_and_as_many_as_its_noise_asks_for) {
+    const double wanted = 0.06;
+    struct stage s;
+    begin(&s, 2);
+    s.settings.noise = wanted;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    uint32_t fewest = UINT32_MAX, most = 0;
+    for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++) {
+        struct film_rectangle r = film_tile_rectangle(&s.film, tile);
+        uint32_t samples = pixel_at(&s, r.x0, r.y0).samples;
+        for (uint32_t y = r.y0; y < r.y1; y++) {
+            for (uint32_t x = r.x0; x < r.x1; x++)
+                CHECK_EQ_INT(pixel_at(&s, x, y).samples, samples);
+        }
+        CHECK(tile_noise(&s, r) <= wanted * (1 + 1e-9));
+        fewest = samples < fewest ? samples : fewest;
+        most = samples > most ? samples : most;
+    }
+    CHECK(fewest >= 16 && most > fewest && most < PATH_SAMPLES_NOISE);
+    stage_end(&s);
+}
+
+TEST(a_picture_of_little_noise_has_the_same_bytes_for_any_threads_order_and_passes) {
+    struct stage s;
+    begin(&s, 1);
+    s.settings.noise = 0.1;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    void *first = film_copy(&s);
+    stage_end(&s);
+    begin(&s, 3);
+    s.settings.noise = 0.1;
+    s.settings.order = ORDER_CENTRE;
+    for (int passes = 0; passes < 2; passes++) {
+        s.settings.passes = passes != 0;
+        CHECK(stage_render(&s, WIDTH, HEIGHT));
+        CHECK(memcmp(first, s.film.pixels, film_bytes(&s.film)) == 0);
+    }
+    free(first);
+    stage_end(&s);
+}
+
+TEST(spp_is_the_limit_of_samples_where_the_noise_asks_for_more) {
+    struct stage s;
+    begin(&s, 2);
+    s.settings.noise = 1e-6;
+    s.settings.path_samples = 20;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    for (uint32_t y = 0; y < HEIGHT; y++) {
+        for (uint32_t x = 0; x < WIDTH; x++)
+            CHECK_EQ_INT(pixel_at(&s, x, y).samples, 20);
+    }
+    stage_end(&s);
+}
+
+/* The error of each tile as --noise defines it, against a picture of many samples. */
+static void check_noise(double wanted, int reference_samples, int seeds) {
+    struct stage s;
+    static float reference[WIDTH * HEIGHT][3];
+    begin(&s, 2);
+    s.settings.seed = 99;
+    s.settings.path_samples = reference_samples;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    memcpy(reference, s.film.pixels, sizeof reference);
+    s.settings.path_samples = 0;
+    s.settings.noise = wanted;
+    for (int seed = 1; seed <= seeds; seed++) {
+        s.settings.seed = (uint64_t)seed;
+        CHECK(stage_render(&s, WIDTH, HEIGHT));
+        for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++) {
+            struct film_rectangle r = film_tile_rectangle(&s.film, tile);
+            double sum = 0;
+            for (uint32_t y = r.y0; y < r.y1; y++) {
+                for (uint32_t x = r.x0; x < r.x1; x++) {
+                    size_t at = (size_t)y * WIDTH + x;
+                    for (int c = 0; c < 3; c++) {
+                        double truth = (double)reference[at][c], got = (double)s.film.pixels[at].rgb[c];
+                        sum += (got - truth) * (got - truth) / (truth * truth + 0.01) / 3;
+                    }
+                }
+            }
+            double error = sqrt(sum / ((r.x1 - r.x0) * (r.y1 - r.y0)));
+            CHECK(error <= 1.25 * wanted);
+        }
+    }
+    stage_end(&s);
+}
+
+TEST(the_error_of_a_tile_is_at_most_one_and_a_quarter_of_the_noise_asked_for) {
+    check_noise(0.08, 400, 1);
+}
+
+TEST_LONG(the_error_of_tiles_is_that_asked_for_at_every_noise_and_seed) {
+    static const double wanted[] = {0.06, 0.04, 0.03, 0.02};
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        check_noise(wanted[i], 16384, 3);
+}
