@@ -100,7 +100,9 @@ TEST(language_page_has_examples_that_render_without_a_warning) {
         }
         CHECK(asprintf(&scene, "%s%s%s", head, begin, tail) > 0);
         struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
-        if (result.status != 0 || strstr(result.err, "warning"))
+        /* Where an optional library is missing, its examples end with the line that says so. */
+        bool is_without_library = strstr(result.err, "it was made without ") != NULL;
+        if (!is_without_library && (result.status != 0 || strstr(result.err, "warning")))
             test_fail(__FILE__, __LINE__, "%s\n%s", begin, result.err);
         free(result.out);
         free(result.err);
