@@ -58,12 +58,18 @@ double stage_variance_about_half(struct stage *s, bool alone) {
     return error / 64;
 }
 
+const struct scene_light *stage_lights(struct stage *s) {
+    for (uint32_t i = 0; i < s->light_count; i++)
+        s->authored[i].light = s->lights[i];
+    return s->authored;
+}
+
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
     world_destroy(&s->world);
     arena_reset(&s->arena);
     const struct world_input input = {.scene = &s->scene,
                                       .root = root,
-                                      .lights = s->lights,
+                                      .lights = stage_lights(s),
                                       .light_count = s->light_count,
                                       .sky = &s->sky,
                                       .shutter = s->settings.shutter,

@@ -15,6 +15,7 @@ struct stage {
     int warnings;
     struct node *root;
     struct light lights[8];
+    struct scene_light authored[8]; /* what there is to say of them beside the light itself */
     uint32_t light_count;
     struct sky sky;
     struct vec3 ambient;
@@ -34,6 +35,8 @@ void stage_floor(struct stage *s);
 /* The mean square error of a pixel whose value should be 1/2, over 64 seeds: with 8 x 8 samples each, or as the mean of
  * 64 pictures with one sample. */
 double stage_variance_about_half(struct stage *s, bool alone);
+/* The lights as a world is built from. */
+const struct scene_light *stage_lights(struct stage *s);
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);
 /* Builds the world of s->root and renders; the film lives until the next render or the end. Failures fail the test. */
 bool stage_render(struct stage *s, uint32_t width, uint32_t height);

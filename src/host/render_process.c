@@ -227,7 +227,7 @@ static void report_samples(const struct picture_work *work) {
     report_scene(work->process, LINE_NOTICE, line);
 }
 
-static bool build_world(struct picture_work *work, const struct light *lights, uint32_t light_count,
+static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
                         struct error *error) {
     struct render_process *process = work->process;
     struct control *control = process->services->control;
@@ -252,7 +252,7 @@ static bool build_world(struct picture_work *work, const struct light *lights, u
 
 /* A picture in a window. */
 
-static bool preview_build(void *context, const struct light *lights, uint32_t light_count, struct error *error) {
+static bool preview_build(void *context, const struct scene_light *lights, uint32_t light_count, struct error *error) {
     struct picture_work *work = context;
     world_destroy(&work->world);
     arena_reset(&work->process->job);

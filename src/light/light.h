@@ -40,7 +40,6 @@ enum light_attenuation { ATTENUATION_COEFFICIENTS, ATTENUATION_RANGE, ATTENUATIO
 struct arena;
 struct error;
 struct light_mesh;
-struct node;
 struct pool;
 struct sky;
 struct sky_table;
@@ -58,18 +57,12 @@ struct light {
     double radius;                  /* disc, sphere */
     bool emits, one_sided, visible; /* one_sided: a lamp shines to the side of edge1 x edge2 or of the disc's normal */
     int samples;                    /* N x N shadow rays; 0: as the settings say */
-    const struct node *node;        /* of a mesh: all meshes there and below; its colour multiplies their emission */
     bool has_emission;              /* of a mesh: `emission` takes the place of the materials' */
     struct vec3 emission;
     const struct light_mesh *mesh; /* made by world_build (light_mesh.h) */
     const struct sky *sky;         /* its colour multiplies it */
-    bool sky_turned; /* the sky is to be turned further, by the angle of this sine and cosine (world_build does) */
-    double turn_sine, turn_cosine;
     const struct sky_table *table; /* made by light_prepare */
-    /* The nodes (with everything under them) that it lights, or does not; NULL: no such list. Arrays of the script. */
-    const struct node *const *include, *const *exclude;
-    uint32_t include_count, exclude_count;
-    const uint8_t *lit; /* by primitive, made by world_build from the lists; NULL: everything */
+    const uint8_t *lit;            /* by primitive, made by world_build; NULL: it lights everything */
 };
 
 /* Makes what a light needs before it is asked (the table of a sky), in the arena. Errors: no memory. */

@@ -112,14 +112,12 @@ bool turn_about_y(const double turn[TURN_NUMBERS], double *sine, double *cosine)
     return length > 0 && length < INFINITY;
 }
 
-static void turn_sky(struct light *light, const double turn[TURN_NUMBERS]) {
+void light_turn_sky(const struct light *light, const double turn[TURN_NUMBERS], struct sky_turn *sky) {
     double sine, cosine;
-    if (!turn_about_y(turn, &sine, &cosine))
+    if (!has(light, LIGHT_IS_ENVIRONMENT) || !turn_about_y(turn, &sine, &cosine))
         return;
-    double s = light->sky_turned ? light->turn_sine : 0, c = light->sky_turned ? light->turn_cosine : 1;
-    light->sky_turned = true;
-    light->turn_sine = s * cosine + c * sine;
-    light->turn_cosine = c * cosine - s * sine;
+    double s = sky->turned ? sky->sine : 0, c = sky->turned ? sky->cosine : 1;
+    *sky = (struct sky_turn){true, s * cosine + c * sine, c * cosine - s * sine};
 }
 
 void light_turn(struct light *light, const double turn[TURN_NUMBERS]) {
@@ -135,8 +133,6 @@ void light_turn(struct light *light, const double turn[TURN_NUMBERS]) {
         light->cos_inner = cone_sized(light->cos_inner, size);
         light->cos_outer = cone_sized(light->cos_outer, size);
     }
-    if (has(light, LIGHT_IS_ENVIRONMENT))
-        turn_sky(light, turn);
     if (has(light, LIGHT_HAS_RANGE))
         light->range *= size;
     light->radius *= size;

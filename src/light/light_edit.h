@@ -16,6 +16,13 @@ void light_move(struct light *light, struct vec3 way);
 /* The turn has an inverse. Lengths without a direction grow by the cube root of its determinant. The half angle h of a
  * spot's cone becomes h' with tan(h'/2) = size tan(h/2), which keeps every cone between nothing and everything. */
 void light_turn(struct light *light, const double turn[TURN_NUMBERS]);
+/* How far the sky of a light was turned about the y axis: by the angle of this sine and cosine. Zero: not at all. */
+struct sky_turn {
+    bool turned;
+    double sine, cosine;
+};
+/* What light_turn leaves of a light that is an environment: its sky is turned further. Nothing of other lights. */
+void light_turn_sky(const struct light *light, const double turn[TURN_NUMBERS], struct sky_turn *sky);
 /* The turn about the y axis that is nearest to a map; false: there is none (what it takes the x and z axes to says
  * nothing). */
 bool turn_about_y(const double turn[TURN_NUMBERS], double *sine, double *cosine);

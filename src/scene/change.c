@@ -385,15 +385,18 @@ static void change_light(struct change_application *l) {
         report_missing(l, "the light");
         return;
     }
-    struct light *light = &l->out->lights[l->change->serial - 1];
+    struct scene_light *changed = &l->out->lights[l->change->serial - 1];
+    struct light *light = &changed->light;
     if (l->change->kind == CHANGE_DARK) {
         light->colour = vec3_all(0);
         light->visible = false;
         return;
     }
     light_move(light, three(numbers));
-    if (l->change->turns)
+    if (l->change->turns) {
         light_turn(light, numbers + TURN_AT);
+        light_turn_sky(light, numbers + TURN_AT, &changed->sky_turn);
+    }
     if (l->change->colours)
         light->colour = three(numbers + COLOUR_AT);
     light->colour = vec3_mul(light->colour, three(numbers + 3));
@@ -403,13 +406,13 @@ static void change_light(struct change_application *l) {
 static void add_light(struct change_application *l) {
     struct vec3 first = three(l->change->numbers), second = three(l->change->numbers + 3);
     uint32_t number = l->out->light_count++, like = l->change->source;
-    struct light *light = &l->out->lights[number];
+    struct light *light = &l->out->lights[number].light;
     *light = (struct light){.kind = LIGHT_POINT, .falloff = {1, 0, 0}};
     if (like == 0) {
         light->position = first;
         light->colour = second;
     } else if (like <= number) {
-        *light = l->out->lights[like - 1];
+        l->out->lights[number] = l->out->lights[like - 1];
         light_move(light, first);
         light->colour = vec3_mul(light->colour, second);
     } else {
@@ -448,7 +451,7 @@ static bool lay(struct change_application *l) {
 }
 
 bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
-                      const struct light *lights, uint32_t light_count, change_warning *warn, void *context,
+                      const struct scene_light *lights, uint32_t light_count, change_warning *warn, void *context,
                       struct changed_scene *out, struct error *error) {
     *out = (struct changed_scene){.lights = mem_alloc_zero((size_t)light_count + count, sizeof *out->lights),
                                   .light_count = light_count,

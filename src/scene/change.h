@@ -90,7 +90,7 @@ struct changed_material {
 };
 /* What is laid over a scene. Owner: the caller; changes_take_off gives everything back. */
 struct changed_scene {
-    struct light *lights; /* the list of the picture */
+    struct scene_light *lights; /* the list of the picture */
     uint32_t light_count;
     struct changed_node *nodes; /* in order */
     struct changed_material *materials;
@@ -99,7 +99,7 @@ struct changed_scene {
 };
 /* In order, one after the other; new nodes live in the arena of the scene. Errors: no memory. */
 bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
-                      const struct light *lights, uint32_t light_count, change_warning *warn, void *context,
+                      const struct scene_light *lights, uint32_t light_count, change_warning *warn, void *context,
                       struct changed_scene *out, struct error *error);
 void changes_take_off(struct changed_scene *changed);
 /* A base as it was before all that is laid over the scene; NULL: it was not changed. */

@@ -6,7 +6,7 @@
 
 #include "base/arena.h"
 #include "base/list.h"
-#include "light/light.h"
+#include "light/light_edit.h"
 #include "light/sky.h"
 #include "material/material.h"
 #include "math/affine.h"
@@ -187,5 +187,15 @@ static inline bool node_moves(const struct node *node) {
 }
 struct material *scene_material(struct scene *scene, enum material_kind kind, const struct material *base,
                                 struct error *error);
+
+/* A light as scripts and changes say it; a world has the light alone, with the lists, the mesh and the sky resolved. */
+struct scene_light {
+    struct light light;
+    const struct node *node; /* of a mesh light: all meshes there and below; its colour multiplies their emission */
+    /* The nodes (with everything under them) that it lights, or does not; NULL: no such list. Arrays of the script. */
+    const struct node *const *include, *const *exclude;
+    uint32_t include_count, exclude_count;
+    struct sky_turn sky_turn; /* the sky of an environment is to be turned further */
+};
 
 #endif

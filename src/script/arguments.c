@@ -231,7 +231,7 @@ static void read_list_of_handles(struct script_context *c, int index, struct arg
     uint32_t length = list_length(c, index, &argument_path);
     check_holes(c, index, &argument_path, length);
     bool is_lights = argument_path.parameter->kind == KIND_LIGHTS;
-    struct light *lights = is_lights ? call_array(c, length, sizeof *lights) : NULL;
+    struct scene_light *lights = is_lights ? call_array(c, length, sizeof *lights) : NULL;
     value->nodes = is_lights ? NULL : call_array(c, length, sizeof(struct node *));
     value->lights = lights;
     for (uint32_t k = 0; k < length; k++) {
@@ -243,7 +243,7 @@ static void read_list_of_handles(struct script_context *c, int index, struct arg
         if (!pointer && !(argument_path.parameter->flags & REST)) /* a ghost; where places count it is NULL */
             continue;
         if (is_lights)
-            lights[value->count++] = *(const struct light *)pointer;
+            lights[value->count++] = *(const struct scene_light *)pointer;
         else
             value->nodes[value->count++] = pointer;
     }

@@ -136,14 +136,14 @@ static bool keep_nodes(struct script_context *context, const struct script_value
 }
 
 /* What every light has, and the light itself into the arena of the scene. */
-static bool give_light(struct script_context *context, struct light *light, const struct script_value *args,
+static bool give_light(struct script_context *context, const struct light *light, const struct script_value *args,
                        struct script_result *result, struct error *error) {
-    struct light *kept = arena_alloc(&context->scene.arena, sizeof *kept);
-    light->colour = args[LIGHT_COLOUR].vector;
-    if (!kept || !keep_nodes(context, &args[LIGHT_INCLUDE], &light->include, &light->include_count) ||
-        !keep_nodes(context, &args[LIGHT_EXCLUDE], &light->exclude, &light->exclude_count))
+    struct scene_light *kept = arena_alloc(&context->scene.arena, sizeof *kept);
+    if (!kept || !keep_nodes(context, &args[LIGHT_INCLUDE], &kept->include, &kept->include_count) ||
+        !keep_nodes(context, &args[LIGHT_EXCLUDE], &kept->exclude, &kept->exclude_count))
         return error_no_memory(error, "a light");
-    *kept = *light;
+    kept->light = *light;
+    kept->light.colour = args[LIGHT_COLOUR].vector;
     result->pointer = kept;
     return true;
 }
@@ -259,7 +259,6 @@ static bool gr_mesh_light(struct script_context *context, const struct script_va
                           struct error *error) {
     struct light light = {.kind = LIGHT_MESH,
                           .emits = true,
-                          .node = args[MESHLIGHT_MESH].node,
                           .samples = (int)args[MESHLIGHT_SAMPLES].number,
                           .has_emission = args[MESHLIGHT_EMISSION].given,
                           .emission = args[MESHLIGHT_EMISSION].vector};
@@ -268,7 +267,10 @@ static bool gr_mesh_light(struct script_context *context, const struct script_va
         lamp[i] = args[i];
     if (!args[LIGHT_COLOUR].given)
         lamp[LIGHT_COLOUR].vector = vec3_all(1);
-    return give_light(context, &light, lamp, result, error);
+    if (!give_light(context, &light, lamp, result, error))
+        return false;
+    ((struct scene_light *)result->pointer)->node = args[MESHLIGHT_MESH].node;
+    return true;
 }
 
 static bool gr_sky_light(struct script_context *context, const struct script_value *args, struct script_result *result,

@@ -49,10 +49,10 @@ struct render_request {
     struct camera camera;
     struct vec3 ambient;
     const struct fog *fog; /* or NULL */
-    const struct light *lights;
+    const struct scene_light *lights;
     uint32_t light_count;
     struct sky sky;
-    bool sky_chosen; /* not the default */
+    bool sky_chosen;          /* not the default */
     struct settings settings; /* the host's settings with the call's named fields applied */
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     uint32_t owned;           /* the same of materials and gr.change_own */
@@ -82,7 +82,8 @@ double script_time_limit(const struct script_options *options);
 uint64_t script_picture_memory(const struct script_options *options);
 struct path_policy;
 /* Adds the folders that the script at `path` may read and write. */
-bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy, struct error *error);
+bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
+                        struct error *error);
 
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */

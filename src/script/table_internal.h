@@ -78,7 +78,7 @@ struct script_value {
     struct image *image;
     uint32_t count;
     struct node **nodes;
-    const struct light *lights;
+    const struct scene_light *lights;
     const double (*points)[3];
     const double (*pairs)[2];
     const double (*stops)[4];

@@ -112,11 +112,12 @@ static void describe_light(const struct world *world, const struct light *light,
 
 static void describe_lights(const struct preview_state *work, uint32_t first, struct preview_reply *reply) {
     bool over = work->changes.count > 0;
-    const struct light *lights = over ? work->changed.lights : work->preview->request->lights;
+    const struct scene_light *lights = over ? work->changed.lights : work->preview->request->lights;
     reply->light_count = over ? work->changed.light_count : work->preview->request->light_count;
     reply->first_light = first;
     for (uint32_t i = 0; i < LIGHTS_PER_MESSAGE && first < reply->light_count && i < reply->light_count - first; i++)
-        describe_light(work->stale ? NULL : work->preview->world, &lights[first + i], first + i, &reply->lights[i]);
+        describe_light(work->stale ? NULL : work->preview->world, &lights[first + i].light, first + i,
+                       &reply->lights[i]);
 }
 
 static bool build_again(struct preview_state *work, struct error *error) {

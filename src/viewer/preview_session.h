@@ -18,7 +18,7 @@ struct preview_session {
     struct world *world;
     void *context; /* of the functions below */
     /* Builds job->world again with these lights. False: there is none; its building can be stopped as a pass can. */
-    bool (*build)(void *context, const struct light *lights, uint32_t light_count, struct error *error);
+    bool (*build)(void *context, const struct scene_light *lights, uint32_t light_count, struct error *error);
     void (*fill)(void *context, const struct film *film, struct picture_report *report);
     void (*warn)(void *context, const char *text);
 };

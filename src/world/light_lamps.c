@@ -13,7 +13,8 @@
 struct gathering {
     const struct world *world; /* the one that shows the meshes */
     const struct light *light;
-    const uint8_t *marked; /* by its primitives: which of them are the lamp's; NULL: all */
+    const struct node *node; /* of a light of the scene */
+    const uint8_t *marked;   /* by its primitives: which of them are the lamp's; NULL: all */
     struct light_mesh_builder mesh;
 };
 
@@ -62,7 +63,7 @@ static uint64_t count_triangles(const struct gathering *g) {
 
 static bool gather(struct gathering *g, uint64_t total, struct arena *arena, struct error *error) {
     if (total > UINT32_MAX / 2)
-        return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", g->light->node->name);
+        return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", g->node->name);
     if (!light_mesh_begin(&g->mesh, total, arena))
         return error_no_memory(error, "a mesh light");
     for (uint32_t i = 0; i < g->world->primitive_count; i++)
@@ -87,7 +88,7 @@ bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct
 
 /* Of a node that the scene does not show. */
 static bool gather_unseen(struct gathering *g, struct flattening *f, struct error *error) {
-    const struct node *node = g->light->node;
+    const struct node *node = g->node;
     struct world own = {.mesh_accel = f->world->mesh_accel, .shutter = f->world->shutter};
     struct flattening flattening = {
         .arena = f->arena, .scene = f->scene, .world = &own, .unasked = true, .pool = f->pool, .error = error};
@@ -103,13 +104,13 @@ static bool gather_unseen(struct gathering *g, struct flattening *f, struct erro
     return ok;
 }
 
-static bool resolve_mesh(struct flattening *f, struct light *light, const struct node *root) {
+static bool resolve_mesh(struct flattening *f, const struct node *node, struct light *light, const struct node *root) {
     const struct world *world = f->world;
     struct light_mesh *mesh = arena_alloc(f->arena, sizeof *mesh);
     uint8_t *marked = arena_alloc_array(f->arena, (size_t)world->primitive_count + 1, 1);
-    if (!mesh || !marked || !light_lists_mark(world, &light->node, 1, marked, 1, root))
+    if (!mesh || !marked || !light_lists_mark(world, &node, 1, marked, 1, root))
         return error_no_memory(f->error, "a mesh light");
-    struct gathering g = {.world = world, .light = light, .marked = marked};
+    struct gathering g = {.world = world, .light = light, .node = node, .marked = marked};
     uint64_t total = count_triangles(&g);
     if (!(total > 0 ? gather(&g, total, f->arena, f->error) : gather_unseen(&g, f, f->error)))
         return false;
@@ -118,7 +119,7 @@ static bool resolve_mesh(struct flattening *f, struct light *light, const struct
     if (mesh->count == 0 && f->warn) {
         char text[256];
         (void)snprintf(text, sizeof text, "node '%.100s' is a mesh light, but its materials have no emission",
-                       light->node->name);
+                       node->name);
         f->warn(f->warn_context, text);
     }
     light->mesh = mesh;
@@ -126,27 +127,28 @@ static bool resolve_mesh(struct flattening *f, struct light *light, const struct
 }
 
 /* A sky that was turned by a change. The script's own stays as it is. */
-static bool turn_sky(struct world *world, const struct sky *behind, struct light *light, struct arena *arena,
-                     struct error *error) {
+static bool turn_sky(struct world *world, const struct sky *behind, const struct sky_turn *turn, struct light *light,
+                     struct arena *arena, struct error *error) {
     struct sky *turned = arena_alloc(arena, sizeof *turned);
     if (!turned)
         return error_no_memory(error, "a sky");
     *turned = *light->sky;
-    sky_turn(turned, light->turn_sine, light->turn_cosine);
+    sky_turn(turned, turn->sine, turn->cosine);
     if (sky_same(light->sky, behind))
         world->sky = *turned;
     light->sky = turned;
-    light->sky_turned = false;
     return true;
 }
 
-bool light_lamps_resolve(struct flattening *f, struct light *lights, const struct node *root) {
+bool light_lamps_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
+                         const struct node *root) {
     const struct sky behind = f->world->sky;
     for (uint32_t i = 0; i < f->world->light_count; i++) {
         struct light *light = &lights[i];
-        if (light->sky_turned && !turn_sky(f->world, &behind, light, f->arena, f->error))
+        const struct sky_turn *turn = &authored[i].sky_turn;
+        if (turn->turned && !turn_sky(f->world, &behind, turn, light, f->arena, f->error))
             return false;
-        if (light->node && !resolve_mesh(f, light, root))
+        if (authored[i].node && !resolve_mesh(f, authored[i].node, light, root))
             return false;
         if (!light_prepare(light, f->arena, f->pool, f->error))
             return false;
@@ -184,11 +186,11 @@ bool light_lists_mark(const struct world *world, const struct node *const *list,
     return event == SCENE_END;
 }
 
-bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, const struct node *root,
-                         struct error *error) {
+bool light_lists_resolve(const struct world *world, const struct scene_light *authored, struct light *lights,
+                         struct arena *arena, const struct node *root, struct error *error) {
     for (uint32_t i = 0; i < world->light_count; i++) {
-        struct light *light = &lights[i];
-        light->lit = NULL;
+        const struct scene_light *light = &authored[i];
+        lights[i].lit = NULL;
         if ((!light->include && !light->exclude) || world->primitive_count == 0)
             continue;
         uint8_t *lit = arena_alloc_array(arena, world->primitive_count, 1);
@@ -199,7 +201,7 @@ bool light_lists_resolve(const struct world *world, struct light *lights, struct
              (!light->exclude || light_lists_mark(world, light->exclude, light->exclude_count, lit, 0, root));
         if (!ok)
             return error_no_memory(error, "the lights of the scene");
-        light->lit = lit;
+        lights[i].lit = lit;
     }
     return true;
 }

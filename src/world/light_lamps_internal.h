@@ -6,11 +6,12 @@
 #include "world/world.h"
 
 /* Fills `mesh` and `table` of the lights that are meshes and skies. After flattening, with the same f; lights: the
- * world's own copy. Meshes that are not in the scene emit invisibly, at the pose of the light's node and of the nodes
- * between it and them. Errors: no memory; a node without a mesh; those of flatten_scene for a node that is not in the
- * scene. Warnings: a mesh lamp without light. A sky that is to be turned is, and behind everything, too, if it is seen
- * there. */
-bool light_lamps_resolve(struct flattening *f, struct light *lights, const struct node *root);
+ * world's own copy of what was authored. Meshes that are not in the scene emit invisibly, at the pose of the light's
+ * node and of the nodes between it and them. Errors: no memory; a node without a mesh; those of flatten_scene for a
+ * node that is not in the scene. Warnings: a mesh lamp without light. A sky that is to be turned is, and behind
+ * everything, too, if it is seen there. */
+bool light_lamps_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
+                         const struct node *root);
 /* Sets `mesh` of a light that is one placed mesh alone, with the emission of its materials. Errors: no memory. */
 bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error);
@@ -19,8 +20,8 @@ bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct
 
 /* Fills `lit` of every light that has a list: a primitive counts as listed when its node or any node on the way to it
  * from the root is. After flattening. lights: the world's own copy. Errors: no memory. */
-bool light_lists_resolve(const struct world *world, struct light *lights, struct arena *arena, const struct node *root,
-                         struct error *error);
+bool light_lists_resolve(const struct world *world, const struct scene_light *authored, struct light *lights,
+                         struct arena *arena, const struct node *root, struct error *error);
 
 /* Sets lit[i] to `value` for every primitive i that comes from a listed node or one below it. False: no memory.
  */

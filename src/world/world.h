@@ -114,7 +114,7 @@ typedef void world_warning(void *context, const char *text);
 struct world_input {
     struct scene *scene;
     const struct node *root; /* everything under it, as it stands now */
-    const struct light *lights;
+    const struct scene_light *lights;
     uint32_t light_count;
     const struct sky *sky;
     struct shutter shutter;

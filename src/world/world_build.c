@@ -47,23 +47,14 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
     return true;
 }
 
-/* The nodes that lights were resolved from stay in the scene: a world's lights have triangles and marks instead. */
-static void forget_nodes(struct light *lights, uint32_t count) {
-    for (uint32_t i = 0; i < count; i++) {
-        lights[i].node = NULL;
-        lights[i].include = lights[i].exclude = NULL;
-        lights[i].include_count = lights[i].exclude_count = 0;
-    }
-}
-
 /* Leaves it to the caller to destroy what there is when it fails. */
 static bool build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                   struct error *error) {
     struct light *copied = arena_alloc_array(arena, input->light_count, sizeof *copied);
     if (!copied)
         return error_no_memory(error, "the lights of the scene");
-    if (input->light_count)
-        memcpy(copied, input->lights, input->light_count * sizeof *copied);
+    for (uint32_t i = 0; i < input->light_count; i++)
+        copied[i] = input->lights[i].light;
     world->lights = copied;
     struct flattening flattening = {.arena = arena,
                                     .scene = input->scene,
@@ -72,10 +63,10 @@ static bool build(struct world *world, const struct world_input *input, struct a
                                     .warn = input->warn,
                                     .warn_context = input->warn_context,
                                     .error = error};
-    if (!flatten_scene(&flattening, input->root) || !light_lists_resolve(world, copied, arena, input->root, error) ||
-        !light_lamps_resolve(&flattening, copied, input->root))
+    if (!flatten_scene(&flattening, input->root) ||
+        !light_lists_resolve(world, input->lights, copied, arena, input->root, error) ||
+        !light_lamps_resolve(&flattening, input->lights, copied, input->root))
         return false;
-    forget_nodes(copied, world->light_count);
     world->boxes = arena_alloc_array(arena, world->primitive_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");

@@ -133,7 +133,7 @@ static bool build_world(void *context) {
     struct arena arena = {0};
     const struct world_input input = {.scene = &s->scene,
                                       .root = s->root,
-                                      .lights = s->lights,
+                                      .lights = stage_lights(s),
                                       .light_count = s->light_count,
                                       .sky = &s->sky,
                                       .shutter = s->settings.shutter,

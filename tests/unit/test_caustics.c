@@ -122,8 +122,8 @@ static void pane_gives_back(const char *what, struct light light, double toleran
     s.settings.lens.view_height = 1;
     s.settings.area_samples = 16;
     light.colour = vec3_make(0.5, 1, 2);
-    light.node = light.kind == LIGHT_MESH ? mesh_above(&s) : NULL;
     add_light(&s, light);
+    s.authored[0].node = light.kind == LIGHT_MESH ? mesh_above(&s) : NULL;
     box(&s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(&s));
     struct vec3 open = floor_light(&s, 0);
     struct material *pane = stage_glass(&s, 0, 1, 1);

@@ -152,8 +152,8 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
         {.kind = CHANGE_LIGHT, .serial = 12345},
     };
     for (int round = 0; round < 3; round++) {
-        CHECK(changes_lay_over(changes, sizeof changes / sizeof *changes, &s.scene, s.root, s.lights, s.light_count,
-                               count_warning, &warnings, &changed, &error));
+        CHECK(changes_lay_over(changes, sizeof changes / sizeof *changes, &s.scene, s.root, stage_lights(&s),
+                               s.light_count, count_warning, &warnings, &changed, &error));
         CHECK_EQ_INT(group->child_count, 3);
         const struct node *cube = group->first_child->next->node, *copy = group->last_child->node;
         CHECK(cube->kind == NODE_GEOMETRY && cube->serial == UINT32_MAX && cube->shape.kind == SHAPE_BOX);
@@ -163,8 +163,9 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
         struct vec3 centre = affine_point(&ball->parent_from_node.forward, vec3_make(0, 0, 0));
         CHECK(centre.x == -2 && centre.y == 1 && centre.z == 10);
         CHECK(red->phong.kd.y == 1 && red->phong.kd.x == 0);
-        CHECK(changed.light_count == 2 && changed.lights[0].position.z == 4 && changed.lights[0].colour.x == 2);
-        CHECK(changed.lights[1].position.x == 9 && changed.lights[1].colour.x == 0);
+        CHECK(changed.light_count == 2 && changed.lights[0].light.position.z == 4 &&
+              changed.lights[0].light.colour.x == 2);
+        CHECK(changed.lights[1].light.position.x == 9 && changed.lights[1].light.colour.x == 0);
         changes_take_off(&changed);
         CHECK(memcmp(&before, &ball->parent_from_node, sizeof before) == 0);
         CHECK(!ball->singular && group->child_count == 1 && group->last_child->node == ball);

@@ -175,8 +175,10 @@ static const struct material *glowing(struct stage *s, double radiance) {
     return material;
 }
 
-static struct light mesh_lamp(const struct node *node, int samples) {
-    return (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .node = node, .samples = samples};
+/* As the first light of the stage. */
+static void mesh_lamp(struct stage *s, const struct node *node, int samples) {
+    s->lights[0] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .samples = samples};
+    s->authored[0].node = node;
 }
 
 /* The unit square at y = 0 from two triangles. */
@@ -201,7 +203,7 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
         struct node *holder = stage_group(&s, s.root), *node = square_node(&s, glowing(&s, shown ? 2 : 0));
         stage_scale(&s, node, a, 1, b);
         stage_move(&s, node, 0, h, 0);
-        s.lights[0] = mesh_lamp(shown ? holder : node, 48);
+        mesh_lamp(&s, shown ? holder : node, 48);
         if (shown)
             CHECK(node_add_child(&s.scene, holder, node, &s.error));
         s.lights[0].has_emission = !shown;
@@ -226,7 +228,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
             node->slots = slots;
             node->slot_count = 2; /* faces without slots have the first one */
         }
-        s.lights[0] = mesh_lamp(node, 48);
+        mesh_lamp(&s, node, 48);
         if (route == BY_GROUP) {
             struct node *group = scene_node(&s.scene, NODE_GROUP, "group", &s.error);
             struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
@@ -236,7 +238,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
             stage_move(&s, inner, 0.25, 0, 0);
             CHECK(node_add_child(&s.scene, group, left, &s.error) && node_add_child(&s.scene, group, inner, &s.error) &&
                   node_add_child(&s.scene, inner, right, &s.error));
-            s.lights[0] = mesh_lamp(node = group, 48);
+            mesh_lamp(&s, node = group, 48);
         }
         stage_scale(&s, node, a, 1, b);
         stage_move(&s, node, 0, h, 0);
@@ -258,7 +260,7 @@ TEST(a_mesh_that_is_not_shown_is_not_seen_in_mirrors) {
         stage_move(&s, node, 0, 2, 0);
         if (shown)
             CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-        s.lights[0] = mesh_lamp(node, 4);
+        mesh_lamp(&s, node, 4);
         s.light_count = 1;
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         CHECK(light_is_seen(&s.world.lights[0]) == (shown != 0));
@@ -280,7 +282,7 @@ TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
         stage_scale(&s, node, i == 1 ? -r : r, r, r); /* one is mirrored */
         stage_move(&s, node, x, h, 0);
         CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-        s.lights[0] = mesh_lamp(node, 48);
+        mesh_lamp(&s, node, 48);
         double factor = r * r / (distance * distance) * h / distance, mean = 0;
         for (s.settings.seed = 0; s.settings.seed < 12; s.settings.seed++)
             mean += patch_at(&s, 0, 0) / factor / 12;
@@ -304,7 +306,7 @@ TEST(a_surface_below_its_own_lamp_is_not_shaded_by_it) {
     struct node *node = mesh_node(&s, &maker, white);
     maker_free(&maker);
     CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-    s.lights[0] = mesh_lamp(node, 64);
+    mesh_lamp(&s, node, 64);
     s.light_count = 1;
     s.settings.full = true;
     s.settings.samples = 1;
@@ -322,7 +324,7 @@ TEST(a_mesh_light_needs_a_mesh_and_warns_without_light) {
         struct node *group = scene_node(&s.scene, NODE_GROUP, "ceiling", &s.error);
         if (shown)
             CHECK(node_add_child(&s.scene, s.root, group, &s.error));
-        s.lights[0] = mesh_lamp(group, 4);
+        mesh_lamp(&s, group, 4);
         s.light_count = 1;
         CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
         CHECK(strstr(s.error.text, "node 'ceiling' is a mesh light, but there is no mesh there or below it") != NULL);
@@ -342,7 +344,7 @@ TEST(a_group_that_is_not_shown_and_holds_itself_is_no_mesh_light) {
     struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
     CHECK(node_add_child(&s.scene, outer, square_node(&s, NULL), &s.error));
     CHECK(node_add_child(&s.scene, outer, inner, &s.error) && node_add_child(&s.scene, inner, outer, &s.error));
-    s.lights[0] = mesh_lamp(outer, 4);
+    mesh_lamp(&s, outer, 4);
     s.light_count = 1;
     CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
     CHECK(strstr(s.error.text, "cycle: 'outer' > 'inner' > 'outer'") != NULL);
@@ -557,7 +559,7 @@ TEST(lamps_that_are_meshes_and_skies_give_the_same_bits_everywhere) {
         stage_move(&s, lamp, 0, 2.2, 0.5);
         CHECK(node_add_child(&s.scene, top, lamp, &s.error));
         stage_scale(&s, top, runs[i].unit, runs[i].unit, runs[i].unit);
-        s.lights[0] = mesh_lamp(lamp, 2);
+        mesh_lamp(&s, lamp, 2);
         s.lights[1] = sky_lamp(&sky, 2);
         s.light_count = 2;
         s.camera = (struct camera){vec3_scale(vec3_make(0, 4, 12), runs[i].unit), {0, -0.25, -1}, {0, 1, 0}, 50};

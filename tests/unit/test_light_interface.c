@@ -474,7 +474,7 @@ static unsigned kinds_made;
 static void note_kinds(struct listener *listener, const struct render_request *request) {
     (void)listener;
     for (uint32_t i = 0; i < request->light_count; i++)
-        kinds_made |= 1U << request->lights[i].kind;
+        kinds_made |= 1U << request->lights[i].light.kind;
 }
 
 TEST(every_kind_of_light_has_a_function_of_the_language) {

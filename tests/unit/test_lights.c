@@ -205,11 +205,11 @@ TEST(lists_of_nodes_decide_what_a_light_reaches) {
         stage_point_light(&s, vec3_make(0, 0, 10), vec3_all(1));
         const struct node *list[] = {mode < 2 ? group : right};
         if (mode % 2 == 0) {
-            s.lights[0].include = list;
-            s.lights[0].include_count = 1;
+            s.authored[0].include = list;
+            s.authored[0].include_count = 1;
         } else {
-            s.lights[0].exclude = list;
-            s.lights[0].exclude_count = 1;
+            s.authored[0].exclude = list;
+            s.authored[0].exclude_count = 1;
         }
         CHECK(stage_render(&s, 101, 101));
         bool left_lit = stage_pixel(&s, 28, 50).x > 0, right_lit = stage_pixel(&s, 72, 50).x > 0;
@@ -223,7 +223,8 @@ TEST(an_empty_list_of_included_nodes_lights_nothing) {
     struct stage s;
     stage_floor(&s);
     const struct node *none[1] = {NULL};
-    s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}, .include = none};
+    s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}};
+    s.authored[0].include = none;
     CHECK_NEAR(patch_at(&s, 0, 0), 0, 0);
     stage_end(&s);
 }

@@ -236,8 +236,8 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
         light->emits = kind != LIGHT_POINT && kind != LIGHT_SPOT && kind != LIGHT_DIRECTIONAL;
         light->sky = &grey;
         light->cos_outer = 0.5;
-        light->exclude = &dark;
-        light->exclude_count = 1;
+        s.authored[0].exclude = &dark;
+        s.authored[0].exclude_count = 1;
         (void)path_mean(&s, 64, 1);
         for (uint32_t y = 0; y < SIZE; y++) {
             for (uint32_t x = 0; x < SIZE; x++)

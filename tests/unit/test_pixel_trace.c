@@ -149,8 +149,8 @@ static void fill_stage(struct stage *s) {
                                                  .falloff = {1, 0.01, 0}};
     const struct node **not_lit = arena_alloc_array(&s->scene.arena, 1, sizeof *not_lit);
     not_lit[0] = floor;
-    s->lights[1].exclude = not_lit;
-    s->lights[1].exclude_count = 1;
+    s->authored[1].exclude = not_lit;
+    s->authored[1].exclude_count = 1;
     s->ambient = vec3_all(0.2);
     s->sky = (struct sky){.kind = SKY_GRADIENT};
 }

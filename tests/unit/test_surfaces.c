@@ -141,7 +141,7 @@ TEST(rough_reflection_spreads_as_its_distribution_says) {
         s.camera = (struct camera){{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, 1e-3};
         s.settings.area_samples = 1;
         s.settings.samples = 1;
-        s.lights[0].include = (const struct node *const[]){NULL}; /* visible, but lights nothing */
+        s.authored[0].include = (const struct node *const[]){NULL}; /* visible, but lights nothing */
         double expected = 0, before = 0;
         for (int k = 1; k <= 1000; k++) {
             double slope = flat * k / 1000, share = slope * slope / (alpha * alpha + slope * slope);

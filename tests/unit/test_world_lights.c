@@ -316,7 +316,8 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
         room_begin(&r);
         struct node *node = tetrahedron(&r, glowing(&r, 1, 2, 3));
         for (int k = 0; k < i; k++) { /* none, one, two; the last with emission of its own */
-            r.stage.lights[k] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .node = node};
+            r.stage.lights[k] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}};
+            r.stage.authored[k].node = node;
             r.stage.lights[k].has_emission = i == 3;
             r.stage.lights[k].emission = vec3_make(5, 5, 5);
         }
@@ -374,10 +375,11 @@ TEST(lists_hold_for_lights_that_are_sampled_and_met) {
     struct node *node = tetrahedron(&r, glowing(&r, 1, 2, 3)),
                 *ball = stage_sphere(&r.stage, r.stage.root, glowing(&r, 0, 0, 0));
     const struct node *list[] = {ball};
-    r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .node = node};
+    r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}};
+    r.stage.authored[0].node = node;
     r.stage.lights[1] = lamp_of_kind(LIGHT_SPHERE, 0, 3, 2);
     for (int i = 0; i < 2; i++)
-        r.stage.lights[i].exclude = list, r.stage.lights[i].exclude_count = 1;
+        r.stage.authored[i].exclude = list, r.stage.authored[i].exclude_count = 1;
     r.stage.light_count = 2;
     room_build(&r, false);
     struct light_receiver at = receiver_at(0, 1.001, 0);
