@@ -23,11 +23,11 @@ static double time_left(const struct renderer *renderer, double now) {
  * short ones and end near it. second: seconds that one sample of all pixels takes. */
 static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, double seconds, double now) {
     uint32_t done = renderer->pass.end, left = limit - done;
-    double most = time_left(renderer, now) / 2 / seconds;
+    double fitting = time_left(renderer, now) / 2 / seconds;
     if (renderer->job->settings.passes)
-        most = fmin(most, shown_every / seconds);
+        fitting = fmin(fitting, shown_every / seconds);
     uint32_t count = done < left ? done : left;
-    return most < (double)count ? (uint32_t)fmax(most, 1) : count;
+    return fitting < (double)count ? (uint32_t)fmax(fitting, 1) : count;
 }
 
 /* Tiles that have little enough noise count as done. */

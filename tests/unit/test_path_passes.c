@@ -102,7 +102,7 @@ TEST(every_tile_gets_at_least_16_samples_and_as_many_as_its_noise_asks_for) {
     begin(&s, 2);
     s.settings.noise = wanted;
     CHECK(stage_render(&s, WIDTH, HEIGHT));
-    uint32_t fewest = UINT32_MAX, most = 0;
+    uint32_t fewest = UINT32_MAX, largest = 0;
     for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++) {
         struct film_rectangle r = film_tile_rectangle(&s.film, tile);
         uint32_t samples = pixel_at(&s, r.x0, r.y0).samples;
@@ -112,9 +112,9 @@ TEST(every_tile_gets_at_least_16_samples_and_as_many_as_its_noise_asks_for) {
         }
         CHECK(tile_noise(&s, r) <= wanted * (1 + 1e-9));
         fewest = samples < fewest ? samples : fewest;
-        most = samples > most ? samples : most;
+        largest = samples > largest ? samples : largest;
     }
-    CHECK(fewest >= 16 && most > fewest && most < PATH_SAMPLES_NOISE);
+    CHECK(fewest >= 16 && largest > fewest && largest < PATH_SAMPLES_NOISE);
     stage_end(&s);
 }
 
