@@ -186,6 +186,39 @@ static void describe_material(const struct material *material, struct picked *ou
         material_part_get(base, (enum material_part)part, out->look[part]);
 }
 
+static bool same_inputs(const struct surface_inputs *a, const struct surface_inputs *b) {
+    const struct vec3 colours[][2] = {
+        {a->kd, b->kd}, {a->ks, b->ks}, {a->emission, b->emission}, {a->absorption, b->absorption}};
+    const double numbers[][2] = {{a->shininess, b->shininess}, {a->reflect, b->reflect},
+                                 {a->refract, b->refract},     {a->ior, b->ior},
+                                 {a->opacity, b->opacity},     {a->roughness, b->roughness}};
+    bool same = true;
+    for (size_t i = 0; i < sizeof colours / sizeof *colours; i++)
+        same = same && memcmp(&colours[i][0], &colours[i][1], sizeof(struct vec3)) == 0;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        same = same && numbers[i][0] == numbers[i][1];
+    return same;
+}
+
+/* Found by trying: each part is given another number, and the inputs at the hit are compared. */
+static uint32_t idle_parts(const struct material *material, const struct hit *hit) {
+    struct surface_inputs before, after;
+    uint32_t idle = 0;
+    material_inputs_at(material, hit, &before);
+    for (int k = 0; k < MATERIAL_PART_PARTS; k++) {
+        enum material_part part = (enum material_part)k;
+        struct material other = *material;
+        double numbers[3];
+        material_part_get(&other, part, numbers);
+        for (int i = 0; i < 3; i++)
+            numbers[i] = numbers[i] > 0.5 ? 0.25 : 0.75;
+        material_part_set(&other, part, numbers);
+        material_inputs_at(&other, hit, &after);
+        idle |= same_inputs(&before, &after) ? 1U << k : 0;
+    }
+    return idle;
+}
+
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
                      struct error *error) {
     struct picked *out = p->out;
@@ -207,6 +240,7 @@ static bool describe(struct picking *p, const struct node *root, const struct hi
     }
     pick_copy_name(out->shape, shape_description(p, node));
     describe_material(p->world->authored.materials[hit->material], out);
+    out->idle_parts = idle_parts(&p->world->materials[hit->material], hit);
     out->can_own = p->depth == p->whole && node->kind == NODE_GEOMETRY;
     out->world_from_parent = world_from_parent(p->steps, p->depth).forward;
     return box_node(p, root, error);

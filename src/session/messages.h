@@ -67,8 +67,9 @@ struct picked {
     uint32_t below;                      /* operands below it on the way to the surface that was hit */
     uint32_t material_serial;            /* of the base, which can be changed; 0: it is plain gray */
     double look[MATERIAL_PART_PARTS][3]; /* of that base */
-    bool can_own;                        /* a shape was hit and selected: it can be given a material of its own */
-    double distance;                     /* from the eye */
+    uint32_t idle_parts; /* bit k: part k changes nothing at the point, as glTF's metalness replaces ks */
+    bool can_own;        /* a shape was hit and selected: it can be given a material of its own */
+    double distance;     /* from the eye */
     struct vec3 position, normal;
     bool has_box;
     struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */

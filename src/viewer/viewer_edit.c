@@ -64,6 +64,7 @@ void viewer_undo(struct viewer *viewer, bool again) {
                 target.kind == CHANGE_ADD_LIGHT || target.kind == CHANGE_DARK;
     if (gone)
         viewer->edit.selection.kind = SELECTED_NOTHING;
+    viewer->edit.selection.picked.idle_parts = 0; /* they were found before this */
     viewer->display.hud_dirty = true;
 }
 
@@ -406,6 +407,9 @@ void viewer_set_material(struct viewer *viewer, enum material_part part, const d
     if (change.serial == 0)
         return;
     memcpy(change.numbers, numbers, 3 * sizeof *numbers);
+    /* Other parts may have an effect now. */
+    if (!(viewer->edit.selection.picked.idle_parts >> part & 1))
+        viewer->edit.selection.picked.idle_parts = 0;
     viewer_make_edit(viewer, &change, true, viewer->edit.joins);
     viewer->edit.joins = true;
 }

@@ -313,6 +313,8 @@ static void draw_look(struct viewer *viewer, struct column *column) {
         (void)snprintf(row, sizeof row, colour ? "%s %.3g %.3g %.3g" : "%s %.4g", material_part_name(viewer->edit.part),
                        numbers[0], numbers[1], numbers[2]);
         draw_text(viewer, column, row);
+        if (viewer->edit.selection.picked.idle_parts >> viewer->edit.part & 1)
+            draw_text(viewer, column, "no effect here: a texture takes its place");
     }
     if (!viewer->edit.selection.picked.can_own)
         return;
