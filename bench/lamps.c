@@ -14,7 +14,8 @@ enum pattern { PATTERN_RANDOM, PATTERN_CELLS, PATTERN_MULTI, PATTERN_COUNT };
 static struct sample2 place(enum pattern pattern, uint64_t key, uint32_t i, uint32_t j, uint32_t n) {
     if (pattern == PATTERN_RANDOM)
         return sample_cell(random_combine(key, (uint64_t)j * n + i), 0, 0, 1);
-    return pattern == PATTERN_CELLS ? sample_cell(key, i, j, n) : sample_multi(key, random_mix(key), i, j, n, 0, 1);
+    return pattern == PATTERN_CELLS ? sample_cell(key, i, j, n)
+                                    : sample_multi(key, random_mix(key), (struct sample_part){i, j, n, 0, 1});
 }
 
 /* 0: nothing; 1: everything beyond a slanted plane is hidden; 2: a ball. */

@@ -95,17 +95,16 @@ bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
     struct render_job job = stage_job(s, width, height);
     char warning[256];
     size_t bytes;
-    uint32_t x0, y0, w, h;
-    bool ok = stage_build(s, s->root, s->settings.accel) &&
-              render_prepare(&job, &x0, &y0, &w, &h, warning, &s->error) &&
-              film_size_layered(w, h, integrator_record(s->settings.integrator), aov_layers(s->settings.aov), &bytes,
-                                &s->error);
+    struct render_area area;
+    bool ok = stage_build(s, s->root, s->settings.accel) && render_prepare(&job, &area, warning, &s->error) &&
+              film_size_layered(area.width, area.height, integrator_record(s->settings.integrator),
+                                aov_layers(s->settings.aov), &bytes, &s->error);
     if (ok) {
         free(s->film.pixels);
-        film_layout(&s->film, calloc(1, bytes), w, h, integrator_record(s->settings.integrator));
+        film_layout(&s->film, calloc(1, bytes), area.width, area.height, integrator_record(s->settings.integrator));
         film_layout_layers(&s->film, s->film.pixels, s->settings.aov);
-        s->film.x0 = x0;
-        s->film.y0 = y0;
+        s->film.x0 = area.x0;
+        s->film.y0 = area.y0;
         s->film.full_width = width;
         s->film.full_height = height;
         ok = render_run(&job, s->pool, &s->statistics, &s->error);

@@ -94,8 +94,10 @@ static bool is_usable(const struct box *box) {
     return !box_is_empty(box) && vec3_finite(box->min) && vec3_finite(box->max);
 }
 
-void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds, cost_box *box_of, const void *context,
-                      uint32_t count, uint32_t samples, uint32_t levels) {
+void cost_sample_take(struct cost_sample *cost_sample, const struct cost_items *items, uint32_t samples,
+                      uint32_t levels) {
+    const struct box *bounds = items->bounds;
+    uint32_t count = items->count;
     struct vec3 size = vec3_sub(bounds->max, bounds->min);
     *cost_sample = (struct cost_sample){.level_count = 1, .items = count};
     cost_sample->levels[0] = (struct cost_level){
@@ -111,7 +113,7 @@ void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds,
     struct box *boxes = mem_alloc(((size_t)count / stride + 1) * sizeof *boxes);
     uint32_t *counts = mem_alloc(largest * sizeof *counts);
     for (uint32_t i = 0; boxes && i < count; i += stride) {
-        boxes[kept] = box_of(context, i);
+        boxes[kept] = items->box_of(items->context, i);
         kept += is_usable(&boxes[kept]);
     }
     struct sample sample = {boxes, kept, stride};

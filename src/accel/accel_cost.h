@@ -27,10 +27,16 @@ struct cost_sample {
 
 typedef struct box cost_box(const void *context, uint32_t item);
 
-/* Samples at most `samples` of the `count` items; empty and infinite boxes are left out. Levels 0 .. levels - 1, fewer
+struct cost_items {
+    const struct box *bounds;
+    cost_box *box_of;
+    const void *context;
+    uint32_t count;
+};
+/* Samples at most `samples` of the items; empty and infinite boxes are left out. Levels 0 .. levels - 1, fewer
  * where voxels would be many times as many as items. Deterministic. */
-void cost_sample_take(struct cost_sample *cost_sample, const struct box *bounds, cost_box *box_of, const void *context,
-                      uint32_t count, uint32_t samples, uint32_t levels);
+void cost_sample_take(struct cost_sample *cost_sample, const struct cost_items *items, uint32_t samples,
+                      uint32_t levels);
 
 /* Costs, in visits of a node, of a frame with about three voxels per item and lists in them, and of one voxel with a
  * hierarchy of four children per node. */

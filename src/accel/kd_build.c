@@ -377,13 +377,13 @@ static bool make_root(struct builder *b, uint32_t count, struct cell *root) {
     return lists_sort(root->lists);
 }
 
-bool kd_tree_build(struct kd_tree *tree, const struct box *boxes, uint32_t count, kd_clip *clip, const void *context,
-                   const struct pool *pool, struct error *error) {
+bool kd_tree_build(struct kd_tree *tree, const struct kd_items *items, const struct pool *pool, struct error *error) {
+    uint32_t count = items->count;
     *tree = (struct kd_tree){.bounds = box_empty()};
     struct builder b = {.tree = tree,
-                        .clip = clip,
-                        .context = context,
-                        .boxes = boxes,
+                        .clip = items->clip,
+                        .context = items->context,
+                        .boxes = items->boxes,
                         .pool = pool,
                         .error = error,
                         .side = mem_alloc_zero(count, 1),

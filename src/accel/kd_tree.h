@@ -38,10 +38,15 @@ struct kd_tree {
  * large but never too small. */
 typedef bool kd_clip(const void *context, uint32_t item, const struct box *cell, struct box *part);
 
-/* boxes[i] belongs to item i; empty ones are left out. clip: NULL for items that are their boxes. False: no memory or
- * cancelled; the tree is then empty. pool may be NULL; it is only polled for cancellation. */
-bool kd_tree_build(struct kd_tree *tree, const struct box *boxes, uint32_t count, kd_clip *clip, const void *context,
-                   const struct pool *pool, struct error *error);
+/* boxes[i] belongs to item i; empty ones are left out. */
+struct kd_items {
+    const struct box *boxes;
+    uint32_t count;
+    kd_clip *clip; /* NULL: items are their boxes */
+    const void *context;
+};
+/* False: no memory or cancelled; the tree is then empty. pool may be NULL; it is only polled for cancellation. */
+bool kd_tree_build(struct kd_tree *tree, const struct kd_items *items, const struct pool *pool, struct error *error);
 void kd_tree_destroy(struct kd_tree *tree);
 size_t kd_tree_memory(const struct kd_tree *tree);
 

@@ -526,13 +526,13 @@ static bool write_all(struct builder *builder, struct hierarchy *hierarchies, ui
 }
 
 bool hierarchies_build(struct triangle_index *index, const struct triangle_set *set, struct reference *references,
-                       struct hierarchy *hierarchies, uint32_t count, struct pool *pool, struct error *error) {
+                       struct hierarchy_list hierarchies, struct pool *pool, struct error *error) {
     struct builder builder = {.index = index, .set = set, .references = references, .pool = pool};
-    bool complete = plan(&builder, hierarchies, count) && make_jobs(&builder) && run_jobs(&builder, build_job) &&
-                    join_trees(&builder, hierarchies, count);
+    bool complete = plan(&builder, hierarchies.items, hierarchies.count) && make_jobs(&builder) &&
+                    run_jobs(&builder, build_job) && join_trees(&builder, hierarchies.items, hierarchies.count);
     drop_jobs(&builder);
-    complete = complete && tree_improve(&builder.tree, pool) && weigh(&builder, hierarchies, count) &&
-               write_all(&builder, hierarchies, count);
+    complete = complete && tree_improve(&builder.tree, pool) && weigh(&builder, hierarchies.items, hierarchies.count) &&
+               write_all(&builder, hierarchies.items, hierarchies.count);
     drop_jobs(&builder);
     mem_free(builder.tree.branches);
     mem_free(builder.pieces.items);

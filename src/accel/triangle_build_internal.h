@@ -18,9 +18,14 @@ struct hierarchy {
     uint32_t result;
 };
 
+struct hierarchy_list {
+    struct hierarchy *items;
+    uint32_t count;
+};
+
 /* Makes nodes and blocks of `index` (centre and scale are set) for all hierarchies; `references` is reordered.
  * The same bytes for any pool. False: no memory or cancelled; partial results stay in the index. */
 bool hierarchies_build(struct triangle_index *index, const struct triangle_set *set, struct reference *references,
-                       struct hierarchy *hierarchies, uint32_t count, struct pool *pool, struct error *error);
+                       struct hierarchy_list hierarchies, struct pool *pool, struct error *error);
 
 #endif

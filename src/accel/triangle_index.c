@@ -163,7 +163,8 @@ static bool fill_one_voxel(struct triangle_index *index, const struct triangle_s
                    error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
     for (uint32_t i = 0; !pool && i < chunks; i++)
         refer_to_chunk(&referring, i, 0);
-    complete = complete && hierarchies_build(index, set, referring.references, &whole, 1, pool, error);
+    complete = complete &&
+               hierarchies_build(index, set, referring.references, (struct hierarchy_list){&whole, 1}, pool, error);
     index->only = whole.result;
     for (int k = 0; k < 4; k++) {
         index->usual_from[k] = -1;
@@ -229,7 +230,8 @@ static bool fill_voxels(struct triangle_index *index, const struct triangle_set 
         return error_set(error, ERROR_CANCELLED, "cancelled while indexing a mesh");
     }
     bool complete =
-        is_complete ? hierarchies_build(index, set, references, lists, (uint32_t)index->voxel_count + 1, pool, error)
+        is_complete ? hierarchies_build(index, set, references,
+                                        (struct hierarchy_list){lists, (uint32_t)index->voxel_count + 1}, pool, error)
                     : error_no_memory(error, "the index of a mesh");
     if (complete) {
         for (size_t v = 0; v < index->voxel_count; v++)
@@ -260,7 +262,8 @@ static struct box box_of_triangle(const void *context, uint32_t i) {
 static uint32_t voxels_by_cost(const struct triangle_set *set) {
     enum { SAMPLES = 512, LEVELS = 5 };
     struct cost_sample cost_sample;
-    cost_sample_take(&cost_sample, &set->bounds, box_of_triangle, set, set->count, SAMPLES, LEVELS);
+    cost_sample_take(&cost_sample, &(struct cost_items){&set->bounds, box_of_triangle, set, set->count}, SAMPLES,
+                     LEVELS);
     const uint32_t *cells = cost_sample.levels[accel_over_mesh(&cost_sample).level].cells;
     return cells[0] * cells[1] * cells[2];
 }

@@ -472,8 +472,9 @@ descend(struct search *s, uint32_t reference, const enum triangle_search kind, c
              * `leave` is negative, too, and `enter` is not nearer to 0, so as bits it is not less. */
             simd8 enter = simd8_latest_bits(ax, ay, az);
             simd8 leave = simd8_min_bits(simd8_min_bits(bx, by), simd8_min_bits(bz, limit));
-            if (kind == TRIANGLE_NEAREST ? node_take_nearest(n, octant, enter, leave, &stack, &top, &reference)
-                                         : node_take_any(n, enter, leave, &stack, &top, &reference)) {
+            if (kind == TRIANGLE_NEAREST
+                    ? node_take_nearest(n, octant, (struct node_span){enter, leave}, &stack, &top, &reference)
+                    : node_take_any(n, enter, leave, &stack, &top, &reference)) {
                 if (many && top)
                     prefetch_block(s->index, stack.reference[top - 1]);
                 continue;

@@ -20,6 +20,11 @@ struct node_stack {
     uint32_t reference[STACK_ROOM];
 };
 
+/* Where a ray enters and leaves the boxes of the children. */
+struct node_span {
+    simd8 enter, leave;
+};
+
 #if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
 
 static inline __m256i node_children(const struct wide_node *node) {
@@ -64,8 +69,9 @@ static inline void node_push_enter(struct node_stack *stack, size_t top, simd8 e
 
 /* False: no child is hit. Else *reference is the first child along the ray and the others are on the stack, the next
  * one on top. */
-static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, simd8 enter, simd8 leave,
+static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, struct node_span span,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
+    simd8 enter = span.enter, leave = span.leave;
     __m256i order =
         _mm256_srlv_epi32(_mm256_set1_epi32((int)node->order[octant]), _mm256_setr_epi32(0, 3, 6, 9, 12, 15, 18, 21));
     __m256i children = _mm256_permutevar8x32_epi32(node_children(node), order);
@@ -100,8 +106,9 @@ static inline bool node_take_any(const struct wide_node *node, simd8 enter, simd
 
 #else
 
-static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, simd8 enter, simd8 leave,
+static inline bool node_take_nearest(const struct wide_node *node, uint32_t octant, struct node_span span,
                                      struct node_stack *stack, size_t *top, uint32_t *reference) {
+    simd8 enter = span.enter, leave = span.leave;
     unsigned lanes = simd8_at_max_bits(enter, leave);
     if (!lanes)
         return false;

@@ -386,12 +386,13 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
 
 const struct csg *csg_build(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
                             const struct csg_token *program, uint32_t program_length, struct error *error) {
-    return csg_build_clipped(arena, leaves, leaf_count, program, program_length, program_length, error);
+    return csg_build_clipped(arena, &(struct csg_program){leaves, leaf_count, program, program_length}, program_length,
+                             error);
 }
 
-const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
-                                    const struct csg_token *program, uint32_t solid_length, uint32_t program_length,
+const struct csg *csg_build_clipped(struct arena *arena, const struct csg_program *program, uint32_t solid_length,
                                     struct error *error) {
+    uint32_t leaf_count = program->leaf_count, program_length = program->length;
     if (leaf_count > 65535) {
         error_set(error, ERROR_SCENE, "CSG: %u operands, more than 65535", leaf_count);
         return NULL;
@@ -430,10 +431,10 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_leaf *
         return NULL;
     }
     for (uint32_t i = 0; i < leaf_count; i++) {
-        own_leaves[i] = leaves[i];
+        own_leaves[i] = program->leaves[i];
     }
     for (uint32_t i = 0; i < program_length; i++)
-        own_program[i] = program[i];
+        own_program[i] = program->tokens[i];
     csg->leaves = own_leaves;
     csg->leaf_count = leaf_count;
     csg->program = own_program;

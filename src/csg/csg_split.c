@@ -207,19 +207,18 @@ static bool analyse(struct splitting *s, uint32_t length, uint32_t *parts) {
     return true;
 }
 
-bool csg_build_parts(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
-                     const struct csg_token *program, uint32_t program_length, const struct csg ***parts,
-                     uint32_t *count, struct error *error) {
-    struct splitting s = {.leaves = leaves, .program = program};
-    struct csg_leaf *some_leaves = mem_alloc_zero(leaf_count, sizeof *some_leaves);
-    struct csg_token *some_tokens = mem_alloc_zero(program_length, sizeof *some_tokens);
+bool csg_build_parts(struct arena *arena, const struct csg_program *program, const struct csg ***parts, uint32_t *count,
+                     struct error *error) {
+    struct splitting s = {.leaves = program->leaves, .program = program->tokens};
+    struct csg_leaf *some_leaves = mem_alloc_zero(program->leaf_count, sizeof *some_leaves);
+    struct csg_token *some_tokens = mem_alloc_zero(program->length, sizeof *some_tokens);
     *count = 0;
-    bool ok = analyse(&s, program_length, count) && some_leaves && some_tokens;
+    bool ok = analyse(&s, program->length, count) && some_leaves && some_tokens;
     *parts = ok ? arena_alloc_array(arena, *count, sizeof **parts) : NULL;
     if (!*parts)
         ok = error_no_memory(error, "CSG");
     if (ok && *count == 1) {
-        (*parts)[0] = csg_build(arena, leaves, leaf_count, program, program_length, error);
+        (*parts)[0] = csg_build(arena, program->leaves, program->leaf_count, program->tokens, program->length, error);
         ok = (*parts)[0] != NULL;
     }
     uint32_t made = 0;

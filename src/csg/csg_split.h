@@ -7,8 +7,7 @@
 
 /* As csg_build, in as many parts as have disjoint boxes; together they answer every ray as the whole does.
  * In the order of their first operands. */
-bool csg_build_parts(struct arena *arena, const struct csg_leaf *leaves, uint32_t leaf_count,
-                     const struct csg_token *program, uint32_t program_length, const struct csg ***parts,
-                     uint32_t *count, struct error *error);
+bool csg_build_parts(struct arena *arena, const struct csg_program *program, const struct csg ***parts, uint32_t *count,
+                     struct error *error);
 
 #endif

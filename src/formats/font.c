@@ -8,10 +8,10 @@
 
 #ifndef HAVE_FREETYPE
 
-bool font_layout(const char *path, const uint8_t *data, size_t size, const char *text, struct arena *arena,
-                 struct font_text *out, struct error *error) {
-    (void)data, (void)size, (void)text, (void)arena, (void)out;
-    return error_set(error, ERROR_SCENE, "%s: this build cannot read fonts (it was made without FreeType)", path);
+bool font_layout(const struct font_file *file, const char *text, struct arena *arena, struct font_text *out,
+                 struct error *error) {
+    (void)text, (void)arena, (void)out;
+    return error_set(error, ERROR_SCENE, "%s: this build cannot read fonts (it was made without FreeType)", file->path);
 }
 
 const char *font_library(void) {
@@ -268,12 +268,12 @@ static bool open_and_set(struct setting *s, const uint8_t *data, size_t size, co
     return count_letters(s, text, &out->count) && set_line(s, text, out);
 }
 
-bool font_layout(const char *path, const uint8_t *data, size_t size, const char *text, struct arena *arena,
-                 struct font_text *out, struct error *error) {
-    struct setting s = {.path = path, .arena = arena, .error = error};
+bool font_layout(const struct font_file *file, const char *text, struct arena *arena, struct font_text *out,
+                 struct error *error) {
+    struct setting s = {.path = file->path, .arena = arena, .error = error};
     s.memory.hooks = (struct FT_MemoryRec_){.user = &s.memory, .alloc = take, .free = give, .realloc = change};
     *out = (struct font_text){0};
-    bool done = open_and_set(&s, data, size, text, out);
+    bool done = open_and_set(&s, file->data, file->size, text, out);
     if (s.face)
         (void)FT_Done_Face(s.face);
     if (s.library)

@@ -31,10 +31,15 @@ struct font_text {
 
 enum { FONT_TEXT_LIMIT = 100000 }; /* letters */
 
-/* One line of UTF-8 text, set from x = 0. `path` names the font in errors; its bytes are read in place. Everything in
+struct font_file {
+    const char *path; /* for errors */
+    const uint8_t *data;
+    size_t size;
+};
+/* One line of UTF-8 text, set from x = 0. The bytes of the font are read in place. Everything in
  * `out` is in the arena. Wrong fonts and texts are scene errors. */
-bool font_layout(const char *path, const uint8_t *data, size_t size, const char *text, struct arena *arena,
-                 struct font_text *out, struct error *error);
+bool font_layout(const struct font_file *file, const char *text, struct arena *arena, struct font_text *out,
+                 struct error *error);
 
 /* Whether this build can read any. */
 #ifdef HAVE_FREETYPE

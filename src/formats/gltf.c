@@ -128,10 +128,11 @@ static bool produce(struct gltf *g, uint64_t count, const char *where) {
 struct corners {
     uint32_t *index; /* NULL: 0, 1, 2 ... */
     uint64_t count, first, vertices;
+    uint64_t available; /* vertices that the accessors have */
 };
 
 static bool read_corners(struct gltf *g, const struct primitive *p, uint64_t available, struct corners *out) {
-    *out = (struct corners){.count = available, .vertices = available};
+    *out = (struct corners){.count = available, .vertices = available, .available = available};
     if (p->indices == MODEL_NONE)
         return produce(g, 2 * available, p->where);
     struct gltf_accessor a;
@@ -157,16 +158,21 @@ static bool read_corners(struct gltf *g, const struct primitive *p, uint64_t ava
 }
 
 /* The numbers of one attribute for the vertices of the primitive, `kept` of each. */
-static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t accessor, const struct corners *corners,
-                           int min, uint64_t available, double **out, int *components) {
+struct attribute {
+    double *numbers;
+    int components; /* of each vertex */
+};
+
+static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t accessor, int min,
+                           const struct corners *corners, struct attribute *out) {
     struct gltf_accessor a;
     if (!gltf_accessor(g, accessor, &a))
         return false;
     if (a.components < min || a.components > 4)
         return gltf_fail(g, p->where, "accessors[%u] has %d numbers an element, not %d", accessor, a.components, min);
-    if (a.count != available)
+    if (a.count != corners->available)
         return gltf_fail(g, p->where, "accessors[%u] has %llu elements for %llu vertices", accessor,
-                         (unsigned long long)a.count, (unsigned long long)available);
+                         (unsigned long long)a.count, (unsigned long long)corners->available);
     /* The sparse part is walked through once for every primitive that uses it. */
     if (!produce(g, a.sparse_count, p->where))
         return false;
@@ -174,11 +180,11 @@ static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t a
     bool beyond = __builtin_mul_overflow((size_t)corners->vertices, (size_t)a.components, &count);
     assert(!beyond); /* produce() bounds the vertices */
     (void)beyond;
-    *out = mem_alloc_zero(count, sizeof **out);
-    if (!*out)
+    out->numbers = mem_alloc_zero(count, sizeof *out->numbers);
+    if (!out->numbers)
         return error_no_memory(g->error, g->path);
-    *components = a.components;
-    return gltf_accessor_read(g, accessor, &a, corners->first, corners->vertices, *out);
+    out->components = a.components;
+    return gltf_accessor_read(g, accessor, &a, corners->first, corners->vertices, out->numbers);
 }
 
 static bool append(struct gltf *g, struct list *list, const double *from, uint64_t count, int components, int kept) {
@@ -210,7 +216,7 @@ struct mesh_plan {
     bool normals, uvs, colours;
 };
 
-static bool add_vertices(struct gltf *g, const struct primitive *p, const struct corners *corners, uint64_t available,
+static bool add_vertices(struct gltf *g, const struct primitive *p, const struct corners *corners,
                          const struct mesh_plan *plan, struct model_mesh *mesh) {
     const struct {
         uint32_t accessor;
@@ -222,13 +228,13 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
                   {p->uv, 2, 2, &mesh->uvs, false},
                   {p->colour, 3, 3, &mesh->colours, true}};
     for (size_t t = 0; t < sizeof tables / sizeof tables[0]; t++) {
-        double *numbers = NULL;
-        int components = 0;
+        struct attribute attribute = {0};
         bool given = tables[t].accessor != MODEL_NONE;
         if (!given && !(tables[t].colour && plan->colours))
             continue;
-        bool ok = !given ||
-                  read_attribute(g, p, tables[t].accessor, corners, tables[t].min, available, &numbers, &components);
+        bool ok = !given || read_attribute(g, p, tables[t].accessor, tables[t].min, corners, &attribute);
+        double *numbers = attribute.numbers;
+        int components = attribute.components;
         for (uint64_t i = 0; ok && t == 2 && i < corners->vertices; i++) /* v from below */
             numbers[i * (uint64_t)components + 1] = 1 - numbers[i * (uint64_t)components + 1];
         ok = ok &&
@@ -241,18 +247,20 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
     return true;
 }
 
-/* Places of the tables at which the vertices of this primitive begin. */
+/* Places of the tables at which the vertices of this primitive begin, and its material. */
 struct buffer_bases {
     uint32_t vertex, normal, uv;
+    uint32_t slot;
 };
 
 static bool add_triangle(struct gltf *g, struct model_mesh *mesh, const struct mesh_plan *plan,
-                         const struct buffer_bases *bases, const uint32_t corner[3], uint32_t slot) {
+                         const struct buffer_bases *bases, const uint32_t corner[3]) {
     uint32_t *start = list_room(&mesh->starts, 1, sizeof *start);
     uint32_t *index = list_room(&mesh->vertex_index, 3, sizeof *index);
     uint32_t *normal = plan->normals ? list_room(&mesh->normal_index, 3, sizeof *normal) : NULL;
     uint32_t *uv = plan->uvs ? list_room(&mesh->uv_index, 3, sizeof *uv) : NULL;
-    if (!start || !index || (plan->normals && !normal) || (plan->uvs && !uv) || !list_add_index(&mesh->face_slot, slot))
+    if (!start || !index || (plan->normals && !normal) || (plan->uvs && !uv) ||
+        !list_add_index(&mesh->face_slot, bases->slot))
         return error_no_memory(g->error, g->path);
     *start = (uint32_t)mesh->vertex_index.count;
     mesh->starts.count++;
@@ -270,8 +278,7 @@ static bool add_triangle(struct gltf *g, struct model_mesh *mesh, const struct m
 }
 
 static bool add_triangles(struct gltf *g, const struct primitive *p, const struct corners *corners,
-                          const struct mesh_plan *plan, const struct buffer_bases *bases, uint32_t slot,
-                          struct model_mesh *mesh) {
+                          const struct mesh_plan *plan, const struct buffer_bases *bases, struct model_mesh *mesh) {
     uint64_t step = p->mode == 4 ? 3 : 1;
     for (uint64_t i = 0; i + 2 < corners->count; i += step) {
         uint64_t at[3] = {i, i + 1, i + 2};
@@ -283,7 +290,7 @@ static bool add_triangles(struct gltf *g, const struct primitive *p, const struc
         for (int k = 0; k < 3; k++)
             corner[k] = (uint32_t)((corners->index ? corners->index[at[k]] : at[k]) - corners->first);
         bool line = corner[0] == corner[1] || corner[1] == corner[2] || corner[0] == corner[2];
-        if (!line && !add_triangle(g, mesh, plan, bases, corner, slot))
+        if (!line && !add_triangle(g, mesh, plan, bases, corner))
             return false;
     }
     return true;
@@ -299,12 +306,11 @@ static bool add_primitive(struct gltf *g, const struct primitive *p, const struc
     struct corners corners;
     struct buffer_bases bases = {(uint32_t)mesh->vertices.count,
                                  p->normal == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->normals.count,
-                                 p->uv == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->uvs.count};
+                                 p->uv == MODEL_NONE ? MODEL_NONE : (uint32_t)mesh->uvs.count, slot};
     bool ok = read_corners(g, p, a.count, &corners);
     if (ok && mesh->vertices.count + corners.vertices > model_max(g->model))
         ok = gltf_fail(g, p->where, "too many vertices");
-    ok = ok && add_vertices(g, p, &corners, a.count, plan, mesh) &&
-         add_triangles(g, p, &corners, plan, &bases, slot, mesh);
+    ok = ok && add_vertices(g, p, &corners, plan, mesh) && add_triangles(g, p, &corners, plan, &bases, mesh);
     mem_free(corners.index);
     return ok;
 }

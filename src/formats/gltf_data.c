@@ -156,45 +156,54 @@ static bool type_of(const struct gltf *g, const json_t *object, enum number_type
 }
 
 /* `count` elements of `element` bytes from an offset on must be inside the view; *data then points at the first. */
-static bool part_of_view(struct gltf *g, const json_t *object, uint64_t count, size_t element, bool may_stride,
-                         const uint8_t **data, size_t *stride, const char *where) {
+/* Elements that a view is to hold, and where they are found in it. */
+struct view_part {
+    uint64_t count;
+    size_t element; /* bytes of each */
+    bool may_stride;
+    const uint8_t *data; /* NULL: there is no view */
+    size_t stride;
+};
+
+static bool find_part(struct gltf *g, const json_t *object, struct view_part *part, const char *where) {
     uint32_t view;
     uint64_t offset;
     size_t size, step;
     if (!gltf_index(g, object, "bufferView", "bufferViews", &view, where) ||
         !gltf_whole(g, object, "byteOffset", 0, &offset, where))
         return false;
-    *data = NULL;
-    *stride = element;
+    part->data = NULL;
+    part->stride = part->element;
     if (view == MODEL_NONE)
         return true;
-    if (!gltf_view(g, view, data, &size, &step))
+    if (!gltf_view(g, view, &part->data, &size, &step))
         return false;
-    if (may_stride && step > 0)
-        *stride = step;
-    if (*stride < element)
+    if (part->may_stride && step > 0)
+        part->stride = step;
+    if (part->stride < part->element)
         return gltf_fail(g, where, "its stride is smaller than its elements");
-    bool fits = count == 0 || (offset <= size && size - offset >= element &&
-                               count - 1 <= (size - (size_t)offset - element) / *stride);
+    bool fits = part->count == 0 || (offset <= size && size - offset >= part->element &&
+                                     part->count - 1 <= (size - (size_t)offset - part->element) / part->stride);
     if (!fits)
         return gltf_fail(g, where, "%llu elements of %zu bytes do not fit into its %zu bytes",
-                         (unsigned long long)count, element, size);
-    *data += offset;
+                         (unsigned long long)part->count, part->element, size);
+    part->data += offset;
     return true;
 }
 
 static bool sparse_part(struct gltf *g, const json_t *sparse, struct gltf_accessor *out, const char *where) {
     const json_t *indices = json_object_get(sparse, "indices"), *values = json_object_get(sparse, "values");
-    size_t stride;
     if (!gltf_whole(g, sparse, "count", 0, &out->sparse_count, where) || !type_of(g, indices, &out->sparse_type, where))
         return false;
     if (out->sparse_type != NUMBER_U8 && out->sparse_type != NUMBER_U16 && out->sparse_type != NUMBER_U32)
         return gltf_fail(g, where, "its sparse indices are not unsigned");
-    size_t element = number_size(out->type) * (size_t)out->components;
-    if (!part_of_view(g, indices, out->sparse_count, number_size(out->sparse_type), false, &out->sparse_indices,
-                      &stride, where) ||
-        !part_of_view(g, values, out->sparse_count, element, false, &out->sparse_values, &stride, where))
+    struct view_part index_part = {.count = out->sparse_count, .element = number_size(out->sparse_type)};
+    struct view_part value_part = {.count = out->sparse_count,
+                                   .element = number_size(out->type) * (size_t)out->components};
+    if (!find_part(g, indices, &index_part, where) || !find_part(g, values, &value_part, where))
         return false;
+    out->sparse_indices = index_part.data;
+    out->sparse_values = value_part.data;
     if (out->sparse_count && (!out->sparse_indices || !out->sparse_values))
         return gltf_fail(g, where, "its sparse part has no data");
     return true;
@@ -217,9 +226,12 @@ bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {
         return gltf_fail(g, where, "its type is missing or unknown");
     if (!type_of(g, object, &out->type, where) || !gltf_whole(g, object, "count", 0, &out->count, where))
         return false;
-    size_t element = number_size(out->type) * (size_t)out->components;
-    if (!part_of_view(g, object, out->count, element, true, &out->data, &out->stride, where))
+    struct view_part part = {
+        .count = out->count, .element = number_size(out->type) * (size_t)out->components, .may_stride = true};
+    if (!find_part(g, object, &part, where))
         return false;
+    out->data = part.data;
+    out->stride = part.stride;
     const json_t *sparse = json_object_get(object, "sparse");
     return !sparse || sparse_part(g, sparse, out, where);
 }

@@ -32,10 +32,10 @@ static size_t consumed(const z_stream *stream, const uint8_t *data) {
 }
 
 /* One member from stream->next_in on, appended to *out. */
-static bool member(z_stream *stream, const char *path, const uint8_t *data, size_t size, struct list *out, size_t limit,
+static bool member(z_stream *stream, const char *path, struct file_bytes from, struct list *out, size_t limit,
                    struct error *error) {
     for (;;) {
-        size_t left_in = size - consumed(stream, data), chunk = out->count / 2 + 65536;
+        size_t left_in = from.size - consumed(stream, from.data), chunk = out->count / 2 + 65536;
         if (chunk > limit - out->count)
             chunk = limit - out->count;
         uint8_t *room = list_room(out, chunk, 1);
@@ -54,14 +54,14 @@ static bool member(z_stream *stream, const char *path, const uint8_t *data, size
         if (status != Z_OK && status != Z_BUF_ERROR) {
             assert(stream->msg); /* zlib gives the reason of every error in the data */
             return error_set(error, ERROR_SCENE, "%s: byte %zu: the gzip data are broken: %s", path,
-                             consumed(stream, data), stream->msg);
+                             consumed(stream, from.data), stream->msg);
         }
         if (out->count == limit)
             return error_set(error, ERROR_SCENE,
                              "%s: byte %zu: the gzip data grow beyond %zu bytes, %d times the file: refused", path,
-                             consumed(stream, data), limit, GROWTH);
-        if (made == 0 && consumed(stream, data) == size)
-            return error_set(error, ERROR_SCENE, "%s: byte %zu: the gzip data end too early", path, size);
+                             consumed(stream, from.data), limit, GROWTH);
+        if (made == 0 && consumed(stream, from.data) == from.size)
+            return error_set(error, ERROR_SCENE, "%s: byte %zu: the gzip data end too early", path, from.size);
     }
 }
 
@@ -75,7 +75,7 @@ bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t **out, s
     size_t limit = START + size * GROWTH, at = 0;
     bool ok = true, more = true;
     while (ok && more) {
-        ok = member(&stream, path, data, size, &bytes, limit, error);
+        ok = member(&stream, path, (struct file_bytes){data, size}, &bytes, limit, error);
         at = consumed(&stream, data);
         more = ok && size - at >= 2 && data[at] == 0x1f && data[at + 1] == 0x8b;
         if (more)
@@ -411,9 +411,11 @@ static bool load(struct model *model, const uint8_t *data, size_t size, struct e
     UNREACHABLE("a file of no kind");
 }
 
-/* Takes the bytes of the file over when they are from file_map: they go before the meshes are made. */
-static bool parse(struct model *model, const char *path, struct file_bytes *file, const uint8_t *data, size_t size,
+/* Bytes from file_map are unmapped before the meshes are made. */
+static bool parse(struct model *model, const char *path, struct file_bytes file, bool is_mapped,
                   const struct model_options *options, struct error *error) {
+    const uint8_t *data = file.data;
+    size_t size = file.size;
     *model = (struct model){.options = *options};
     model->path = arena_copy_text(&model->arena, path, strlen(path));
     bool ok = model->path || error_no_memory(error, path);
@@ -424,8 +426,8 @@ static bool parse(struct model *model, const char *path, struct file_bytes *file
     }
     ok = ok && load(model, data, size, error);
     mem_free(unpacked);
-    if (file)
-        file_unmap(file);
+    if (is_mapped)
+        file_unmap(&file);
     ok = ok && model_finish(model, error);
     if (!ok)
         model_destroy(model);
@@ -434,7 +436,7 @@ static bool parse(struct model *model, const char *path, struct file_bytes *file
 
 bool model_parse(struct model *model, const char *path, const uint8_t *data, size_t size,
                  const struct model_options *options, struct error *error) {
-    return parse(model, path, NULL, data, size, options, error);
+    return parse(model, path, (struct file_bytes){data, size}, false, options, error);
 }
 
 bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error) {
@@ -443,7 +445,7 @@ bool model_read(struct model *model, const char *path, const struct model_option
     *model = (struct model){0};
     if (!path_policy_map(options->path_policy, path, FILE_LIMIT, &bytes, error))
         return false;
-    return parse(model, path, &bytes, bytes.data, bytes.size, options, error) || error_of_file(error, path, refusals);
+    return parse(model, path, bytes, true, options, error) || error_of_file(error, path, refusals);
 }
 
 void model_destroy(struct model *model) {

@@ -138,8 +138,9 @@ static bool split_metal(struct scene *scene, const struct model_material *from, 
     if (!there && !from->by_metal)
         return true;
     struct material *m = scene_material(scene, MATERIAL_METAL, *top, error);
-    if (!m || !material_split_metal(m, there ? &image : NULL, from->metallic, from->roughness, from->f0, &scene->arena,
-                                    error))
+    if (!m ||
+        !material_split_metal(m, there ? &image : NULL,
+                              (struct metal_numbers){from->metallic, from->roughness, from->f0}, &scene->arena, error))
         return false;
     *top = m;
     return true;

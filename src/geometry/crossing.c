@@ -108,10 +108,17 @@ void surface_mapping_axes(struct vec3 n, struct vec3 *x, struct vec3 *z) {
     *z = vec3_make(c, -n.z, sign + n.z * n.z * s);
 }
 
-/* along_u, along_v: unit vectors at right angles, the ways in which u and v grow; a step of one unit of u or v is
- * size_u or size_v > 0 long where the surface faces the eye. */
-static void take(double u, double v, struct vec3 along_u, struct vec3 along_v, double size_u, double size_v,
-                 struct surface *out) {
+/* u or v: its value, the unit direction in which it grows, and how long, > 0, a step of one unit of it is where the
+ * surface faces the eye. */
+struct mapped {
+    double at;
+    struct vec3 along;
+    double size;
+};
+
+/* The directions are at right angles. */
+static void take(struct mapped u, struct mapped v, struct surface *out) {
+    struct vec3 along_u = u.along, along_v = v.along;
     struct vec3 n = vec3_normalize(out->normal);
     double facing = vec3_dot(n, vec3_cross(along_u, along_v));
     bool away = facing >= 0;
@@ -121,10 +128,10 @@ static void take(double u, double v, struct vec3 along_u, struct vec3 along_v, d
     }
     facing = fmax(facing, STEEPEST);
     out->has_uv = true;
-    out->u = away ? u : 1 - u;
-    out->v = v;
-    out->dpdu = vec3_scale(vec3_cross(along_v, n), size_u / facing);
-    out->dpdv = vec3_scale(vec3_cross(n, along_u), size_v / facing);
+    out->u = away ? u.at : 1 - u.at;
+    out->v = v.at;
+    out->dpdu = vec3_scale(vec3_cross(along_v, n), u.size / facing);
+    out->dpdv = vec3_scale(vec3_cross(n, along_u), v.size / facing);
 }
 
 void surface_mapping_sphere(struct vec3 centre, struct surface *out) {
@@ -138,8 +145,8 @@ void surface_mapping_sphere(struct vec3 centre, struct surface *out) {
     double ring = sqrt(n.x * n.x + n.z * n.z), y = n.y < -1 ? -1 : n.y > 1 ? 1 : n.y;
     double cosine = ring > 0 ? n.x / ring : 1, sine = ring > 0 ? n.z / ring : 0;
     struct vec3 along_u = vec3_make(sine, 0, -cosine), along_v = vec3_make(-y * cosine, ring, -y * sine);
-    take(0.5 - el_atan2(n.z, n.x) / TURN, 0.5 + el_asin(y) / (TURN / 2), along_u, along_v, TURN * ring * far,
-         TURN / 2 * far, out);
+    take((struct mapped){0.5 - el_atan2(n.z, n.x) / TURN, along_u, TURN * ring * far},
+         (struct mapped){0.5 + el_asin(y) / (TURN / 2), along_v, TURN / 2 * far}, out);
 }
 
 void surface_mapping_label(struct vec3 base, struct vec3 axis, double length, struct surface *out) {
@@ -148,5 +155,6 @@ void surface_mapping_label(struct vec3 base, struct vec3 axis, double length, st
     double height = vec3_dot(arm, axis), p = vec3_dot(arm, x), q = vec3_dot(arm, z), radius = sqrt(p * p + q * q);
     double cosine = radius > 0 ? p / radius : 1, sine = radius > 0 ? q / radius : 0;
     struct vec3 along_u = vec3_sub(vec3_scale(x, sine), vec3_scale(z, cosine));
-    take(0.5 - el_atan2(q, p) / TURN, height / length, along_u, axis, TURN * radius, length, out);
+    take((struct mapped){0.5 - el_atan2(q, p) / TURN, along_u, TURN * radius},
+         (struct mapped){height / length, axis, length}, out);
 }

@@ -389,14 +389,16 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     struct film *film = &work->film;
     const char *file = work->request->file;
     *asked = picture_request_of(process->options, job);
+    struct render_area area;
     char warning[256] = "";
     size_t length = strlen(file);
     if (length >= sizeof asked->file)
         return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes",
                          sizeof asked->file - 1);
     memcpy(asked->file, file, length);
-    if (!render_prepare(job, &asked->x0, &asked->y0, &asked->width, &asked->height, warning, error))
+    if (!render_prepare(job, &area, warning, error))
         return false;
+    asked->x0 = area.x0, asked->y0 = area.y0, asked->width = area.width, asked->height = area.height;
     if (warning[0] != '\0')
         warn_of_scene(process, warning);
     if (job->settings.view_is_target)
@@ -560,6 +562,7 @@ static int run_script(struct render_process *process, const char *path) {
     /* Without the sandbox and in a process of its own standard output is a copy of standard error by now. */
     bool sandboxed = !process->options->script.no_sandbox, in_process = process->options->no_fork;
     struct script_host host = {.context = process,
+                               .assets = &process->assets,
                                .settings = process->options->settings,
                                .render = render,
                                .message = message,
@@ -574,7 +577,7 @@ static int run_script(struct render_process *process, const char *path) {
     process->status = 0;
     process->warned_count = 0;
     begin_memory(process);
-    bool ok = script_run(path, &process->options->script, &host, &process->assets, &arena, &traceback, &error);
+    bool ok = script_run(path, &process->options->script, &host, &arena, &traceback, &error);
     int status = ok ? process->status : (int)error.kind;
     if (!ok && error.kind != ERROR_CANCELLED)
         report_error(process, &arena, &error, traceback);

@@ -49,14 +49,25 @@ const char *image_name(const struct image *image);
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
 /* The largest value of a colour channel; 1 except for high dynamic range images. */
 double image_brightest(const struct image *image);
-/* Filtered, premultiplied. width_u, width_v: size of the footprint in u and v (0 = unknown: level 0 is used). Finite u,
- * v of any size. */
-struct rgba image_lookup(const struct image *image, double u, double v, double width_u, double width_v,
-                         enum image_filter filter, enum image_wrap wrap_u, enum image_wrap wrap_v);
-/* The same inside a rectangle of texels [x0, x0+w) x [y0, y0+h) of level 0: u, v in [0,1] span the rectangle, lookups
- * never leave it (faces of a sky cross; the mips used must not bleed over its edge: clamp). */
-struct rgba image_lookup_part(const struct image *image, uint32_t x0, uint32_t y0, uint32_t w, uint32_t h, double u,
-                              double v, double width_u, double width_v, enum image_filter filter);
+/* Where a lookup is, u and v finite of any size, and how wide its footprint is in u and v (0: unknown, level 0 is
+ * used). */
+struct image_point {
+    double u, v, width_u, width_v;
+};
+struct image_sampling {
+    enum image_filter filter;
+    enum image_wrap wrap_u, wrap_v;
+};
+/* A rectangle of texels [x, x + width) x [y, y + height) of level 0. */
+struct image_part {
+    uint32_t x, y, width, height;
+};
+/* Filtered, premultiplied. */
+struct rgba image_lookup(const struct image *image, struct image_point at, struct image_sampling how);
+/* The same inside a part: u, v in [0,1] span it, lookups never leave it (faces of a sky cross; the mips used must not
+ * bleed over its edge: clamp). */
+struct rgba image_lookup_part(const struct image *image, struct image_part part, struct image_point at,
+                              enum image_filter filter);
 
 /* Pictures of any format that this build reads; the first bytes select the format. */
 

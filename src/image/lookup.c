@@ -96,66 +96,64 @@ static struct rgba trilinear(const struct view *view, double level, double u, do
 }
 
 /* Several trilinear samples along the wider side of the footprint, each as wide as its share. */
-static struct rgba mipmapped(const struct view *view, double u, double v, double width_u, double width_v) {
-    double texels_u = width_u * view->parts[0][2], texels_v = width_v * view->parts[0][3];
+static struct rgba mipmapped(const struct view *view, struct image_point at) {
+    double texels_u = at.width_u * view->parts[0][2], texels_v = at.width_v * view->parts[0][3];
     double wide = fmax(texels_u, texels_v), narrow = fmin(texels_u, texels_v);
     if (!(wide > 1))
-        return trilinear(view, 0, u, v);
+        return trilinear(view, 0, at.u, at.v);
     double ratio = wide / fmax(narrow, 1);
     int taps = ratio < MAX_TAPS ? (int)ceil(ratio) : MAX_TAPS;
     double level = image_level_for(wide / taps, view->last);
-    double step_u = texels_u >= texels_v ? fmin(width_u, 1) / taps : 0;
-    double step_v = texels_u >= texels_v ? 0 : fmin(width_v, 1) / taps;
+    double step_u = texels_u >= texels_v ? fmin(at.width_u, 1) / taps : 0;
+    double step_v = texels_u >= texels_v ? 0 : fmin(at.width_v, 1) / taps;
     struct rgba sum = {0, 0, 0, 0};
     for (int i = 0; i < taps; i++) {
-        double at = i - 0.5 * (taps - 1);
-        struct rgba c = trilinear(view, level, u + at * step_u, v + at * step_v);
+        double step = i - 0.5 * (taps - 1);
+        struct rgba c = trilinear(view, level, at.u + step * step_u, at.v + step * step_v);
         sum.r += c.r, sum.g += c.g, sum.b += c.b, sum.a += c.a;
     }
     return (struct rgba){sum.r / taps, sum.g / taps, sum.b / taps, sum.a / taps};
 }
 
-static struct rgba lookup(const struct view *view, double u, double v, double width_u, double width_v,
-                          enum image_filter filter) {
+static struct rgba lookup(const struct view *view, struct image_point at, enum image_filter filter) {
     switch (filter) {
     case IMAGE_NEAREST: {
         const uint32_t *part = view->parts[0];
-        uint32_t x = nearest(fold(u, view->wrap_u), part[2], view->wrap_u);
-        uint32_t y = nearest(fold(v, view->wrap_v), part[3], view->wrap_v);
+        uint32_t x = nearest(fold(at.u, view->wrap_u), part[2], view->wrap_u);
+        uint32_t y = nearest(fold(at.v, view->wrap_v), part[3], view->wrap_v);
         return image_from_units(image_level_texel(view->image, 0, part[0] + x, part[1] + y));
     }
     case IMAGE_BILINEAR:
-        return image_from_units(trilinear(view, 0, u, v));
+        return image_from_units(trilinear(view, 0, at.u, at.v));
     case IMAGE_MIPMAP:
-        return image_from_units(mipmapped(view, u, v, width_u, width_v));
+        return image_from_units(mipmapped(view, at));
     }
     return (struct rgba){0, 0, 0, 0};
 }
 
-struct rgba image_lookup(const struct image *image, double u, double v, double width_u, double width_v,
-                         enum image_filter filter, enum image_wrap wrap_u, enum image_wrap wrap_v) {
+struct rgba image_lookup(const struct image *image, struct image_point at, struct image_sampling how) {
     struct view view;
     view.image = image;
-    view.last = filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
-    view.wrap_u = wrap_u, view.wrap_v = wrap_v;
+    view.last = how.filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
+    view.wrap_u = how.wrap_u, view.wrap_v = how.wrap_v;
     for (int level = 0; level <= view.last; level++) {
         view.parts[level][0] = view.parts[level][1] = 0;
         view.parts[level][2] = image->levels[level].width, view.parts[level][3] = image->levels[level].height;
     }
-    return lookup(&view, u, v, width_u, width_v, filter);
+    return lookup(&view, at, how.filter);
 }
 
-struct rgba image_lookup_part(const struct image *image, uint32_t x0, uint32_t y0, uint32_t w, uint32_t h, double u,
-                              double v, double width_u, double width_v, enum image_filter filter) {
-    const uint32_t part[4] = {x0, y0, w, h};
+struct rgba image_lookup_part(const struct image *image, struct image_part part, struct image_point at,
+                              enum image_filter filter) {
+    const uint32_t rectangle[4] = {part.x, part.y, part.width, part.height};
     struct view view;
     view.image = image;
     view.wrap_u = view.wrap_v = IMAGE_CLAMP;
     view.last = -1;
     int last = filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
-    while (view.last < last && image_level_part(image, view.last + 1, part, view.parts[view.last + 1]))
+    while (view.last < last && image_level_part(image, view.last + 1, rectangle, view.parts[view.last + 1]))
         view.last++;
     if (view.last < 0) /* an empty rectangle */
         return (struct rgba){0, 0, 0, 0};
-    return lookup(&view, u, v, width_u, width_v, filter);
+    return lookup(&view, at, filter);
 }

@@ -66,8 +66,9 @@ static bool find_names(struct pixel_trace *pixel_trace, const struct inspected *
     for (size_t i = 0; i < count; i++)
         if (i == 0 || all[i] != all[i - 1])
             names->primitives[names->count++] = (uint32_t)all[i];
-    return world_find_paths(picture->job->world, picture->root, names->primitives, names->count, &pixel_trace->arena,
-                            names->paths, error);
+    return world_find_paths(picture->job->world, picture->root,
+                            (struct primitive_list){names->primitives, names->count}, &pixel_trace->arena, names->paths,
+                            error);
 }
 
 struct trace_context {
@@ -98,7 +99,8 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],
                              pixels[i][1], job->width, job->height);
     }
-    bool ok = render_pixels(job, picture->pool, pixels, count, report_pixel, &trace_context, error);
+    bool ok =
+        render_pixels(job, picture->pool, (struct pixel_list){pixels, count}, report_pixel, &trace_context, error);
     text_writer_flush(writer);
     return ok;
 }

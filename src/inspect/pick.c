@@ -256,7 +256,8 @@ bool pick_at(const struct render_job *job, const struct node *root, struct pick_
     char ignored[256];
     *out = (struct picked){0};
     settings.lens.aperture = 0;
-    if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
+    if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &frame, ignored,
+                        error))
         return false;
     if (!camera_ray_through(&frame, query.x, query.y, (struct sample2){0.5, 0.5}, 0, &ray))
         return true;

@@ -112,8 +112,8 @@ bool material_mix_metal(struct material *material, const struct texture *metalne
 }
 
 /* The formulas of formats/gltf_material.c, point by point. */
-bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,
-                          double roughness, double f0, struct arena *arena, struct error *error) {
+bool material_split_metal(struct material *material, const struct texture_image *image, struct metal_numbers numbers,
+                          struct arena *arena, struct error *error) {
     const struct texture *picture = NULL, *white = texture_keep(arena, texture_number(1), error);
     if (image && white) {
         struct texture_image own = *image;
@@ -122,14 +122,14 @@ bool material_split_metal(struct material *material, const struct texture_image 
     }
     if (!white || (image && !picture))
         return false;
-    const struct texture *metal = packed(picture, FUNCTION_BLUE, metalness, arena, error);
-    const struct texture *rough = packed(picture, FUNCTION_GREEN, roughness, arena, error);
+    const struct texture *metal = packed(picture, FUNCTION_BLUE, numbers.metalness, arena, error);
+    const struct texture *rough = packed(picture, FUNCTION_GREEN, numbers.roughness, arena, error);
     const struct texture *colour = keep_shared(arena, *material_input(material, INPUT_KD), error);
-    const struct texture *plain = texture_keep(arena, texture_constant(vec3_all(f0)), error);
+    const struct texture *plain = texture_keep(arena, texture_constant(vec3_all(numbers.f0)), error);
     if (!metal || !rough || !colour || !plain)
         return false;
     material->is_metal = true;
-    material->metal = image ? 1 : metalness * (1 - roughness);
+    material->metal = image ? 1 : numbers.metalness * (1 - numbers.roughness);
     /* What shines through has the filter in ks; refract may change after this. */
     const struct texture *refract = material_input(material, INPUT_REFRACT);
     const struct texture *passes = texture_keep(arena, texture_map(refract, FUNCTION_STEP, DBL_TRUE_MIN), error);

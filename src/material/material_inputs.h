@@ -28,9 +28,13 @@ bool material_add_bump(struct material *material, const struct bump *bump, struc
 /* The share `metalness` of kd colours the highlight and the mirror instead, in the place of that share of ks. */
 bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
                         struct error *error);
+struct metal_numbers {
+    double metalness, roughness;
+    double f0; /* the reflectance of what is no metal */
+};
 /* kd is split into metal and the rest after glTF 2.0. The image (or NULL) holds metalness in blue and roughness in
- * green, the numbers are multiplied by it. f0: the reflectance of what is no metal. */
-bool material_split_metal(struct material *material, const struct texture_image *image, double metalness,
-                          double roughness, double f0, struct arena *arena, struct error *error);
+ * green, the numbers are multiplied by it. */
+bool material_split_metal(struct material *material, const struct texture_image *image, struct metal_numbers numbers,
+                          struct arena *arena, struct error *error);
 
 #endif

@@ -190,7 +190,7 @@ bool texture_image_colour(const struct texture_image *image, const struct hit *h
 }
 
 static double marble_at(const struct texture *texture, struct vec3 p) {
-    return noise_marble(p.x, p.y, p.z, texture->marble.f, texture->marble.multiplier, texture->marble.vein_frequency,
+    return noise_marble(p, texture->marble.f, texture->marble.multiplier, texture->marble.vein_frequency,
                         texture->marble.interpolation);
 }
 
@@ -382,7 +382,8 @@ static struct vec3 estimate_image(const struct texture *texture, const struct te
     struct vec3 under = below ? texture_estimate(below, textures, numbers, which) : vec3_all(0);
     if (which == TEXTURE_LARGEST)
         return larger(tint, under);
-    struct rgba mean_texel = image_lookup(image->image, 0.5, 0.5, 1, 1, IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP);
+    struct rgba mean_texel = image_lookup(image->image, (struct image_point){0.5, 0.5, 1, 1},
+                                          (struct image_sampling){IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP});
     struct vec3 colour = vec3_mul(vec3_make(mean_texel.r, mean_texel.g, mean_texel.b), tint);
     return vec3_add(colour, vec3_scale(under, image->alpha == ALPHA_COVERS ? 1 - mean_texel.a : 0));
 }

@@ -134,5 +134,6 @@ bool texture_coordinates(const struct texture_image *image, const struct hit *hi
 }
 
 struct rgba texture_texel(const struct texture_image *image, const struct texcoord *at) {
-    return image_lookup(image->image, at->u, at->v, at->width_u, at->width_v, image->filter, at->wrap_u, at->wrap_v);
+    return image_lookup(image->image, (struct image_point){at->u, at->v, at->width_u, at->width_v},
+                        (struct image_sampling){image->filter, at->wrap_u, at->wrap_v});
 }

@@ -114,14 +114,13 @@ double noise_wood(double x, double y, double z, double factor, double density, i
     return share(noise_cosine_mix(0.5 + 0.5 * t, 0.0, 1.0));
 }
 
-double noise_marble(double x, double y, double z, double factor, double multiplier, double vein_frequency,
-                    int interpolation) {
+double noise_marble(struct vec3 p, double factor, double multiplier, double vein_frequency, int interpolation) {
     double sum = 0.0, scale = 1.0;
     for (int octave = 0; octave < 4; octave++) {
         double f = factor * scale;
-        sum += noise_perlin(f * x, f * y, f * z, interpolation) / scale;
+        sum += noise_perlin(f * p.x, f * p.y, f * p.z, interpolation) / scale;
         scale *= 4.0;
     }
-    double vein = el_cos(vein_frequency * y + multiplier * sum);
+    double vein = el_cos(vein_frequency * p.y + multiplier * sum);
     return share(noise_cosine_mix((1.0 + vein) / 2.0, 0.0, 1.0));
 }

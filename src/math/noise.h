@@ -3,6 +3,8 @@
 #ifndef GRAY_MATH_NOISE_H
 #define GRAY_MATH_NOISE_H
 
+#include "math/vec3.h"
+
 /* a + (b - a) (1 - cos(pi t)) / 2 */
 double noise_cosine_mix(double t, double a, double b);
 
@@ -10,10 +12,9 @@ double noise_cosine_mix(double t, double a, double b);
  * then linear; anything else: noise_cosine_mix on the faded parameter. */
 double noise_perlin(double x, double y, double z, int interpolation);
 
-/* The weight in [0, 1] of a pattern's first colour at the point (x, y, z); the rest is the weight of the mix colour.
- * factor multiplies the coordinates before the noise is taken. A NaN parameter gives share 1. */
+/* The weight in [0, 1] of a pattern's first colour at the point (x, y, z) or p; the rest is the weight of the mix
+ * colour. factor multiplies the coordinates before the noise is taken. A NaN parameter gives share 1. */
 double noise_wood(double x, double y, double z, double factor, double density, int interpolation);
-double noise_marble(double x, double y, double z, double factor, double multiplier, double vein_frequency,
-                    int interpolation);
+double noise_marble(struct vec3 p, double factor, double multiplier, double vein_frequency, int interpolation);
 
 #endif

@@ -40,9 +40,9 @@ uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key) {
     return (index + (p & 0x7fffffffu) % count) % count;
 }
 
-struct sample2 sample_multi(uint64_t set, uint64_t key, uint32_t i, uint32_t j, uint32_t n, uint32_t part,
-                            uint32_t side) {
-    uint32_t m = n * side, column = i * side + part % side, row = j * side + part / side;
+struct sample2 sample_multi(uint64_t set, uint64_t key, struct sample_part part) {
+    uint32_t side = part.side, m = part.n * side;
+    uint32_t column = part.i * side + part.part % side, row = part.j * side + part.part / side;
     uint32_t inner_x = sample_permute(row, m, random_combine(set, 2 * (uint64_t)column));
     uint32_t inner_y = sample_permute(column, m, random_combine(set, 2 * (uint64_t)row + 1));
     uint64_t bits = random_combine(key, (uint64_t)row * m + column);

@@ -27,11 +27,14 @@ static inline struct sample2 sample_cell_part(uint64_t key, uint32_t i, uint32_t
     return (struct sample2){((double)i + inner.x) / (double)n, ((double)j + inner.y) / (double)n};
 }
 
-/* Part (part % side, part / side) of cell (i, j) of n x n cells, so that all parts of all cells together are one
- * multi-jittered set: with m = n * side, each of the m x m parts has one point, and so has each of the m^2 columns and
- * each of the m^2 rows. `set` is the key of the set, `key` that of the jitter. */
-struct sample2 sample_multi(uint64_t set, uint64_t key, uint32_t i, uint32_t j, uint32_t n, uint32_t part,
-                            uint32_t side);
+/* Part (part % side, part / side) of side x side of cell (i, j) of n x n cells. */
+struct sample_part {
+    uint32_t i, j, n, part, side;
+};
+/* A point of a part, so that all parts of all cells together are one multi-jittered set: with m = n * side, each of the
+ * m x m parts has one point, and so has each of the m^2 columns and each of the m^2 rows. `set` is the key of the set,
+ * `key` that of the jitter. */
+struct sample2 sample_multi(uint64_t set, uint64_t key, struct sample_part part);
 /* Element `index` of a random order of 0 .. count-1 (a bijection for every key). */
 uint32_t sample_permute(uint32_t index, uint32_t count, uint64_t key);
 /* Maps the unit square onto the unit disc; keeps the ratio of areas, and is continuous. */

@@ -305,13 +305,14 @@ static struct vec3 load(const double v[3]) {
     return vec3_make(v[0], v[1], v[2]);
 }
 
-static void describe_uv(const struct mesh *mesh, uint32_t triangle, double w, double u, double v, struct vec3 e1,
-                        struct vec3 e2, struct surface *out) {
+/* at: the barycentric coordinates; e1, e2: the edges from the first corner. */
+static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 at, struct vec3 e1, struct vec3 e2,
+                        struct surface *out) {
     const uint32_t *corner = mesh->uv_corners[triangle];
     const double *a = mesh->uvs[corner[0]], *b = mesh->uvs[corner[1]], *c = mesh->uvs[corner[2]];
     out->has_uv = true;
-    out->u = w * a[0] + u * b[0] + v * c[0];
-    out->v = w * a[1] + u * b[1] + v * c[1];
+    out->u = at.x * a[0] + at.y * b[0] + at.z * c[0];
+    out->v = at.x * a[1] + at.y * b[1] + at.z * c[1];
     double du1 = b[0] - a[0], dv1 = b[1] - a[1], du2 = c[0] - a[0], dv2 = c[1] - a[1];
     double area = triangle_edge(du1, dv1, du2, dv2);
     if (area == 0)
@@ -347,7 +348,7 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
     out->pattern_point = out->point;
     out->pattern_normal = out->normal;
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
-        describe_uv(mesh, triangle, w, u, v, e1, e2, out);
+        describe_uv(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
     if (mesh->colours) {
         const float *p = mesh->colours[corner[0]], *q = mesh->colours[corner[1]], *r = mesh->colours[corner[2]];
         out->has_colour = true;

@@ -56,8 +56,9 @@ static bool prepare_lens(const struct camera *camera, const struct lens *lens, s
     return true;
 }
 
-bool camera_prepare(const struct camera *camera, const struct settings *settings, double width, double height,
+bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
                     struct camera_frame *out, char warning[256], struct error *error) {
+    double width = size.width, height = size.height;
     warning[0] = '\0';
     struct vec3 view = settings->view_is_target ? vec3_sub(camera->view, camera->eye) : camera->view;
     if (!vec3_finite(view) || !(vec3_length(view) > 0))

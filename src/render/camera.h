@@ -22,8 +22,11 @@ struct camera_frame {
     double radian; /* fisheye: angle of half the height */
 };
 
+struct picture_size {
+    double width, height; /* pixels */
+};
 /* Errors: view zero or not finite, a lens that cannot be. Sets *warning to a sentence when up had to be replaced. */
-bool camera_prepare(const struct camera *camera, const struct settings *settings, double width, double height,
+bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
                     struct camera_frame *out, char warning[256], struct error *error);
 /* The camera at a moment. */
 struct camera camera_at(const struct camera *camera, const struct camera_motion *motion, double time);

@@ -83,7 +83,8 @@ static double visible_share(struct integrator_state *state, const struct light *
         targets[have++] = light_target_at(light, &context, sample_set_point(&places, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
-        seen += world_visible(world, &occluder_candidates, from, hit->time, targets, have, state->scratch, NULL);
+        seen += world_visible(world, &occluder_candidates, &(struct shadow_rays){from, hit->time, targets, have},
+                              state->scratch, NULL);
         have = 0;
         if (integrator_cancelled(state))
             return 0;
@@ -92,29 +93,45 @@ static double visible_share(struct integrator_state *state, const struct light *
     return (double)seen / (double)all;
 }
 
-/* Which of the targets arrive, all of them distant or none. Lights all around have no shaft: each ray looks for itself.
+/* What shadow rays of one point are sent to, all distant or none. */
+struct shadow_targets {
+    const struct vec3 *at;
+    uint32_t count;
+    bool distant;
+};
+
+/* Which of the targets arrive. Lights all around have no shaft: each ray looks for itself.
  */
 static void ask_targets(struct integrator_state *state, const struct light_context *context, const struct hit *hit,
-                        const struct vec3 *targets, uint32_t count, bool distant, bool *visible) {
+                        const struct shadow_targets *targets, bool *visible) {
+    uint32_t count = targets->count;
     if (context->bounded) {
         const struct world *world = state->job->world;
         struct occluder_candidates occluder_candidates = light_occluder_candidates(world, context, hit);
-        uint32_t seen = world_visible(world, &occluder_candidates, context->from, hit->time, targets, count,
-                                      state->scratch, visible);
+        uint32_t seen =
+            world_visible(world, &occluder_candidates,
+                          &(struct shadow_rays){context->from, hit->time, targets->at, count}, state->scratch, visible);
         state->shadow_rays += count;
         observe_shadow_rays(state->observer, count, seen, OBSERVER_NO_BLOCKER);
         return;
     }
     for (uint32_t i = 0; i < count; i++) {
-        struct light_target target = {targets[i], distant};
+        struct light_target target = {targets->at[i], targets->distant};
         visible[i] = target_is_free(state, hit, context->from, &target);
     }
+}
+
+/* What a surface shows of a light that rays see: a surface that mirrors shows its image, and a highlight would be the
+ * same light again. */
+static uint32_t without_highlight(const struct bsdf *bsdf) {
+    return bsdf_lobes_with(bsdf, BSDF_TRACED) ? bsdf_lobes_with(bsdf, BSDF_LAMBERT) : BSDF_ALL;
 }
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
  */
 static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
-                                    const struct hit *hit, const struct bsdf *bsdf, uint32_t lobes, uint64_t key) {
+                                    const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
+    uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
     struct vec3 sum = {0, 0, 0};
     struct vec3 from = off_surface(hit);
     struct light_context context;
@@ -133,7 +150,7 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
         }
         if (have == 0 || (have < AREA_BATCH && cell + 1 < all))
             continue;
-        ask_targets(state, &context, hit, targets, have, sample.target.distant, visible);
+        ask_targets(state, &context, hit, &(struct shadow_targets){targets, have, sample.target.distant}, visible);
         for (uint32_t i = 0; i < have; i++)
             sum = visible[i] ? vec3_add(sum, carried[i]) : sum;
         have = 0;
@@ -157,18 +174,11 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * arrival.strength), reflected);
 }
 
-/* What a surface shows of a light that rays see: a surface that mirrors shows its image, and a highlight would be the
- * same light again. */
-static uint32_t without_highlight(const struct bsdf *bsdf) {
-    return bsdf_lobes_with(bsdf, BSDF_TRACED) ? bsdf_lobes_with(bsdf, BSDF_LAMBERT) : BSDF_ALL;
-}
-
 static struct vec3 one_light(struct integrator_state *state, const struct light *light, uint32_t number,
                              const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     if (light_is_delta(light))
         return light_of_delta(state, light, number, hit, bsdf, key);
-    uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
-    return light_of_samples(state, light, number, hit, bsdf, lobes, key);
+    return light_of_samples(state, light, number, hit, bsdf, key);
 }
 
 struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {

@@ -320,7 +320,8 @@ bool overlay_lines(const struct render_job *job, struct pool *pool, const struct
         return true;
     if (job->settings.motion.moves)
         camera = camera_at(&job->camera, &job->settings.motion, shutter_time(job->settings.shutter, 0));
-    if (!camera_prepare(&camera, &job->settings, job->width, job->height, &drawing.camera, warning, error))
+    if (!camera_prepare(&camera, &job->settings, (struct picture_size){job->width, job->height}, &drawing.camera,
+                        warning, error))
         return false;
     enum projection projection = drawing.camera.lens.projection;
     drawing.inverse = projection == PROJECTION_PERSPECTIVE;

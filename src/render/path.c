@@ -37,8 +37,9 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
     bool background = renderer->job->background_lights && sky_brightest(&world->sky) > 0;
-    tracer->built = world_lights_build(&tracer->lights, world, background, LIGHT_CHOICE_TREE, &tracer->arena,
-                                       renderer->pool, error);
+    tracer->built =
+        world_lights_build(&tracer->lights, world, (struct world_lights_options){background, LIGHT_CHOICE_TREE},
+                           &tracer->arena, renderer->pool, error);
     return tracer->built;
 }
 

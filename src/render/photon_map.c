@@ -456,13 +456,13 @@ static bool make_tree(struct builder *b, uint32_t chunks, double radius, struct 
     return ok || error_set(error, ERROR_CANCELLED, "stopped while making the photon map");
 }
 
-bool photon_map_build(struct photon_map *map, const struct world *world, const struct photon *photons, uint32_t count,
+bool photon_map_build(struct photon_map *map, const struct world *world, const struct photon_list *photons,
                       double radius, struct pool *pool, struct error *error) {
-    uint32_t chunks = (uint32_t)(((uint64_t)count + CHUNK - 1) / CHUNK);
+    uint32_t chunks = (uint32_t)(((uint64_t)photons->count + CHUNK - 1) / CHUNK);
     *map = (struct photon_map){.unit = 1, .power_unit = 1};
     for (uint32_t i = 0; i < world->light_count; i++)
         map->listed = map->listed || world->lights[i].lit;
-    struct builder b = {.map = map, .photons = photons, .count = count, .pool = pool};
+    struct builder b = {.map = map, .photons = photons->items, .count = photons->count, .pool = pool};
     b.firsts = mem_alloc_zero(chunks, sizeof *b.firsts);
     b.boxes = mem_alloc_zero(chunks, sizeof *b.boxes);
     b.powers = mem_alloc_zero(chunks, sizeof *b.powers);

@@ -37,9 +37,13 @@ struct photon_map {
     bool listed;             /* some light does not reach everything */
 };
 
-/* photons: count entries, of which those that landed are kept, in their order. radius: world units, 0 for one by
+struct photon_list {
+    const struct photon *items;
+    uint32_t count;
+};
+/* Of the photons those that landed are kept, in their order. radius: world units, 0 for one by
  * density. Errors: no memory, cancelled. An empty map is fine. */
-bool photon_map_build(struct photon_map *map, const struct world *world, const struct photon *photons, uint32_t count,
+bool photon_map_build(struct photon_map *map, const struct world *world, const struct photon_list *photons,
                       double radius, struct pool *pool, struct error *error);
 void photon_map_destroy(struct photon_map *map);
 

@@ -279,9 +279,15 @@ static void meet_cell(struct search *s, uint32_t face, uint32_t i, uint32_t j, u
     s->found++;
 }
 
+/* A square of a face of the sphere of directions: face / 2^level in each direction. */
+struct target_square {
+    uint32_t face, level, i, j;
+};
+
 /* `list`: the casters that the parent may meet. */
-static void visit(struct search *s, uint32_t face, uint32_t level, uint32_t i, uint32_t j, const uint32_t *list,
-                  uint32_t count, uint32_t *free_room) {
+static void visit(struct search *s, struct target_square square, const uint32_t *list, uint32_t count,
+                  uint32_t *free_room) {
+    uint32_t face = square.face, level = square.level, i = square.i, j = square.j;
     struct photon_target *target = s->target;
     struct plane_set planes;
     double size = ldexp(target->size, -(int)level), half = size / 2;
@@ -306,7 +312,8 @@ static void visit(struct search *s, uint32_t face, uint32_t level, uint32_t i, u
         return;
     }
     for (uint32_t k = 0; k < 4; k++)
-        visit(s, face, level + 1, 2 * i + (k & 1), 2 * j + (k >> 1), free_room, met, free_room + met);
+        visit(s, (struct target_square){face, level + 1, 2 * i + (k & 1), 2 * j + (k >> 1)}, free_room, met,
+              free_room + met);
 }
 
 static bool search_level(struct search *s, uint32_t level) {
@@ -315,7 +322,8 @@ static bool search_level(struct search *s, uint32_t level) {
     for (uint32_t k = 0; k < s->specular_objects->count; k++)
         s->stack[k] = k;
     for (uint32_t face = 0; face < (is_distant(s->target) ? 1U : 6U); face++)
-        visit(s, face, 0, 0, 0, s->stack, s->specular_objects->count, s->stack + s->specular_objects->count);
+        visit(s, (struct target_square){face, 0, 0, 0}, s->stack, s->specular_objects->count,
+              s->stack + s->specular_objects->count);
     return !s->stopped;
 }
 
@@ -508,13 +516,13 @@ static bool find_medium_stacks(struct photon_targets *targets, const struct worl
         if (!closed)
             return false;
         (void)world_closed_in(world, &here, closed, count);
-        medium_stack_at(world, centre, 0, closed, count, scratch, &target->media);
+        medium_stack_at(world, &(struct inside_query){centre, 0, closed, count}, scratch, &target->media);
     }
     return !scratch->failed;
 }
 
 bool photon_targets_make(struct photon_targets *out, const struct world *world, uint32_t photons, struct arena *arena,
-                         struct world_scratch *scratch, struct pool *pool, struct error *error) {
+                         struct pool *pool, struct error *error) {
     struct specular_objects specular_objects;
     *out = (struct photon_targets){0};
     if (!find_casters(&specular_objects, world, arena))
@@ -537,7 +545,9 @@ bool photon_targets_make(struct photon_targets *out, const struct world *world, 
         return error_no_memory(error, "the photons of the caustics");
     if (search.stopped)
         return error_set(error, ERROR_CANCELLED, "stopped while aiming photons");
-    ok = find_medium_stacks(out, world, arena, scratch);
+    struct world_scratch scratch;
+    ok = world_scratch_init(&scratch, world) && find_medium_stacks(out, world, arena, &scratch);
+    world_scratch_destroy(&scratch);
     share_photons(out, photons);
     return ok || error_no_memory(error, "the photons of the caustics");
 }

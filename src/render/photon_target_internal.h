@@ -37,7 +37,7 @@ struct photon_targets {
 /* Finds the cells of every light of the world and shares `photons` among them by flux. Memory comes from the arena.
  * Errors: no memory, cancelled. Without specular things there are no aims. */
 bool photon_targets_make(struct photon_targets *out, const struct world *world, uint32_t photons, struct arena *arena,
-                         struct world_scratch *scratch, struct pool *pool, struct error *error);
+                         struct pool *pool, struct error *error);
 
 struct photon_start {
     struct vec3 origin, direction; /* direction: unit */

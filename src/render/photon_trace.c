@@ -195,11 +195,7 @@ static bool trace_photons(struct photon_job *s, struct photon_statistics *statis
 
 static bool find_targets(struct photon_job *s, struct photon_targets *targets, struct arena *arena,
                          struct error *error) {
-    struct world_scratch scratch;
-    bool ok = world_scratch_init(&scratch, s->world) || error_no_memory(error, "the crossings of a photon");
-    ok = ok && photon_targets_make(targets, s->world, (uint32_t)s->settings->caustics.photons, arena, &scratch, s->pool,
-                                   error);
-    world_scratch_destroy(&scratch);
+    bool ok = photon_targets_make(targets, s->world, (uint32_t)s->settings->caustics.photons, arena, s->pool, error);
     s->targets = targets;
     s->count = targets->count > 0 ? (uint32_t)s->settings->caustics.photons : 0;
     return ok;
@@ -227,7 +223,8 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
         else
             ok = trace_photons(&s, statistics, error);
         double sent = clock_seconds(CLOCK_MONOTONIC);
-        ok = ok && photon_map_build(map, job->world, s.photons, s.count, settings->caustics.radius, pool, error);
+        ok = ok && photon_map_build(map, job->world, &(struct photon_list){s.photons, s.count},
+                                    settings->caustics.radius, pool, error);
         statistics->map_seconds += clock_seconds(CLOCK_MONOTONIC) - sent;
     }
     statistics->sent += s.count;

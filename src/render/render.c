@@ -191,16 +191,13 @@ static bool render_tiles(struct renderer *renderer, struct render_statistics *st
     return whole;
 }
 
-bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
-                    char warning[256], struct error *error) {
+bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error) {
     const struct settings *s = &job->settings;
     struct camera_frame frame;
     char ignored[256];
     if (!renderer_prepare_at(job, 0, &frame, warning, error) || !renderer_prepare_at(job, 1, &frame, ignored, error))
         return false;
-    *x0 = *y0 = 0;
-    *width = job->width;
-    *height = job->height;
+    *area = (struct render_area){0, 0, job->width, job->height};
     if (!s->cropped)
         return true;
     if (s->crop_x < 0 || s->crop_y < 0 || s->crop_width < 1 || s->crop_height < 1 || s->crop_x >= (int64_t)job->width ||
@@ -209,10 +206,8 @@ bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t
         return error_set(error, ERROR_USAGE, "--crop %lld,%lld,%lld,%lld does not lie inside the picture of %u x %u",
                          (long long)s->crop_x, (long long)s->crop_y, (long long)s->crop_width,
                          (long long)s->crop_height, job->width, job->height);
-    *x0 = (uint32_t)s->crop_x;
-    *y0 = (uint32_t)s->crop_y;
-    *width = (uint32_t)s->crop_width;
-    *height = (uint32_t)s->crop_height;
+    *area = (struct render_area){(uint32_t)s->crop_x, (uint32_t)s->crop_y, (uint32_t)s->crop_width,
+                                 (uint32_t)s->crop_height};
     return true;
 }
 
@@ -269,7 +264,7 @@ static bool find_eye_medium_stack(struct renderer *renderer, const struct box *o
         (void)world_closed_in(world, origins, renderer->closed, renderer->closed_count);
     renderer->medium_stack_by_ray = renderer->closed_count > 0 && spread;
     renderer->together = camera_is_plain(&renderer->camera) && !renderer->timed && !renderer->medium_stack_by_ray;
-    medium_stack_at(world, renderer->camera.eye, 0, renderer->closed, renderer->closed_count,
+    medium_stack_at(world, &(struct inside_query){renderer->camera.eye, 0, renderer->closed, renderer->closed_count},
                     &renderer->workers[0].scratch, &renderer->eye_medium_stack);
     return !renderer->workers[0].scratch.failed;
 }
@@ -320,7 +315,7 @@ static bool record_pixel(struct renderer *renderer, struct film *film, struct pi
     return !pixel_trace->failed || error_no_memory(error, "the trace of a pixel");
 }
 
-bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
+bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel_list pixels,
                    pixel_trace_listener *listen, void *context, struct error *error) {
     struct film_pixel pixel = {0};
     float floats[FILM_RECORD_FLOATS] = {0};
@@ -340,9 +335,9 @@ bool render_pixels(const struct render_job *job, struct pool *pool, const uint32
     own.settings.show_refined = false;
     bool ok = begin_rendering(&renderer, pool_workers(pool), &statistics, error);
     renderer.together = false; /* each sample is reported on its own */
-    for (uint32_t i = 0; ok && i < count; i++) {
+    for (uint32_t i = 0; ok && i < pixels.count; i++) {
         struct pixel_trace pixel_trace;
-        pixel_trace_init(&pixel_trace, pixels[i][0], pixels[i][1]);
+        pixel_trace_init(&pixel_trace, pixels.at[i][0], pixels.at[i][1]);
         ok = record_pixel(&renderer, &film, &pixel_trace, error) && listen(context, &pixel_trace, error);
         pixel_trace_destroy(&pixel_trace);
     }

@@ -53,13 +53,20 @@ void integrator_warn(const struct render_job *job, world_warning *warn, void *co
 /* False: cancelled or out of memory (error says which). The film then holds what was finished. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);
+struct pixel_list {
+    const uint32_t (*at)[2]; /* x, y */
+    uint32_t count;
+};
 /* Renders single pixels {x, y} of the whole picture as render_run would, and records and reports the trace of each; it
  * ends when `listen` returns. The film of the job is not looked at. False: as render_run, or `listen` said so. */
 typedef bool pixel_trace_listener(void *context, struct pixel_trace *pixel_trace, struct error *error);
-bool render_pixels(const struct render_job *job, struct pool *pool, const uint32_t (*pixels)[2], uint32_t count,
+bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel_list pixels,
                    pixel_trace_listener *listen, void *context, struct error *error);
-/* Checks picture size, crop, camera; fills the film rectangle. First call of a job. Warnings: up parallel to view. */
-bool render_prepare(struct render_job *job, uint32_t *x0, uint32_t *y0, uint32_t *width, uint32_t *height,
-                    char warning[256], struct error *error);
+/* The part of the picture that is rendered: that of the film. */
+struct render_area {
+    uint32_t x0, y0, width, height;
+};
+/* Checks picture size, crop, camera; fills the area. First call of a job. Warnings: up parallel to view. */
+bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error);
 
 #endif

@@ -9,7 +9,7 @@ bool renderer_prepare_at(const struct render_job *job, double ray_time, struct c
     struct camera camera = job->camera;
     if (settings->motion.moves)
         camera = camera_at(&job->camera, &settings->motion, shutter_time(settings->shutter, ray_time));
-    return camera_prepare(&camera, settings, job->width, job->height, out, warning, error);
+    return camera_prepare(&camera, settings, (struct picture_size){job->width, job->height}, out, warning, error);
 }
 
 static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
@@ -18,7 +18,8 @@ static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *work
     ray->footprint.width *= share;
     worker->camera_rays++;
     if (renderer->medium_stack_by_ray) {
-        medium_stack_at(renderer->job->world, ray->origin, ray->time, renderer->closed, renderer->closed_count,
+        medium_stack_at(renderer->job->world,
+                        &(struct inside_query){ray->origin, ray->time, renderer->closed, renderer->closed_count},
                         &worker->scratch, &worker->ray_medium_stack);
         worker->state.eye_medium_stack = &worker->ray_medium_stack;
     }
@@ -27,18 +28,18 @@ static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *work
 
 /* Through a lens, in another projection, for two eyes. */
 static struct vec3 sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
-                                  double x, double y, double time, double share) {
+                                  struct sample2 at, double time, double share) {
     const struct sampler sampler = worker->state.sampler;
     struct sample2 place = sampler_lens(&sampler);
     struct ray ray, right_ray;
     bool anaglyph = camera->lens.stereo == STEREO_ANAGLYPH;
-    if (!camera_ray_through(camera, x, y, place, anaglyph ? -1 : 0, &ray))
+    if (!camera_ray_through(camera, at.x, at.y, place, anaglyph ? -1 : 0, &ray))
         return vec3_all(0);
     ray.time = time;
     struct vec3 colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
     if (!anaglyph)
         return colour;
-    (void)camera_ray_through(camera, x, y, place, 1, &right_ray);
+    (void)camera_ray_through(camera, at.x, at.y, place, 1, &right_ray);
     right_ray.time = time;
     struct vec3 right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
     return vec3_make(colour.x, right.y, right.z);
@@ -78,7 +79,7 @@ static struct vec3 sample_single(struct renderer *renderer, struct worker *worke
             return vec3_all(0); /* the one moment in which a view turns through zero */
     }
     if (!camera_is_plain(camera))
-        return sample_through(renderer, worker, camera, x, y, time, share);
+        return sample_through(renderer, worker, camera, (struct sample2){x, y}, time, share);
     struct ray ray = camera_ray(camera, x, y);
     ray.time = time;
     return trace_from_eye(renderer, worker, &ray, share, worker->state.sampler.key);

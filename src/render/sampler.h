@@ -154,7 +154,7 @@ static inline struct sample2 sample_set_point(const struct sample_set *set, uint
     uint32_t i = cell % set->side, j = cell / set->side;
     switch (set->kind) {
     case SAMPLE_SET_MULTI:
-        return sample_multi(set->set_key, set->key, i, j, set->side, set->part, set->parts);
+        return sample_multi(set->set_key, set->key, (struct sample_part){i, j, set->side, set->part, set->parts});
     case SAMPLE_SET_PARTS:
         return sample_cell_part(set->key, i, j, set->side, set->part, set->parts);
     case SAMPLE_SET_JITTERED:

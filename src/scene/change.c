@@ -450,23 +450,23 @@ static bool lay(struct change_application *l) {
     return !l->no_memory || error_no_memory(l->error, "the changes of the scene");
 }
 
-bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
-                      const struct scene_light *lights, uint32_t light_count, change_warning *warn, void *context,
-                      struct changed_scene *out, struct error *error) {
+bool changes_lay_over(struct change_range changes, const struct change_target *target, change_warning *warn,
+                      void *context, struct changed_scene *out, struct error *error) {
+    uint32_t count = changes.count, light_count = target->light_count;
     *out = (struct changed_scene){.lights = mem_alloc_zero((size_t)light_count + count, sizeof *out->lights),
                                   .light_count = light_count,
                                   .nodes = mem_alloc_zero((size_t)count + 1, sizeof *out->nodes),
                                   .materials = mem_alloc_zero((size_t)count + 1, sizeof *out->materials),
                                   .added = mem_alloc_zero((size_t)count + 1, sizeof(struct node *))};
     struct change_application l = {
-        .scene = scene, .root = root, .out = out, .warn = warn, .context = context, .error = error};
+        .scene = target->scene, .root = target->root, .out = out, .warn = warn, .context = context, .error = error};
     bool ok = out->lights && out->nodes && out->materials && out->added;
     if (!ok)
         error_no_memory(error, "the changes of the scene");
     if (ok && light_count > 0)
-        memcpy(out->lights, lights, light_count * sizeof *lights);
+        memcpy(out->lights, target->lights, light_count * sizeof *out->lights);
     for (uint32_t i = 0; ok && i < count; i++) {
-        l.change = &changes[i];
+        l.change = &changes.items[i];
         ok = lay(&l);
     }
     if (!ok)

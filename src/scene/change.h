@@ -97,10 +97,20 @@ struct changed_scene {
     struct node **added;
     uint32_t node_count, material_count, added_count;
 };
+struct change_range {
+    const struct change *items;
+    uint32_t count;
+};
+/* What a picture shows, and changes are laid over. */
+struct change_target {
+    struct scene *scene;
+    struct node *root;
+    const struct scene_light *lights;
+    uint32_t light_count;
+};
 /* In order, one after the other; new nodes live in the arena of the scene. Errors: no memory. */
-bool changes_lay_over(const struct change *changes, uint32_t count, struct scene *scene, struct node *root,
-                      const struct scene_light *lights, uint32_t light_count, change_warning *warn, void *context,
-                      struct changed_scene *out, struct error *error);
+bool changes_lay_over(struct change_range changes, const struct change_target *target, change_warning *warn,
+                      void *context, struct changed_scene *out, struct error *error);
 void changes_take_off(struct changed_scene *changed);
 /* A base as it was before all that is laid over the scene; NULL: it was not changed. */
 const struct material *changes_before(const struct changed_scene *changed, uint32_t serial);

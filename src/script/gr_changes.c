@@ -237,8 +237,9 @@ bool changes_begin(struct script_context *context, struct render_request *reques
     change_views(context, request);
     if (context->change_count == 0)
         return true;
-    if (!changes_lay_over(context->changes, context->change_count, request->scene, request->root, request->lights,
-                          request->light_count, warn_once, context, changed, error))
+    if (!changes_lay_over((struct change_range){context->changes, context->change_count},
+                          &(struct change_target){request->scene, request->root, request->lights, request->light_count},
+                          warn_once, context, changed, error))
         return false;
     context->changes_reported = true;
     request->lights = changed->lights;

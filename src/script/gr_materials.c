@@ -99,9 +99,8 @@ bool gr_rr_material(struct script_context *context, const struct script_value *a
 }
 
 /* The pattern mixes kd with another colour. */
-static bool pattern_over(struct script_context *context, enum material_kind kind, const struct material *base,
-                         struct texture pattern, struct vec3 mix, struct script_result *result, struct error *error) {
-    struct material *m = scene_material(&context->scene, kind, base, error);
+static bool pattern_over(struct script_context *context, struct material *m, struct texture pattern, struct vec3 mix,
+                         struct script_result *result, struct error *error) {
     return m && material_mix_kd(m, pattern, mix, &context->scene.arena, error) && give(result, m);
 }
 
@@ -109,16 +108,17 @@ bool gr_marble(struct script_context *context, const struct script_value *args, 
                struct error *error) {
     struct texture pattern = texture_marble(args[MARBLE_F].number, args[MARBLE_MULTIPLIER].number,
                                             args[MARBLE_VEIN].number, (int)args[MARBLE_INTERP].number);
-    return pattern_over(context, MATERIAL_MARBLE, args[MARBLE_MATERIAL].material, pattern, args[MARBLE_MIX].vector,
-                        result, error);
+    return pattern_over(context,
+                        scene_material(&context->scene, MATERIAL_MARBLE, args[MARBLE_MATERIAL].material, error),
+                        pattern, args[MARBLE_MIX].vector, result, error);
 }
 
 bool gr_wood(struct script_context *context, const struct script_value *args, struct script_result *result,
              struct error *error) {
     struct texture pattern =
         texture_wood(args[WOOD_F].number, args[WOOD_DENSITY].number, (int)args[WOOD_INTERP].number);
-    return pattern_over(context, MATERIAL_WOOD, args[WOOD_MATERIAL].material, pattern, args[WOOD_MIX].vector, result,
-                        error);
+    return pattern_over(context, scene_material(&context->scene, MATERIAL_WOOD, args[WOOD_MATERIAL].material, error),
+                        pattern, args[WOOD_MIX].vector, result, error);
 }
 
 bool gr_fresnel(struct script_context *context, const struct script_value *args, struct script_result *result,

@@ -57,11 +57,17 @@ static bool check_faces(const struct script_value *faces, const char *name, uint
     return true;
 }
 
+/* What the indices of faces refer to. */
+struct face_targets {
+    uint32_t count;
+    const char *name;
+};
+
 /* The indices of the corners into normals or uvs: those of `own`, or the vertices' when there are none. */
 static bool corner_indices(const struct script_value *faces, const struct script_value *own, const char *own_name,
-                           uint32_t count, const char *of, const uint32_t **indices, struct error *error) {
+                           struct face_targets targets, const uint32_t **indices, struct error *error) {
     const struct script_value *used = own->given ? own : faces;
-    if (!check_faces(used, own->given ? own_name : "faces", count, of, error))
+    if (!check_faces(used, own->given ? own_name : "faces", targets.count, targets.name, error))
         return false;
     if (used->count != faces->count)
         return error_set(error, ERROR_SCENE, "%s has %u entries, but faces has %u", own_name, used->count,
@@ -117,14 +123,15 @@ static struct mesh *mesh_from_tables(struct script_context *context, const struc
     if (normals->given) {
         input.normal_count = normals->count;
         input.normals = normals->points;
-        if (!corner_indices(faces, &args[MESH_FACE_NORMALS], "face_normals", normals->count, "normals",
-                            &input.normal_index, error))
+        if (!corner_indices(faces, &args[MESH_FACE_NORMALS], "face_normals",
+                            (struct face_targets){normals->count, "normals"}, &input.normal_index, error))
             return NULL;
     }
     if (uvs->given) {
         input.uv_count = uvs->count;
         input.uvs = uvs->pairs;
-        if (!corner_indices(faces, &args[MESH_FACE_UVS], "face_uvs", uvs->count, "uvs", &input.uv_index, error))
+        if (!corner_indices(faces, &args[MESH_FACE_UVS], "face_uvs", (struct face_targets){uvs->count, "uvs"},
+                            &input.uv_index, error))
             return NULL;
     }
     if (!face_slots(context, args, &input.face_material, error))
@@ -238,12 +245,13 @@ bool gr_glyphs(struct script_context *context, const struct script_value *args, 
         return error_no_memory(error, "letters");
     /* Errors that do not depend on files are reported before files are searched. */
     if (!FONTS_READABLE)
-        return font_layout(args[GLYPHS_FONT].text, NULL, 0, "", &context->call, text, error);
+        return font_layout(&(struct font_file){args[GLYPHS_FONT].text, NULL, 0}, "", &context->call, text, error);
     if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
         !path_policy_map(context->path_policy, path, FILE_LIMIT, &bytes, error))
         return false;
     uint64_t refusals = mem_refusals();
-    bool done = font_layout(path, bytes.data, bytes.size, args[GLYPHS_TEXT].text, &context->call, text, error);
+    bool done = font_layout(&(struct font_file){path, bytes.data, bytes.size}, args[GLYPHS_TEXT].text, &context->call,
+                            text, error);
     file_unmap(&bytes);
     if (!done)
         (void)error_of_file(error, path, refusals);

@@ -31,17 +31,16 @@ bool gr_node(struct script_context *context, const struct script_value *args, st
 
 /* A list with one number for each place, or one for all; copied, since arguments end with the call. */
 static bool keep_numbers(struct script_context *context, const struct script_value *given, const char *name,
-                         uint32_t places, const double **out, bool *one, struct error *error) {
+                         const struct placements *placements, const double **out, struct error *error) {
     if (!given->given)
         return true;
-    if (!given->single && given->count != places)
-        return error_set(error, ERROR_SCENE, "%s has %u numbers for %u places", name, given->count, places);
+    if (!given->single && given->count != placements->count)
+        return error_set(error, ERROR_SCENE, "%s has %u numbers for %u places", name, given->count, placements->count);
     double *kept = arena_alloc_array(&context->scene.arena, given->count, sizeof *kept);
     if (!kept)
         return error_no_memory(error, "the places of instances");
     memcpy(kept, given->numbers, given->count * sizeof *kept);
     *out = kept;
-    *one = given->single;
     return true;
 }
 
@@ -85,12 +84,12 @@ bool gr_instances(struct script_context *context, const struct script_value *arg
     placements->at = matrices ? NULL : (const double(*)[3])kept;
     placements->matrices = matrices ? (const struct affine *)kept : NULL;
     placements->axis = args[INSTANCES_AXIS].given ? args[INSTANCES_AXIS].choice : 1;
+    placements->one_turn = args[INSTANCES_TURN].single;
+    placements->one_size = args[INSTANCES_SIZE].single;
     node->placements = placements;
     result->pointer = node;
-    return keep_numbers(context, &args[INSTANCES_TURN], "turn", at->count, &placements->turn, &placements->one_turn,
-                        error) &&
-           keep_numbers(context, &args[INSTANCES_SIZE], "size", at->count, &placements->size, &placements->one_size,
-                        error) &&
+    return keep_numbers(context, &args[INSTANCES_TURN], "turn", placements, &placements->turn, error) &&
+           keep_numbers(context, &args[INSTANCES_SIZE], "size", placements, &placements->size, error) &&
            node_add_child(&context->scene, node, args[INSTANCES_OF].node, error);
 }
 

@@ -237,10 +237,10 @@ static bool prepare(struct script_context *context, struct path_policy *path_pol
 }
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
-                struct assets *assets, struct arena *arena, const char **traceback, struct error *error) {
+                struct arena *arena, const char **traceback, struct error *error) {
     struct script_context context = {.options = options, .host = host, .out = arena, .path = path};
     *traceback = NULL;
-    scene_init(&context.scene, assets);
+    scene_init(&context.scene, host->assets);
     struct path_policy path_policy = {0};
     /* What stays where the handler of messages came to nothing. */
     error_set(&context.failure, ERROR_SCENE, "%s: an error while an error was reported", path);

@@ -63,6 +63,7 @@ enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };
 
 struct script_host {
     void *context;
+    struct assets *assets;    /* meshes and images that outlive the script */
     struct settings settings; /* from the command line */
     /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line
      * of the call, other kinds end the script without being catchable by pcall). */
@@ -88,7 +89,7 @@ bool script_path_policy(const char *path, const struct script_options *options, 
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
-                struct assets *assets, struct arena *arena, const char **traceback, struct error *error);
+                struct arena *arena, const char **traceback, struct error *error);
 
 /* The table of functions as documents; text is allocated in arena. */
 const char *script_manual(struct arena *arena);      /* for --man: plain text, 100 columns */

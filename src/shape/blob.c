@@ -200,9 +200,16 @@ static struct vec3 arm(const struct blob_element *e, int region, struct vec3 p) 
     return vec3_add_scaled(from_a, axis, -vec3_dot(from_a, axis));
 }
 
-/* The stretch from lo to hi in which a region of the element acts, cut to where its field is not zero. */
-static bool add_stretch(const struct line *line, const struct blob_element *e, uint32_t index, int region, double lo,
-                        double hi, struct geom_scratch *scratch) {
+/* A piece of a line. */
+struct stretch {
+    double lo, hi;
+};
+
+/* The stretch in which a region of an element acts, cut to where its field is not zero. */
+static bool add_stretch(const struct line *line, const struct blob *blob, uint32_t index, int region,
+                        struct stretch stretch, struct geom_scratch *scratch) {
+    const struct blob_element *e = &blob->elements[index];
+    double lo = stretch.lo, hi = stretch.hi;
     struct vec3 p = arm(e, region, line->origin), d = line->direction;
     if (region == BODY) {
         struct vec3 axis = vec3_normalize(vec3_sub(e->b, e->a));
@@ -232,26 +239,26 @@ static bool add_element(const struct line *line, const struct blob *blob, uint32
     struct vec3 axis = vec3_sub(e->b, e->a);
     double squared = vec3_dot(axis, axis);
     if (!(squared > 0))
-        return add_stretch(line, e, index, BALL_A, -INFINITY, INFINITY, scratch);
+        return add_stretch(line, blob, index, BALL_A, (struct stretch){-INFINITY, INFINITY}, scratch);
     /* Where the line passes the two planes in which the body ends. */
     double speed = vec3_dot(axis, line->direction), at = vec3_dot(axis, vec3_sub(line->origin, e->a));
     if (speed == 0) {
         int region = at < 0 ? BALL_A : at > squared ? BALL_B : BODY;
-        return add_stretch(line, e, index, region, -INFINITY, INFINITY, scratch);
+        return add_stretch(line, blob, index, region, (struct stretch){-INFINITY, INFINITY}, scratch);
     }
     double s_a = -at / speed, s_b = vec3_dot(axis, vec3_sub(e->b, line->origin)) / speed;
     double first = speed > 0 ? s_a : s_b, last = speed > 0 ? s_b : s_a;
-    return add_stretch(line, e, index, speed > 0 ? BALL_A : BALL_B, -INFINITY, first, scratch) &&
-           add_stretch(line, e, index, BODY, first, last, scratch) &&
-           add_stretch(line, e, index, speed > 0 ? BALL_B : BALL_A, last, INFINITY, scratch);
+    return add_stretch(line, blob, index, speed > 0 ? BALL_A : BALL_B, (struct stretch){-INFINITY, first}, scratch) &&
+           add_stretch(line, blob, index, BODY, (struct stretch){first, last}, scratch) &&
+           add_stretch(line, blob, index, speed > 0 ? BALL_B : BALL_A, (struct stretch){last, INFINITY}, scratch);
 }
 
-/* Sum of the acting fields less the threshold, in Bernstein form on [lo, hi]. */
+/* Sum of the acting fields less the threshold, in Bernstein form on the stretch. */
 static void sum_fields(const struct blob *blob, const struct line *line, const struct crossing *acting, uint32_t count,
-                       double lo, double hi, double sum[5]) {
+                       struct stretch stretch, double sum[5]) {
     for (int k = 0; k < 5; k++)
         sum[k] = -blob->threshold;
-    struct vec3 from = line_at(line, lo), to = line_at(line, hi);
+    struct vec3 from = line_at(line, stretch.lo), to = line_at(line, stretch.hi);
     for (uint32_t i = 0; i < count; i++) {
         const struct blob_element *e = &blob->elements[acting[i].part / REGIONS];
         int region = (int)(acting[i].part % REGIONS);
@@ -328,7 +335,7 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
         }
         if (room && later && acting > 0) {
             double lo = ends[i - 1].t, hi = ends[i].t, sum[5], roots[4];
-            sum_fields(blob, &line, active, acting, lo, hi, sum);
+            sum_fields(blob, &line, active, acting, (struct stretch){lo, hi}, sum);
             if ((sum[0] < 0) == inside)
                 sum[0] = inside ? 0 : -0x1p-1000;
             int count = bernstein_roots(sum, 4, roots);

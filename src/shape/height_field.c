@@ -8,6 +8,7 @@
 #include "shape/height_field.h"
 
 #include "geometry/crossing.h"
+#include "shape/span_internal.h"
 
 enum { FLOOR, WALL_X0, WALL_X1, WALL_Z0, WALL_Z1, GROUND, MAX_LEVELS = 18 };
 
@@ -183,19 +184,18 @@ static bool cross(struct walk *w, double s, uint32_t part) {
 }
 
 /* The ground of one triangle of a cell: h = h0 + a (x - column) + b (z - row). */
-static void triangle_plane(const struct height_field *f, uint32_t column, uint32_t row, bool upper, double *h0,
-                           double *a, double *b) {
+struct triangle_plane {
+    double h0, a, b;
+};
+static struct triangle_plane triangle_plane(const struct height_field *f, uint32_t column, uint32_t row, bool upper) {
     double h00 = height(f, column, row), h11 = height(f, column + 1, row + 1);
     double h = upper ? height(f, column, row + 1) : height(f, column + 1, row);
-    *h0 = h00;
-    *a = upper ? h11 - h : h - h00;
-    *b = upper ? h - h00 : h11 - h;
+    return (struct triangle_plane){h00, upper ? h11 - h : h - h00, upper ? h - h00 : h11 - h};
 }
 
 static double phi(const struct walk *w, double s, uint32_t column, uint32_t row, bool upper) {
-    double h0, a, b;
-    triangle_plane(w->field, column, row, upper, &h0, &a, &b);
-    return (w->y + s * w->dy) - (h0 + a * (w->x + s * w->dx - column) + b * (w->z + s * w->dz - row));
+    struct triangle_plane plane = triangle_plane(w->field, column, row, upper);
+    return (w->y + s * w->dy) - (plane.h0 + plane.a * (w->x + s * w->dx - column) + plane.b * (w->z + s * w->dz - row));
 }
 
 /* Of numbers; fmin and fmax are calls, which NaN needs. */
@@ -280,12 +280,11 @@ struct end {
     uint32_t part;
 };
 
-static bool clip(double o, double d, double lo, double hi, uint32_t lo_part, uint32_t hi_part, struct end *enter,
-                 struct end *leave) {
+static bool clip(double o, double d, struct slab slab, struct end *enter, struct end *leave) {
     if (d == 0)
-        return o > lo && o < hi;
-    struct end near = {((d > 0 ? lo : hi) - o) / d, d > 0 ? lo_part : hi_part};
-    struct end far = {((d > 0 ? hi : lo) - o) / d, d > 0 ? hi_part : lo_part};
+        return o > slab.lo && o < slab.hi;
+    struct end near = {((d > 0 ? slab.lo : slab.hi) - o) / d, d > 0 ? slab.lo_part : slab.hi_part};
+    struct end far = {((d > 0 ? slab.hi : slab.lo) - o) / d, d > 0 ? slab.hi_part : slab.lo_part};
     if (near.s > enter->s)
         *enter = near;
     if (far.s < leave->s)
@@ -306,9 +305,10 @@ static bool collect(const struct height_field *f, const struct ray *ray, bool ne
     struct vec3 o = w.line.origin, d = w.line.direction;
     struct end enter = {-INFINITY, 0}, leave = {INFINITY, 0};
     double above = (f->hi - f->floor) * 0x1p-10 + f->size * 0x1p-30;
-    if (!clip(o.x, d.x, 0, 1, WALL_X0, WALL_X1, &enter, &leave) ||
-        !clip(o.z, d.z, 0, 1, WALL_Z0, WALL_Z1, &enter, &leave) ||
-        !clip(o.y, d.y, f->open ? f->lo - above : f->floor, f->hi + above, FLOOR, FLOOR, &enter, &leave) ||
+    if (!clip(o.x, d.x, (struct slab){0, 1, WALL_X0, WALL_X1}, &enter, &leave) ||
+        !clip(o.z, d.z, (struct slab){0, 1, WALL_Z0, WALL_Z1}, &enter, &leave) ||
+        !clip(o.y, d.y, (struct slab){f->open ? f->lo - above : f->floor, f->hi + above, FLOOR, FLOOR}, &enter,
+              &leave) ||
         !(enter.s < leave.s) || !isfinite(enter.s) || !isfinite(leave.s))
         return true;
     w.x = o.x * f->columns, w.dx = d.x * f->columns;
@@ -416,10 +416,10 @@ static uint32_t cell_at(double place, uint32_t cells, double *inside) {
 bool height_field_contains(const struct height_field *f, struct vec3 point) {
     if (!(point.x > 0 && point.x < 1 && point.z > 0 && point.z < 1 && point.y > f->floor))
         return false;
-    double x, z, h0, a, b;
+    double x, z;
     uint32_t column = cell_at(point.x, f->columns, &x), row = cell_at(point.z, f->rows, &z);
-    triangle_plane(f, column, row, z > x, &h0, &a, &b);
-    return point.y < h0 + a * x + b * z;
+    struct triangle_plane plane = triangle_plane(f, column, row, z > x);
+    return point.y < plane.h0 + plane.a * x + plane.b * z;
 }
 
 /* Slopes at a corner by the difference of its neighbours. */
@@ -434,10 +434,10 @@ static void corner_slopes(const struct height_field *f, uint32_t column, uint32_
 static void describe_ground(const struct height_field *f, uint32_t triangle, struct vec3 p, struct surface *out) {
     uint32_t cell = triangle / 2, column = cell % f->columns, row = cell / f->columns;
     bool upper = triangle % 2;
-    double x = fmin(fmax(p.x * f->columns - column, 0), 1), z = fmin(fmax(p.z * f->rows - row, 0), 1), h0, a, b;
-    triangle_plane(f, column, row, upper, &h0, &a, &b);
-    p.y = h0 + a * x + b * z;
-    double x_slope = a * f->columns, z_slope = b * f->rows;
+    double x = fmin(fmax(p.x * f->columns - column, 0), 1), z = fmin(fmax(p.z * f->rows - row, 0), 1);
+    struct triangle_plane plane = triangle_plane(f, column, row, upper);
+    p.y = plane.h0 + plane.a * x + plane.b * z;
+    double x_slope = plane.a * f->columns, z_slope = plane.b * f->rows;
     out->point = p;
     out->normal = out->shading_normal = vec3_make(-x_slope, 1, -z_slope);
     out->u = p.x;

@@ -41,7 +41,8 @@ int quadric_crossings(const struct quadric *q, const struct ray *ray, struct cro
     for (uint32_t axis = 0; axis < 3; axis++) {
         double lo = vec3_get(b->min, (int)axis), hi = vec3_get(b->max, (int)axis);
         uint32_t positive = QUADRIC_FIRST_FACE + 2 * axis, negative = positive + 1;
-        if (!cut_by_slab(vec3_get(o, (int)axis), vec3_get(d, (int)axis), lo, hi, negative, positive, &limits))
+        if (!cut_by_slab(vec3_get(o, (int)axis), vec3_get(d, (int)axis), (struct slab){lo, hi, negative, positive},
+                         &limits))
             return 0;
     }
     struct vec3 middle = {middle_of(b->min.x, b->max.x), middle_of(b->min.y, b->max.y), middle_of(b->min.z, b->max.z)};

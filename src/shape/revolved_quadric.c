@@ -17,7 +17,8 @@ int revolved_quadric_crossings(const struct revolved_quadric *c, const struct ra
         return 0;
     double height = vec3_dot(f, c->axis), climb = vec3_dot(d, c->axis);
     struct span limits = {{-INFINITY, 0}, {INFINITY, 0}}, spans[2];
-    if (!cut_by_slab(height, climb, c->lo, c->hi, REVOLVED_QUADRIC_LOW_END, REVOLVED_QUADRIC_HIGH_END, &limits))
+    if (!cut_by_slab(height, climb, (struct slab){c->lo, c->hi, REVOLVED_QUADRIC_LOW_END, REVOLVED_QUADRIC_HIGH_END},
+                     &limits))
         return 0;
 
     /* From the point of the line nearest to the middle. */

@@ -75,13 +75,18 @@ static inline int open_crossings(const struct span *spans, int count, const stru
     return found;
 }
 
+/* What lies between two parallel planes, and the parts of the surface in them. */
+struct slab {
+    double lo, hi;
+    uint32_t lo_part, hi_part;
+};
+
 /* Cuts the limits by lo < o + t d < hi; false when nothing remains. */
-static inline bool cut_by_slab(double o, double d, double lo, double hi, uint32_t lo_part, uint32_t hi_part,
-                               struct span *limits) {
+static inline bool cut_by_slab(double o, double d, struct slab slab, struct span *limits) {
     if (d == 0)
-        return o > lo && o < hi;
-    struct span_end enter = d > 0 ? (struct span_end){(lo - o) / d, lo_part} : (struct span_end){(hi - o) / d, hi_part};
-    struct span_end leave = d > 0 ? (struct span_end){(hi - o) / d, hi_part} : (struct span_end){(lo - o) / d, lo_part};
+        return o > slab.lo && o < slab.hi;
+    struct span_end low = {(slab.lo - o) / d, slab.lo_part}, high = {(slab.hi - o) / d, slab.hi_part};
+    struct span_end enter = d > 0 ? low : high, leave = d > 0 ? high : low;
     if (enter.t > limits->enter.t)
         limits->enter = enter;
     if (leave.t < limits->leave.t)

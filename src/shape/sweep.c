@@ -261,9 +261,14 @@ static double polish(const double *d, int degree, const double *b, int b_degree,
     return x;
 }
 
+/* In Bernstein form. */
+struct polynomial {
+    const double *c;
+    int degree;
+};
+
 /* What the balls from x = lo to hi cover, all of which the line meets. */
-static struct stretch cover(const struct view *view, const double *d, int degree, const double *b, int b_degree,
-                            double lo, double hi) {
+static struct stretch cover(const struct view *view, struct polynomial d, struct polynomial b, double lo, double hi) {
     struct stretch out = {INFINITY, -INFINITY, lo, hi};
     consider(view, lo, &out);
     consider(view, hi, &out);
@@ -271,21 +276,21 @@ static struct stretch cover(const struct view *view, const double *d, int degree
     /* D and b on [lo, hi] alone. */
     double dd[7], bb[4], rest[7], unused[7];
     if (lo > 0 || hi < 1) {
-        bernstein_split(d, degree, hi, rest, unused);
-        bernstein_split(rest, degree, lo / hi, unused, dd);
-        bernstein_split(b, b_degree, hi, rest, unused);
-        bernstein_split(rest, b_degree, lo / hi, unused, bb);
+        bernstein_split(d.c, d.degree, hi, rest, unused);
+        bernstein_split(rest, d.degree, lo / hi, unused, dd);
+        bernstein_split(b.c, b.degree, hi, rest, unused);
+        bernstein_split(rest, b.degree, lo / hi, unused, bb);
     } else {
-        memcpy(dd, d, sizeof dd);
-        memcpy(bb, b, sizeof bb);
+        memcpy(dd, d.c, sizeof dd);
+        memcpy(bb, b.c, sizeof bb);
     }
     double b1[3], d1[6], bb1[5], left[11], right[11], roots[10];
-    bernstein_derivative(bb, b_degree, b1);
-    bernstein_derivative(dd, degree, d1);
-    bernstein_multiply(b1, b_degree - 1, b1, b_degree - 1, bb1);
-    bernstein_multiply(bb1, 2 * b_degree - 2, dd, degree, left);
-    bernstein_multiply(d1, degree - 1, d1, degree - 1, right);
-    int total = 2 * degree - 2; /* = 2 (b_degree - 1) + degree */
+    bernstein_derivative(bb, b.degree, b1);
+    bernstein_derivative(dd, d.degree, d1);
+    bernstein_multiply(b1, b.degree - 1, b1, b.degree - 1, bb1);
+    bernstein_multiply(bb1, 2 * b.degree - 2, dd, d.degree, left);
+    bernstein_multiply(d1, d.degree - 1, d1, d.degree - 1, right);
+    int total = 2 * d.degree - 2; /* = 2 (b.degree - 1) + d.degree */
     double largest = 0;
     for (int k = 0; k <= total; k++)
         largest = fmax(largest, fmax(4 * fabs(left[k]), right[k]));
@@ -298,8 +303,8 @@ static struct stretch cover(const struct view *view, const double *d, int degree
     int count = bernstein_roots(left, total, roots);
     for (int k = 0; k < count; k++) {
         /* f' = b' - sign D' / (2 sqrt(D)) is zero where the signs of b' and D' say so. */
-        double same = bernstein_value(b1, b_degree - 1, roots[k]) * bernstein_value(d1, degree - 1, roots[k]);
-        double x = polish(dd, degree, bb, b_degree, same > 0 ? 1 : -1, roots[k]);
+        double same = bernstein_value(b1, b.degree - 1, roots[k]) * bernstein_value(d1, d.degree - 1, roots[k]);
+        double x = polish(dd, d.degree, bb, b.degree, same > 0 ? 1 : -1, roots[k]);
         consider(view, lo + (hi - lo) * x, &out);
     }
     return out;
@@ -359,7 +364,7 @@ static bool piece_crossings(const struct sweep_path *sweep, uint32_t part, const
     for (int k = 0; k <= count; k++) {
         double to = k < count ? roots[k] : 1;
         if (meets && from <= to && to > 0) {
-            struct stretch s = cover(&view, d, degree, b, b_degree, from, to);
+            struct stretch s = cover(&view, (struct polynomial){d, degree}, (struct polynomial){b, b_degree}, from, to);
             if (!geom_scratch_push(
                     scratch, (struct crossing){.t = s.enter + shift, .u = s.x_enter, .part = part, .enter = true}) ||
                 !geom_scratch_push(scratch, (struct crossing){.t = s.leave + shift, .u = s.x_leave, .part = part}))

@@ -155,8 +155,9 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
         return true;
     }
     changes_take_off(&work->changed);
-    if (!changes_lay_over(work->changes.items, work->changes.count, request->scene, request->root, request->lights,
-                          request->light_count, preview->warn, preview->context, &work->changed, error))
+    if (!changes_lay_over((struct change_range){work->changes.items, work->changes.count},
+                          &(struct change_target){request->scene, request->root, request->lights, request->light_count},
+                          preview->warn, preview->context, &work->changed, error))
         return false;
     work->stale = work->stale || !change_keeps_world(&command->change);
     if (!command->more && !need_world(work, reply, error))

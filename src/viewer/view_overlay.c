@@ -148,7 +148,8 @@ static bool make_outline(const struct view_overlay_scene *scene, const struct vi
     char ignored[256];
     settings.lens.aperture = 0;
     *found = (struct film_rectangle){0};
-    if (!camera_prepare(&job->camera, &settings, job->width, job->height, &frame, ignored, error))
+    if (!camera_prepare(&job->camera, &settings, (struct picture_size){job->width, job->height}, &frame, ignored,
+                        error))
         return false;
     members.member = mem_alloc_zero((size_t)job->world->primitive_count + 1, 1);
     if (!members.member)

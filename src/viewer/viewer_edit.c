@@ -22,8 +22,9 @@ bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame
     char warning[256];
     settings.lens = viewer->request.lens;
     settings.lens.aperture = 0;
-    return camera_prepare(&viewer->pass.view.camera, &settings, viewer->request.full_width, viewer->request.full_height,
-                          frame, warning, &ignored);
+    return camera_prepare(&viewer->pass.view.camera, &settings,
+                          (struct picture_size){viewer->request.full_width, viewer->request.full_height}, frame,
+                          warning, &ignored);
 }
 
 /* Pixels of the window for one of the picture. */

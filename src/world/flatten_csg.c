@@ -364,13 +364,15 @@ static bool may_be_split(const struct flattening *f, const struct csg_draft *dra
 static bool build(struct flattening *f, const struct csg_draft *draft, uint32_t solid_length, const struct csg ***parts,
                   uint32_t *count) {
     if (solid_length == draft->length && may_be_split(f, draft))
-        return csg_build_parts(f->arena, draft->leaves, draft->leaf_count, draft->program, draft->length, parts, count,
-                               f->error);
+        return csg_build_parts(f->arena,
+                               &(struct csg_program){draft->leaves, draft->leaf_count, draft->program, draft->length},
+                               parts, count, f->error);
     *parts = arena_alloc(f->arena, sizeof **parts);
     if (!*parts)
         return error_no_memory(f->error, "CSG");
-    (*parts)[0] = csg_build_clipped(f->arena, draft->leaves, draft->leaf_count, draft->program, solid_length,
-                                    draft->length, f->error);
+    (*parts)[0] = csg_build_clipped(
+        f->arena, &(struct csg_program){draft->leaves, draft->leaf_count, draft->program, draft->length}, solid_length,
+        f->error);
     *count = 1;
     return (*parts)[0] != NULL;
 }

@@ -261,10 +261,11 @@ struct occluder_candidates world_occluder_candidates(const struct world *world, 
     return occluder_candidates;
 }
 
-uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates, struct vec3 from,
-                       double time, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
-                       bool *visible) {
-    uint32_t seen = 0;
+uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates,
+                       const struct shadow_rays *shadow_rays, struct world_scratch *scratch, bool *visible) {
+    struct vec3 from = shadow_rays->from;
+    const struct vec3 *targets = shadow_rays->targets;
+    uint32_t count = shadow_rays->count, seen = 0;
     if (occluder_candidates->known && occluder_candidates->count == 0) {
         for (uint32_t i = 0; i < count && visible; i++)
             visible[i] = true;
@@ -275,7 +276,7 @@ uint32_t world_visible(const struct world *world, struct occluder_candidates *oc
             struct ray ray = {.origin = from,
                               .direction = vec3_sub(targets[i], from),
                               .t_max = 1,
-                              .time = time,
+                              .time = shadow_rays->time,
                               .skip_primitive = occluder_candidates->skip_primitive};
             bool free_way = !world_any(world, &ray, scratch);
             seen += free_way;
@@ -292,7 +293,7 @@ uint32_t world_visible(const struct world *world, struct occluder_candidates *oc
     s.scratch = scratch;
     rays.origin = from;
     rays.t_min = 0;
-    rays.time = time;
+    rays.time = shadow_rays->time;
     for (uint32_t first = 0; first < count; first += PACKET_RAYS) {
         rays.count = count - first < PACKET_RAYS ? count - first : PACKET_RAYS;
         for (uint32_t i = 0; i < rays.count; i++) {

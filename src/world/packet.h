@@ -23,11 +23,17 @@ struct occluder_candidates {
 };
 struct occluder_candidates world_occluder_candidates(const struct world *world, struct vec3 from, struct vec3 corner,
                                                      struct vec3 edge1, struct vec3 edge2, uint32_t skip_primitive);
-/* How many of the points targets[0 .. count-1], all inside the parallelogram, are seen from `from`: as world_any would
- * say of every segment, t in (0, 1). visible (count entries, or NULL) says it of each. What stops some rays comes first
- * in `occluder_candidates` afterwards. */
-uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates, struct vec3 from,
-                       double time, const struct vec3 *targets, uint32_t count, struct world_scratch *scratch,
-                       bool *visible);
+/* Segments from a point to others. */
+struct shadow_rays {
+    struct vec3 from;
+    double time;
+    const struct vec3 *targets;
+    uint32_t count;
+};
+/* How many of the targets, all inside the parallelogram, are seen: as world_any would say of every segment, t in (0,
+ * 1). visible (count entries, or NULL) says it of each. What stops some rays comes first in `occluder_candidates`
+ * afterwards. */
+uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates,
+                       const struct shadow_rays *shadow_rays, struct world_scratch *scratch, bool *visible);
 
 #endif

@@ -73,12 +73,12 @@ static bool keep_path(void *context, uint32_t first, uint32_t count, const struc
     return paths->next < paths->count;
 }
 
-bool world_find_paths(const struct world *world, const struct node *root, const uint32_t *wanted, uint32_t count,
+bool world_find_paths(const struct world *world, const struct node *root, struct primitive_list wanted,
                       struct arena *arena, const char **out, struct error *error) {
-    struct wanted_paths paths = {.wanted = wanted, .count = count, .arena = arena, .out = out};
-    for (uint32_t i = 0; i < count; i++)
+    struct wanted_paths paths = {.wanted = wanted.numbers, .count = wanted.count, .arena = arena, .out = out};
+    for (uint32_t i = 0; i < wanted.count; i++)
         out[i] = NULL;
-    if (count == 0)
+    if (wanted.count == 0)
         return true;
     if (!world_visit_paths(world, root, keep_path, &paths, error))
         return false;

@@ -26,8 +26,13 @@ bool world_visit_paths(const struct world *world, const struct node *root, world
  * '?'. Cut at `size`; returns the length it would have. */
 size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size);
 
-/* As texts in the arena: out[i] is the way to wanted[i]; wanted[0 .. count-1] ascend. NULL where there is none. */
-bool world_find_paths(const struct world *world, const struct node *root, const uint32_t *wanted, uint32_t count,
+struct primitive_list {
+    const uint32_t *numbers;
+    uint32_t count;
+};
+/* As texts in the arena: out[i] is the way to the primitive wanted.numbers[i]; they ascend. NULL where there is none.
+ */
+bool world_find_paths(const struct world *world, const struct node *root, struct primitive_list wanted,
                       struct arena *arena, const char **out, struct error *error);
 
 /* Inside of combined solids (NODE_CSG): every node under one, told after what is below it. steps: the way to it,

@@ -30,7 +30,7 @@ static enum accel_kind choose(const struct box *boxes, uint32_t count) {
     if (box_is_empty(&bounds))
         return ACCEL_BVH;
     struct cost_sample cost_sample;
-    cost_sample_take(&cost_sample, &bounds, box_of, boxes, count, SAMPLES, MESSAGE_LEVELS);
+    cost_sample_take(&cost_sample, &(struct cost_items){&bounds, box_of, boxes, count}, SAMPLES, MESSAGE_LEVELS);
     struct accel_scene_cost cost = accel_lists_or_hierarchy(&cost_sample);
     return cost.lists < clear * cost.hierarchy ? ACCEL_GRID : ACCEL_BVH;
 }
@@ -45,7 +45,7 @@ bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const 
     case ACCEL_BVH:
         return box_tree_build(&accel->tree, boxes, count, pool, error);
     case ACCEL_KDTREE:
-        return kd_tree_build(&accel->kd_tree, boxes, count, NULL, NULL, pool, error);
+        return kd_tree_build(&accel->kd_tree, &(struct kd_items){boxes, count, NULL, NULL}, pool, error);
     case ACCEL_NONE:
         return true;
     }

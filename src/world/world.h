@@ -200,17 +200,21 @@ bool world_native_uv(const struct world *world, const struct hit *hit, double *u
 /* The closed primitives whose box meets `region`: all that can hold a point of it, in flattening order. `out` (or NULL)
  * has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);
-/* Those of candidates[0 .. count-1] whose inside holds `point` at a ray's time, innermost last; at most `limit`, which
- * is at most WORLD_NESTING. Returns the count. */
+/* A point at a ray's time, and the primitives that may hold it (world_closed_in). */
+struct inside_query {
+    struct vec3 point;
+    double ray_time;
+    const uint32_t *candidates;
+    uint32_t count;
+};
+/* Those of the candidates whose inside holds the point, innermost last; at most `limit`, which is at most
+ * WORLD_NESTING. Returns how many there are. */
 enum { WORLD_NESTING = 64 };
-uint32_t world_containing(const struct world *world, struct vec3 point, double ray_time, const uint32_t *candidates,
-                          uint32_t count, struct world_scratch *scratch, uint32_t *primitive, uint32_t limit);
+uint32_t world_containing(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
+                          uint32_t *primitive, uint32_t limit);
 
-/* The media around a point of the world. */
-
-/* The transparent solids that hold the point at a ray's time, found by counting crossings; closed[0 .. closed_count-1]
- * are the solids in question (world_closed_in). */
-void medium_stack_at(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
-                     uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out);
+/* The media of the transparent solids that hold the point, found by counting crossings. */
+void medium_stack_at(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
+                     struct medium_stack *out);
 
 #endif

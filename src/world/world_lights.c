@@ -379,11 +379,11 @@ static bool build(struct building *b, bool background, enum light_choice choice,
            light_sampler_build(&out->sampler, choice, out->lights, out->count, b->arena, b->error);
 }
 
-bool world_lights_build(struct world_lights *out, const struct world *world, bool background, enum light_choice choice,
+bool world_lights_build(struct world_lights *out, const struct world *world, struct world_lights_options options,
                         struct arena *arena, struct pool *pool, struct error *error) {
     struct building b = {.out = out, .arena = arena, .error = error};
     *out = (struct world_lights){.world = world};
-    bool ok = build(&b, background, choice, pool);
+    bool ok = build(&b, options.background, options.choice, pool);
     if (!ok)
         world_lights_destroy(out);
     return ok;

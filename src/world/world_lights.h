@@ -51,9 +51,13 @@ struct world_lights {
     bool holes; /* something in the world has holes */
 };
 
-/* background: whether scattered rays meet the sky of the world, which is then one more light; where the scene has a sky
- * light they meet that instead. Errors: no memory, cancelled; nothing is left to destroy then. */
-bool world_lights_build(struct world_lights *out, const struct world *world, bool background, enum light_choice choice,
+struct world_lights_options {
+    bool background; /* scattered rays meet the sky of the world, which is then one more light, or the scene's sky light
+                      */
+    enum light_choice choice;
+};
+/* Errors: no memory, cancelled; nothing is left to destroy then. */
+bool world_lights_build(struct world_lights *out, const struct world *world, struct world_lights_options options,
                         struct arena *arena, struct pool *pool, struct error *error);
 void world_lights_destroy(struct world_lights *lights);
 

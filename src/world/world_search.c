@@ -311,11 +311,10 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     return s.found;
 }
 
-void medium_stack_at(const struct world *world, struct vec3 point, double ray_time, const uint32_t *closed,
-                     uint32_t closed_count, struct world_scratch *scratch, struct medium_stack *out) {
+void medium_stack_at(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
+                     struct medium_stack *out) {
     uint32_t inside[MEDIUM_STACK_LIMIT];
-    uint32_t count =
-        world_containing(world, point, ray_time, closed, closed_count, scratch, inside, MEDIUM_STACK_LIMIT);
+    uint32_t count = world_containing(world, query, scratch, inside, MEDIUM_STACK_LIMIT);
     out->count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const struct prototype *prototype = primitive_prototype(world, inside[i]);
@@ -358,15 +357,16 @@ static bool contains(const struct world *world, uint32_t index, struct vec3 p_ob
     return inside && !scratch->geom.overflow;
 }
 
-uint32_t world_containing(const struct world *world, struct vec3 point, double ray_time, const uint32_t *candidates,
-                          uint32_t candidate_count, struct world_scratch *scratch, uint32_t *primitive,
-                          uint32_t limit) {
-    struct ray ray = {.origin = point, .direction = {0.5377, 0.6212, 0.5698}, .t_max = INFINITY, .time = ray_time};
+uint32_t world_containing(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
+                          uint32_t *primitive, uint32_t limit) {
+    struct vec3 point = query->point;
+    struct ray ray = {
+        .origin = point, .direction = {0.5377, 0.6212, 0.5698}, .t_max = INFINITY, .time = query->ray_time};
     uint32_t count = 0;
     double ends[WORLD_NESTING];
     limit = limit < WORLD_NESTING ? limit : WORLD_NESTING;
-    for (uint32_t k = 0; k < candidate_count; k++) {
-        uint32_t i = candidates[k];
+    for (uint32_t k = 0; k < query->count; k++) {
+        uint32_t i = query->candidates[k];
         if (!box_contains(&world->boxes[i], point) && !is_inside_out(primitive_geometry(world, i)))
             continue;
         struct ray ray_object = primitive_ray(world, i, &ray);

@@ -21,8 +21,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         image = image_parse_hdr("fuzz.hdr", data, size, &error);
     if (image) {
         for (int i = 0; i < 64; i++) {
-            struct rgba c = image_lookup(image, i / 8 / 7.0, i % 8 / 7.0, i % 5 * 0.1, i % 3 * 0.2, IMAGE_MIPMAP,
-                                         IMAGE_REPEAT, IMAGE_CLAMP);
+            struct rgba c =
+                image_lookup(image, (struct image_point){i / 8 / 7.0, i % 8 / 7.0, i % 5 * 0.1, i % 3 * 0.2},
+                             (struct image_sampling){IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_CLAMP});
             if (!(c.r >= 0 && c.g >= 0 && c.b >= 0 && c.a == 1))
                 abort();
         }

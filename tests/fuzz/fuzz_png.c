@@ -29,8 +29,9 @@ static void look_everywhere(const struct image *image) {
         for (size_t k = 0; k < sizeof widths / sizeof widths[0]; k++)
             for (int mode = 0; mode < 9; mode++) {
                 struct rgba c =
-                    image_lookup(image, places[i], places[k], widths[k], widths[i % 7], (enum image_filter)(mode % 3),
-                                 (enum image_wrap)(mode / 3), (enum image_wrap)(mode % 3));
+                    image_lookup(image, (struct image_point){places[i], places[k], widths[k], widths[i % 7]},
+                                 (struct image_sampling){(enum image_filter)(mode % 3), (enum image_wrap)(mode / 3),
+                                                         (enum image_wrap)(mode % 3)});
                 if (!(c.r >= 0 && c.r <= c.a && c.g >= 0 && c.g <= c.a && c.b >= 0 && c.b <= c.a && c.a <= 1))
                     abort();
             }

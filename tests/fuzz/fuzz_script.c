@@ -151,13 +151,13 @@ static bool render_small(void *context, const struct render_request *request, st
                              .fog = request->fog,
                              .film = &film};
     char warning[256] = "";
-    uint32_t x0, y0, width, height;
-    if (stage->pictures++ >= PICTURES || !render_prepare(&job, &x0, &y0, &width, &height, warning, error))
+    struct render_area area;
+    if (stage->pictures++ >= PICTURES || !render_prepare(&job, &area, warning, error))
         return stage->pictures > PICTURES;
-    bool ok = make_film(&film, &job.settings, width, height, error);
+    bool ok = make_film(&film, &job.settings, area.width, area.height, error);
     if (ok) {
-        film.x0 = x0;
-        film.y0 = y0;
+        film.x0 = area.x0;
+        film.y0 = area.y0;
         film.full_width = job.width;
         film.full_height = job.height;
         const struct world_input input = {.scene = request->scene,
@@ -185,6 +185,7 @@ static void run(struct stage *stage) {
     const struct script_options options = {
         .transform_order = SCRIPT_ORDER_NEW, .memory_limit = 64 << 20, .time_limit = 1, .output_limit = 1 << 20};
     const struct script_host host = {.context = stage,
+                                     .assets = &stage->assets,
                                      .settings = settings_default(),
                                      .render = render_small,
                                      .message = hear,
@@ -195,7 +196,7 @@ static void run(struct stage *stage) {
     (void)snprintf(path, sizeof path, "%s/scene.lua", fuzz_folder());
     wish_to_stop = 0;
     set_clock(150);
-    bool ok = script_run(path, &options, &host, &stage->assets, &arena, &traceback, &error);
+    bool ok = script_run(path, &options, &host, &arena, &traceback, &error);
     set_clock(0);
     if (!ok && (error.kind == ERROR_NONE || error.text[0] == '\0' || strchr(error.text, '\n')))
         abort();

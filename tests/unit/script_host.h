@@ -60,16 +60,17 @@ static inline bool listener_cancelled(void *context) {
 static inline bool listen_to(struct listener *listener, const char *path, const struct script_options *options,
                              struct error *error, char **traceback) {
     struct script_options standard = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua"};
+    struct assets assets = {0};
     struct script_host host = {.context = listener,
+                               .assets = &assets,
                                .settings = settings_default(),
                                .render = listener_render,
                                .message = listener_message,
                                .cancelled = listener_cancelled};
-    struct assets assets = {0};
     struct arena arena = {0};
     const char *lines = NULL;
     *error = (struct error){0};
-    bool done = script_run(path, options ? options : &standard, &host, &assets, &arena, &lines, error);
+    bool done = script_run(path, options ? options : &standard, &host, &arena, &lines, error);
     if (traceback) {
         *traceback = lines ? malloc(strlen(lines) + 1) : NULL;
         if (*traceback)

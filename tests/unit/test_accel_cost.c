@@ -137,7 +137,7 @@ TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
     for (int form = 0; form < FORMS; form++) {
         struct soup s = make_soup(form, &random);
         struct cost_sample cost_sample;
-        cost_sample_take(&cost_sample, &s.bounds, soup_box, &s, s.count, 512, 5);
+        cost_sample_take(&cost_sample, &(struct cost_items){&s.bounds, soup_box, &s, s.count}, 512, 5);
         struct accel_mesh_cost frame = accel_over_mesh(&cost_sample);
         CHECK(cost_sample.level_count > 1);
         for (uint32_t l = 0; l < cost_sample.level_count; l++)

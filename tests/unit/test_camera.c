@@ -275,14 +275,14 @@ TEST(lenses_that_cannot_be_are_refused) {
     char warning[256];
     settings.lens.aperture = 1;
     settings.lens.focus_point = vec3_make(0, 0, 5);
-    CHECK(!camera_prepare(&camera, &settings, 10, 10, &frame, warning, &error));
+    CHECK(!camera_prepare(&camera, &settings, (struct picture_size){10, 10}, &frame, warning, &error));
     settings.lens.focus = 1;
-    CHECK(camera_prepare(&camera, &settings, 10, 10, &frame, warning, &error));
+    CHECK(camera_prepare(&camera, &settings, (struct picture_size){10, 10}, &frame, warning, &error));
     settings.lens.projection = PROJECTION_FISHEYE;
-    CHECK(!camera_prepare(&camera, &settings, 10, 10, &frame, warning, &error));
+    CHECK(!camera_prepare(&camera, &settings, (struct picture_size){10, 10}, &frame, warning, &error));
     settings.lens.aperture = 0;
     settings.lens.stereo = STEREO_SIDE;
-    CHECK(!camera_prepare(&camera, &settings, 10, 10, &frame, warning, &error));
+    CHECK(!camera_prepare(&camera, &settings, (struct picture_size){10, 10}, &frame, warning, &error));
     settings.lens.projection = PROJECTION_PERSPECTIVE;
-    CHECK(!camera_prepare(&camera, &settings, 11, 10, &frame, warning, &error));
+    CHECK(!camera_prepare(&camera, &settings, (struct picture_size){11, 10}, &frame, warning, &error));
 }

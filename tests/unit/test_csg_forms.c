@@ -322,8 +322,8 @@ TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
         }
         const struct csg *thing = build(&arena, leaves, count, program, length);
         const struct csg *clip = build(&arena, leaves + count, behind, own, more);
-        const struct csg *clipped =
-            csg_build_clipped(&arena, leaves, count + behind, program, length, length + more, &error);
+        const struct csg *clipped = csg_build_clipped(
+            &arena, &(struct csg_program){leaves, count + behind, program, length + more}, length, &error);
         CHECK(clipped && clipped->clipped && !clipped->open);
         for (int i = 0; clipped && i < 100; i++) {
             struct ray ray = random_line(&random);
@@ -355,7 +355,8 @@ TEST(csg_clipped_open_shapes_are_their_surface_inside_of_the_clip) {
             {.shape = random_open(&makers, &random), .csg_from_leaf = small_transform(&random)},
             {.shape = ball_or_box((uint32_t)turn), .csg_from_leaf = small_transform(&random)}};
         uint32_t length = turn % 3 ? 2 : 3;
-        const struct csg *clipped = csg_build_clipped(&arena, leaves, 2, program, 1, length, &error);
+        const struct csg *clipped =
+            csg_build_clipped(&arena, &(struct csg_program){leaves, 2, program, length}, 1, &error);
         const struct csg_token own[] = {{CSG_LEAF, 0}, {CSG_INVERSE, 0}};
         const struct csg *clip = build(&arena, leaves + 1, 1, own, length - 1);
         CHECK(clipped && clipped->open);
@@ -452,7 +453,7 @@ TEST(a_face_in_the_surface_of_the_clip_is_shown_whole) {
         struct csg_leaf leaves[2] = {
             roundabout_box(&random, vec3_make(0, 0, 0), vec3_make(1, 1, 1), &last),
             roundabout_box(&random, vec3_make(-1, low, -1), vec3_make(2, low + 0.5, 2), &last)};
-        const struct csg *csg = csg_build_clipped(&arena, leaves, 2, program, 1, 2, &error);
+        const struct csg *csg = csg_build_clipped(&arena, &(struct csg_program){leaves, 2, program, 2}, 1, &error);
         for (int i = 0; csg && i < 2500; i++) {
             struct vec3 from = random_vec3(&random, 2),
                         top = {test_uniform(&random, 0.001, 0.999), 1, test_uniform(&random, 0.001, 0.999)};
@@ -553,7 +554,8 @@ TEST(csg_parts_answer_together_as_the_whole) {
         const struct csg *whole = build(&arena, leaves, count, program, length);
         const struct csg **parts;
         uint32_t part_count;
-        CHECK(csg_build_parts(&arena, leaves, count, program, length, &parts, &part_count, &error));
+        CHECK(csg_build_parts(&arena, &(struct csg_program){leaves, count, program, length}, &parts, &part_count,
+                              &error));
         split += part_count > 1;
         for (int i = 0; i < 200; i++) {
             struct ray ray = random_line(&random);
@@ -589,7 +591,8 @@ TEST(csg_of_a_hundred_solids_that_keep_apart_is_a_hundred_parts_and_touching_one
         }
         const struct csg **parts;
         uint32_t count;
-        CHECK(csg_build_parts(&arena, leaves, SIDE * SIDE, program, length, &parts, &count, &error));
+        CHECK(csg_build_parts(&arena, &(struct csg_program){leaves, SIDE * SIDE, program, length}, &parts, &count,
+                              &error));
         CHECK_EQ_INT(count, touching ? 1 : SIDE * SIDE);
     }
     arena_destroy(&arena);

@@ -153,8 +153,9 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
         {.kind = CHANGE_LIGHT, .serial = 12345},
     };
     for (int round = 0; round < 3; round++) {
-        CHECK(changes_lay_over(changes, sizeof changes / sizeof *changes, &s.scene, s.root, stage_lights(&s),
-                               s.light_count, count_warning, &warnings, &changed, &error));
+        CHECK(changes_lay_over((struct change_range){changes, sizeof changes / sizeof *changes},
+                               &(struct change_target){&s.scene, s.root, stage_lights(&s), s.light_count},
+                               count_warning, &warnings, &changed, &error));
         CHECK_EQ_INT(group->child_count, 3);
         const struct node *cube = group->first_child->next->node, *copy = group->last_child->node;
         CHECK(cube->kind == NODE_GEOMETRY && cube->serial == UINT32_MAX && cube->shape.kind == SHAPE_BOX);
@@ -188,13 +189,15 @@ TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has
     a->name = "left";
     b->name = "right";
     const struct change gone = {.kind = CHANGE_GONE, .serial = a->serial, .name = "right"};
-    CHECK(changes_lay_over(&gone, 1, &s.scene, s.root, NULL, 0, count_warning, &warnings, &changed, &error));
+    CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){&s.scene, s.root, NULL, 0},
+                           count_warning, &warnings, &changed, &error));
     CHECK(b->singular && !a->singular);
     changes_take_off(&changed);
     a->name = "right";
     a->serial = 1000;
     b->serial = 1001;
-    CHECK(changes_lay_over(&gone, 1, &s.scene, s.root, NULL, 0, count_warning, &warnings, &changed, &error));
+    CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){&s.scene, s.root, NULL, 0},
+                           count_warning, &warnings, &changed, &error));
     CHECK(!b->singular && !a->singular);
     CHECK_EQ_INT(warnings, 1);
     changes_take_off(&changed);
@@ -354,7 +357,7 @@ TEST(camera_projects_a_point_to_where_its_ray_goes_through) {
         settings.lens.angle = 200;
         settings.lens.shift_x = kind == PROJECTION_PANORAMA ? 0 : 0.1;
         settings.lens.shift_y = kind == PROJECTION_PANORAMA ? 0 : -0.05;
-        CHECK(camera_prepare(&camera, &settings, 200, 150, &frame, warning, &error));
+        CHECK(camera_prepare(&camera, &settings, (struct picture_size){200, 150}, &frame, warning, &error));
         for (int i = 0; i < 300; i++) {
             double x = test_uniform(&random, 40, 160), y = test_uniform(&random, 30, 120), u, v;
             struct ray ray;

@@ -96,7 +96,7 @@ static bool render_small(void *context, const struct render_request *request, st
                              .fog = request->fog,
                              .film = &film};
     char warning[256];
-    uint32_t x0, y0, width, height;
+    struct render_area area;
     size_t bytes;
     job.settings.aov = AOV_ALL;
     job.settings.keep_first = true;
@@ -106,7 +106,7 @@ static bool render_small(void *context, const struct render_request *request, st
     if (job.settings.caustics.photons > 200)
         job.settings.caustics.photons = 200;
     gallery->pictures++;
-    if (!render_prepare(&job, &x0, &y0, &width, &height, warning, error) ||
+    if (!render_prepare(&job, &area, warning, error) ||
         !film_size_layered(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), aov_layers(AOV_ALL), &bytes, error))
         return false;
     void *block = mem_alloc_zero(1, bytes);
@@ -138,6 +138,7 @@ static bool run_text(struct gallery *gallery, const char *text, struct error *er
     char path[512];
     const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua"};
     const struct script_host host = {.context = gallery,
+                                     .assets = &gallery->assets,
                                      .settings = settings_default(),
                                      .render = render_small,
                                      .message = hear,
@@ -151,7 +152,7 @@ static bool run_text(struct gallery *gallery, const char *text, struct error *er
     gallery->clamped = false;
     *error = (struct error){0};
     set_clock(3000);
-    bool done = script_run(path, &options, &host, &gallery->assets, &arena, &traceback, error);
+    bool done = script_run(path, &options, &host, &arena, &traceback, error);
     set_clock(0);
     arena_destroy(&arena);
     return done;

@@ -28,7 +28,7 @@ TEST(films_of_impossible_sizes_are_refused) {
 TEST(parts_outside_of_the_picture_are_refused) {
     static const int64_t crops[][4] = {{-1, 0, 5, 5}, {0, -1, 5, 5}, {0, 0, 0, 5},  {0, 0, 5, 0},   {40, 0, 1, 1},
                                        {0, 30, 1, 1}, {1, 0, 40, 5}, {0, 1, 5, 30}, {39, 29, 2, 1}, {39, 29, 1, 2}};
-    uint32_t x0, y0, width, height;
+    struct render_area area;
     char warning[256];
     struct error error;
     struct render_job job = {.width = 40, .height = 30, .settings = settings_default()};
@@ -37,11 +37,11 @@ TEST(parts_outside_of_the_picture_are_refused) {
     for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
         struct settings *s = &job.settings;
         s->crop_x = crops[i][0], s->crop_y = crops[i][1], s->crop_width = crops[i][2], s->crop_height = crops[i][3];
-        CHECK(!render_prepare(&job, &x0, &y0, &width, &height, warning, &error));
+        CHECK(!render_prepare(&job, &area, warning, &error));
     }
     job.settings.crop_x = 39, job.settings.crop_y = 29, job.settings.crop_width = job.settings.crop_height = 1;
-    CHECK(render_prepare(&job, &x0, &y0, &width, &height, warning, &error));
-    CHECK(x0 == 39 && y0 == 29 && width == 1 && height == 1);
+    CHECK(render_prepare(&job, &area, warning, &error));
+    CHECK(area.x0 == 39 && area.y0 == 29 && area.width == 1 && area.height == 1);
 }
 
 /* Two pixels, the second one marked: red among the targets, whatever the number of bits. */

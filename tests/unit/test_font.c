@@ -15,7 +15,7 @@ TEST(fonts_without_their_library_are_one_line) {
     struct arena arena = {0};
     struct font_text text;
     struct error error = {0};
-    CHECK(!font_layout(font_path, NULL, 0, "a", &arena, &text, &error));
+    CHECK(!font_layout(&(struct font_file){font_path, NULL, 0}, "a", &arena, &text, &error));
     CHECK_TEXT(error.text, "data/fonts/gray-round.ttf: this build cannot read fonts (it was made without FreeType)");
     CHECK_TEXT(font_library(), "none");
     test_skip("this build has no FreeType: fonts are not tested");
@@ -42,7 +42,7 @@ static bool lay_out(const uint8_t *data, size_t size, const char *text, struct a
     if (size)
         memcpy(copy, data, size);
     *error = (struct error){0};
-    bool done = font_layout("t.ttf", copy, size, text, arena, out, error);
+    bool done = font_layout(&(struct font_file){"t.ttf", copy, size}, text, arena, out, error);
     free(copy);
     return done;
 }

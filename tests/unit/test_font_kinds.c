@@ -14,7 +14,7 @@
 static bool lay_out(const void *data, size_t size, const char *text, struct arena *arena, struct font_text *out,
                     struct error *error) {
     *error = (struct error){0};
-    return font_layout("t.font", data, size, text, arena, out, error);
+    return font_layout(&(struct font_file){"t.font", data, size}, text, arena, out, error);
 }
 
 static void expect_refused(const void *data, size_t size, const char *text, const char *words) {

@@ -35,7 +35,8 @@ static struct image *make_random(uint32_t width, uint32_t height, int bits, bool
 }
 
 static struct rgba clamped(const struct image *image, double u, double v, double width, enum image_filter filter) {
-    return image_lookup(image, u, v, width, width, filter, IMAGE_CLAMP, IMAGE_CLAMP);
+    return image_lookup(image, (struct image_point){u, v, width, width},
+                        (struct image_sampling){filter, IMAGE_CLAMP, IMAGE_CLAMP});
 }
 
 static struct rgba premultiplied(const struct image *image, uint32_t x, uint32_t y) {
@@ -115,22 +116,41 @@ TEST(image_wraps_repeat_mirror_and_clamp) {
         for (int i = 0; i < 200; i++) {
             double u = (i + 0.5) / 256, v = 0.3125, w = filter == IMAGE_MIPMAP ? 0.5 : 0;
             enum image_filter f = (enum image_filter)filter;
-            struct rgba inside = image_lookup(image, u, v, w, w, f, IMAGE_REPEAT, IMAGE_CLAMP);
-            check_same(image_lookup(image, u + 3, v, w, w, f, IMAGE_REPEAT, IMAGE_CLAMP), inside, 1e-14);
-            check_same(image_lookup(image, u - 2, v, w, w, f, IMAGE_REPEAT, IMAGE_CLAMP), inside, 1e-14);
-            inside = image_lookup(image, u, v, w, w, f, IMAGE_MIRROR, IMAGE_CLAMP);
-            check_same(image_lookup(image, -u, v, w, w, f, IMAGE_MIRROR, IMAGE_CLAMP), inside, 1e-14);
-            check_same(image_lookup(image, 2 + u, v, w, w, f, IMAGE_MIRROR, IMAGE_CLAMP), inside, 1e-14);
-            check_same(image_lookup(image, 2 - u, v, w, w, f, IMAGE_MIRROR, IMAGE_CLAMP), inside, 1e-14);
+            struct rgba inside = image_lookup(image, (struct image_point){u, v, w, w},
+                                              (struct image_sampling){f, IMAGE_REPEAT, IMAGE_CLAMP});
+            check_same(image_lookup(image, (struct image_point){u + 3, v, w, w},
+                                    (struct image_sampling){f, IMAGE_REPEAT, IMAGE_CLAMP}),
+                       inside, 1e-14);
+            check_same(image_lookup(image, (struct image_point){u - 2, v, w, w},
+                                    (struct image_sampling){f, IMAGE_REPEAT, IMAGE_CLAMP}),
+                       inside, 1e-14);
+            inside = image_lookup(image, (struct image_point){u, v, w, w},
+                                  (struct image_sampling){f, IMAGE_MIRROR, IMAGE_CLAMP});
+            check_same(image_lookup(image, (struct image_point){-u, v, w, w},
+                                    (struct image_sampling){f, IMAGE_MIRROR, IMAGE_CLAMP}),
+                       inside, 1e-14);
+            check_same(image_lookup(image, (struct image_point){2 + u, v, w, w},
+                                    (struct image_sampling){f, IMAGE_MIRROR, IMAGE_CLAMP}),
+                       inside, 1e-14);
+            check_same(image_lookup(image, (struct image_point){2 - u, v, w, w},
+                                    (struct image_sampling){f, IMAGE_MIRROR, IMAGE_CLAMP}),
+                       inside, 1e-14);
         }
     /* A repeated image is continuous across its edge: half way between the last and the first texel it has their mean.
      */
     struct rgba a = image_texel(image, 3, 1), b = image_texel(image, 0, 1);
-    struct rgba seam = image_lookup(image, 0, 0.375, 0, 0, IMAGE_BILINEAR, IMAGE_REPEAT, IMAGE_CLAMP);
+    struct rgba seam = image_lookup(image, (struct image_point){0, 0.375, 0, 0},
+                                    (struct image_sampling){IMAGE_BILINEAR, IMAGE_REPEAT, IMAGE_CLAMP});
     check_same(seam, (struct rgba){(a.r + b.r) / 2, (a.g + b.g) / 2, (a.b + b.b) / 2, 1}, 1e-15);
-    check_same(image_lookup(image, 1, 0.375, 0, 0, IMAGE_BILINEAR, IMAGE_REPEAT, IMAGE_CLAMP), seam, 1e-15);
-    check_same(image_lookup(image, -7, 0.375, 0, 0, IMAGE_BILINEAR, IMAGE_CLAMP, IMAGE_CLAMP), b, 1e-15);
-    check_same(image_lookup(image, 1e300, 0.375, 0, 0, IMAGE_BILINEAR, IMAGE_CLAMP, IMAGE_CLAMP), a, 1e-15);
+    check_same(image_lookup(image, (struct image_point){1, 0.375, 0, 0},
+                            (struct image_sampling){IMAGE_BILINEAR, IMAGE_REPEAT, IMAGE_CLAMP}),
+               seam, 1e-15);
+    check_same(image_lookup(image, (struct image_point){-7, 0.375, 0, 0},
+                            (struct image_sampling){IMAGE_BILINEAR, IMAGE_CLAMP, IMAGE_CLAMP}),
+               b, 1e-15);
+    check_same(image_lookup(image, (struct image_point){1e300, 0.375, 0, 0},
+                            (struct image_sampling){IMAGE_BILINEAR, IMAGE_CLAMP, IMAGE_CLAMP}),
+               a, 1e-15);
     image_release(image);
 }
 
@@ -138,9 +158,10 @@ TEST(image_lookups_survive_any_number) {
     static const double numbers[] = {0, -0.0, 1, -1e-320, 1e308, -1e308, INFINITY, -INFINITY, NAN};
     struct image *image = make_random(7, 5, 8, true, 5);
     for (int i = 0; i < 9 * 9 * 9 * 9; i++) {
-        struct rgba c =
-            image_lookup(image, numbers[i % 9], numbers[i / 9 % 9], numbers[i / 81 % 9], numbers[i / 729],
-                         (enum image_filter)(i % 3), (enum image_wrap)(i / 3 % 3), (enum image_wrap)(i / 9 % 3));
+        struct rgba c = image_lookup(
+            image, (struct image_point){numbers[i % 9], numbers[i / 9 % 9], numbers[i / 81 % 9], numbers[i / 729]},
+            (struct image_sampling){(enum image_filter)(i % 3), (enum image_wrap)(i / 3 % 3),
+                                    (enum image_wrap)(i / 9 % 3)});
         CHECK(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.g <= 1 && c.b >= 0 && c.b <= 1 && c.a >= 0 && c.a <= 1);
     }
     image_release(image);
@@ -158,8 +179,9 @@ TEST(image_of_one_colour_is_that_colour_at_every_level) {
         struct rgba wanted = clamped(image, 0.5 / w, 0.5 / h, 0, IMAGE_NEAREST);
         for (int k = 0; k < 100; k++) {
             double u = test_uniform(&random, -1, 2), v = test_uniform(&random, -1, 2);
-            struct rgba c = image_lookup(image, u, v, test_uniform(&random, 0, 1), test_uniform(&random, 0, 1),
-                                         IMAGE_MIPMAP, (enum image_wrap)(k % 3), (enum image_wrap)(k / 3 % 3));
+            struct rgba c = image_lookup(
+                image, (struct image_point){u, v, test_uniform(&random, 0, 1), test_uniform(&random, 0, 1)},
+                (struct image_sampling){IMAGE_MIPMAP, (enum image_wrap)(k % 3), (enum image_wrap)(k / 3 % 3)});
             check_same(c, wanted, 1e-15);
         }
         image_release(image);
@@ -216,8 +238,10 @@ TEST(image_wide_footprints_average_and_narrow_ones_do_not) {
     CHECK_NEAR(clamped(image, u, 0.4, 1 / 8.0, IMAGE_MIPMAP).r, 0.5, 1e-4);
     CHECK_NEAR(clamped(image, u, 0.4, 1 / 8.0, IMAGE_BILINEAR).r, 1, 0);
     /* A footprint that is wide only along the stripes keeps them sharp; across them it gives gray. */
-    struct rgba along = image_lookup(image, u, 0.4, 1 / 64.0, 8 / 64.0, IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_REPEAT);
-    struct rgba across = image_lookup(image, u, 0.4, 8 / 64.0, 1 / 64.0, IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_REPEAT);
+    struct rgba along = image_lookup(image, (struct image_point){u, 0.4, 1 / 64.0, 8 / 64.0},
+                                     (struct image_sampling){IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_REPEAT});
+    struct rgba across = image_lookup(image, (struct image_point){u, 0.4, 8 / 64.0, 1 / 64.0},
+                                      (struct image_sampling){IMAGE_MIPMAP, IMAGE_REPEAT, IMAGE_REPEAT});
     CHECK_NEAR(along.r, 1, 1e-12);
     CHECK_NEAR(across.r, 0.5, 0.01);
     image_release(image);
@@ -265,10 +289,11 @@ TEST(image_rectangles_are_never_left) {
             }
         struct image *image = make(w, h, 8, bytes);
         for (int k = 0; k < 200; k++) {
-            struct rgba c =
-                image_lookup_part(image, part[0], part[1], part[2], part[3], test_uniform(&random, -0.2, 1.2),
-                                  test_uniform(&random, -0.2, 1.2), test_uniform(&random, 0, 2),
-                                  test_uniform(&random, 0, 2), (enum image_filter)(k % 3));
+            struct rgba c = image_lookup_part(
+                image, (struct image_part){part[0], part[1], part[2], part[3]},
+                (struct image_point){test_uniform(&random, -0.2, 1.2), test_uniform(&random, -0.2, 1.2),
+                                     test_uniform(&random, 0, 2), test_uniform(&random, 0, 2)},
+                (enum image_filter)(k % 3));
             check_same(c, (struct rgba){1, 1, 1, 1}, 1e-15);
         }
         image_release(image);
@@ -281,10 +306,12 @@ TEST(image_rectangle_of_everything_is_the_whole_image) {
     struct test_random random = {11};
     for (int i = 0; i < 300; i++) {
         double u = test_uniform(&random, 0, 1), v = test_uniform(&random, 0, 1), w = test_uniform(&random, 0, 1);
-        check_same(image_lookup_part(image, 0, 0, 24, 15, u, v, w, w, (enum image_filter)(i % 3)),
+        check_same(image_lookup_part(image, (struct image_part){0, 0, 24, 15}, (struct image_point){u, v, w, w},
+                                     (enum image_filter)(i % 3)),
                    clamped(image, u, v, w, (enum image_filter)(i % 3)), 0);
     }
-    struct rgba empty = image_lookup_part(image, 0, 0, 0, 15, 0.5, 0.5, 0, 0, IMAGE_BILINEAR);
+    struct rgba empty = image_lookup_part(image, (struct image_part){0, 0, 0, 15}, (struct image_point){0.5, 0.5, 0, 0},
+                                          IMAGE_BILINEAR);
     check_same(empty, (struct rgba){0, 0, 0, 0}, 0);
     image_release(image);
 }

@@ -106,7 +106,7 @@ TEST(every_integrator_shows_observers_the_pixels_that_it_makes) {
         begin(&s, 1, (enum integrator_kind)kind);
         CHECK(stage_render(&s, WIDTH, HEIGHT));
         struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-        CHECK(render_pixels(&job, s.pool, pixels, 5, check_pixel_trace, &s, &s.error));
+        CHECK(render_pixels(&job, s.pool, (struct pixel_list){pixels, 5}, check_pixel_trace, &s, &s.error));
         stage_end(&s);
     }
 }

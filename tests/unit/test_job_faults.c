@@ -79,11 +79,11 @@ static bool make(const struct render_request *request, enum accel_kind accel, st
     struct render_statistics statistics = {0};
     struct render_job job = job_of(request, &world, &film);
     char warning[256];
-    uint32_t x0, y0, width, height;
+    struct render_area area;
     *error = (struct error){0};
     job.settings.accel = accel;
     size_t bytes;
-    bool ok = render_prepare(&job, &x0, &y0, &width, &height, warning, error) &&
+    bool ok = render_prepare(&job, &area, warning, error) &&
               film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, error);
     if (ok) {
         void *block = calloc(1, bytes);

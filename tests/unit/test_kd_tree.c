@@ -38,7 +38,7 @@ TEST(kd_tree_of_nothing_offers_nothing) {
     struct ray ray = ray_to(vec3_all(0), vec3_make(0, 0, 1));
     struct kd_traversal traversal;
     for (uint32_t count = 0; count <= 3; count += 3) {
-        CHECK(kd_tree_build(&tree, empty, count, NULL, NULL, NULL, &error));
+        CHECK(kd_tree_build(&tree, &(struct kd_items){empty, count, NULL, NULL}, NULL, &error));
         kd_traversal_begin(&traversal, &tree, &ray, 0);
         CHECK(!kd_traversal_next(&traversal, INFINITY));
         kd_tree_destroy(&tree);
@@ -63,7 +63,7 @@ TEST(kd_tree_loses_no_points_and_no_flats_at_extreme_sizes) {
                 boxes[i] = (struct box){p, p};
             }
             struct kd_tree tree;
-            CHECK(kd_tree_build(&tree, boxes, 64, NULL, NULL, NULL, &error));
+            CHECK(kd_tree_build(&tree, &(struct kd_items){boxes, 64, NULL, NULL}, NULL, &error));
             for (uint32_t i = 0; i < 64; i++) {
                 /* Rays along an axis meet the points exactly. */
                 struct vec3 p = boxes[i].min, aside = vec3_make(0, 0, 8 * s);
@@ -84,7 +84,7 @@ TEST(kd_tree_offers_unbounded_items_to_every_ray) {
         boxes[i] = (struct box){vec3_all(i), vec3_all(i + 0.5)};
     boxes[2].max.y = INFINITY;
     struct kd_tree tree;
-    CHECK(kd_tree_build(&tree, boxes, 4, NULL, NULL, NULL, &error));
+    CHECK(kd_tree_build(&tree, &(struct kd_items){boxes, 4, NULL, NULL}, NULL, &error));
     struct ray miss = ray_to(vec3_all(-10), vec3_make(-10, -20, -10)), hit = ray_to(vec3_all(-1), vec3_all(1));
     CHECK(offers(&tree, &miss, 2) && !offers(&tree, &miss, 0));
     CHECK(offers(&tree, &hit, 0) && offers(&tree, &hit, 1) && offers(&tree, &hit, 2) && offers(&tree, &hit, 3));
@@ -99,7 +99,7 @@ TEST(kd_tree_of_small_items_offers_few_of_them) {
     for (int i = 0; i < ITEMS; i++)
         boxes[i] = small_box(&random, 10, 0.1);
     struct kd_tree tree;
-    CHECK(kd_tree_build(&tree, boxes, ITEMS, NULL, NULL, NULL, &error));
+    CHECK(kd_tree_build(&tree, &(struct kd_items){boxes, ITEMS, NULL, NULL}, NULL, &error));
     uint64_t offered = 0, steps = 0;
     for (int i = 0; i < RAYS; i++) {
         struct vec3 from = small_box(&random, 30, 1).min, to = small_box(&random, 10, 1).min;
@@ -126,7 +126,7 @@ TEST(kd_tree_over_items_that_all_overlap_stays_small) {
         boxes[i] = (struct box){vec3_sub(vec3_all(-10), small_box(&random, 1, 1).min),
                                 vec3_add(vec3_all(10), small_box(&random, 1, 1).min)};
     struct kd_tree tree;
-    CHECK(kd_tree_build(&tree, boxes, ITEMS, NULL, NULL, NULL, &error));
+    CHECK(kd_tree_build(&tree, &(struct kd_items){boxes, ITEMS, NULL, NULL}, NULL, &error));
     CHECK(kd_tree_memory(&tree) < 400 * (size_t)ITEMS);
     kd_tree_destroy(&tree);
     free(boxes);
@@ -141,12 +141,12 @@ TEST(kd_tree_is_the_same_after_scaling_by_powers_of_two) {
     for (int i = 0; i < ITEMS; i++)
         boxes[i] = small_box(&random, 10, 1);
     struct kd_tree tree, other;
-    CHECK(kd_tree_build(&tree, boxes, ITEMS, NULL, NULL, NULL, &error));
+    CHECK(kd_tree_build(&tree, &(struct kd_items){boxes, ITEMS, NULL, NULL}, NULL, &error));
     for (int e = 0; e < 4; e++) {
         double s = ldexp(1, exponents[e]);
         for (int i = 0; i < ITEMS; i++)
             scaled[i] = (struct box){vec3_scale(boxes[i].min, s), vec3_scale(boxes[i].max, s)};
-        CHECK(kd_tree_build(&other, scaled, ITEMS, NULL, NULL, NULL, &error));
+        CHECK(kd_tree_build(&other, &(struct kd_items){scaled, ITEMS, NULL, NULL}, NULL, &error));
         CHECK_EQ_INT(tree.node_count, other.node_count);
         CHECK_EQ_INT(tree.entry_count, other.entry_count);
         for (uint32_t i = 0; i < tree.node_count; i++) {

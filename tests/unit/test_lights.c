@@ -444,7 +444,8 @@ TEST(a_set_of_samples_is_stratified_in_cells_rows_and_columns) {
     for (uint64_t set = 0; set < 50; set++) {
         uint8_t parts[36] = {0}, columns[36] = {0}, rows[36] = {0};
         for (uint32_t k = 0; k < 36; k++) {
-            struct sample2 p = sample_multi(set, random_mix(set * 100 + k), k % 3, k / 3 % 3, 3, k / 9, 2);
+            struct sample2 p =
+                sample_multi(set, random_mix(set * 100 + k), (struct sample_part){k % 3, k / 3 % 3, 3, k / 9, 2});
             CHECK((uint32_t)(p.x * 3) == k % 3 && (uint32_t)(p.y * 3) == k / 3 % 3);
             parts[(uint32_t)(p.y * 6) * 6 + (uint32_t)(p.x * 6)]++;
             columns[(uint32_t)(p.x * 36)]++;

@@ -180,7 +180,7 @@ TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
     for (int created = 0; created < 2; created++) {
         base.phong.refract = created;
         material_derive(&metal, MATERIAL_METAL, &base);
-        CHECK(material_split_metal(&metal, NULL, 0.5, 0.5, 0.04, &arena, &error));
+        CHECK(material_split_metal(&metal, NULL, (struct metal_numbers){0.5, 0.5, 0.04}, &arena, &error));
         for (int passes = 0; passes < 2; passes++) {
             base.phong.refract = 0.25 * passes;
             material_inputs_at(&metal, &hit, &look);

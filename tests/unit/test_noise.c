@@ -67,7 +67,7 @@ TEST(noise_is_defined_for_every_double) {
                 double value = noise_perlin(odd[i], odd[j], odd[k], (i + j) & 1);
                 CHECK(value >= -1.05 && value <= 1.05);
                 double wood = noise_wood(odd[i], odd[j], odd[k], 1e10, odd[(i + j + k) % count], k & 1);
-                double marble = noise_marble(odd[i], odd[j], odd[k], 0.5, odd[(i + k) % count], 3.0, k & 1);
+                double marble = noise_marble(vec3_make(odd[i], odd[j], odd[k]), 0.5, odd[(i + k) % count], 3.0, k & 1);
                 CHECK(wood >= 0.0 && wood <= 1.0);
                 CHECK(marble >= 0.0 && marble <= 1.0);
             }
@@ -95,6 +95,6 @@ TEST(noise_marble_is_the_formula_of_the_language) {
                      noise_perlin(32 * x, 32 * y, 32 * z, i & 1) / 16 +
                      noise_perlin(128 * x, 128 * y, 128 * z, i & 1) / 64;
         double want = (1 - el_cos(pi * (1 + el_cos(6 * y + 3 * sum)) / 2)) / 2;
-        CHECK_NEAR(noise_marble(x, y, z, 2.0, 3.0, 6.0, i & 1), want, 1e-14);
+        CHECK_NEAR(noise_marble(vec3_make(x, y, z), 2.0, 3.0, 6.0, i & 1), want, 1e-14);
     }
 }

@@ -54,7 +54,7 @@ TEST(the_box_of_a_ball_is_drawn_where_its_edges_are_and_faintly_behind_it) {
     CHECK(overlay_draw(&job, s.pool, &s.error));
     struct camera_frame frame;
     char warning[256];
-    CHECK(camera_prepare(&s.camera, &s.settings, SIZE, SIZE, &frame, warning, &s.error));
+    CHECK(camera_prepare(&s.camera, &s.settings, (struct picture_size){SIZE, SIZE}, &frame, warning, &s.error));
     const struct box box = {{-1, -1, -1}, {1, 1, 1}};
     int drawn = 0, faint = 0;
     for (uint32_t y = 0; y < SIZE; y++) {

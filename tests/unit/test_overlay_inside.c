@@ -73,7 +73,7 @@ TEST(edges_around_the_camera_are_drawn_where_their_points_are) {
         struct render_job job = stage_job(&s, WIDTH, HEIGHT);
         const struct overlay_request request = {OVERLAY_OF_BOXES, OVERLAY_BOXES, 1};
         CHECK(overlay_lines(&job, s.pool, &request, lines, &s.error));
-        CHECK(camera_prepare(&s.camera, &s.settings, WIDTH, HEIGHT, &frame, warning, &s.error));
+        CHECK(camera_prepare(&s.camera, &s.settings, (struct picture_size){WIDTH, HEIGHT}, &frame, warning, &s.error));
         memset(wanted, 0, sizeof wanted);
         for (uint32_t i = 0; i < s.world.primitive_count; i++)
             if (vec3_finite(s.world.boxes[i].min) && vec3_finite(s.world.boxes[i].max))

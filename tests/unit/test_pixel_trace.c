@@ -111,7 +111,8 @@ static struct check print_picture(struct stage *s, uint32_t width, uint32_t heig
                              .height = height,
                              .ambient = s->ambient,
                              .fog = s->fog};
-    CHECK(render_pixels(&job, s->pool, (const uint32_t(*)[2])pixels, count, check_pixel_trace, &check, &s->error));
+    CHECK(render_pixels(&job, s->pool, (struct pixel_list){(const uint32_t(*)[2])pixels, count}, check_pixel_trace,
+                        &check, &s->error));
     CHECK_EQ_INT(check.pixels, count);
     CHECK_EQ_INT(check.wrong, 0);
     CHECK(check.marked > 0);
@@ -248,7 +249,7 @@ TEST(ways_to_instances_tell_every_node_and_place_on_them) {
     CHECK_TEXT(texts[11], expected);
     const uint32_t wanted[2] = {1, 11};
     const char *found[2];
-    CHECK(world_find_paths(&s.world, s.root, wanted, 2, &s.arena, found, &s.error));
+    CHECK(world_find_paths(&s.world, s.root, (struct primitive_list){wanted, 2}, &s.arena, found, &s.error));
     CHECK_TEXT(found[0], texts[1]);
     CHECK_TEXT(found[1], texts[11]);
     /* A short buffer truncates the text; the full length is returned. */

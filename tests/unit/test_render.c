@@ -561,11 +561,11 @@ TEST(camera_replaces_an_up_parallel_to_view_with_one_warning) {
     struct camera_frame frame;
     struct error error;
     char warning[256];
-    CHECK(camera_prepare(&camera, &settings, 10, 10, &frame, warning, &error));
+    CHECK(camera_prepare(&camera, &settings, (struct picture_size){10, 10}, &frame, warning, &error));
     CHECK(strstr(warning, "up is parallel to view") != NULL);
     CHECK_NEAR(vec3_dot(frame.right, frame.forward), 0, 1e-15);
     camera.up = vec3_make(5, 2, 0);
-    CHECK(camera_prepare(&camera, &settings, 10, 10, &frame, warning, &error));
+    CHECK(camera_prepare(&camera, &settings, (struct picture_size){10, 10}, &frame, warning, &error));
     CHECK_TEXT(warning, "");
 }
 

@@ -57,7 +57,8 @@ TEST(sampler_draws_the_numbers_that_pictures_were_made_of) {
         CHECK(p.x == own.x && p.y == own.y);
         p = sample_set_point(&shared, cell);
         turn = sample_permute(4, ALL, random_combine(s.pixel_key, 2));
-        own = sample_multi(random_combine(s.pixel_key, UINT64_MAX - 4), light, i, j, 4, turn, SIDE);
+        own =
+            sample_multi(random_combine(s.pixel_key, UINT64_MAX - 4), light, (struct sample_part){i, j, 4, turn, SIDE});
         CHECK(p.x == own.x && p.y == own.y);
         p = sample_set_point(&jittered, cell);
         own = sample_cell(light, i, j, 4);

@@ -178,20 +178,23 @@ TEST(each_render_takes_the_tree_as_it_stands) {
 
 TEST(equal_tables_and_files_are_one_mesh) {
     struct listener listener = {.renders = 0};
-    struct script_host host = {
-        .context = &listener, .settings = settings_default(), .render = listener_render, .message = listener_message};
-    struct script_options options = {.transform_order = SCRIPT_ORDER_NEW};
     struct assets assets = {0};
+    struct script_host host = {.context = &listener,
+                               .assets = &assets,
+                               .settings = settings_default(),
+                               .render = listener_render,
+                               .message = listener_message};
+    struct script_options options = {.transform_order = SCRIPT_ORDER_NEW};
     struct arena arena = {0};
     struct error error;
     const char *traceback;
     char path[512];
     (void)snprintf(path, sizeof path, "%s/scene.lua", test_folder());
     test_write_text(path, "for i = 1, 3 do gr.mesh('t' .. i, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}) end\n");
-    CHECK(script_run(path, &options, &host, &assets, &arena, &traceback, &error));
+    CHECK(script_run(path, &options, &host, &arena, &traceback, &error));
     CHECK_EQ_INT(assets.mesh_count, 1);
-    CHECK(script_run("tests/scripts/classic.lua", &(struct script_options){.library_folder = "lua"}, &host, &assets,
-                     &arena, &traceback, &error));
+    CHECK(script_run("tests/scripts/classic.lua", &(struct script_options){.library_folder = "lua"}, &host, &arena,
+                     &traceback, &error));
     CHECK_EQ_INT(assets.mesh_count, 3); /* the table again, the file, the file through readobj */
     arena_destroy(&arena);
     assets_destroy(&assets);

@@ -210,7 +210,8 @@ TEST(solids_are_answered_or_say_that_room_is_missing_with_any_room) {
         uint32_t solid = random_program(&random, 0, LEAVES - clip, turn % 2 ? 0.2 : 0, program), length = solid;
         if (clip)
             length += random_program(&random, LEAVES - clip, clip, 0, program + solid);
-        const struct csg *csg = csg_build_clipped(&arena, leaves, LEAVES, program, solid, length, &error);
+        const struct csg *csg =
+            csg_build_clipped(&arena, &(struct csg_program){leaves, LEAVES, program, length}, solid, &error);
         struct geometry geometry = geometry_of_csg(csg);
         CHECK(csg != NULL);
         for (int i = 0; i < 20 && csg; i++) {

@@ -449,7 +449,7 @@ static void check_pattern(const char *name, bool wood, int interpolation, bool t
             if (q.x < 0 || q.x > 1 || q.y < 0 || q.y > 1)
                 continue;
             double ratio = wood ? noise_wood(q.x, q.y, q.z, 2.5, 6, interpolation)
-                                : noise_marble(q.x, q.y, q.z, 1.5, 5, 4, interpolation);
+                                : noise_marble(vec3_make(q.x, q.y, q.z), 1.5, 5, 4, interpolation);
             double want[3] = {ratio * .9 + (1 - ratio) * .1, ratio * .5 + (1 - ratio) * .2,
                               ratio * .1 + (1 - ratio) * .7};
             for (int k = 0; k < 3; k++)

@@ -101,7 +101,7 @@ static const struct texture *make(struct palette *p, enum texture_kind kind, con
         *wanted = vec3_make(0.4 * 10 / 255 + 0.6, 0.4 * 20 / 255 + 0.6, 0.4 * 30 / 255 + 0.6);
         return keep(p, texture_image(&image, number(p, 1)));
     case TEXTURE_MARBLE:
-        *wanted = vec3_all(noise_marble(at.x, at.y, at.z, 2, 3, 4, 0));
+        *wanted = vec3_all(noise_marble(at, 2, 3, 4, 0));
         return keep(p, texture_marble(2, 3, 4, 0));
     case TEXTURE_WOOD:
         *wanted = vec3_all(ratio);
@@ -370,11 +370,12 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
         struct hit hit = random_hit(&random);
         struct vec3 at = hit.pattern_point, kd = base.phong.kd;
         struct surface_inputs look;
-        struct rgba texel = image_lookup(p.image, 0.5, 0.5, 0, 0, IMAGE_NEAREST, IMAGE_CLAMP, IMAGE_CLAMP);
+        struct rgba texel = image_lookup(p.image, (struct image_point){0.5, 0.5, 0, 0},
+                                         (struct image_sampling){IMAGE_NEAREST, IMAGE_CLAMP, IMAGE_CLAMP});
         kd = vec3_add(vec3_make(texel.r, texel.g, texel.b), vec3_scale(kd, 1 - texel.a));
         double ratio = noise_wood(at.x, at.y, at.z, 3, 5, 1);
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(brown, 1 - ratio));
-        ratio = noise_marble(at.x, at.y, at.z, 2, 3, 4, 1);
+        ratio = noise_marble(at, 2, 3, 4, 1);
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(blue, 1 - ratio));
         material_inputs_at(&marble, &hit, &look);
         CHECK(same(look.kd, kd));

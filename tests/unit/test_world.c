@@ -176,7 +176,9 @@ TEST(points_of_a_parallelogram_seen_through_a_shaft_are_those_that_single_rays_s
             partly += seen > 0 && seen < 16;
             struct occluder_candidates occluder_candidates =
                 world_occluder_candidates(&s.world, from, corner, edge1, edge2, 0);
-            CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates, from, 0, targets, 16, &scratch, NULL), seen);
+            CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates, &(struct shadow_rays){from, 0, targets, 16},
+                                       &scratch, NULL),
+                         seen);
         }
         world_scratch_destroy(&scratch);
         stage_end(&s);
@@ -252,7 +254,8 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
                 &s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge, passing.skip_primitive);
             struct vec3 target = vec3_add(onward.origin, direction);
             struct ray segment = {.origin = onward.origin, .direction = vec3_sub(target, onward.origin), .t_max = 1};
-            CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates, onward.origin, 0, &target, 1, &scratch, NULL),
+            CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates,
+                                       &(struct shadow_rays){onward.origin, 0, &target, 1}, &scratch, NULL),
                          !world_any(&s.world, &segment, &scratch));
         }
         world_scratch_destroy(&scratch);
@@ -460,11 +463,16 @@ TEST(world_finds_the_solids_round_a_point_innermost_last) {
     CHECK_EQ_INT(world_closed_in(&s.world, &everywhere, all, 4), 3);
     struct box far_away = {vec3_all(4), vec3_all(5)};
     CHECK_EQ_INT(world_closed_in(&s.world, &far_away, NULL, 0), 0);
-    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), 0, all, 3, &scratch, inside, 4), 3);
+    CHECK_EQ_INT(
+        world_containing(&s.world, &(struct inside_query){vec3_make(0.1, 0.2, 0.3), 0, all, 3}, &scratch, inside, 4),
+        3);
     CHECK(inside[0] == 1 && inside[1] == 0 && inside[2] == 2);
-    CHECK_EQ_INT(world_containing(&s.world, vec3_make(0.1, 0.2, 0.3), 0, all, 3, &scratch, inside, 2), 2);
+    CHECK_EQ_INT(
+        world_containing(&s.world, &(struct inside_query){vec3_make(0.1, 0.2, 0.3), 0, all, 3}, &scratch, inside, 2),
+        2);
     CHECK(inside[0] == 0 && inside[1] == 2);
-    CHECK_EQ_INT(world_containing(&s.world, vec3_make(2.5, 0, 0), 0, all, 3, &scratch, inside, 4), 1);
+    CHECK_EQ_INT(
+        world_containing(&s.world, &(struct inside_query){vec3_make(2.5, 0, 0), 0, all, 3}, &scratch, inside, 4), 1);
     world_scratch_destroy(&scratch);
     stage_end(&s);
 }

@@ -27,7 +27,8 @@ static void room_begin(struct room *r) {
 static void room_build(struct room *r, bool background) {
     struct stage *s = &r->stage;
     CHECK(stage_build(s, s->root, ACCEL_AUTO));
-    CHECK(world_lights_build(&r->lights, &s->world, background, LIGHT_CHOICE_TREE, &r->arena, s->pool, &s->error));
+    CHECK(world_lights_build(&r->lights, &s->world, (struct world_lights_options){background, LIGHT_CHOICE_TREE},
+                             &r->arena, s->pool, &s->error));
     CHECK(world_scratch_init(&r->scratch, &s->world));
 }
 
