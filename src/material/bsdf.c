@@ -9,7 +9,6 @@
 #include "material/bsdf.h"
 
 #include "material/classic.h"
-#include "material/dielectric_internal.h"
 #include "material/microfacet_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"

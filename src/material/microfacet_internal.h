@@ -5,6 +5,17 @@
 #include "math/sampling.h"
 #include "math/vec3.h"
 
+#include <stdbool.h>
+
+/* The laws of a smooth boundary between two dielectrics. Directions are unit vectors that point away from the surface,
+ * normals lie on the side of `view`; eta = index on view's side / index on the other side. */
+
+struct vec3 dielectric_mirror(struct vec3 normal, struct vec3 view); /* 2 (n.v) n - v */
+/* Snell's law. False: total internal reflection. */
+bool dielectric_refract(struct vec3 normal, struct vec3 view, double eta, struct vec3 *out);
+/* Unpolarised Fresnel reflectance; 1 beyond the critical angle. cos_view > 0. */
+double dielectric_fresnel(double cos_view, double eta);
+
 /* Normal of a facet visible from `view` (unit, on the normal's side), for a point of the unit square. alpha is the
  * width of the distribution of slopes, in (0, 1]. Unit, on the side of the normal and of the view. */
 struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place);

@@ -1,6 +1,7 @@
 /* One sample of a pixel, from the place in the picture to the colour; alone, or many whose camera rays go together. The
  * random key of a sample is a function of the pixel and of the sample's number. */
 #include "render/integrator_internal.h"
+#include "render/sampler.h"
 
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
@@ -131,4 +132,55 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y) {
     double at = renderer->job->settings.pixel_corner ? 0 : 0.5;
     return (struct pixel_sample){x, y, at, at, 0, 1};
+}
+
+/* See sampler.h. Below the key of a pixel's strata are: the light's number, its order of the parts on that light; the
+ * key of a ray, that on a rough surface; UINT64_MAX and the next below, those of lens and shutter; 2, the jitter on the
+ * lens; and from UINT64_MAX - 2 down the lights' multi-jittered sets. */
+
+static const uint64_t order_of_lens = UINT64_MAX, order_of_times = UINT64_MAX - 1, sets_of_lights = UINT64_MAX - 2;
+static const uint64_t jitter_of_times = UINT64_MAX - 1; /* below the key of the sample */
+static const uint64_t jitter_of_lens = 2;
+
+/* Which part is this sample's turn: over the samples of a pixel each is visited once. */
+static uint32_t part_of(const struct sampler *sampler, uint64_t dimension) {
+    if (sampler->side <= 1)
+        return 0;
+    return sample_permute(sampler->cell, sampler->side * sampler->side, random_combine(sampler->pixel_key, dimension));
+}
+
+struct sample2 sampler_lens(const struct sampler *sampler) {
+    if (sampler->kind == SAMPLER_SOBOL)
+        return sampler_point(sampler, SAMPLER_LENS);
+    uint32_t side = sampler->side, cell = part_of(sampler, order_of_lens);
+    return sample_cell(random_combine(sampler->pixel_key, jitter_of_lens), cell % side, cell / side, side);
+}
+
+double sampler_time(const struct sampler *sampler) {
+    if (sampler->kind == SAMPLER_SOBOL)
+        return sampler_point(sampler, SAMPLER_TIME).x;
+    uint32_t all = sampler->side * sampler->side, cell = part_of(sampler, order_of_times);
+    return ((double)cell + random_unit(random_combine(sampler->key, jitter_of_times))) / (double)all;
+}
+
+struct sample_set sampler_facets(const struct sampler *sampler, uint64_t ray_key, uint64_t rough_key, uint32_t side) {
+    if (sampler->side <= 1)
+        return (struct sample_set){.kind = SAMPLE_SET_JITTERED, .key = rough_key, .side = side};
+    return (struct sample_set){.kind = SAMPLE_SET_PARTS,
+                               .key = rough_key,
+                               .side = side,
+                               .part = part_of(sampler, ray_key),
+                               .parts = sampler->side};
+}
+
+struct sample_set sampler_on_light(const struct sampler *sampler, uint64_t light_key, uint32_t light, uint32_t side,
+                                   bool shared) {
+    if (!shared)
+        return (struct sample_set){.kind = SAMPLE_SET_JITTERED, .key = light_key, .side = side};
+    return (struct sample_set){.kind = SAMPLE_SET_MULTI,
+                               .key = light_key,
+                               .set_key = random_combine(sampler->pixel_key, sets_of_lights - light),
+                               .side = side,
+                               .part = part_of(sampler, light),
+                               .parts = sampler->side};
 }

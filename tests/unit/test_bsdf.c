@@ -2,7 +2,6 @@
  * cells of equal solid angle about the geometric normal, so that the tangent plane is a border of cells. */
 #include "tests/harness.h"
 
-#include "material/dielectric_internal.h"
 #include "material/material_eval.h"
 #include "material/material_inputs.h"
 #include "material/microfacet_internal.h"

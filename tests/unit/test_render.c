@@ -3,9 +3,9 @@
 #include "tests/stage.h"
 
 #include "base/mem.h"
-#include "material/dielectric_internal.h"
 #include "material/material_inputs.h"
 #include "material/medium.h"
+#include "material/microfacet_internal.h"
 #include "render/camera.h"
 
 #include <stdlib.h>
