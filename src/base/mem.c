@@ -14,9 +14,11 @@
 
 #include <malloc.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 /* The charged account, or NULL. */
 static _Atomic(struct mem_account *) charged;
@@ -252,9 +254,9 @@ void mem_unshare(void *block, size_t size) {
         (void)munmap(block, size ? size : 1);
 }
 
-/* See hash.h: eight bytes at a time, mixed with multiplications; the tail is padded with zeros and the length mixed in.
- */
+/* --- what memory holds: hashes (base/hash.h), order (base/sort.h) --- */
 
+/* Eight bytes at a time, mixed with multiplications; the tail is padded with zeros and the length mixed in. */
 uint64_t hash_bytes(const void *data, size_t size, uint64_t seed) {
     const unsigned char *bytes = data;
     uint64_t h = random_mix(seed + UINT64_C(0x9e3779b97f4a7c15) + size);
@@ -311,16 +313,10 @@ void sort_words(uint64_t *items, size_t count) {
     }
 }
 
-/* The counters are in a page that the processes of one run share; it exists before the first allocation. */
+/* --- failures on demand (base/fault.h) --- */
 
 #ifdef GRAY_FAULTS
-#include <fcntl.h>
-#include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
+/* The counters are in a page that the processes of one run share; it exists before the first allocation. */
 struct fault_counters {
     _Atomic uint64_t count[2], failing[2];
     _Atomic int error;

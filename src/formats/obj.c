@@ -24,28 +24,21 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Numbers for names: the first name is 0, the next new one 1 ... Names are not copied. */
+/* --- names --- */
 
+/* Numbers for names: the first name is 0, the next new one 1 ... Names are not copied. A hash table with open
+ * addressing; the position of a name in it has no effect. Owner: the caller, names_destroy. Zero value but for `max`:
+ * none. */
 struct name {
     const char *text;
     size_t length;
 };
-
-/* Owner: the caller, names_destroy. Zero value but for `max`: none. */
 struct names {
     struct list entries; /* struct name */
-    uint32_t *table;     /* numbers by hash, open addressing, at most half full */
+    uint32_t *table;     /* numbers by hash, at most half full */
     size_t capacity;
     size_t max; /* more names are reported as lack of memory */
 };
-/* False: no memory. *number is the one of the equal name that was there, or a new one. */
-bool names_add(struct names *names, const char *text, size_t length, uint32_t *number);
-/* UINT32_MAX when it is not there. */
-uint32_t names_find(const struct names *names, const char *text, size_t length);
-void names_destroy(struct names *names);
-
-/* A hash table with open addressing. The position of a name in it has no effect: numbers are given in order of arrival.
- */
 
 #define EMPTY UINT32_MAX
 
@@ -76,7 +69,8 @@ static bool grow(struct names *names) {
     return true;
 }
 
-bool names_add(struct names *names, const char *text, size_t length, uint32_t *number) {
+/* False: no memory. *number is the one of the equal name that was there, or a new one. */
+static bool names_add(struct names *names, const char *text, size_t length, uint32_t *number) {
     if (names->entries.count * 2 >= names->capacity && !grow(names))
         return false;
     size_t at = slot_of(names, text, length);
@@ -91,15 +85,18 @@ bool names_add(struct names *names, const char *text, size_t length, uint32_t *n
     return true;
 }
 
-uint32_t names_find(const struct names *names, const char *text, size_t length) {
+/* UINT32_MAX when it is not there. */
+static uint32_t names_find(const struct names *names, const char *text, size_t length) {
     return names->capacity ? names->table[slot_of(names, text, length)] : EMPTY;
 }
 
-void names_destroy(struct names *names) {
+static void names_destroy(struct names *names) {
     list_destroy(&names->entries);
     mem_free(names->table);
     *names = (struct names){0};
 }
+
+/* --- elements and faces --- */
 
 #define MISSING UINT32_MAX
 #define UNNAMED (UINT32_MAX - 1) /* faces before the first usemtl or g */

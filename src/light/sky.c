@@ -65,7 +65,8 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
     }
 }
 
-struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 d) {
+/* Never negative. */
+static struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 d) {
     if (d.y < 0)
         return clear->ground;
     double cos_sun = vec3_dot(d, clear->sun), xyy[3];
@@ -114,7 +115,7 @@ static struct rgba map_bilinear(const struct image *image, int level, double u, 
     return image_mix(row_at(image, level, j, x), row_at(image, level, j + 1, x), y - floor(y));
 }
 
-struct vec3 sky_map_colour(const struct image *image, struct vec3 d, double spread) {
+static struct vec3 sky_map_colour(const struct image *image, struct vec3 d, double spread) {
     if (!vec3_finite(d))
         return vec3_all(0);
     double u = 0.5 + el_atan2(d.x, -d.z) / (2 * PI);

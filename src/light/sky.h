@@ -56,11 +56,4 @@ double sky_brightest(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread);
 
-/* The kinds of sky that fill a file of their own, for sky.c. */
-
-/* sky.c: an image of longitude by latitude. */
-struct vec3 sky_map_colour(const struct image *image, struct vec3 direction, double spread);
-/* sky.c: never negative. */
-struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 direction);
-
 #endif

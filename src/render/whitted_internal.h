@@ -45,11 +45,4 @@ struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state
 struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                               const struct packet_answer *met, uint64_t key);
 
-/* When a ray no longer counts. */
-
-/* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: that, over
- * how bright things can be in this scene, and over how much the tone of the picture file raises small differences. 0:
- * every ray counts. */
-double cutoff_weight(const struct render_job *job);
-
 #endif

@@ -10,15 +10,16 @@
 
 #include <math.h>
 
-/* The brightest thing that a ray can meet: the sky, a lamp that is seen, what emits, the fog, or a white surface that
- * gets all the light of all lights as if each were at the distance where it has its own colour. Closer to a light that
- * fades it may be brighter: the bound is one for scenes as they are, not for all that can be. */
+/* --- when a ray no longer counts --- */
 
 static double largest(struct vec3 c) {
     double max = c.x > c.y ? c.x : c.y;
     return c.z > max ? c.z : max;
 }
 
+/* The brightest thing that a ray can meet: the sky, a lamp that is seen, what emits, the fog, or a white surface that
+ * gets all the light of all lights as if each were at the distance where it has its own colour. Closer to a light that
+ * fades it may be brighter: the bound is one for scenes as they are, not for all that can be. */
 static double brightest_of_scene(const struct render_job *job) {
     const struct world *world = job->world;
     double max = sky_brightest(&world->sky), lit = largest(job->ambient);
@@ -33,7 +34,10 @@ static double brightest_of_scene(const struct render_job *job) {
     return job->fog ? fmax(max, largest(job->fog->colour)) : max;
 }
 
-double cutoff_weight(const struct render_job *job) {
+/* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: that, over
+ * how bright things can be in this scene, and over how much the tone of the picture file raises small differences. 0:
+ * every ray counts. */
+static double cutoff_weight(const struct render_job *job) {
     const struct tone *tone = &job->settings.tone;
     double brightest = brightest_of_scene(job), cutoff = job->settings.cutoff;
     if (cutoff <= 0)

@@ -172,7 +172,6 @@ void sandbox_open(lua_State *L) {
  * that the compiler does not take these definitions for the functions it knows. Arguments and results as in <math.h>,
  * except that errno is left alone. */
 
-/* Not <math.h>: its declarations carry attributes that these definitions need not have. */
 #define LIBM_ONE(name)                                                                                                 \
     __attribute__((visibility("default"))) double name(double x);                                                      \
     double name(double x) {                                                                                            \

@@ -4,6 +4,8 @@
  * t is the order of the planes. */
 #include "shape/box_shape_internal.h"
 
+#include <math.h>
+
 bool box_shape_crossings(const struct box *box, const struct ray *ray, struct crossing out[2]) {
     double enter = -INFINITY, leave = INFINITY;
     uint32_t enter_part = 0, leave_part = 0;

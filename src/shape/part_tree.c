@@ -1,18 +1,23 @@
-/* The tree is split at the median of the boxes' middles along the longest axis of the box that holds them, which keeps
+/* A tree over the boxes of a shape's parts, in the order in which a line visits it: a node, what is below its first
+ * half, what is below its second, and in each node where to go on when its box is missed. No stack is needed.
+ *
+ * The tree is split at the median of the boxes' middles along the longest axis of the box that holds them, which keeps
  * the depth at the logarithm of the number of parts. Parts of splines come in order along a curve; the median of a few
  * thousand is found by a heap sort per level, which is quick enough at build time and has no bad case. */
 #include "shape/part_tree_internal.h"
 
 #include <assert.h>
+#include <math.h>
 
 struct builder {
-    const struct box *boxes;
-    uint32_t *order;
+    const struct box *boxes; /* of the parts, by number */
+    uint32_t *order;         /* numbers of the parts; a node has a piece of it */
     struct part_node *nodes;
     uint32_t node_count, leaf_size;
-    double pad;
+    double pad; /* boxes are larger by it on every side */
 };
 
+/* Halves first: the sum of two finite numbers need not be finite. */
 static double middle(const struct box *b, int axis) {
     return vec3_get(b->min, axis) / 2 + vec3_get(b->max, axis) / 2;
 }
@@ -39,6 +44,7 @@ static void sift_down(const struct builder *b, uint32_t *items, uint32_t root, u
     items[root] = moved;
 }
 
+/* Heap sort: no recursion, no bad case, and the order is a total one, so the tree is a function of the boxes. */
 static void sort(const struct builder *b, uint32_t *items, uint32_t count, int axis) {
     for (uint32_t i = count / 2; i-- > 0;)
         sift_down(b, items, i, count, axis);
@@ -62,6 +68,7 @@ static void build(struct builder *b, uint32_t first, uint32_t count) {
     if (count <= b->leaf_size) {
         node->count = count;
     } else {
+        /* The first half follows its parent, the second begins where the first ends. */
         int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         sort(b, &b->order[first], count, axis);
         build(b, first, count / 2);
@@ -81,6 +88,7 @@ bool part_tree_build(struct arena *arena, const struct box *boxes, uint32_t coun
     b.nodes = arena_alloc_array(arena, 2 * (size_t)count, sizeof *b.nodes);
     if (!b.order || !b.nodes)
         return false;
+    /* Rounding grows with the largest coordinate, and so do the boxes. */
     for (uint32_t i = 0; i < count; i++) {
         b.order[i] = i;
         b.pad = fmax(b.pad, fmax(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max)));
