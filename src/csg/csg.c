@@ -1,24 +1,24 @@
 /* CSG by one sweep along the line. Every leaf is closed, so its crossings cut the line into inside and outside; the
- * lists of all leaves are merged by t, and the truth of the whole expression is followed (csg_plan.c has the tree that
- * makes one change cheap). Where it changes, the surface is. A mesh counts by parity, whatever its triangles'
- * orientation.
+ * lists of all leaves are merged by t, and the truth of the whole expression is tracked (csg_plan.c has the tree that
+ * makes one change cheap). The surface is where it changes. A mesh counts by parity, for any orientation of its
+ * triangles.
  *
- * Coincident faces. Operands have their own transforms, so faces that are meant to be one differ by rounding. A
+ * Coincident faces. Operands have their own transforms, so faces that should coincide differ by rounding. A
  * crossing has a bound of the error of its t: the rounding errors of the ray in the leaf's space at that place,
  * relative to the numbers they came from, divided by the cosine at the surface. Crossings with overlapping error
- * intervals cannot be distinguished; they form a group and happen at once:
+ * intervals cannot be distinguished; they form a group and take effect together:
  *   - a leaf that crosses an even number of times within a group does not cross;
- *   - while the line is outside the solid, first all happen that take away, then those that add; while it is inside,
- *     first those that add, then those that take away; each in the order of the operands.
- * More true leaves (counted with their sign) can only make the expression true, so it changes at most once in a group,
- * and the crossing that changes it is the surface. Hence touching solids unite without an inner wall, a difference with
- * a common face leaves no skin, touching solids intersect in nothing, and of two faces that coincide the same operand
- * always shows. A solid thinner than the rounding error is not seen. A clip is followed beside the solid by the same
- * rule; a surface that coincides with the clip's is shown.
+ *   - while the line is outside the solid, first all that subtract take effect, then those that add; while it is
+ * inside, first those that add, then those that subtract; each in the order of the operands. More true leaves (counted
+ * with their sign) can only make the expression true, so it changes at most once in a group, and the crossing that
+ * changes it is the surface. Hence the union of touching solids has no inner wall, a difference with a common face
+ * leaves no skin, the intersection of touching solids is empty, and of two coincident faces the same operand is always
+ * visible. A solid thinner than the rounding error is invisible. The truth of a clip is tracked by the same rule; a
+ * surface that coincides with the clip's is visible.
  *
- * Leaves that the solid is a part of are asked at once: a ray that misses one misses the solid, and where it leaves one
- * nothing more can come. Any other leaf is asked when the sweep comes to the box in which it matters, not before: the
- * argument of csg_plan.c that a leaf outside of its box may be taken as false holds at every single point.
+ * Leaves that contain the solid are tested first: a ray that misses one misses the solid, and after it leaves one there
+ * are no more crossings. Every other leaf is tested when the sweep reaches the box in which it matters: the argument of
+ * csg_plan.c that a leaf may be taken as false outside its box is true at every single point.
  *
  * The truth of nodes and leaves lives on the scratch, above what was there; nothing is allocated inside a ray. */
 #include "csg/csg.h"
@@ -76,9 +76,9 @@ static void sort_crossings(struct crossing *items, uint32_t sorted, uint32_t cou
 
 /* ---- the sweep ---- */
 
-/* Leaves whose boxes the line meets, and where it enters them. Before that a leaf cannot change anything, so it is
- * asked only when the sweep comes there; the nearest surface is mostly found before all are. Of more than these all are
- * asked at once. */
+/* Leaves whose boxes the line meets, and where it enters them. Before that a leaf has no effect, so it is tested only
+ * when the sweep arrives there; the nearest surface is usually found before all are tested. If there are more leaves
+ * than this, all are tested at once. */
 enum { WAITING_MAX = 16 };
 struct waiting {
     double enter[WAITING_MAX];
@@ -93,7 +93,7 @@ struct sweep {
     struct crossing *items; /* the crossings of the leaves asked so far, by t; on top of the scratch */
     uint32_t count, next;
     struct geom_scratch *scratch;
-    struct waiting *waiting;  /* NULL: all leaves have been asked */
+    struct waiting *waiting;  /* NULL: all leaves have been tested */
     struct ray *leaf_ray;     /* a copy of the ray, for the leaves' spaces */
     uint32_t first_clip_leaf; /* leaves of the clip come after those of the solid */
     uint32_t *counts;         /* true children of each node */
@@ -171,7 +171,7 @@ static bool is_culled(const struct sweep *s, const struct crossing *crossing) {
     return cull != CSG_CULL_NONE && crossing->enter == (cull == CSG_CULL_FRONT);
 }
 
-/* A mere surface does not change anything by being crossed: what counts is that it is there. */
+/* Crossing an open surface changes no truth value: the crossing itself is the surface. */
 static bool is_open_surface(const struct sweep *s, uint32_t leaf) {
     return s->plan->literals[leaf].parent == CSG_NONE;
 }
@@ -212,15 +212,15 @@ static bool cross_group(struct sweep *s, struct crossing *group, uint32_t count,
     return changed && (was_shown || s->shown);
 }
 
-/* A single crossing; true when it is a surface that shows. */
+/* A single crossing; true if it is a visible surface. */
 static bool cross_one(struct sweep *s, uint32_t leaf) {
     if (is_open_surface(s, leaf))
         return s->shown;
     return toggle(s, leaf) && !is_of_clip(s, leaf) && s->shown;
 }
 
-/* Of a leaf's crossings, which end the scratch, those stay that lie where surfaces are looked for. What is behind does
- * not matter; what is before only moves the beginning, in whatever order. */
+/* Keeps those crossings of a leaf, on top of the scratch, that are in the interval of the search. Later ones do not
+ * matter; earlier ones only change the initial state, in any order. */
 static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first) {
     struct geom_scratch *scratch = s->scratch;
     uint32_t kept = first;
@@ -241,8 +241,8 @@ static void keep_crossings(struct sweep *s, uint32_t leaf, uint32_t first) {
     scratch->used = kept;
 }
 
-/* Outside of a leaf that the solid is a part of nothing is looked for, but for what may be in one group with its ends.
- * items: all its crossings on the line. */
+/* Outside a leaf that contains the solid there is no search, except for crossings that may be in one group with its
+ * ends. items: all its crossings on the line. */
 static void narrow(struct sweep *s, const struct crossing *items, uint32_t count) {
     if (count == 0) {
         s->from = INFINITY;
@@ -257,7 +257,7 @@ static void narrow(struct sweep *s, const struct crossing *items, uint32_t count
         s->to = to;
 }
 
-/* The crossings of a leaf where surfaces are looked for, on top of the scratch. False: scratch overflow. */
+/* The crossings of a leaf in the interval of the search, on top of the scratch. False: scratch overflow. */
 static bool ask_leaf(struct sweep *s, uint32_t leaf) {
     struct geom_scratch *scratch = s->scratch;
     const struct csg_leaf *operand = &s->csg->leaves[leaf];
@@ -276,7 +276,7 @@ static bool ask_leaf(struct sweep *s, uint32_t leaf) {
     return !scratch->overflow;
 }
 
-/* Sorts in what was asked since there were `count` crossings. */
+/* Merges the crossings added since there were `count`. */
 static void take_in(struct sweep *s) {
     uint32_t count = (uint32_t)(&s->scratch->items[s->scratch->used] - s->items);
     if (count > s->count) {
@@ -285,7 +285,7 @@ static void take_in(struct sweep *s) {
     }
 }
 
-/* Asks the leaves that are entered before `until`; false: scratch overflow. */
+/* Tests the leaves that are entered before `until`; false: scratch overflow. */
 static bool ask_waiting(struct sweep *s, double until) {
     struct waiting *w = s->waiting;
     for (uint32_t i = 0; i < w->count;) {
@@ -330,7 +330,7 @@ static uint32_t group_end(struct sweep *s, uint32_t first) {
         double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
         if (!(t - before <= limit))
             break;
-        if (s->waiting && s->waiting->count > 0) { /* seldom: a group may reach farther than was asked for */
+        if (s->waiting && s->waiting->count > 0) { /* rare: a group may extend beyond the tested range */
             if (!ask_waiting(s, INFINITY))
                 return 0;
             end = first;
@@ -488,7 +488,7 @@ bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *
     return csg_nearest(csg, ray, scratch, &ignored);
 }
 
-/* The whole line is inside of a solid without end that it does not meet. */
+/* The whole line is inside an unbounded solid without crossing it. */
 static bool cross_nothing(const struct csg *csg, struct geom_scratch *scratch, struct crossing_list *out) {
     if (!csg->inside_out || csg->clipped)
         return true;
@@ -515,8 +515,8 @@ bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scr
         scratch->used = out->first;
         return !scratch->overflow && cross_nothing(csg, scratch, out);
     }
-    /* The answer never overtakes the sweep, so it is written where the sweep has been; then the ends without end join
-     * it, for which there is room, and all is moved down over the state. */
+    /* The result is never longer than the part already swept, so it overwrites that part; then the crossings at
+     * infinity are added, for which there is room, and all is moved down over the state. */
     bool endless = s.in && !csg->clipped;
     struct crossing surface, first = s.count ? s.items[0] : (struct crossing){0};
     uint32_t count = 0;
@@ -594,7 +594,7 @@ void csg_describe(const struct csg *csg, const struct ray *ray, const struct cro
     struct crossing own = own_crossing(crossing);
     shape_describe(&leaf->shape, &leaf_ray, &own, out);
 
-    /* What happens in the operand's space stays there; the rest goes to CSG space. */
+    /* Fields in the operand's space stay unchanged; the others are transformed to CSG space. */
     struct vec3 p = out->point;
     out->point = affine_point(&map->forward, p);
     out->normal = transform_normal(map, out->normal);

@@ -14,7 +14,7 @@
 /* Binary ones take the two above them, the inverse takes one. */
 enum csg_operation { CSG_LEAF, CSG_UNION, CSG_INTERSECTION, CSG_DIFFERENCE, CSG_INVERSE };
 
-/* What is not shown of a clipped surface: what is seen from behind, or from the front. */
+/* The invisible side of a clipped surface: the back, or the front. */
 enum csg_cull { CSG_CULL_NONE, CSG_CULL_BACK, CSG_CULL_FRONT };
 
 struct csg_leaf {
@@ -24,7 +24,7 @@ struct csg_leaf {
     uint32_t material;
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum csg_cull cull;  /* of a surface that is clipped; CSG_CULL_NONE in solids */
-    uint32_t origin;     /* a number by which whoever made the leaf finds what it is of */
+    uint32_t origin;     /* a number that the creator of the leaf chose, to identify it */
 };
 
 struct csg_token {

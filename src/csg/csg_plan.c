@@ -5,21 +5,21 @@
  *
  * Every node has a box outside of which its truth is what it is with all leaves false. Of an AND that is the common
  * part of the boxes of those children that start false, since any of them decides; if all start true, the box around
- * all. An OR is the same with true and false exchanged. From an AND's box goes what a negated box or half-space along
- * the axes takes off an end. A leaf matters only inside the boxes of all nodes above it: a ray that misses their common
- * part does not ask it, and what is subtracted costs nothing beside the solid it is subtracted from.
+ * all. An OR is the same with true and false exchanged. A negated axis-aligned box or half-space may shorten an AND's
+ * box at an end. A leaf matters only inside the boxes of all nodes above it: a ray that misses their intersection does
+ * not test it, and subtracted leaves cost nothing away from the solid.
  *
- * A leaf that the solid as a whole is a part of is asked first, since a ray that misses it misses the solid, and where
- * it leaves it nothing more can come.
+ * A leaf that contains the whole solid is tested first, since a ray that misses it misses the solid, and after it
+ * leaves it there are no more crossings.
  *
- * These boxes of the leaves stand in a binary tree (halves at the median of the longest axis), so that a ray asks only
+ * These boxes of the leaves stand in a binary tree (halves at the median of the longest axis), so that a ray tests only
  * the leaves near it. Programs may be as deep as they are long: they are read with explicit stacks. */
 #include "base/mem.h"
 #include "csg/csg_plan_internal.h"
 
 #include <assert.h>
 
-/* Few leaves are asked one by one: what holds several of them is mostly met as well. */
+/* A few leaves are tested one by one: a box around several of them is usually hit as well. */
 enum { LEAVES_PER_BOUND = 4, FEW_LEAVES = 12 };
 
 /* Each of both programs must combine to exactly one value, and both together use every leaf once, the solid's before

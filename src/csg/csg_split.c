@@ -200,7 +200,7 @@ static bool analyse(struct splitting *s, uint32_t length, uint32_t *parts) {
         return false;
     fill_spans(s, length);
     *parts = 1;
-    if (!s->spans[length - 1].far) { /* of a union that is true far away the operands reach each other */
+    if (!s->spans[length - 1].far) { /* in a union that is true far away all operands are connected */
         find_operands(s, length);
         *parts = find_parts(s);
     }

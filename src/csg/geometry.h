@@ -1,5 +1,5 @@
-/* What the world places: a shape or a CSG solid. One two-way switch for each question; the answers are those of shape.h
- * and csg.h, in object space. */
+/* The geometry of a primitive: a shape or a CSG solid. One two-way switch for each query; the results are those of
+ * shape.h and csg.h, in object space. */
 #ifndef GRAY_CSG_GEOMETRY_H
 #define GRAY_CSG_GEOMETRY_H
 

@@ -1,8 +1,8 @@
 /* Roots in Bernstein form. The number of sign changes among the coefficients is the number of roots in (0, 1), or more
  * by an even number (Descartes; Lane and Riesenfeld, "Bounds on a polynomial", BIT 1981). None: no root. One: exactly
  * one, which is bracketed and found by Newton's steps inside the bracket. More: de Casteljau halves the interval.
- * Halving stops when the piece is too short or the coefficients are mere rounding: then only the ends' signs count. The
- * sign at a middle is taken once and used by both halves, hence the parity. */
+ * Halving stops if the piece is too short or the coefficients are only rounding errors: then only the signs at the ends
+ * count. The sign at a midpoint is computed once and used by both halves, hence the parity. */
 #include "geometry/bernstein.h"
 
 #include <math.h>
@@ -82,7 +82,7 @@ static double bracketed_root(const double *b, int degree) {
     bool rising = b[0] < 0;
     if (degree == 1)
         return b[0] / (b[0] - b[1]);
-    /* Not from an end itself: it may be a zero that counts as positive, and the root elsewhere. */
+    /* Does not start at an end: it may be a zero that counts as positive, with the root elsewhere. */
     double x = fmin(fmax(fabs(b[0]) / (fabs(b[0]) + fabs(b[degree])), 0.0625), 0.9375);
     for (int i = 0; i < 100; i++) {
         double slope, value = value_and_slope(b, degree, x, &slope);
@@ -93,7 +93,7 @@ static double bracketed_root(const double *b, int degree) {
         else
             lo = x;
         double step = value / slope, next = x - step;
-        if (fabs(step) < 0x1p-54) /* nothing left to gain */
+        if (fabs(step) < 0x1p-54) /* no further improvement */
             return next > lo && next < hi ? next : x;
         if (!(next > lo && next < hi && fabs(step) <= 0.5 * last_step)) {
             next = 0.5 * (lo + hi);
@@ -160,7 +160,7 @@ int bernstein_roots(const double *b, int degree, double *out) {
         } else {
             root = bracketed_root(piece.b, degree);
         }
-        if (count == degree) { /* rounding invented a pair: keep parity, lose the pair */
+        if (count == degree) { /* rounding produced a pair: drop it, which keeps the parity */
             count--;
             continue;
         }

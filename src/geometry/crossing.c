@@ -1,5 +1,5 @@
-/* The stack of crossings of one worker. It is grown only between rays, so that pointers and indices into it hold while
- * a ray is being answered. */
+/* The stack of crossings of one worker. It is grown only between rays, so that pointers and indices into it stay valid
+ * during a query. */
 #include "geometry/crossing.h"
 
 #include "base/mem.h"
@@ -79,12 +79,12 @@ void line_finish_closed(const struct line *line, struct geom_scratch *scratch, u
     uint32_t kept = 0;
     for (uint32_t i = 0; i < out->count; i++) {
         if (kept > 0 && items[kept - 1].t == items[i].t) {
-            kept--; /* in and out, or out and in, at one place */
+            kept--; /* in and out, or out and in, at one t */
             continue;
         }
         items[kept++] = items[i];
     }
-    /* Root-finders keep parity by construction; should one fail, an unfinished last piece is not there. */
+    /* Root finders keep parity by construction; if one fails, an unfinished last piece is dropped. */
     kept -= kept % 2;
     for (uint32_t i = 0; i < kept; i++)
         items[i].enter = i % 2 == 0;
@@ -92,12 +92,12 @@ void line_finish_closed(const struct line *line, struct geom_scratch *scratch, u
     scratch->used = first + kept;
 }
 
-/* Image coordinates as functions of space, which a surface inherits: u and v have gradients, and on the surface the
- * point moves with u so that v stays and with v so that u stays. Both ways lie in the tangent plane, which gives them
- * as the dual basis of the two gradients there (any book on tensors): with the normal n, dp/du = grad v x n / d, dp/dv
- * = n x grad u / d,   d = n . (grad u x grad v). Where the surface holds the direction of sight, d is 0 and the picture
- * is drawn out without end; d is kept off 0, so that all numbers stay finite. surface_mapping_axes: Duff et al.,
- * "Building an Orthonormal Basis, Revisited", JCGT 2017. */
+/* Image coordinates of a surface as functions of space with gradients: on the surface the point moves with u at
+ * constant v and with v at constant u. Both derivatives are in the tangent plane, the dual basis of the two gradients
+ * there (any book on tensors): with the normal n, dp/du = grad v x n / d, dp/dv = n x grad u / d,   d = n . (grad u x
+ * grad v). Where the surface is parallel to the direction of projection, d is 0 and the image is stretched infinitely;
+ * d is kept off 0, so that all numbers stay finite. surface_mapping_axes: Duff et al., "Building an Orthonormal Basis,
+ * Revisited", JCGT 2017. */
 
 #define TURN 6.28318530717958647692
 #define STEEPEST 0x1p-20
@@ -108,8 +108,8 @@ void surface_mapping_axes(struct vec3 n, struct vec3 *x, struct vec3 *z) {
     *z = vec3_make(c, -n.z, sign + n.z * n.z * s);
 }
 
-/* u or v: its value, the unit direction in which it grows, and how long, > 0, a step of one unit of it is where the
- * surface faces the eye. */
+/* u or v: its value, the unit direction in which it increases, and the length > 0 of one unit of it where the surface
+ * faces the centre of projection. */
 struct mapped {
     double at;
     struct vec3 along;

@@ -1,5 +1,5 @@
-/* Crossings: what a ray meets, with just enough to compare and to find the place again. While searching only crossings
- * travel; normals, uv and materials are worked out once for the survivor (shape_describe). */
+/* Crossings of rays and surfaces, with only the data to compare them and to describe the hit later. Searches use only
+ * crossings; normals, uv and materials are computed once, for the nearest one (shape_describe). */
 #ifndef GRAY_GEOMETRY_CROSSING_H
 #define GRAY_GEOMETRY_CROSSING_H
 
@@ -22,20 +22,20 @@ struct crossing {
             bool flip;     /* CSG difference or inverse turned the surface inside out */
             uint16_t leaf; /* which CSG operand made the surface; 0 outside CSG */
         };
-        struct triangle_hit on_mesh; /* t to enter, so that a search of triangles writes them where they belong */
+        struct triangle_hit on_mesh; /* t to enter, so that a search of triangles writes them directly */
     };
 };
 _Static_assert(offsetof(struct crossing, part) == offsetof(struct triangle_hit, triangle) &&
                    offsetof(struct crossing, enter) == offsetof(struct triangle_hit, enter),
                "a hit on a mesh is a crossing but for what follows enter");
 
-/* One worker's memory for lists of crossings, used as a stack. It grows between rays, never inside one: when it is too
- * small a push fails, `overflow` is set, and the caller of the whole ray calls geom_scratch_grow and asks again. */
+/* One worker's memory for lists of crossings, used as a stack. It grows between rays, never during one: if it is too
+ * small a push fails, `overflow` is set, and the caller of the whole query calls geom_scratch_grow and repeats it. */
 struct geom_scratch {
     struct crossing *items;
     uint32_t capacity, used;
     bool overflow;
-    /* what the searches cost; sums, never read by them */
+    /* the cost of searches; sums, which searches never read */
     uint64_t shape_tests;
     uint64_t box_tests; /* of single boxes; a node of a hierarchy is one of cost.hierarchy_steps */
     struct triangle_cost cost;
@@ -59,10 +59,10 @@ static inline bool geom_scratch_push(struct geom_scratch *scratch, struct crossi
     return true;
 }
 
-/* --- The line of a ray in a shape's own measure: the origin is moved along it to where it passes the shape, the
- * direction is a unit vector, s counts object units from there. So the numbers that a root-finder sees do not depend on
- * how far away the ray began, nor on the length of its direction. Scaling by powers of two scales s and changes nothing
- * else --- */
+/* --- The line of a ray, normalised for a shape: the origin is moved along it to near the shape, the direction is a
+ * unit vector, and s counts object units from there. So the numbers in a root finder do not depend on the distance of
+ * the ray's origin, nor on the length of its direction. Scaling by powers of two scales s and changes nothing else ---
+ */
 
 struct line {
     struct vec3 origin, direction;
@@ -116,7 +116,7 @@ static inline void crossings_sift_down(struct crossing *items, uint32_t root, ui
     items[root] = moved;
 }
 
-/* Sorts through a heap: no memory, never quadratic. Inline, so that the order is compiled into it. */
+/* Heap sort: no memory, never quadratic. Inline, so that the comparison is inlined, too. */
 static inline void crossings_heap_sort(struct crossing *items, uint32_t count, crossing_order *before) {
     for (uint32_t i = count / 2; i-- > 0;)
         crossings_sift_down(items, i, count, before);
@@ -128,7 +128,7 @@ static inline void crossings_heap_sort(struct crossing *items, uint32_t count, c
     }
 }
 
-/* A list is mostly short and nearly sorted: insertion; long ones go through the heap. */
+/* Most lists are short and nearly sorted: insertion sort; heap sort for long ones. */
 static inline void crossings_sort_by(struct crossing *items, uint32_t count, crossing_order *before) {
     enum { FEW = 40 };
     if (count > FEW) {
@@ -146,25 +146,25 @@ static inline void crossings_sort_by(struct crossing *items, uint32_t count, cro
 
 /* Sorts crossings by t (then part, then u). */
 void crossings_sort(struct crossing *items, uint32_t count);
-/* Turns everything above `first` on the scratch, whose t holds s in any order, into the list of an open or closed
- * shape: by ascending t, and for a closed one without pairs at one t and with enter and leave alternating. */
+/* Converts all crossings above `first` on the scratch, whose t has s in any order, into the list of an open or closed
+ * shape: sorted by t; for a closed one also without pairs at one t and with alternating entries and exits. */
 void line_finish_open(const struct line *line, struct geom_scratch *scratch, uint32_t first, struct crossing_list *out);
 void line_finish_closed(const struct line *line, struct geom_scratch *scratch, uint32_t first,
                         struct crossing_list *out);
 
-/* Image coordinates round an axis, also for surfaces that have none of their own: wrapped like a label, or like a map
- * of the earth. */
+/* Cylindrical and spherical image coordinates, also for surfaces without coordinates of their own. */
 
 /* Unit vectors at right angles to the unit vector `axis` from which angles are counted; x and z for the axis y. */
 void surface_mapping_axes(struct vec3 axis, struct vec3 *x, struct vec3 *z);
 
 /* Both fill u, v, dpdu and dpdv of a surface whose point and normal are known; normals may have any length > 0. u is
- * the turn round the axis, from 0 to 1 to the right seen from outside, beginning behind (at -x for the axis y). Where
- * the surface looks towards the axis u runs the other way, so that nothing is mirrored. */
+ * the angle about the axis, from 0 to 1 to the right as seen from outside, starting at the back (at -x for the axis y).
+ * Where the surface faces the axis, u runs in the other direction, so that images are not mirrored. */
 
-/* Seen from `centre`: v is the angle above the lower pole, 0 to 1. The axis is y. */
+/* Spherical, from `centre`: v is the angle above the lower pole, 0 to 1. The axis is y. */
 void surface_mapping_sphere(struct vec3 centre, struct surface *out);
-/* Seen from the axis through `base`: v is the height above the base in units of `length`. The axis has unit length. */
+/* Cylindrical, about the axis through `base`: v is the height above the base in units of `length`. The axis has unit
+ * length. */
 void surface_mapping_label(struct vec3 base, struct vec3 axis, double length, struct surface *out);
 
 #endif

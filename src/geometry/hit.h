@@ -1,4 +1,4 @@
-/* The complete description of the one crossing that survives. */
+/* The complete description of the nearest crossing. */
 #ifndef GRAY_GEOMETRY_HIT_H
 #define GRAY_GEOMETRY_HIT_H
 
@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Where the whole primitive lies: anywhere; behind the tangent plane of the hit (convex shapes); in it (flat ones). */
+/* The position of the whole primitive: anywhere; behind the tangent plane of the hit (convex shapes); in it (planar
+ * shapes). */
 enum hit_convexity { CONVEXITY_NONE, CONVEXITY_BEHIND, CONVEXITY_PLANAR };
 
 /* A surface point in the object space of the shape, filled by shape_describe. */
@@ -28,8 +29,8 @@ struct surface {
     uint32_t material_slot; /* per-face materials of a mesh; 0 = the only one */
 };
 
-/* A surface without image coordinates outside of CSG, written field by field: clearing so much memory by its size takes
- * longer than finding the point. */
+/* A surface without image coordinates outside CSG, written field by field: clearing this much memory takes longer than
+ * computing the point. */
 static inline void surface_make(struct surface *out, struct vec3 point, struct vec3 normal, double error) {
     const struct vec3 zero = {0, 0, 0};
     out->point = out->pattern_point = point;
@@ -51,9 +52,9 @@ struct hit {
     bool has_uv, has_colour;
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
-    struct vec3 dpdu, dpdv; /* world; of balls only where relief asks */
-    /* Where relief asks: what one unit along the operand's outward normal is in the world, and along its tangents by
-     * frame_tangents; by how much pattern_normal turns along these, where that is known (of balls), else 0. */
+    struct vec3 dpdu, dpdv; /* world; for spheres only if bumps need them */
+    /* If bumps need them: the world vectors of one unit along the operand's outward normal and along its tangents by
+     * frame_tangents; the derivatives of pattern_normal along these if known (spheres), else 0. */
     struct vec3 raise, along_a, along_b;
     double curvature;
     double offset;        /* a secondary ray starts this far (world units) from point along the normal */
@@ -68,8 +69,8 @@ struct hit {
 };
 
 /* For ray->skip_primitive: a ray that leaves the surface in `direction` from the side `side` (the sign of the distance
- * of its origin along normal_geometric), where nothing more of its primitive is, does not meet it again. Directions
- * within 2^-20 of the surface are left to the search, which knows what rounding does. */
+ * of its origin along normal_geometric) does not hit its primitive again if no part of it is on that side. Directions
+ * within 2^-20 of the surface are tested, because of rounding. */
 static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double side, struct vec3 direction) {
     double rise = vec3_dot(direction, hit->normal_geometric), min = 0x1p-20 * vec3_max_abs(direction);
     bool apart = hit->convexity == CONVEXITY_BEHIND
@@ -77,12 +78,12 @@ static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double sid
                      : hit->convexity == CONVEXITY_PLANAR && (side < 0 ? -rise : rise) > min;
     return apart ? hit->primitive + 1 : 0;
 }
-/* The same of a ray that starts on the side where it goes. */
+/* The same for a ray that starts on the side to which it points. */
 static inline uint32_t hit_skip_primitive(const struct hit *hit, struct vec3 direction) {
     return hit_skip_primitive_from(hit, vec3_dot(direction, hit->normal_geometric), direction);
 }
 
-/* The ray that goes on from the hit of `from` in a direction, off the surface by the hit's own offset. */
+/* The ray that continues from the hit of `from` in a direction, with the hit's offset from the surface. */
 static inline struct ray hit_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
                                  const struct medium_stack *media) {
     double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;

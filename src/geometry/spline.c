@@ -75,7 +75,7 @@ bool spline_build(struct arena *arena, const struct spline_input *in, struct spl
             }
         }
     }
-    if (uniform && !in->closed) /* exactly there, whatever (p + 4 p + p) / 6 rounds to */
+    if (uniform && !in->closed) /* exactly there, without the rounding of (p + 4 p + p) / 6 */
         for (int d = 0; d < in->dimensions; d++) {
             out[0].b[d][0] = in->points[d];
             out[n - 1].b[d][3] = in->points[(size_t)(in->count - 1) * (size_t)in->dimensions + (size_t)d];

@@ -31,13 +31,13 @@ struct spline_input {
     const double *before, *after;
 };
 
-/* Error ends with what is wrong with the points. Neighbouring segments share their common point bit by bit. */
+/* The error ends with the reason. Neighbouring segments share their common point bit by bit. */
 bool spline_build(struct arena *arena, const struct spline_input *input, struct spline_segment **segments,
                   uint32_t *count, struct error *error);
 
-/* --- A planar curve cut into pieces that a root-finder likes: each piece is monotone in both coordinates (so its end
- * points are its box) and turns little. Neighbouring pieces share their common point bit by bit, on which the parity of
- * crossings rests. Used by the lathe (p is the radius, q the height) and the prism (p is x, q is z) --- */
+/* --- A planar curve cut into pieces for root finding: each piece is monotone in both coordinates (so its end points
+ * are its box) and turns little. Neighbouring pieces share their common point bit by bit, which the parity of crossings
+ * requires. Used by the lathe (p is the radius, q the height) and the prism (p is x, q is z) --- */
 
 struct outline_piece {
     double p[4], q[4]; /* Bezier points */

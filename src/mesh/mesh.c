@@ -1,5 +1,5 @@
-/* What a finished mesh answers. Every search ends in the one watertight triangle test of accel/triangle.h; the index
- * only says which triangles are worth trying. */
+/* Queries of a finished mesh. Every search ends in the one watertight triangle test of accel/triangle.h; the index only
+ * selects the triangles to test. */
 #include "mesh/mesh.h"
 
 #include "base/mem.h"
@@ -50,7 +50,7 @@ bool mesh_build_accel(const struct mesh *mesh, enum accel_kind kind, struct pool
         return accel->kd_tree || kd_triangles_build(&accel->kd_tree, &mesh->set, pool, error);
     case ACCEL_AUTO:
     case ACCEL_BVH:
-    case ACCEL_NONE: /* insides of solids are asked for all the same */
+    case ACCEL_NONE: /* but insides of solids are needed anyway */
         return accel->index || triangle_index_build(&accel->index, &mesh->set, 0, pool, error);
     }
     return true;
@@ -160,7 +160,7 @@ static struct crossing crossing_from(const struct triangle_hit *hit) {
     return (struct crossing){.t = hit->t, .u = hit->u, .v = hit->v, .part = hit->triangle, .enter = hit->enter};
 }
 
-/* What searches go through; with neither every triangle is tried. */
+/* The structures for searches; without them every triangle is tested. */
 struct search_structure {
     const struct triangle_index *index;
     const struct kd_triangles *kd_tree;
@@ -247,8 +247,8 @@ static bool before(const struct crossing *a, const struct crossing *b) {
 }
 
 /* The signs of the triangle test make a line enter a closed mesh as often as it leaves it, but where it touches an edge
- * or passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding ways
- * in and out are made to alternate. */
+ * or passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding error
+ * entries and exits are made to alternate. */
 static void alternate(struct crossing *items, uint32_t count, bool enter_first, double slack) {
     for (uint32_t i = 0; i < count; i++) {
         bool want = i ? !items[i - 1].enter : enter_first;
@@ -341,7 +341,7 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
         const uint32_t *n = mesh->normal_corners[triangle];
         struct vec3 mixed = vec3_scale(load(mesh->normals[n[0]]), w);
         mixed = vec3_add_scaled(vec3_add_scaled(mixed, load(mesh->normals[n[1]]), u), load(mesh->normals[n[2]]), v);
-        /* Opposite normals cancel; what rounding leaves of them says nothing. */
+        /* Opposite normals cancel; the remainder is only rounding error. */
         if (vec3_length_squared(mixed) > 0x1p-60)
             out->shading_normal = mixed;
     }

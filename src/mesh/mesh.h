@@ -1,7 +1,7 @@
 /* A triangle mesh with its own acceleration structure, an immutable asset once built: mesh_create copies and
- * triangulates, mesh_build_accel (lazily, before the first render, in parallel on the pool) what searches go through. A
- * mesh answers nearest, any and all crossings with one and the same watertight triangle test. Owner: the asset store,
- * by reference count. */
+ * triangulates, mesh_build_accel builds the search structure (lazily, before the first render, in parallel on the
+ * pool). Nearest, any and all crossings use the same watertight triangle test. Owner: the asset store, by reference
+ * count. */
 #ifndef GRAY_MESH_MESH_H
 #define GRAY_MESH_MESH_H
 
@@ -41,8 +41,8 @@ struct mesh_input {
     const float (*colours)[3];     /* of the vertices, or NULL */
 };
 
-/* How searches go, over primitives and inside of meshes; the answers are the same. AUTO: what is fastest; GRID:
- * the uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tried. */
+/* The search structure over primitives and inside meshes; the results are the same. AUTO: the fastest; GRID: the
+ * uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tested. */
 #define ACCEL_KINDS(X)                                                                                                 \
     X(ACCEL_AUTO, "auto")                                                                                              \
     X(ACCEL_GRID, "grid")                                                                                              \
@@ -52,38 +52,40 @@ struct mesh_input {
 enum accel_kind { ACCEL_KINDS(LIST_MEMBER) };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
- * drops degenerate faces quietly (counted). NULL and error on no memory. Deterministic. Not more than 2^31 triangles.
+ * drops degenerate faces without a message (counted). NULL and error on no memory. Deterministic. Not more than 2^31
+ * triangles.
  */
 struct mesh *mesh_create(const struct mesh_input *input, struct error *error);
 struct mesh *mesh_share(struct mesh *mesh); /* one more owner */
 void mesh_release(struct mesh *mesh);
-/* Builds what searches of this kind go through, unless it is there already. The mesh itself does not change. Call from
- * one thread while no search runs. ACCEL_AUTO: the index whose resolution measured best, which is mostly one voxel;
- * ACCEL_GRID: a grid of many voxels that Amanatides and Woo's steps walk through, for teaching and for doubt. Errors:
- * no memory, cancelled. */
+/* Builds the structure for searches of this kind, unless it exists. The mesh itself does not change. Call from one
+ * thread while no search runs. ACCEL_AUTO: the index with the best resolution, usually one voxel; ACCEL_GRID: a grid of
+ * many voxels, traversed by the algorithm of Amanatides and Woo, for teaching and verification. Errors: no memory,
+ * cancelled. */
 bool mesh_build_accel(const struct mesh *mesh, enum accel_kind kind, struct pool *pool, struct error *error);
 
 struct box mesh_bounds(const struct mesh *mesh);
-/* The tightest box of the mesh as `map` places it; looks at every corner. */
+/* The tightest box of the mesh under `map`; reads every corner. */
 struct box mesh_bounds_under(const struct mesh *mesh, const struct affine *map);
 bool mesh_is_closed(const struct mesh *mesh); /* every edge is used by exactly two triangles in opposite directions */
 /* For a mesh that is not closed: one open edge by its two positions; false when closed. */
 bool mesh_open_edge(const struct mesh *mesh, struct vec3 *a, struct vec3 *b);
 bool mesh_is_outward(const struct mesh *mesh);  /* closed, and its triangles' normals point outwards */
-const char *mesh_file(const struct mesh *mesh); /* NULL: it is made of tables */
+const char *mesh_file(const struct mesh *mesh); /* NULL: it was made from tables */
 uint32_t mesh_triangle_count(const struct mesh *mesh);
 /* The corners of a triangle and its material slot (0 where there are none). */
 void mesh_triangle(const struct mesh *mesh, uint32_t triangle, struct vec3 corners[3], uint32_t *slot);
 uint32_t mesh_dropped_faces(const struct mesh *mesh);
 bool mesh_has_uv(const struct mesh *mesh);
 bool mesh_has_normals(const struct mesh *mesh);
-/* The polygons as they came, for those who want to read them: `corners` numbers of vertices, at most as many as the
+/* The original polygons, for scripts that read them: `corners` numbers of vertices, at most as many as the
  * largest face of the mesh has; both answers point into the mesh. */
 const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3];
 uint32_t mesh_face_count(const struct mesh *mesh);
 const uint32_t *mesh_face(const struct mesh *mesh, uint32_t face, uint32_t *corners);
 size_t mesh_memory(const struct mesh *mesh); /* bytes, index included */
-/* The exact content as a key, so that the same tables give the same mesh (hash over everything in the input but name).
+/* The exact content as a key, so that equal tables give the same mesh (hash of everything in the input except the
+ * name).
  */
 uint64_t mesh_input_hash(const struct mesh_input *input);
 bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input); /* vertices and faces the same */

@@ -1,6 +1,6 @@
-/* Polygons into a mesh. Every polygon becomes its corners less two triangles; those with two corners in one place are
- * dropped at once (their neighbours then share the edge). Triangles without area but with three different corners are
- * what keeps some closed meshes closed, so they go only from meshes that are open anyway. */
+/* Makes a mesh of polygons. A polygon of n corners becomes n - 2 triangles; those with two coincident corners are
+ * dropped at once (their neighbours then share the edge). Some closed meshes are closed only by triangles without area
+ * but with three different corners, so these are dropped only from open meshes. */
 #include "mesh/mesh_internal.h"
 
 #include "base/hash.h"
@@ -85,7 +85,7 @@ static bool same_position(const struct mesh *mesh, uint32_t a, uint32_t b) {
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
-/* A table that searches jump about in: on large pages when it is large. */
+/* A table with random access: on large pages if it is large. */
 static void *alloc_searched(size_t size) {
     return mem_alloc_aligned(size < MEM_LARGE_PAGE ? 64 : MEM_LARGE_PAGE, size);
 }
@@ -243,7 +243,7 @@ static void *shrink(void *block, size_t size) {
     return smaller ? smaller : block;
 }
 
-/* Everything but the index; false without memory, the caller then releases what there is. */
+/* Everything except the index; false without memory: the caller then frees partial results. */
 static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t triangles, uint32_t *face_of) {
     if (!copy_tables(mesh, input, triangles) || !add_faces(mesh, input, face_of) || !mesh_find_topology(mesh))
         return false;

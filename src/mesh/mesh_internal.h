@@ -1,4 +1,4 @@
-/* What the files of the mesh share; no other file includes this. */
+/* Shared by the files of the mesh; no other file includes it. */
 #ifndef GRAY_MESH_MESH_INTERNAL_H
 #define GRAY_MESH_MESH_INTERNAL_H
 
@@ -6,9 +6,9 @@
 #include "accel/triangle_index.h"
 #include "mesh/mesh.h"
 
-/* What searches go through, built when the first of them asks: it is apart from the tables, which never change. */
+/* The search structures, built on demand; separate from the tables, which never change. */
 struct mesh_accel {
-    struct triangle_index *index, *grid; /* grid: only once ACCEL_GRID was asked for */
+    struct triangle_index *index, *grid; /* grid: only after ACCEL_GRID was requested */
     struct kd_triangles *kd_tree;        /* the same for ACCEL_KDTREE */
 };
 
@@ -31,7 +31,7 @@ struct mesh {
     struct box bounds;
     bool closed, outward; /* outward: of a closed mesh, the volume it encloses is positive */
     struct vec3 open_edge[2];
-    struct triangle_set set; /* the triangles as searches see them: borrows from the tables above */
+    struct triangle_set set; /* the triangles for searches: borrows the tables above */
     struct mesh_accel *accel;
 };
 

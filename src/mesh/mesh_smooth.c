@@ -139,7 +139,7 @@ static double unit_of(const struct mesh_input *input) {
     int exponent = 0;
     if (largest > 0)
         (void)frexp(largest, &exponent);
-    /* Both ends of the range of doubles fit into what ldexp can say. */
+    /* Both ends of the range of doubles are possible results of ldexp. */
     return ldexp(1, exponent < -1000 ? 1000 : -exponent);
 }
 
@@ -153,7 +153,7 @@ static uint32_t previous_corner(const struct smoothing *s, uint32_t corner) {
     return corner > s->input->face_start[f] ? corner - 1 : s->input->face_start[f + 1] - 1;
 }
 
-/* The sum over a fan from the first corner: twice the area vector, whatever the shape of the polygon. */
+/* The sum over a fan from the first corner: twice the area vector, for any polygon. */
 static void face_normals(struct smoothing *s) {
     const struct mesh_input *input = s->input;
     for (uint32_t f = 0; f < input->face_count; f++) {

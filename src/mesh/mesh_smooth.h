@@ -1,4 +1,4 @@
-/* What is done to the tables of a mesh before it is made: welding, turning round, normals with a crease angle. */
+/* Operations on the tables of a mesh before it is made: welding, reversal, normals with a crease angle. */
 #ifndef GRAY_MESH_MESH_SMOOTH_H
 #define GRAY_MESH_MESH_SMOOTH_H
 
@@ -13,13 +13,13 @@ struct mesh_tables {
 };
 void mesh_tables_destroy(struct mesh_tables *tables);
 
-/* One vertex for each place that is used; the colour is that of the first vertex there. False: no memory. */
+/* One vertex for each used position; its colour is that of the first vertex there. False: no memory. */
 bool mesh_input_weld(struct mesh_input *input, struct mesh_tables *own, struct error *error);
 /* Reverses every face, and its normals. */
 bool mesh_input_flip(struct mesh_input *input, struct mesh_tables *own, struct error *error);
-/* A normal for every corner: the mean of the faces round its vertex, weighted with their angles there (Thuermer and
+/* A normal for every corner: the mean of the faces at its vertex, weighted with their angles there (Thuermer and
  * Wuethrich, "Computing Vertex Normals from Polygonal Facets", Journal of Graphics Tools 3(1), 1998), over those faces
- * that are reached across edges where two faces meet at `degrees` or less. Vertices count as one by their places,
+ * that are reached across edges where two faces meet at `degrees` or less. Vertices at equal positions count as one,
  * whatever their indices. Edges of three and more faces, and of faces that disagree about the outside, are sharp. 0
  * degrees: no normals at all, every face is flat. */
 bool mesh_input_smooth(struct mesh_input *input, struct mesh_tables *own, double degrees, struct error *error);

@@ -82,8 +82,8 @@ bool mesh_find_topology(struct mesh *mesh) {
     return enough;
 }
 
-/* A hash table with open addressing, at most half full; it never leaves this function, so the order of its places shows
- * nowhere: the lowest vertex is the one met first. */
+/* A hash table with open addressing, at most half full; it never leaves this function, so the order of its slots has no
+ * effect: the lowest vertex is inserted first. */
 
 #define NONE UINT32_MAX
 

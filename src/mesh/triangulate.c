@@ -3,8 +3,8 @@
  * can lie in the way. Cost: number of corners times number of those that do not turn left; nothing for convex polygons.
  *
  * Coordinates are those of the vertices, one axis left out: no rotation, so straight runs stay exactly straight and
- * scaling by a power of two changes nothing. A corner in the middle of a straight run is never skipped over, because
- * the polygon next door may use it. */
+ * scaling by a power of two changes nothing. A corner in the middle of a straight run is never skipped, because the
+ * neighbouring polygon may use it. */
 #include "mesh/triangulate_internal.h"
 
 #include "accel/triangle.h"
@@ -15,13 +15,13 @@
 struct triangulate_corner {
     double x, y;
     uint32_t previous, next;
-    uint32_t blocker; /* where it stands in the list of blockers, or NOT_LISTED */
+    uint32_t blocker; /* its index in the list of blockers, or NOT_LISTED */
     uint32_t listed;  /* the list itself: blockers[k] = corners[k].listed */
 };
 
 #define NOT_LISTED UINT32_MAX
 
-/* The tolerance for an ear when a whole round found none. */
+/* The tolerance for an ear if a complete round found none. */
 enum mercy { EAR_CLEAN, EAR_TOUCHED, EAR_FLAT, EAR_BLOCKED, EAR_ANY };
 
 struct clipper {
@@ -68,7 +68,7 @@ static bool between(const struct triangulate_corner *apex, const struct triangul
 static bool blocks(const struct clipper *clipper, uint32_t corner, const struct triangulate_corner *const ear[3],
                    bool forgive_touch) {
     const struct triangulate_corner *q = &clipper->corners[corner];
-    /* A second visit to a corner of the ear (a bridge) is in the way when an edge leaves it into the ear. */
+    /* A second visit to a corner of the ear (a bridge) blocks the ear if one of its edges enters the ear. */
     for (int k = 0; k < 3; k++)
         if (same_place(q, ear[k])) {
             const struct triangulate_corner *from = ear[(k + 1) % 3], *to = ear[(k + 2) % 3];

@@ -2,11 +2,10 @@
  * Wyvill, McPheeters, Wyvill, "Data structure for soft objects", 1986, in the form that POV-Ray uses). Along a line the
  * squared distance from a ball's centre or a cylinder's axis is a quadratic, so its field is a polynomial of degree 4
  * between two places and zero elsewhere; a cylinder has up to three such stretches. The ends of all stretches cut the
- * line into intervals; in each the polynomials that act are summed up in Bernstein form on that very interval, which
- * loses nothing however long the line is, and its roots are the crossings. Inside or outside is carried from interval
- * to interval, so rounding where two of them meet cannot upset the parity. How far it reaches in a
- * direction is found by branch and bound over an octree: cells in which the sum cannot attain the threshold are left
- * out. */
+ * line into intervals; in each the active polynomials are added in Bernstein form on that interval, which is accurate
+ * for lines of any length, and the roots of the sum are the crossings. The state inside or outside is carried from
+ * interval to interval, so rounding at their borders cannot change the parity. The extent in a direction is found by
+ * branch and bound over an octree: cells in which the sum cannot attain the threshold are left out. */
 #include "shape/blob.h"
 
 #include "geometry/bernstein.h"
@@ -39,7 +38,7 @@ static double field(const struct blob_element *e, double distance) {
 
 /* ---- building ---- */
 
-/* The search for the place that lies furthest along a direction. */
+/* The search for the point that is furthest along a direction. */
 struct reach {
     const struct blob *blob;
     struct vec3 g;
@@ -78,7 +77,7 @@ static unsigned front(struct vec3 g) {
     return (g.x > 0 ? 1u : 0) | (g.y > 0 ? 2u : 0) | (g.z > 0 ? 4u : 0);
 }
 
-/* Cells that lie behind what was found are left out, and so are those in which the sum cannot attain the threshold; the
+/* Cells behind the current maximum are left out, and so are those in which the sum cannot attain the threshold; the
  * cells in front come first. A cell of the last level, or any when the search has taken too long, counts as full. */
 static void reach_along(struct reach *search, const struct box *cell, int depth) {
     double max = vec3_dot(search->g, corner(cell, front(search->g)));
@@ -122,7 +121,7 @@ void blob_extent(const struct blob *blob, struct vec3 g, double *lo, double *hi)
     *hi = furthest(blob, g);
 }
 
-/* Twice, so that the cells of the second time are parts of the box itself and not of the fields' reach. */
+/* Twice, so that the cells of the second search divide the box itself and not the extent of the fields. */
 static void find_bounds(struct blob *blob) {
     for (int turn = 0; turn < 2; turn++) {
         double lo[3], hi[3];
@@ -190,7 +189,7 @@ uint32_t blob_scratch_need(const struct blob *blob) {
 
 /* ---- the line ---- */
 
-/* From the place on the line to what its distance is measured from, across. */
+/* The perpendicular from the axis or centre to a point of the line. */
 static struct vec3 arm(const struct blob_element *e, int region, struct vec3 p) {
     if (region == BALL_A)
         return vec3_sub(p, e->a);
@@ -274,7 +273,7 @@ static void sum_fields(const struct blob *blob, const struct line *line, const s
     }
 }
 
-/* The first of the elements that have most to say at a place. */
+/* The element with the strongest field at a point; the first of equals. */
 static uint32_t strongest(const struct blob *blob, const struct line *line, const struct crossing *acting,
                           uint32_t count, double s) {
     struct vec3 p = line_at(line, s);

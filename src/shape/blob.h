@@ -33,7 +33,7 @@ void blob_extent(const struct blob *blob, struct vec3 g, double *lo, double *hi)
 bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_scratch *scratch,
                     struct crossing_list *out);
 bool blob_contains(const struct blob *blob, struct vec3 point);
-/* An image lies like a map of the earth, seen from the centre of the box around the positive elements; y is up. */
+/* Image coordinates are spherical, about the centre of the box around the positive elements; y is up. */
 void blob_describe(const struct blob *blob, const struct ray *ray, const struct crossing *crossing,
                    struct surface *out);
 uint32_t blob_scratch_need(const struct blob *blob);

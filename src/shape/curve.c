@@ -1,9 +1,9 @@
-/* The curve. Looked at along the ray it is a plane curve p(x) with a width w(x); the ray meets the ribbon where the
+/* The curve. Projected along the ray it is a plane curve p(x) with a width w(x); the ray meets the ribbon where the
  * curve is nearest and not farther than half the width: at local minima of p^2, roots of the polynomial p . p' of
  * degree 5 where its sign goes from - to +, with 2 |p| <= w. This is what the recursive bisection of Nakamaru and Ohno
  * ("Ray tracing for curves primitive", 2002; pbrt's Curve) converges to. At a corner between two pieces the corner
  * itself may be nearest. The ends are cut straight across. A ray that starts at the ribbon, one width above it, does
- * not meet it again if it leads away: with e = w and a hit x <= w/2 off the middle, the nearest approach ahead is at
+ * not hit it again if it leads away: with e = w and a hit x <= w/2 off the middle, the nearest approach ahead is at
  * least (w - w/4) sin > w/2 away. Hence the error that is reported. */
 #include "shape/curve.h"
 

@@ -1,10 +1,10 @@
 /* The height field. Above the line or below it: phi(s) = y(s) - h(x(s), z(s)) is continuous and, between the places
  * where the line passes an edge of a cell or its diagonal, linear; the surface is where its sign changes. Only the sign
- * at the end of each stretch is asked, and carried on, so the crossings alternate whatever rounding does; the solid's
+ * at the end of each stretch is evaluated, and carried on, so the crossings alternate in spite of rounding; the solid's
  * walls and floor are the ends of the part of the line over the square and above the floor. A pyramid of least and
  * greatest heights over blocks of 2^k x 2^k cells (Musgrave, "Grid tracing", Yale 1988; the pyramid as in Tevs, Ihrke,
- * Seidel, "Maximum mipmaps", I3D 2008) lets the line pass over or under whole blocks. A block that it does not is
- * divided in four; the line meets at most three of them, one after the other. */
+ * Seidel, "Maximum mipmaps", I3D 2008) lets the line pass over or under whole blocks. Other blocks are divided into
+ * four; the line meets at most three of them, one after the other. */
 #include "shape/height_field.h"
 
 #include "geometry/crossing.h"
@@ -175,7 +175,7 @@ struct walk {
     double y, dy;
     struct geom_scratch *scratch;
     uint32_t first;
-    bool known, below; /* which side of the ground the line is on, once that is known */
+    bool known, below; /* the side of the ground on which the line is, once known */
 };
 
 static bool cross(struct walk *w, double s, uint32_t part) {
@@ -315,7 +315,7 @@ static bool collect(const struct height_field *f, const struct ray *ray, bool ne
     w.z = o.z * f->rows, w.dz = d.z * f->rows;
     w.y = o.y, w.dy = d.y;
 
-    /* The way in is written first and taken back unless the line is below the ground there. */
+    /* The entry is written first and removed unless the line is below the ground there. */
     if (!f->open && !geom_scratch_push(scratch, (struct crossing){.t = enter.s, .part = enter.part}))
         return false;
     struct block stack[3 * MAX_LEVELS + 1];
@@ -384,7 +384,7 @@ bool height_field_nearest(const struct height_field *f, const struct ray *ray, s
     if (f->open) {
         line_finish_open(&line, scratch, list.first, &list);
     } else {
-        /* The partner of a last way in is further on; any place will do for it. */
+        /* The exit that belongs to the last entry is further away; its position does not matter. */
         if (stopped && (scratch->used - list.first) % 2 &&
             !geom_scratch_push(scratch, (struct crossing){.t = INFINITY})) {
             scratch->used = list.first;

@@ -34,7 +34,7 @@ bool height_field_crossings(const struct height_field *field, const struct ray *
 bool height_field_nearest(const struct height_field *field, const struct ray *ray, struct geom_scratch *scratch,
                           struct crossing *out);
 bool height_field_contains(const struct height_field *field, struct vec3 point);
-/* u = x and v = 1 - z on the ground, so that an image lies on the heights that were made of it; on walls u runs to the
+/* u = x and v = 1 - z on the ground, so that an image fits the heights that were made from it; on walls u runs to the
  * right seen from outside and v upwards. */
 void height_field_describe(const struct height_field *field, const struct ray *ray, const struct crossing *crossing,
                            struct surface *out);

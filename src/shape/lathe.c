@@ -10,8 +10,8 @@
  * none, by the signs at the ends; where it may, the piece is halved (a straight piece is cut where w G' is zero).
  * Parity: a point of the profile with r > h lies between the halves of the hyperbola if its two G differ in sign. The
  * number of crossings on a piece is odd just if one of its ends does, decided from the end's coordinates alone, which
- * neighbours share; so on a loop, or from axis to axis, it is even whatever rounding does.
- * A tree over the pieces' boxes in (r, y) leaves out those that the hyperbola does not meet. */
+ * neighbours share; so on a loop, or from axis to axis, it is even in spite of rounding. A tree over the pieces' boxes
+ * in (r, y) excludes those that the hyperbola does not meet. */
 #include "shape/lathe.h"
 
 #include "geometry/bernstein.h"
@@ -90,7 +90,7 @@ const struct lathe *lathe_build(struct arena *arena, const struct lathe_input *i
         count -= in->kind == SPLINE_BEZIER && count % 3 == 0 ? 0 : 1;
         last = in->points[count - 1];
     }
-    /* A smooth profile that ends on the axis goes on mirrored there, so that the pole is smooth. */
+    /* A smooth profile that ends on the axis continues mirrored there, so that the pole is smooth. */
     double before[2], after[2];
     bool first_on_axis = first[0] == 0, last_on_axis = last[0] == 0;
     if (first_on_axis && count > 1)
@@ -452,7 +452,7 @@ static bool piece_crossings(const struct search *f) {
     return roots_of_half(f, -1, lo, hi, g_lo[0], g_hi[0]) && roots_of_half(f, 1, lo, hi, g_lo[1], g_hi[1]);
 }
 
-/* ---- the questions ---- */
+/* ---- queries ---- */
 
 static struct vec3 outward(const struct outline_piece *piece, double x, struct vec3 radial) {
     double dr, dy;

@@ -1,4 +1,4 @@
-/* The lathe: a profile in the half-plane of radius and height, turned about the y axis. Owner: the arena it was built
+/* The lathe: a profile in the half-plane of radius and height, rotated about the y axis. Owner: the arena it was built
  * in. */
 #ifndef GRAY_SHAPE_LATHE_H
 #define GRAY_SHAPE_LATHE_H
@@ -22,7 +22,7 @@ struct lathe_input {
 };
 
 /* A profile that is a loop (also when its last point is its first) or whose ends are on the axis, or joined to it by
- * discs, bounds a solid; inside is by even-odd. Errors say what is wrong with the points. */
+ * discs, bounds a solid; inside is by even-odd. Errors give the reason. */
 const struct lathe *lathe_build(struct arena *arena, const struct lathe_input *input, struct error *error);
 struct box lathe_bounds(const struct lathe *lathe);
 /* The least and the greatest dot(g, p) over the shape. */
@@ -32,8 +32,8 @@ bool lathe_is_closed(const struct lathe *lathe);
 bool lathe_crossings(const struct lathe *lathe, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
 bool lathe_contains(const struct lathe *lathe, struct vec3 point);
-/* v runs along the profile by its length, u round the axis from -x, to the right seen from outside with the profile's
- * way upwards: pictures are turned with the profile and never mirrored. */
+/* v runs along the profile by its length, u around the axis from -x, to the right as seen from outside with the profile
+ * pointing upwards: images follow the profile and are never mirrored. */
 void lathe_describe(const struct lathe *lathe, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t lathe_scratch_need(const struct lathe *lathe);

@@ -1,5 +1,5 @@
-/* A binary tree over the boxes of a shape's parts, so that a line asks only the parts near it. In depth-first order: a
- * first child follows its parent, `skip` is where to go on when a box is missed. Owner: the arena it was built in. */
+/* A binary tree over the boxes of a shape's parts, so that a line tests only the parts near it. In depth-first order: a
+ * first child follows its parent, `skip` is the next node if a box is missed. Owner: the arena it was built in. */
 #ifndef GRAY_SHAPE_PART_TREE_INTERNAL_H
 #define GRAY_SHAPE_PART_TREE_INTERNAL_H
 

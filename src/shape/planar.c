@@ -1,6 +1,6 @@
-/* Flat shapes: the line meets the plane at one t, an oblique coordinate system in the plane says the rest. The
- * coordinates come from the triple products of Cramer's rule divided by normal . normal. Which of them belong to the
- * shape, and how far it reaches, is each shape's own business. */
+/* Planar shapes: the line meets the plane at one t; an oblique coordinate system in the plane decides the rest. The
+ * coordinates come from the triple products of Cramer's rule divided by normal . normal. Each shape decides which of
+ * them belong to it, and its extent. */
 #include "shape/planar.h"
 
 #include "math/box.h"
@@ -22,8 +22,8 @@ struct planar planar_plane(struct vec3 normal, double distance) {
     return f;
 }
 
-/* The line is at t = -height / climb in the plane (not finite: along it), whose height above the plane at its origin
- * is given, and goes in or out there. Two crossings, one of them without end; 0 of a line along the plane outside. */
+/* The line crosses the plane at t = -height / climb (not finite: parallel to it), where `height` is the height of its
+ * origin above the plane. Two crossings, one of them at infinity; 0 for a parallel line outside. */
 static int plane_crossings(double t, bool enter, double height, const struct ray *ray, struct crossing out[2]) {
     /* A line along the plane is inside as a whole or not at all. */
     bool crosses = isfinite(t);
@@ -106,7 +106,7 @@ static bool triangle_holds(double a, double b) {
 
 /* The polygon. A point is inside when a ray along +a crosses the outlines an odd number of times, each edge counted
  * with its lower end and without its upper one (Shimrat, "Algorithm 112: Position of point relative to polygon", CACM
- * 1962), so corners are counted once, and convex, concave and pierced ones are the same to it. */
+ * 1962), so corners are counted once, and and polygons may be convex, concave or have holes. */
 
 struct polygon {
     uint32_t outlines;
@@ -213,7 +213,7 @@ static void polygon_extent(const struct polygon *polygon, struct vec3 g, double 
     }
 }
 
-/* --- what they have in common --- */
+/* --- common functions --- */
 
 static void coordinates(const struct planar *f, struct vec3 p, double *a, double *b) {
     struct vec3 w = vec3_sub(p, f->origin), n = vec3_cross(f->u, f->v);

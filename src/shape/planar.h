@@ -1,6 +1,6 @@
-/* Flat shapes, anywhere in space: planes, parallelograms, discs, triangles and polygons. A point is origin + a u + b v;
- * a and b decide whether it belongs to the shape and are its image coordinates, so u points along the rows of an image
- * and v up its columns. The normal's side is the front. */
+/* Planar shapes, anywhere in space: planes, parallelograms, discs, triangles and polygons. A point is origin + a u + b
+ * v; a and b decide whether it belongs to the shape and are its image coordinates, so u points along the rows of an
+ * image and v up its columns. The normal's side is the front. */
 #ifndef GRAY_SHAPE_PLANAR_H
 #define GRAY_SHAPE_PLANAR_H
 

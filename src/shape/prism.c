@@ -1,9 +1,9 @@
 /* The prism. Seen along y the line is a line in the plane of the outline, (o + u d) with a unit direction d; a piece of
- * the outline is crossed where n . (P(x) - o) = 0, n across d: a cubic in Bernstein form whose end values depend on the
- * end points alone, so on closed curves the number of crossings is even whatever rounding does. Sorted, they are the
- * parts of the line inside the outline, drawn out without end; each is cut to the slab between the two heights. A line
- * along y takes the outline's word at its one point. (Kajiya, "New techniques for ray tracing procedurally defined
- * objects", SIGGRAPH 1983, has the prism as a problem of the plane.) */
+ * the outline is crossed where n . (P(x) - o) = 0, n across d: a cubic in Bernstein form whose end values depend only
+ * on the end points, so on closed curves the number of crossings is even in spite of rounding. Sorted, they give the
+ * parts of the line inside the infinite prism; each is clipped to the slab between the two heights. For a line along y,
+ * its one point in the outline decides. (Kajiya, "New techniques for ray tracing procedurally defined objects",
+ * SIGGRAPH 1983, has the prism as a problem of the plane.) */
 #include "shape/prism.h"
 
 #include "geometry/bernstein.h"
@@ -180,7 +180,7 @@ bool prism_crossings(const struct prism *prism, const struct ray *ray, struct ge
     struct crossing *items = &scratch->items[out->first];
     crossings_sort(items, count);
 
-    /* Two for two, so the answer can be written over what has been read. */
+    /* Two results for two inputs, so the result can overwrite the input. */
     uint32_t kept = 0;
     for (uint32_t i = 0; i + 1 < count; i += 2) {
         struct crossing a = items[i], b = items[i + 1];

@@ -1,4 +1,4 @@
-/* The prism: an outline in the xz plane, of one or more closed curves, drawn out along y. Inside is by even-odd, so a
+/* The prism: an outline in the xz plane, of one or more closed curves, extruded along y. Inside is by even-odd, so a
  * curve within another is a hole. Owner: the arena it was built in. */
 #ifndef GRAY_SHAPE_PRISM_H
 #define GRAY_SHAPE_PRISM_H
@@ -30,7 +30,7 @@ bool prism_crossings(const struct prism *prism, const struct ray *ray, struct ge
                      struct crossing_list *out);
 bool prism_contains(const struct prism *prism, struct vec3 point);
 /* Sides: u along the curve by its length, to the right seen from outside, v upwards. Bottom and top: u along x, v along
- * z over the bounds, at the top against it: nothing is mirrored. */
+ * z over the bounds, at the top in the opposite direction: nothing is mirrored. */
 void prism_describe(const struct prism *prism, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t prism_scratch_need(const struct prism *prism);

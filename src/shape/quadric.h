@@ -20,9 +20,9 @@ enum { QUADRIC_SIDE, QUADRIC_FIRST_FACE }; /* then the faces in the order of enu
 int quadric_crossings(const struct quadric *q, const struct ray *ray, struct crossing out[4]);
 bool quadric_is_closed(const struct quadric *q);
 bool quadric_contains(const struct quadric *q, struct vec3 point);
-/* An ellipsoid has its picture like a map of the earth, seen from its centre, y up; every other one like a label round
- * the axis whose square differs in sign from the other two (none does: y), v along it over the limits, or in units from
- * the middle. A face of the limits shows it upright. */
+/* Image coordinates of an ellipsoid are spherical about its centre, y up; those of other quadrics are cylindrical about
+ * the axis whose square differs in sign from the other two (if none does: y), with v along it over the limits, or in
+ * units from the middle. A face of the limits shows it upright. */
 void quadric_describe(const struct quadric *q, const struct ray *ray, const struct crossing *crossing,
                       struct surface *out);
 /* The limits, and for ellipsoids not more than their box. */

@@ -1,4 +1,4 @@
-/* Conics turned about an axis: what the cylinder, the cone, the paraboloid and the hyperboloids have in common. Their
+/* Quadrics of revolution: the common part of cylinder, cone, paraboloid and hyperboloids. Their
  * crossings are ends of intervals of the line (span_internal.h). A described point is put back on the surface by two
  * Newton steps along the gradient. For the family see any book on analytic geometry. */
 #include "shape/revolved_quadric.h"
@@ -83,7 +83,7 @@ static void describe_side(const struct revolved_quadric *c, const struct ray *ra
         magnitude = square + fabs(c->a) * s * s + fabs(c->b * s) + fabs(c->c);
         gradient = vec3_add_scaled(w, c->axis, -(c->a * s + c->b / 2)); /* half of it */
         gg = vec3_dot(gradient, gradient);
-        if (step == 2 || !(fabs(value) < gg)) /* at a tip the step would go astray */
+        if (step == 2 || !(fabs(value) < gg)) /* at a tip the step would diverge */
             break;
         f = vec3_add_scaled(f, gradient, -value / (2 * gg));
     }
@@ -139,7 +139,8 @@ void revolved_quadric_extent(const struct revolved_quadric *c, struct vec3 g, do
     *hi = -INFINITY;
     bool limited = isfinite(c->lo) && isfinite(c->hi);
     if (!limited) {
-        /* A closed form exists where the conic is an ellipse; else the shape is taken as endless both ways. */
+        /* A closed form exists where the conic is an ellipse; else the shape is treated as unbounded in both
+         * directions. */
         bool only_along = across == 0;
         if (!(c->a < 0)) {
             *lo = only_along && along != 0 ? (along > 0 ? along * c->lo : along * c->hi) + offset : -INFINITY;

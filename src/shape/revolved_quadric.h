@@ -1,4 +1,4 @@
-/* Conics turned about an axis, in the shape's own space: cylinders, cones, paraboloids and
+/* Quadrics of revolution, in the shape's own space: cylinders, cones, paraboloids and
  * hyperboloids. Lengths between 2^-200 and 2^200. */
 #ifndef GRAY_SHAPE_REVOLVED_QUADRIC_H
 #define GRAY_SHAPE_REVOLVED_QUADRIC_H
@@ -24,8 +24,8 @@ static inline struct revolved_quadric revolved_quadric_upright(double a, double 
     return (struct revolved_quadric){.axis = {0, 1, 0}, .a = a, .b = b, .c = c, .lo = lo, .hi = hi, .open = open};
 }
 
-/* All crossings of the whole line in order; at most 4. Where an unbounded solid holds the beginning or the end of the
- * line there is a crossing at t = -INFINITY or INFINITY. The same holds for quadric_crossings. */
+/* All crossings of the whole line in order; at most 4. If an unbounded solid contains the beginning or the end of the
+ * line there is a crossing at t = -INFINITY or INFINITY. The same is true for quadric_crossings. */
 int revolved_quadric_crossings(const struct revolved_quadric *revolved_quadric, const struct ray *ray,
                                struct crossing out[4]);
 bool revolved_quadric_is_closed(const struct revolved_quadric *revolved_quadric);

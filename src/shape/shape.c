@@ -11,7 +11,7 @@
 #include "shape/sphere.h"
 #include "shape/sweep.h"
 
-/* What a mesh is expected to put on the scratch; when it is more the scratch grows between rays. */
+/* The expected number of crossings of a mesh on the scratch; if there are more, the scratch grows between rays. */
 #define MESH_CROSSINGS_GUESS 256
 /* The most crossings that the shapes answered by analytic_crossings can have. */
 enum { ANALYTIC_MAX = SUPERELLIPSOID_MAX };
@@ -122,7 +122,7 @@ struct box shape_bounds(const struct shape *shape) {
     return box_empty();
 }
 
-/* Whether the box of the shape under the map is the shape itself there. */
+/* Whether the shape under the map is exactly its box. */
 static bool is_box_under(const struct shape *shape, const struct affine *map, const struct box *box) {
     switch (shape->kind) {
     case SHAPE_BOX: /* placed along the axes */

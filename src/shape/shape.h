@@ -1,5 +1,5 @@
-/* Shapes: a closed tagged union; one file per shape's mathematics, this module switches (no default, so that the
- * compiler names the switch a new kind forgot). All rays are in the shape's object space; their directions are not
+/* Shapes: a closed tagged union; one file for the mathematics of each family, this module switches (no default, so that
+ * the compiler names the switch a new kind forgot). All rays are in the shape's object space; their directions are not
  * normalised. For analytic shapes one root-finder serves all: shape_crossings gives every crossing of the whole line in
  * order, the nearest hit is the first of them inside the ray's interval, CSG merges the lists. */
 #ifndef GRAY_SHAPE_SHAPE_H
@@ -25,7 +25,7 @@ struct height_field;
 struct blob;
 struct curve;
 
-/* Every kind, with its name in answers about a scene. */
+/* Every kind, with its name in scene dumps and traces. */
 #define SHAPE_KINDS(X)                                                                                                 \
     X(SHAPE_SPHERE, "sphere")                                                                                          \
     X(SHAPE_BOX, "box")                                                                                                \
@@ -75,19 +75,19 @@ struct box shape_bounds(const struct shape *shape);
 /* The box of the shape as `map` places it: the tightest one for analytic shapes whose reach has a closed form, else the
  * box of the mapped bounds. */
 struct box shape_bounds_under(const struct shape *shape, const struct affine *map);
-/* A box that is wholly inside the shape as `map` places it, of solids that are boxes there too: a box placed along the
- * axes, a half-space with an end. */
+/* A box that is completely inside the shape under `map`, for solids that are boxes there, too: an axis-aligned box, an
+ * axis-aligned half-space. */
 bool shape_inner_box(const struct shape *shape, const struct affine *map, struct box *out);
-/* Whether it may have many crossings, so that asking it costs more than a formula. */
+/* Whether it may have many crossings, so that a query costs more than a formula. */
 bool shape_is_listed(const struct shape *shape);
-/* What a shape supplies to place images on it: u and v with v from below (or nothing, has_uv); u and v on one of
+/* The image coordinates that a shape supplies: u and v with v from below (or nothing, has_uv); u and v on one of
  * several upright faces, each an image of its own with v from above; a pattern_normal that points from the centre of a
  * ball (shape_native_uv works out its u and v). */
 enum surface_layout { LAYOUT_UV, LAYOUT_FACES, LAYOUT_SPHERE };
 enum { SURFACE_LAYOUTS = LAYOUT_SPHERE + 1 };
 enum surface_layout shape_layout(const struct shape *shape);
-/* The u and v of a hit on it, v from below on LAYOUT_UV and LAYOUT_SPHERE; those of balls are worked out here, because
- * few ask for them. False: it has none. */
+/* The u and v of a hit on it, v from below on LAYOUT_UV and LAYOUT_SPHERE; those of spheres are computed here, because
+ * they are rarely needed. False: it has none. */
 bool shape_native_uv(const struct shape *shape, const struct hit *hit, double *u, double *v);
 /* How places on it are drawn evenly, where that has a closed form. */
 enum shape_area { SHAPE_AREA_SPHERE, SHAPE_AREA_PLANAR, SHAPE_AREA_TRIANGLES, SHAPE_AREA_UNKNOWN };
@@ -95,9 +95,9 @@ enum shape_area shape_area(const struct shape *shape);
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
-/* Where all of the shape lies as seen from its outside at any of its points: CONVEXITY_BEHIND for convex ones. */
+/* The position of the whole shape relative to the outside at any of its points: CONVEXITY_BEHIND for convex ones. */
 enum hit_convexity shape_convexity(const struct shape *shape);
-/* Why it is not, as the end of a sentence about it; NULL when it is closed. Of a mesh, mesh_open_edge knows more. */
+/* Why it is not closed, as the end of a sentence; NULL if it is closed. For a mesh, mesh_open_edge gives details. */
 const char *shape_why_open(const struct shape *shape);
 /* The crossing with the smallest t in the open interval (ray->t_min, ray->t_max). On equal t the one that comes first
  * in the shape's own order. False also when scratch overflowed (then scratch->overflow is set). */

@@ -6,7 +6,7 @@
  * The polynomial is formed about the point of the line nearest to the middle of the shape, so its coefficients have
  * errors of a few last places of the shape's size however far away the ray begins; roots_quadratic adds two more.
  * (Intervals of a line as the way to combine solids: Roth, "Ray casting for modeling solids", 1982.) In a header,
- * because a call costs as much as what is done here. */
+ * because a call would cost as much as the function. */
 #ifndef GRAY_SHAPE_SPAN_INTERNAL_H
 #define GRAY_SHAPE_SPAN_INTERNAL_H
 

@@ -70,7 +70,7 @@ void sphere_describe(struct vec3 centre, double radius, const struct ray *ray, c
     if (!(vec3_max_abs(n) > 0)) /* the point fell on the centre: a sphere below the resolution of the ray */
         n = vec3_normalize(vec3_negate(ray->direction));
 
-    /* The point is put back on the sphere, so its error no longer depends on how far the ray came. */
+    /* The point is projected onto the sphere, so its error no longer depends on the distance of the ray's origin. */
     struct vec3 point = vec3_add_scaled(centre, n, radius);
     surface_make(out, point, n, 0x1p-49 * (vec3_max_abs(centre) + radius));
 }

@@ -121,7 +121,7 @@ static struct range range_of(double a, double b) {
     return (struct range){fmin(a, b), fmax(a, b)};
 }
 
-/* Products and sums in which infinity times zero says nothing. */
+/* Products and sums in which infinity times zero is ignored. */
 static struct range range_times(struct range a, struct range b) {
     double lo = a.lo * b.lo, hi = a.hi * b.hi;
     return (struct range){isnan(lo) ? 0 : lo, isnan(hi) ? INFINITY : hi};
@@ -234,7 +234,7 @@ bool superellipsoid_contains(const struct superellipsoid *s, struct vec3 point) 
     return value_at(s, point) < 1;
 }
 
-/* The gradient without infinities: at a crease its largest parts are all that counts. */
+/* The gradient without infinities: at a crease only its largest components count. */
 static struct vec3 outward(const struct superellipsoid *s, struct vec3 p) {
     struct norm flat = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(flat.value, fabs(p.y), 2 / s->n);
     double min = 0x1p-200, max = 0x1p200;
@@ -247,7 +247,7 @@ void superellipsoid_describe(const struct superellipsoid *s, const struct ray *r
                              struct surface *out) {
     struct vec3 p = ray_at(ray, crossing->t);
     double value = value_at(s, p);
-    if (value > 0.5 && value < 2) /* else the ray came from so far that its numbers say nothing */
+    if (value > 0.5 && value < 2) /* else the origin of the ray is too far away for accurate numbers */
         p = vec3_scale(p, 1 / value);
     struct vec3 n = outward(s, p);
     /* Along the radius the point is right to some last places of its powers; the distance is less. */

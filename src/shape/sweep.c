@@ -5,7 +5,7 @@
  * where 4 b'^2 D = D'^2, the polynomial of degree 10 that is known from van Wijk, "Ray tracing objects defined by
  * sweeping a sphere" (Eurographics 1984). A place that is a little wrong costs s only the square of the error, and one
  * root too many costs nothing, since the least of all candidates is taken: so the envelope needs no care for double
- * roots, and it never shows the inner walls that the envelope's equation alone has. The stretches of all pieces are
+ * roots, and it has no inner walls, which the equation of the envelope would add. The stretches of all pieces are
  * united. Each piece is solved from the point of the line next to it; D is evaluated as (R - p)(R + p) at the end. */
 #include "shape/sweep.h"
 
@@ -267,7 +267,7 @@ struct polynomial {
     int degree;
 };
 
-/* What the balls from x = lo to hi cover, all of which the line meets. */
+/* The stretch covered by the balls from x = lo to hi, all of which the line meets. */
 static struct stretch cover(const struct view *view, struct polynomial d, struct polynomial b, double lo, double hi) {
     struct stretch out = {INFINITY, -INFINITY, lo, hi};
     consider(view, lo, &out);

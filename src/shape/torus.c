@@ -5,12 +5,11 @@
  * one, so none is lost but pairs closer than rounding).
  *
  * The quartic is (inner)(outer) with inner = (rho - R)^2 + y^2 - r^2; when r is small beside R it loses digits to R, so
- * each root is polished by Newton's steps on `inner`, which does not. Whether the line is inside between two roots is
- * asked of `inner` as well: crossings alternate by construction, and the lemon inside a spindle torus (r > R)
- * disappears.
+ * each root is polished by Newton's steps on `inner`, which does not. `inner` also decides whether the line is inside
+ * between two roots: crossings alternate by construction, and the lemon inside a spindle torus (r > R) disappears.
  *
  * As R goes to 0 the quartic's roots come together in pairs, and below R = 2^-23 r the search may lose both of a pair.
- * The surface is then that of the ball of radius r + R but for R, so the roots are that ball's, polished. */
+ * The surface then differs from the sphere of radius r + R by at most R, so the roots are that sphere's, polished. */
 #include "shape/torus.h"
 
 #include "math/elementary.h"
