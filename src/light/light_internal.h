@@ -35,7 +35,7 @@ double light_cone(const struct light *light, struct vec3 from_light);
 /* light_shapes.c: parallelograms and discs. False: a lamp that shines to one side is seen from the other. */
 bool light_flat_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
 struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 place);
-bool light_is_beside_disc(const struct light *light, struct vec3 place);
+bool light_is_beside_disc(const struct light *light, struct vec3 point);
 bool light_parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t);
 bool light_disc_meets_ray(const struct light *light, const struct ray *ray, double *t);
 /* Sets the ball that holds the places of a part. */

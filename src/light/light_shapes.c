@@ -15,8 +15,8 @@ struct vec3 light_disc_target(const struct light *light, const struct light_cont
     return vec3_add_scaled(target, context->up, light->radius * round.y);
 }
 
-bool light_is_beside_disc(const struct light *light, struct vec3 place) {
-    return vec3_length_squared(vec3_sub(place, light->position)) > light->radius * light->radius;
+bool light_is_beside_disc(const struct light *light, struct vec3 point) {
+    return vec3_length_squared(vec3_sub(point, light->position)) > light->radius * light->radius;
 }
 
 /* --- rays --- */

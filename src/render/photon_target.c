@@ -184,11 +184,11 @@ static void pyramid_planes(const struct photon_target *target, uint32_t face, ui
                            struct plane_set *planes) {
     struct vec3 major, axes[2];
     double width = ldexp(2, -(int)level);
-    uint32_t place[2] = {i, j};
+    uint32_t cell[2] = {i, j};
     face_axes(face, &major, &axes[0], &axes[1]);
     planes->count = 0;
     for (int k = 0; k < 2; k++) {
-        double low = on_face(-1 + width * place[k]), high = on_face(-1 + width * (place[k] + 1));
+        double low = on_face(-1 + width * cell[k]), high = on_face(-1 + width * (cell[k] + 1));
         struct vec3 below = vec3_normalize(vec3_sub(vec3_scale(major, low), axes[k]));
         struct vec3 above = vec3_normalize(vec3_sub(axes[k], vec3_scale(major, high)));
         plane_set_add(planes, below, vec3_dot(below, target->emitter.centre) + target->emitter.radius);
@@ -604,9 +604,9 @@ struct photon_start photon_target_start(const struct photon_target *target, uint
     uint64_t key_of_cell = random_combine(key_of_target, (uint64_t)(cell - target->cells));
     /* Powers of 1 / 1.16730397826141868... (x^5 = x + 1): four dimensions that fill space evenly. */
     static const double steps[4] = {0.8566748838545029, 0.733891856627126, 0.6287067210378086, 0.53859725722361};
-    double place[4];
+    double u[4];
     for (uint64_t k = 0; k < 4; k++)
-        place[k] = fraction(random_unit(random_combine(key_of_cell, k)) + turn * steps[k]);
+        u[k] = fraction(random_unit(random_combine(key_of_cell, k)) + turn * steps[k]);
 
     const struct light_emitter *emitter = &target->emitter;
     struct photon_start start = {.strength = (double)cell->strength, .key = key};
@@ -615,16 +615,16 @@ struct photon_start photon_target_start(const struct photon_target *target, uint
     switch (emitter->domain) {
     case LIGHT_DOMAIN_ENVIRONMENT:
         photon =
-            start_from_environment(target, (struct sample2){place[0], place[1]}, (struct sample2){place[2], place[3]});
+            start_from_environment(target, (struct sample2){u[0], u[1]}, (struct sample2){u[2], u[3]});
         start.from_afar = true;
         break;
     case LIGHT_DOMAIN_PARALLEL:
-        photon = start_across(target, cell, (struct sample2){place[0], place[1]}, &weight);
+        photon = start_across(target, cell, (struct sample2){u[0], u[1]}, &weight);
         break;
     case LIGHT_DOMAIN_LOCAL: {
         double share;
-        struct vec3 direction = cell_direction(target, cell, (struct sample2){place[0], place[1]}, &share);
-        photon = light_photon(emitter, direction, (struct sample2){place[2], place[3]});
+        struct vec3 direction = cell_direction(target, cell, (struct sample2){u[0], u[1]}, &share);
+        photon = light_photon(emitter, direction, (struct sample2){u[2], u[3]});
         weight *= share;
         break;
     }

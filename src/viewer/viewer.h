@@ -46,11 +46,11 @@ struct window_layout {
 enum selected { SELECTED_NOTHING, SELECTED_NODE, SELECTED_LIGHT };
 struct selection {
     enum selected kind;
-    struct picked picked;    /* of a node, as it was when it was picked */
-    struct transform placed; /* the change of its place at that time */
-    uint32_t light;          /* number, from 1 */
-    double x, y;             /* where it was clicked: pixels of the whole picture */
-    int32_t up;              /* nodes above what was hit; below 0: operands below it */
+    struct picked picked;     /* of a node, as it was when it was picked */
+    struct transform applied; /* the change of its pose at that time */
+    uint32_t light;           /* number, from 1 */
+    double x, y;              /* where it was clicked: pixels of the whole picture */
+    int32_t up;               /* nodes above what was hit; below 0: operands below it */
 };
 /* What the mouse does with what is selected. */
 enum edit_tool { TOOL_NONE, TOOL_MOVE, TOOL_TURN, TOOL_SIZE };

@@ -111,7 +111,7 @@ static bool map_to_parent(const struct viewer *viewer, const struct transform *i
 
 struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point) {
     struct change change = node_change(viewer, CHANGE_PLACE);
-    struct transform now, parent, then_back = transform_invert(&viewer->edit.selection.placed);
+    struct transform now, parent, then_back = transform_invert(&viewer->edit.selection.applied);
     if (!map_of(&change, &now) || !transform_from_affine(&viewer->edit.selection.picked.world_from_parent, &parent))
         return point;
     struct vec3 p = affine_point(&parent.inverse, point);
@@ -249,7 +249,7 @@ void viewer_select_up(struct viewer *viewer, bool down) {
 void viewer_take_picked(struct viewer *viewer, const struct picked *picked) {
     viewer->edit.selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
                                                 .picked = *picked,
-                                                .placed = transform_identity(),
+                                                .applied = transform_identity(),
                                                 .x = viewer->edit.click.x,
                                                 .y = viewer->edit.click.y,
                                                 .up = picked->up < -OPERANDS_BELOW  ? -OPERANDS_BELOW
@@ -259,7 +259,7 @@ void viewer_take_picked(struct viewer *viewer, const struct picked *picked) {
     if (!picked->hit)
         return;
     struct change change = node_change(viewer, CHANGE_PLACE);
-    (void)map_of(&change, &viewer->edit.selection.placed);
+    (void)map_of(&change, &viewer->edit.selection.applied);
     viewer->fly_camera.centre = picked->position;
 }
 
@@ -322,7 +322,7 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
 
 static void select_new(struct viewer *viewer, const struct picked *picked) {
     viewer->edit.selection = (struct selection){.kind = SELECTED_NODE, .picked = *picked};
-    viewer->edit.selection.placed = transform_identity();
+    viewer->edit.selection.applied = transform_identity();
     viewer->edit.joins = false;
 }
 
