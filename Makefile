@@ -138,7 +138,7 @@ $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Benchmarks that are programs of their own.
-$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/lamps: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
+$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 

@@ -21,7 +21,7 @@ enum { SIDE = 320, ROUNDS = 3, MAX_ROWS = 64 };
 /* One line of the table. Per ray: nanoseconds, triangles tested, nodes of hierarchies visited. */
 struct row {
     const char *series;
-    double things, build_seconds, bytes_each;
+    double objects, build_seconds, bytes_each;
     double camera_ns, chord_ns, tests, steps;
 };
 
@@ -148,7 +148,7 @@ static double trace_together(const struct world *world, const struct ray *rays, 
 }
 
 /* A world of meshes with one or many instances each. */
-struct stand {
+struct setup {
     struct assets assets;
     struct scene scene;
     struct arena arena;
@@ -157,51 +157,51 @@ struct stand {
     struct error error;
 };
 
-static void stand_begin(struct stand *stand) {
-    *stand = (struct stand){0};
-    scene_init(&stand->scene, &stand->assets);
-    stand->root = scene_node(&stand->scene, NODE_GROUP, "root", &stand->error);
+static void setup_begin(struct setup *setup) {
+    *setup = (struct setup){0};
+    scene_init(&setup->scene, &setup->assets);
+    setup->root = scene_node(&setup->scene, NODE_GROUP, "root", &setup->error);
 }
 
-static struct node *stand_add(struct stand *stand, struct node *parent, struct mesh *mesh) {
-    struct node *node = scene_node(&stand->scene, NODE_GEOMETRY, "mesh", &stand->error);
+static struct node *setup_add(struct setup *setup, struct node *parent, struct mesh *mesh) {
+    struct node *node = scene_node(&setup->scene, NODE_GEOMETRY, "mesh", &setup->error);
     node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = mesh};
-    if (!node_add_child(&stand->scene, parent, node, &stand->error))
+    if (!node_add_child(&setup->scene, parent, node, &setup->error))
         exit(3);
     return node;
 }
 
-static double stand_build(struct stand *stand, struct pool *pool) {
+static double setup_build(struct setup *setup, struct pool *pool) {
     struct sky sky = {.kind = SKY_CONSTANT};
     double start = seconds(CLOCK_MONOTONIC);
-    const struct world_input input = {.scene = &stand->scene, .root = stand->root, .sky = &sky, .accel = ACCEL_AUTO};
-    if (!world_build(&stand->world, &input, &stand->arena, pool, &stand->error)) {
-        fprintf(stderr, "growth: %s\n", stand->error.text);
+    const struct world_input input = {.scene = &setup->scene, .root = setup->root, .sky = &sky, .accel = ACCEL_AUTO};
+    if (!world_build(&setup->world, &input, &setup->arena, pool, &setup->error)) {
+        fprintf(stderr, "growth: %s\n", setup->error.text);
         exit(3);
     }
     return seconds(CLOCK_MONOTONIC) - start;
 }
 
-static void stand_end(struct stand *stand) {
-    world_destroy(&stand->world);
-    arena_destroy(&stand->arena);
-    scene_destroy(&stand->scene);
+static void setup_end(struct setup *setup) {
+    world_destroy(&setup->world);
+    arena_destroy(&setup->arena);
+    scene_destroy(&setup->scene);
 }
 
-static void finish_row(struct bench *bench, struct stand *stand, const struct bench_scene *view, struct row *row) {
+static void finish_row(struct bench *bench, struct setup *setup, const struct bench_scene *view, struct row *row) {
     static struct ray rays[SIDE * SIDE];
     struct world_scratch scratch;
-    if (!world_scratch_init(&scratch, &stand->world))
+    if (!world_scratch_init(&scratch, &setup->world))
         exit(3);
     camera_rays(view, rays);
-    row->camera_ns = trace(&stand->world, rays, SIDE * SIDE, &scratch, row);
+    row->camera_ns = trace(&setup->world, rays, SIDE * SIDE, &scratch, row);
     struct box box = box_empty();
-    for (uint32_t i = 0; i < stand->world.primitive_count; i++)
-        box = box_join(box, stand->world.boxes[i]);
+    for (uint32_t i = 0; i < setup->world.primitive_count; i++)
+        box = box_join(box, setup->world.boxes[i]);
     chords(&box, rays);
-    row->chord_ns = trace(&stand->world, rays, SIDE * SIDE, &scratch, NULL);
+    row->chord_ns = trace(&setup->world, rays, SIDE * SIDE, &scratch, NULL);
     world_scratch_destroy(&scratch);
-    printf("%-12s %10.0f %10.3f %8.1f %9.1f %9.1f %9.1f %8.1f\n", row->series, row->things, row->build_seconds,
+    printf("%-12s %10.0f %10.3f %8.1f %9.1f %9.1f %9.1f %8.1f\n", row->series, row->objects, row->build_seconds,
            row->bytes_each, row->camera_ns, row->chord_ns, row->tests, row->steps);
     fflush(stdout);
     if (bench->count < MAX_ROWS)
@@ -209,16 +209,16 @@ static void finish_row(struct bench *bench, struct stand *stand, const struct be
 }
 
 static void measure_mesh(struct bench *bench, const char *series, const struct bench_scene *scene) {
-    struct row row = {.series = series, .things = scene->triangle_count};
+    struct row row = {.series = series, .objects = scene->triangle_count};
     struct mesh *mesh = mesh_of(scene, 0, scene->triangle_count);
     size_t bare = mesh_memory(mesh);
-    struct stand stand;
-    stand_begin(&stand);
-    (void)stand_add(&stand, stand.root, mesh);
-    row.build_seconds = stand_build(&stand, bench->pool);
+    struct setup setup;
+    setup_begin(&setup);
+    (void)setup_add(&setup, setup.root, mesh);
+    row.build_seconds = setup_build(&setup, bench->pool);
     row.bytes_each = (double)(mesh_memory(mesh) - bare) / scene->triangle_count;
-    finish_row(bench, &stand, scene, &row);
-    stand_end(&stand);
+    finish_row(bench, &setup, scene, &row);
+    setup_end(&setup);
     mesh_release(mesh);
 }
 
@@ -257,19 +257,19 @@ static void grow_instances(struct bench *bench) {
         memcpy(view.eye, (float[3]){0, 2, 4}, sizeof view.eye);
         memcpy(view.target, (float[3]){0, 0.9f, 0}, sizeof view.target);
         view.field = 50;
-        struct row row = {.series = "instances", .things = count};
-        struct stand stand;
-        stand_begin(&stand);
-        struct node *many = scene_node(&stand.scene, NODE_GROUP, "many", &stand.error);
+        struct row row = {.series = "instances", .objects = count};
+        struct setup setup;
+        setup_begin(&setup);
+        struct node *many = scene_node(&setup.scene, NODE_GROUP, "many", &setup.error);
         many->placements = &placements;
-        (void)stand_add(&stand, many, mesh);
-        if (!node_add_child(&stand.scene, stand.root, many, &stand.error))
+        (void)setup_add(&setup, many, mesh);
+        if (!node_add_child(&setup.scene, setup.root, many, &setup.error))
             exit(3);
-        row.build_seconds = stand_build(&stand, bench->pool);
+        row.build_seconds = setup_build(&setup, bench->pool);
         row.bytes_each =
-            (double)(world_primitive_memory(&stand.world) + scene_accel_memory(&stand.world.accel)) / count;
-        finish_row(bench, &stand, &view, &row);
-        stand_end(&stand);
+            (double)(world_primitive_memory(&setup.world) + scene_accel_memory(&setup.world.accel)) / count;
+        finish_row(bench, &setup, &view, &row);
+        setup_end(&setup);
         free(at);
     }
     mesh_release(mesh);
@@ -299,39 +299,39 @@ static void stadium(struct bench *bench, const char *name, const struct bench_sc
     int count = 0;
     bench_stadium(&scene, mesh);
     uint32_t own = mesh->triangle_count, all = scene.triangle_count;
-    struct mesh *alone = mesh_of(&scene, 0, own), *around = mesh_of(&scene, own, all - own),
+    struct mesh *single = mesh_of(&scene, 0, own), *stadium = mesh_of(&scene, own, all - own),
                 *one = mesh_of(&scene, 0, all);
-    struct stand stands[3];
+    struct setup setups[3];
     struct world_scratch scratch[3];
     for (int kind = 0; kind < 3; kind++) {
-        stand_begin(&stands[kind]);
-        (void)stand_add(&stands[kind], stands[kind].root, kind == 2 ? one : alone);
+        setup_begin(&setups[kind]);
+        (void)setup_add(&setups[kind], setups[kind].root, kind == 2 ? one : single);
         if (kind == 1)
-            (void)stand_add(&stands[kind], stands[kind].root, around);
-        (void)stand_build(&stands[kind], bench->pool);
-        if (!world_scratch_init(&scratch[kind], &stands[kind].world))
+            (void)setup_add(&setups[kind], setups[kind].root, stadium);
+        (void)setup_build(&setups[kind], bench->pool);
+        if (!world_scratch_init(&scratch[kind], &setups[kind].world))
             exit(3);
         ns[kind] = together[kind] = INFINITY;
     }
     camera_rays(&scene, rays);
-    count = keep_those_that_meet(&stands[0].world, rays, SIDE * SIDE, 0, own, &scratch[0]);
+    count = keep_those_that_meet(&setups[0].world, rays, SIDE * SIDE, 0, own, &scratch[0]);
     /* Interleaved, so that all three run under the same conditions. */
     for (int again = 0; again < 30; again++) {
         for (int kind = 0; kind < 3; kind++) {
-            ns[kind] = fmin(ns[kind], trace(&stands[kind].world, rays, count, &scratch[kind], NULL));
-            together[kind] = fmin(together[kind], trace_together(&stands[kind].world, rays, count, &scratch[kind]));
+            ns[kind] = fmin(ns[kind], trace(&setups[kind].world, rays, count, &scratch[kind], NULL));
+            together[kind] = fmin(together[kind], trace_together(&setups[kind].world, rays, count, &scratch[kind]));
         }
     }
     for (int kind = 0; kind < 3; kind++) {
         world_scratch_destroy(&scratch[kind]);
-        stand_end(&stands[kind]);
+        setup_end(&setups[kind]);
     }
     printf("%-15s %8u %6d | %7.1f %7.1f %7.1f %5.2f %5.2f | %7.1f %7.1f %7.1f %5.2f %5.2f\n", name, own, count, ns[0],
            ns[1], ns[2], ns[0] / ns[1], ns[0] / ns[2], together[0], together[1], together[2], together[0] / together[1],
            together[0] / together[2]);
     fflush(stdout);
-    mesh_release(alone);
-    mesh_release(around);
+    mesh_release(single);
+    mesh_release(stadium);
     mesh_release(one);
     bench_scene_free(&scene);
 }
@@ -393,7 +393,7 @@ static void draw(const struct bench *bench) {
                 const struct row *row = &bench->rows[i];
                 if (strcmp(row->series, series[s]) != 0)
                     continue;
-                double x = LEFT + log10(row->things) * ACROSS / 7;
+                double x = LEFT + log10(row->objects) * ACROSS / 7;
                 double y = TOP + DOWN - (log10(kind ? row->chord_ns : row->camera_ns) - 1) * DOWN / 3;
                 fprintf(out, "%c%.1f %.1f", move, x, y);
                 move = 'L';

@@ -354,7 +354,7 @@ static void explain(const struct bench_scene *scene, const char *kind, const str
 
 /* Rays on threads */
 
-enum shared_state { GRAY_ALONE, GRAY_PACKETS, EMBREE_ALONE, EMBREE_PACKETS };
+enum shared_state { GRAY_SINGLE, GRAY_PACKETS, EMBREE_SINGLE, EMBREE_PACKETS };
 enum { TURN = 4096, MAX_THREADS = 64 };
 
 struct work {
@@ -380,16 +380,16 @@ static void trace_piece(const struct work *work, uint64_t from, uint64_t count, 
     const struct bench_ray *rays = work->rays + from;
     struct bench_hit *hits = work->hits + from;
     switch (work->tracer) {
-    case GRAY_ALONE:
+    case GRAY_SINGLE:
         gray_trace(work->mesh, rays, hits, count, work->any, scratch);
         return;
     case GRAY_PACKETS:
         gray_trace64(work->mesh, rays, hits, count, scratch);
         return;
-    case EMBREE_ALONE:
+    case EMBREE_SINGLE:
     case EMBREE_PACKETS:
 #if defined(HAVE_EMBREE)
-        if (work->tracer == EMBREE_ALONE)
+        if (work->tracer == EMBREE_SINGLE)
             embree_trace(work->embree, rays, hits, count, work->any);
         else
             embree_trace16(work->embree, rays, hits, count);
@@ -404,7 +404,7 @@ static void *trace_share(void *argument) {
     uint64_t turn = share->threads > 1 ? TURN : work->count;
 #if defined(HAVE_EMBREE)
     unsigned mode = _mm_getcsr();
-    if (work->tracer >= EMBREE_ALONE)
+    if (work->tracer >= EMBREE_SINGLE)
         _mm_setcsr(mode | 0x8040); /* Embree requires denormals to be flushed */
 #endif
     double start = cpu_seconds();
@@ -556,7 +556,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
             work.count = count;
             work.any = kind == 1;
             work.hits = hits[0];
-            work.tracer = GRAY_ALONE;
+            work.tracer = GRAY_SINGLE;
             seconds[0][rep] = trace(&work, shares, threads);
             work.hits = packet_hits;
             work.tracer = GRAY_PACKETS;
@@ -570,7 +570,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
                 }
 #if defined(HAVE_EMBREE)
             work.hits = hits[1];
-            work.tracer = EMBREE_ALONE;
+            work.tracer = EMBREE_SINGLE;
             seconds[1][rep] = trace(&work, shares, threads);
             for (uint64_t i = 0; rep == 0 && i < count; i++)
                 if (!agree(&hits[0][i], &hits[1][i], kind == 1) && result->disagreements[kind]++ < 5 &&

@@ -242,7 +242,7 @@ void bench_subdivide(struct bench_scene *s, int levels) {
 }
 
 /* Adds a copy of a mesh with the largest extent `size` that stands on the point (x, y, z). */
-static void place(struct bench_scene *s, const struct bench_scene *mesh, double x, double y, double z, double size) {
+static void add_copy(struct bench_scene *s, const struct bench_scene *mesh, double x, double y, double z, double size) {
     float lo[3], hi[3];
     bounds(mesh, lo, hi);
     double scale = size / fmax(hi[0] - lo[0], fmax(hi[1] - lo[1], hi[2] - lo[2]));
@@ -265,7 +265,7 @@ static void ring_point(double radius, double height, int i, int count, double ou
 
 void bench_stadium(struct bench_scene *s, const struct bench_scene *mesh) {
     enum { TIERS = 40, SECTORS = 96 };
-    place(s, mesh, 0, 0, 0, 1);
+    add_copy(s, mesh, 0, 0, 0, 1);
     add_quad(s, (const double[4][3]){{-140, 0, -110}, {-140, 0, 110}, {140, 0, 110}, {140, 0, -110}});
     for (int t = 0; t < TIERS; t++)
         for (int i = 0; i < SECTORS; i++) {
@@ -297,7 +297,8 @@ void bench_room(struct bench_scene *s, const struct bench_scene *const *meshes, 
         add_quad(s, (const double(*)[3])p);
     }
     for (int i = 0; i < count; i++)
-        place(s, meshes[i], -4 + 8.0 * (i / 2) / fmax(1, (count + 1) / 2 - 1), 0, i % 2 ? -2 : 1.2, i % 2 ? 3.4 : 2.2);
+        add_copy(s, meshes[i], -4 + 8.0 * (i / 2) / fmax(1, (count + 1) / 2 - 1), 0, i % 2 ? -2 : 1.2,
+                 i % 2 ? 3.4 : 2.2);
     set_view(s, (const float[10]){0, 3.6f, 5.8f, 0, 1.3f, -1, 0, 5.7f, 1, 75});
 }
 

@@ -26,18 +26,18 @@
 
 enum { ORDINARY_USER = 65534, SECONDS = 20 };
 
-static time_t clock_ahead;
+static time_t clock_offset;
 
 /* Replaces the C library's function: the change time of a file cannot be set, so the clock of the test runs ahead. */
 int clock_gettime(clockid_t clock, struct timespec *time) {
     long result = syscall(SYS_clock_gettime, clock, time);
     if (result == 0 && clock == CLOCK_REALTIME)
-        time->tv_sec += clock_ahead;
+        time->tv_sec += clock_offset;
     return (int)result;
 }
 
-void attack_set_clock(time_t seconds_ahead) {
-    clock_ahead = seconds_ahead;
+void attack_set_clock(time_t seconds) {
+    clock_offset = seconds;
 }
 
 double attack_now(void) {
@@ -202,7 +202,7 @@ static int wait_up_to(pid_t program, double seconds) {
     return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
 }
 
-static struct run run_attack(struct attack_stand *stand) {
+static struct run run_attack(struct attack_setup *setup) {
     int out = memfd_create("out", 0), err = memfd_create("err", 0);
     fflush(stdout);
     pid_t child = fork();
@@ -214,12 +214,12 @@ static struct run run_attack(struct attack_stand *stand) {
         (void)dup2(null, 0);
         for (int i = 3; i < 64; i++)
             (void)close(i);
-        if (chdir(stand->in) != 0)
+        if (chdir(setup->in) != 0)
             _exit(126);
-        become(getuid() == 0 ? stand->user : 0);
-        if (stand->attack->inside)
-            _exit(stand->attack->inside());
-        execute(stand->attack);
+        become(getuid() == 0 ? setup->user : 0);
+        if (setup->attack->inside)
+            _exit(setup->attack->inside());
+        execute(setup->attack);
     }
     (void)setpgid(child, child);
     struct run run = {.status = wait_up_to(child, SECONDS)};
@@ -229,15 +229,15 @@ static struct run run_attack(struct attack_stand *stand) {
 }
 
 /* The checks. The first reason of a row that fails is reported. */
-static void blame(struct attack_stand *stand, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void blame(struct attack_stand *stand, const char *format, ...) {
+static void blame(struct attack_setup *setup, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void blame(struct attack_setup *setup, const char *format, ...) {
     va_list arguments;
-    if (stand->failures++ > 0)
+    if (setup->failures++ > 0)
         return;
     va_start(arguments, format);
-    (void)vsnprintf(stand->reason, sizeof stand->reason, format, arguments);
+    (void)vsnprintf(setup->reason, sizeof setup->reason, format, arguments);
     va_end(arguments);
-    for (char *at = stand->reason; *at; at++) {
+    for (char *at = setup->reason; *at; at++) {
         if ((unsigned char)*at < ' ')
             *at = *at == '\n' ? '/' : '?';
     }
@@ -269,45 +269,45 @@ static const char *line_of_interest(const struct run *run) {
     return line;
 }
 
-static void check_words(struct attack_stand *stand, const struct run *run) {
+static void check_words(struct attack_setup *setup, const struct run *run) {
     const char *line = line_of_interest(run);
     char *first = strndup(line, strcspn(line, "\n"));
-    char *copy = strdup(stand->attack->says ? stand->attack->says : ""), *rest = NULL;
+    char *copy = strdup(setup->attack->says ? setup->attack->says : ""), *rest = NULL;
     for (char *part = strtok_r(copy, "|", &rest); part; part = strtok_r(NULL, "|", &rest)) {
         bool anywhere = part[0] == '*', nowhere = part[0] == '!';
         const char *text = part + (anywhere || nowhere);
         bool in_both = strstr(run->err, text) || strstr(run->out, text);
         if (nowhere ? in_both : anywhere ? !in_both : !strstr(first, text))
-            blame(stand, "%s \"%s\" in: %.300s", nowhere ? "there is" : "no", text, anywhere ? run->err : first);
+            blame(setup, "%s \"%s\" in: %.300s", nowhere ? "there is" : "no", text, anywhere ? run->err : first);
     }
     int notices = 0;
     for (const char *at = run->err; (at = strstr(at, "notice:")) != NULL; at++)
         notices++;
-    int wanted = stand->attack->notices;
+    int wanted = setup->attack->notices;
     if (wanted != 0 && notices != (wanted < 0 ? 0 : wanted))
-        blame(stand, "%d notices: %.300s", notices, run->err);
-    if ((stand->attack->flags & ATTACK_NO_RAY) && strstr(run->err, "\"event\":\"render\""))
-        blame(stand, "a picture was rendered: %.300s", run->err);
+        blame(setup, "%d notices: %.300s", notices, run->err);
+    if ((setup->attack->flags & ATTACK_NO_RAY) && strstr(run->err, "\"event\":\"render\""))
+        blame(setup, "a picture was rendered: %.300s", run->err);
     free(copy);
     free(first);
 }
 
-static void check_status(struct attack_stand *stand, const struct run *run) {
-    int wanted = stand->attack->status;
+static void check_status(struct attack_setup *setup, const struct run *run) {
+    int wanted = setup->attack->status;
     if (run->status < 0)
-        blame(stand, "does not end within %d s", SECONDS);
+        blame(setup, "does not end within %d s", SECONDS);
     else if (run->status >= 126 && run->status != 130)
-        blame(stand, "ends with %d: %.300s", run->status, run->err);
+        blame(setup, "ends with %d: %.300s", run->status, run->err);
     else if (wanted == ATTACK_WRONG ? run->status < 1 || run->status > 3
                                     : wanted != ATTACK_ANY && run->status != wanted)
-        blame(stand, "ends with %d: %.300s", run->status, run->err);
+        blame(setup, "ends with %d: %.300s", run->status, run->err);
 }
 
-static void expected(struct attack_stand *stand, const struct attack_tree *old, const struct attack_tree *new,
+static void expected(struct attack_setup *setup, const struct attack_tree *old, const struct attack_tree *new,
                      char *text) {
     char path[1200], *rest = NULL, *verb = strtok_r(text, " ", &rest), *name = strtok_r(NULL, " ", &rest);
     if (!verb || !name) {
-        blame(stand, "no statement: %s", text);
+        blame(setup, "no statement: %s", text);
         return;
     }
     (void)attack_decode(name);
@@ -345,36 +345,36 @@ static void expected(struct attack_stand *stand, const struct attack_tree *old, 
         wrong = "is in no statement";
     }
     if (wrong)
-        blame(stand, "%s %s", path, wrong);
+        blame(setup, "%s %s", path, wrong);
 }
 
-static void check_files(struct attack_stand *stand, struct attack_tree *old) {
-    struct attack_tree new = attack_tree(stand->root);
-    char *copy = strdup(stand->attack->after ? stand->attack->after : ""), *rest = NULL;
+static void check_files(struct attack_setup *setup, struct attack_tree *old) {
+    struct attack_tree new = attack_tree(setup->root);
+    char *copy = strdup(setup->attack->after ? setup->attack->after : ""), *rest = NULL;
     for (char *one = strtok_r(copy, ";", &rest); one; one = strtok_r(NULL, ";", &rest)) {
         if (one[strspn(one, " ")] != '\0')
-            expected(stand, old, &new, one);
+            expected(setup, old, &new, one);
     }
     for (size_t i = 0; i < old->count; i++) {
         const struct attack_entry *was = &old->entries[i], *is = attack_find(&new, was->path);
         const char *how = was->may_differ ? NULL : is ? attack_difference(was, is) : "is gone";
         if (how)
-            blame(stand, "%s %s", was->path, how);
+            blame(setup, "%s %s", was->path, how);
     }
     for (size_t i = 0; i < new.count; i++) {
         if (!new.entries[i].may_differ && !attack_find(old, new.entries[i].path))
-            blame(stand, "%s is new", new.entries[i].path);
+            blame(setup, "%s is new", new.entries[i].path);
     }
     free(copy);
     attack_tree_free(&new);
 }
 
 /* Special files are watched with inotify, because opening and closing leaves no other trace. */
-static void watch_special(struct attack_stand *stand, struct attack_tree *tree, int watcher) {
+static void watch_special(struct attack_setup *setup, struct attack_tree *tree, int watcher) {
     for (size_t i = 0; i < tree->count; i++) {
         struct attack_entry *entry = &tree->entries[i];
         char path[2400];
-        (void)snprintf(path, sizeof path, "%s/%s", stand->root, entry->path);
+        (void)snprintf(path, sizeof path, "%s/%s", setup->root, entry->path);
         bool terminal = S_ISLNK(entry->status.st_mode) && strncmp(entry->bytes, "/dev/pts/", 9) == 0;
         if (terminal ||
             !(S_ISREG(entry->status.st_mode) || S_ISDIR(entry->status.st_mode) || S_ISLNK(entry->status.st_mode)))
@@ -382,7 +382,7 @@ static void watch_special(struct attack_stand *stand, struct attack_tree *tree, 
     }
 }
 
-static void check_special(struct attack_stand *stand, const struct attack_tree *tree, int watcher) {
+static void check_special(struct attack_setup *setup, const struct attack_tree *tree, int watcher) {
     char events[8192] __attribute__((aligned(8)));
     ssize_t size = read(watcher, events, sizeof events);
     for (ssize_t at = 0; at < size;) {
@@ -390,79 +390,79 @@ static void check_special(struct attack_stand *stand, const struct attack_tree *
         at += (ssize_t)(sizeof *event + event->len);
         for (size_t i = 0; i < tree->count; i++) {
             if (tree->entries[i].watch == event->wd && !tree->entries[i].may_differ) {
-                blame(stand, "%s was %s", tree->entries[i].path, event->mask & IN_MODIFY ? "written to" : "opened");
+                blame(setup, "%s was %s", tree->entries[i].path, event->mask & IN_MODIFY ? "written to" : "opened");
                 return;
             }
         }
     }
 }
 
-static void check_streams(struct attack_stand *stand) {
+static void check_streams(struct attack_setup *setup) {
     char bytes[256];
-    for (int i = 0; i < stand->reader_count; i++) {
-        if (read(stand->readers[i], bytes, sizeof bytes) > 0)
-            blame(stand, "a FIFO received bytes");
-        (void)close(stand->readers[i]);
+    for (int i = 0; i < setup->reader_count; i++) {
+        if (read(setup->readers[i], bytes, sizeof bytes) > 0)
+            blame(setup, "a FIFO received bytes");
+        (void)close(setup->readers[i]);
     }
-    for (int i = 0; i < stand->terminal_count; i++) {
-        if (read(stand->terminals[i], bytes, sizeof bytes) > 0)
-            blame(stand, "a terminal received bytes");
-        (void)close(stand->terminals[i]);
+    for (int i = 0; i < setup->terminal_count; i++) {
+        if (read(setup->terminals[i], bytes, sizeof bytes) > 0)
+            blame(setup, "a terminal received bytes");
+        (void)close(setup->terminals[i]);
     }
 }
 
-static bool prepare(struct attack_stand *stand) {
+static bool prepare(struct attack_setup *setup) {
     static const char outside[] = "png ../out/canary.png; text ../out/canary.txt; fifo ../out/canary.fifo";
-    const struct attack *attack = stand->attack;
+    const struct attack *attack = setup->attack;
     char path[2048];
-    (void)snprintf(path, sizeof path, "%s/out", stand->root);
-    if (mkdir(stand->root, 0755) != 0 || mkdir(stand->in, 0755) != 0 || mkdir(path, 0755) != 0)
+    (void)snprintf(path, sizeof path, "%s/out", setup->root);
+    if (mkdir(setup->root, 0755) != 0 || mkdir(setup->in, 0755) != 0 || mkdir(path, 0755) != 0)
         return false;
-    (void)snprintf(path, sizeof path, "%s/%s", stand->in, attack->scene_name ? attack->scene_name : "scene.lua");
-    if (!attack_statements(stand, stand->in, outside, false) ||
+    (void)snprintf(path, sizeof path, "%s/%s", setup->in, attack->scene_name ? attack->scene_name : "scene.lua");
+    if (!attack_statements(setup, setup->in, outside, false) ||
         (attack->scene && !attack_put_scene(path, attack->scene)) ||
-        !attack_statements(stand, stand->in, attack->before, false))
+        !attack_statements(setup, setup->in, attack->before, false))
         return false;
-    if (stand->user && getuid() == 0) {
-        struct attack_tree all = attack_tree(stand->root);
+    if (setup->user && getuid() == 0) {
+        struct attack_tree all = attack_tree(setup->root);
         bool ok = true;
         for (size_t i = 0; i < all.count; i++) {
-            (void)snprintf(path, sizeof path, "%s/%s", stand->root, all.entries[i].path);
-            ok = ok && lchown(path, stand->user, stand->user) == 0;
+            (void)snprintf(path, sizeof path, "%s/%s", setup->root, all.entries[i].path);
+            ok = ok && lchown(path, setup->user, setup->user) == 0;
         }
         attack_tree_free(&all);
         if (!ok)
             return false;
     }
-    return attack_statements(stand, stand->in, attack->before, true);
+    return attack_statements(setup, setup->in, attack->before, true);
 }
 
 /* True if the claim holds. */
 static bool run_as(const struct attack *attack, uid_t user) {
     static int number;
-    struct attack_stand stand = {.attack = attack, .user = user};
-    (void)snprintf(stand.root, sizeof stand.root, "%s/%d", test_folder(), ++number);
-    (void)snprintf(stand.in, sizeof stand.in, "%s/in", stand.root);
-    if (!prepare(&stand)) {
-        blame(&stand, "could not be prepared");
-        attack_report(attack->name, user, stand.failures ? stand.reason : NULL);
+    struct attack_setup setup = {.attack = attack, .user = user};
+    (void)snprintf(setup.root, sizeof setup.root, "%s/%d", test_folder(), ++number);
+    (void)snprintf(setup.in, sizeof setup.in, "%s/in", setup.root);
+    if (!prepare(&setup)) {
+        blame(&setup, "could not be prepared");
+        attack_report(attack->name, user, setup.failures ? setup.reason : NULL);
         return false;
     }
-    struct attack_tree old = attack_tree(stand.root);
+    struct attack_tree old = attack_tree(setup.root);
     int watcher = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    watch_special(&stand, &old, watcher);
-    struct run run = run_attack(&stand);
-    check_status(&stand, &run);
-    check_words(&stand, &run);
-    check_files(&stand, &old);
-    check_special(&stand, &old, watcher);
-    check_streams(&stand);
-    attack_report(attack->name, user, stand.failures ? stand.reason : NULL);
+    watch_special(&setup, &old, watcher);
+    struct run run = run_attack(&setup);
+    check_status(&setup, &run);
+    check_words(&setup, &run);
+    check_files(&setup, &old);
+    check_special(&setup, &old, watcher);
+    check_streams(&setup);
+    attack_report(attack->name, user, setup.failures ? setup.reason : NULL);
     (void)close(watcher);
     attack_tree_free(&old);
     free(run.out);
     free(run.err);
-    return stand.failures == 0;
+    return setup.failures == 0;
 }
 
 void attacks_run(const struct attack *rows, size_t count) {

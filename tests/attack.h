@@ -82,7 +82,7 @@ int attack_wait(pid_t program, double seconds);
 /* The bytes of both outputs of attack_start, from malloc. */
 char *attack_output(const char *name);
 /* From now on CLOCK_REALTIME of this process and of its children is ahead by this many seconds. */
-void attack_set_clock(time_t seconds_ahead);
+void attack_set_clock(time_t seconds);
 double attack_now(void);
 void attack_rest(double seconds);
 /* A user other than root who can run the program; 0: there is none here. */

@@ -76,16 +76,16 @@ static bool make_socket(const char *path) {
     int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const char *name = strrchr(path, '/') + 1;
     char *folder = strndup(path, (size_t)(name - path));
-    int place = open(folder, O_PATH | O_CLOEXEC);
+    int descriptor = open(folder, O_PATH | O_CLOEXEC);
     free(folder);
-    (void)snprintf(address.sun_path, sizeof address.sun_path, "/proc/self/fd/%d/%.60s", place, name);
+    (void)snprintf(address.sun_path, sizeof address.sun_path, "/proc/self/fd/%d/%.60s", descriptor, name);
     bool ok = made >= 0 && bind(made, (const struct sockaddr *)&address, sizeof address) == 0 && listen(made, 1) == 0;
-    (void)close(place);
+    (void)close(descriptor);
     return ok;
 }
 
 /* On a machine without pseudo-terminals (a bare chroot) a link to a FIFO stands in for a link to one. */
-static bool make_terminal(struct attack_stand *stand, const char *path) {
+static bool make_terminal(struct attack_setup *setup, const char *path) {
     int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     char name[256], fifo[2400];
     if (master < 0 && (errno == ENOENT || errno == ENODEV || errno == ENXIO)) {
@@ -94,10 +94,10 @@ static bool make_terminal(struct attack_stand *stand, const char *path) {
     }
     if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 || ptsname_r(master, name, sizeof name) != 0)
         return false;
-    if (stand && stand->user && getuid() == 0 && chown(name, stand->user, stand->user) != 0)
+    if (setup && setup->user && getuid() == 0 && chown(name, setup->user, setup->user) != 0)
         return false;
-    if (stand && stand->terminal_count < MAX_STREAMS)
-        stand->terminals[stand->terminal_count++] = master;
+    if (setup && setup->terminal_count < MAX_STREAMS)
+        setup->terminals[setup->terminal_count++] = master;
     return symlink(name, path) == 0;
 }
 
@@ -141,7 +141,7 @@ static bool made_file(const char *verb, const char *path, const char *argument, 
     return true;
 }
 
-static bool made_special(struct attack_stand *stand, const char *verb, const char *path, bool *ok) {
+static bool made_special(struct attack_setup *setup, const char *verb, const char *path, bool *ok) {
     if (strcmp(verb, "dir") == 0)
         *ok = mkdir(path, 0777) == 0;
     else if (strcmp(verb, "fifo") == 0)
@@ -155,16 +155,16 @@ static bool made_special(struct attack_stand *stand, const char *verb, const cha
     else if (strcmp(verb, "block") == 0)
         *ok = mknod(path, S_IFBLK | 0666, makedev(1, 250)) == 0;
     else if (strcmp(verb, "tty") == 0)
-        *ok = make_terminal(stand, path);
-    else if (strcmp(verb, "reader") == 0 && stand && stand->reader_count < MAX_STREAMS)
-        *ok = (stand->readers[stand->reader_count++] = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC)) >= 0;
+        *ok = make_terminal(setup, path);
+    else if (strcmp(verb, "reader") == 0 && setup && setup->reader_count < MAX_STREAMS)
+        *ok = (setup->readers[setup->reader_count++] = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC)) >= 0;
     else
         return false;
     return true;
 }
 
 /* chown comes after everything else that the user owns, so it has a pass of its own. */
-static bool statement(struct attack_stand *stand, const char *in, char *text, bool late) {
+static bool statement(struct attack_setup *setup, const char *in, char *text, bool late) {
     char path[2048], *rest = NULL, *verb = strtok_r(text, " ", &rest);
     char *name = strtok_r(NULL, " ", &rest), *argument = strtok_r(NULL, " ", &rest);
     bool ok = true;
@@ -177,10 +177,10 @@ static bool statement(struct attack_stand *stand, const char *in, char *text, bo
     (void)attack_decode(name);
     size_t length = argument ? attack_decode(argument) : 0;
     (void)snprintf(path, sizeof path, "%s/%s", in, name);
-    if (made_file(verb, path, argument ? argument : "", length, &ok) || made_special(stand, verb, path, &ok))
+    if (made_file(verb, path, argument ? argument : "", length, &ok) || made_special(setup, verb, path, &ok))
         return ok || is_fail(verb, path);
     if (strcmp(verb, "scene") == 0)
-        return attack_put_scene(path, stand ? stand->attack->second : "");
+        return attack_put_scene(path, setup ? setup->attack->second : "");
     if (argument && strcmp(verb, "link") == 0)
         return symlink(argument, path) == 0 || is_fail(verb, path);
     if (argument && strcmp(verb, "hard") == 0) {
@@ -198,12 +198,12 @@ static bool statement(struct attack_stand *stand, const char *in, char *text, bo
     return false;
 }
 
-bool attack_statements(struct attack_stand *stand, const char *in, const char *all, bool late) {
+bool attack_statements(struct attack_setup *setup, const char *in, const char *all, bool late) {
     char *copy = strdup(all ? all : ""), *rest = NULL;
     bool ok = copy != NULL;
     for (char *one = ok ? strtok_r(copy, ";", &rest) : NULL; ok && one; one = strtok_r(NULL, ";", &rest)) {
         if (one[strspn(one, " ")] != '\0')
-            ok = statement(stand, in, one, late);
+            ok = statement(setup, in, one, late);
     }
     free(copy);
     return ok;

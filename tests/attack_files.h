@@ -9,7 +9,7 @@
 enum { MAX_STREAMS = 16 };
 
 /* The preparation of a row. */
-struct attack_stand {
+struct attack_setup {
     const struct attack *attack;
     uid_t user;
     char root[512], in[600];
@@ -36,7 +36,7 @@ struct attack_tree {
 size_t attack_decode(char *text);
 bool attack_put_scene(const char *path, const char *text);
 /* Executes the statements of a row: those about modes, owners and ages if `late`, else the others. */
-bool attack_statements(struct attack_stand *stand, const char *in, const char *all, bool late);
+bool attack_statements(struct attack_setup *setup, const char *in, const char *all, bool late);
 
 /* Everything below "in" and "out". */
 struct attack_tree attack_tree(const char *root);

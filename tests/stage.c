@@ -43,15 +43,15 @@ void stage_floor(struct stage *s) {
     s->light_count = 1;
 }
 
-double stage_variance_about_half(struct stage *s, bool alone) {
+double stage_variance_about_half(struct stage *s, bool single) {
     double error = 0;
     for (uint64_t seed = 0; seed < 64; seed++) {
         double mean = 0;
-        for (uint64_t i = 0; i < (alone ? 64 : 1); i++) {
-            s->settings.seed = alone ? 1000 + seed * 64 + i : seed;
-            s->settings.samples = alone ? 1 : 8;
+        for (uint64_t i = 0; i < (single ? 64 : 1); i++) {
+            s->settings.seed = single ? 1000 + seed * 64 + i : seed;
+            s->settings.samples = single ? 1 : 8;
             CHECK(stage_render(s, 1, 1));
-            mean += stage_pixel(s, 0, 0).x / (alone ? 64 : 1);
+            mean += stage_pixel(s, 0, 0).x / (single ? 64 : 1);
         }
         error += (mean - 0.5) * (mean - 0.5);
     }

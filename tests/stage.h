@@ -34,7 +34,7 @@ void stage_end(struct stage *s);
 void stage_floor(struct stage *s);
 /* The mean square error of a pixel whose value should be 1/2, over 64 seeds: with 8 x 8 samples each, or as the mean of
  * 64 pictures with one sample. */
-double stage_variance_about_half(struct stage *s, bool alone);
+double stage_variance_about_half(struct stage *s, bool single);
 /* The lights as a world is built from. */
 const struct scene_light *stage_lights(struct stage *s);
 bool stage_build(struct stage *s, struct node *root, enum accel_kind accel);

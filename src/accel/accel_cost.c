@@ -86,7 +86,7 @@ static bool count_level(struct cost_level *level, const struct box *bounds, cons
     level->occupied = occupied * share;
     level->listed = listed * sample->each * share;
     /* One of them is the item itself; the others represent the rest. */
-    level->around = entries > 0 ? 1 + (squares / entries - 1) * sample->each : 0;
+    level->neighbours = entries > 0 ? 1 + (squares / entries - 1) * sample->each : 0;
     return sample->each == 1 || entries >= SAMPLE_LIMIT * occupied;
 }
 
@@ -101,7 +101,7 @@ void cost_sample_take(struct cost_sample *cost_sample, const struct cost_items *
     struct vec3 size = vec3_sub(bounds->max, bounds->min);
     *cost_sample = (struct cost_sample){.level_count = 1, .items = count};
     cost_sample->levels[0] = (struct cost_level){
-        .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = count, .around = count};
+        .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = count, .neighbours = count};
     double surface = half_surface(size), longest = vec3_max_abs(size);
     if (count == 0 || !(surface > 0x1p-900) || !(surface < 0x1p900) || !(longest > 0))
         return;
@@ -146,7 +146,7 @@ struct accel_scene_cost accel_lists_or_hierarchy(const struct cost_sample *cost_
     double steps = STEP_COST * at->visited * finer, nodes = at->occupied;
     for (uint32_t l = 1; l <= level; l++)
         nodes += OVERLAP * growth(cost_sample, l, 4) * cost_sample->levels[l - 1].occupied;
-    double crowd = at->around / (finer * finer * finer), depth = el_log(cost_sample->items) / el_log(4);
+    double crowd = at->neighbours / (finer * finer * finer), depth = el_log(cost_sample->items) / el_log(4);
     double lists = 2 * steps + LIST_COST * (at->listed / (finer * finer) + (crowd > 1 ? crowd : 1));
     return (struct accel_scene_cost){.lists = lists / 2, .hierarchy = (nodes + depth) / 2};
 }

@@ -12,11 +12,11 @@ enum { MESSAGE_LEVELS = 7 };
 /* Level l has cubical voxels, 2^l along the longest axis. */
 struct cost_level {
     uint32_t cells[3];
-    double filled;   /* voxels that are not empty, by the sample */
-    double visited;  /* voxels that a random line through the frame visits */
-    double occupied; /* those of them that are occupied */
-    double listed;   /* entries of their lists that it passes */
-    double around;   /* items in the voxel of a random item */
+    double filled;     /* voxels that are not empty, by the sample */
+    double visited;    /* voxels that a random line through the frame visits */
+    double occupied;   /* those of them that are occupied */
+    double listed;     /* entries of their lists that it passes */
+    double neighbours; /* items in the voxel of a random item */
 };
 
 struct cost_sample {

@@ -73,11 +73,11 @@ static void choose_cells(const double extent[3], double wanted, uint32_t cells[3
 
 /* The voxel of a coordinate, clamped; NaN gives 0. */
 static uint32_t voxel_index(const struct grid *grid, int axis, double x) {
-    double place = (x - vec3_get(grid->bounds.min, axis)) * vec3_get(grid->inverse_cell_size, axis);
-    if (!(place >= 1))
+    double position = (x - vec3_get(grid->bounds.min, axis)) * vec3_get(grid->inverse_cell_size, axis);
+    if (!(position >= 1))
         return 0;
     uint32_t last = grid->cells[axis] - 1;
-    return place >= (double)last ? last : (uint32_t)place;
+    return position >= (double)last ? last : (uint32_t)position;
 }
 
 struct voxel_range {

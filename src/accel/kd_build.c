@@ -282,7 +282,7 @@ static bool add_leaf(struct builder *b, const struct cell *cell) {
         tree->items = items;
         b->entry_capacity = (uint32_t)capacity;
     }
-    struct kd_node leaf = {.count = cell->items, .axis = KD_LEAF, .place = tree->entry_count};
+    struct kd_node leaf = {.count = cell->items, .axis = KD_LEAF, .offset = tree->entry_count};
     for (size_t i = 0; i < cell->lists[0].count; i++)
         if (cell->lists[0].events[i].kind != EVENT_END)
             tree->items[tree->entry_count++] = cell->lists[0].events[i].item;
@@ -323,7 +323,7 @@ static bool build_node(struct builder *b, struct cell *cell, int depth) {
     ok = ok && add_node(b, (struct kd_node){.split = plane.position, .axis = (uint32_t)plane.axis});
     if (ok) {
         ok = build_node(b, &lower, depth + 1);
-        b->tree->nodes[own].place = b->tree->node_count;
+        b->tree->nodes[own].offset = b->tree->node_count;
     } else {
         cell_free(&lower);
     }

@@ -52,7 +52,7 @@ void kd_traversal_begin(struct kd_traversal *traversal, const struct kd_tree *tr
 static const struct kd_node *descend(struct kd_traversal *traversal, struct kd_pending at) {
     const struct kd_node *nodes = traversal->tree->nodes, *node = &nodes[at.node];
     while (node->axis != KD_LEAF) {
-        uint32_t axis = node->axis, lower = at.node + 1, upper = node->place;
+        uint32_t axis = node->axis, lower = at.node + 1, upper = node->offset;
         double from_origin = node->split - traversal->origin[axis];
         traversal->steps++;
         if (!isfinite(traversal->inverse[axis])) { /* along the plane */
@@ -96,7 +96,7 @@ bool kd_traversal_next(struct kd_traversal *traversal, double t_max) {
         traversal->leaves++;
         if (leaf->count == 0)
             continue;
-        traversal->items = traversal->tree->items + leaf->place;
+        traversal->items = traversal->tree->items + leaf->offset;
         traversal->count = (uint32_t)leaf->count;
         return true;
     }

@@ -22,8 +22,8 @@ struct kd_node {
         double split;   /* of an inner node: where the plane is */
         uint64_t count; /* of a leaf */
     };
-    uint32_t axis;  /* KD_LEAF for a leaf */
-    uint32_t place; /* inner: number of the upper child; leaf: its first entry in items[] */
+    uint32_t axis;   /* KD_LEAF for a leaf */
+    uint32_t offset; /* inner: number of the upper child; leaf: its first entry in items[] */
 };
 
 struct kd_tree {

@@ -326,15 +326,15 @@ static bool store_top(struct builder *builder, uint32_t number, uint32_t *result
     }
     if (!reserve((void **)&builder->top, &builder->top_capacity, builder->top_count, sizeof *builder->top))
         return false;
-    uint32_t place = builder->top_count++, children[WIDTH], count = tree_children(&builder->tree, number, children);
-    builder->top[place] = (struct top_node){.branch = number};
+    uint32_t slot = builder->top_count++, children[WIDTH], count = tree_children(&builder->tree, number, children);
+    builder->top[slot] = (struct top_node){.branch = number};
     for (uint32_t i = 0; i < count; i++) {
         uint32_t child;
         if (!store_top(builder, children[i], &child))
             return false;
-        builder->top[place].child[i] = child;
+        builder->top[slot].child[i] = child;
     }
-    *result = place;
+    *result = slot;
     return true;
 }
 
@@ -378,10 +378,10 @@ static void node_set_order(struct wide_node *node, uint32_t parts, float area) {
                 float middle = node->bounds[2 * k][j] + node->bounds[2 * k + 1][j];
                 along[j] += octant >> k & 1 ? -middle : middle;
             }
-            uint32_t place = j;
-            for (; place > 0 && along[lanes[place - 1]] < along[j]; place--)
-                lanes[place] = lanes[place - 1];
-            lanes[place] = j;
+            uint32_t slot = j;
+            for (; slot > 0 && along[lanes[slot - 1]] < along[j]; slot--)
+                lanes[slot] = lanes[slot - 1];
+            lanes[slot] = j;
         }
         for (uint32_t j = 0; j < WIDTH; j++)
             node->order[octant] |= lanes[j] << 3 * j;
@@ -461,18 +461,18 @@ static uint32_t fill_lanes(const struct builder *builder, uint32_t number, struc
 static uint32_t write_branch(const struct builder *builder, struct piece *piece, uint32_t number) {
     struct triangle_index *index = builder->index;
     if (!is_node(&builder->tree.branches[number])) {
-        uint32_t place = piece->block_base + piece->block_count++;
-        struct triangle_block *block = &index->blocks[place];
+        uint32_t slot = piece->block_base + piece->block_count++;
+        struct triangle_block *block = &index->blocks[slot];
         for (uint32_t lane = fill_lanes(builder, number, block, 0); lane < WIDTH; lane++)
             set_unused_lane(block, lane);
-        return REF_LEAF | place;
+        return REF_LEAF | slot;
     }
     uint32_t children[WIDTH], count = tree_children(&builder->tree, number, children);
-    uint32_t place = piece->node_base + piece->node_count++;
-    node_set(&index->nodes[place], &builder->tree, number, children, count);
+    uint32_t slot = piece->node_base + piece->node_count++;
+    node_set(&index->nodes[slot], &builder->tree, number, children, count);
     for (uint32_t i = 0; i < count; i++)
-        index->nodes[place].child[i] = write_branch(builder, piece, children[i]);
-    return place;
+        index->nodes[slot].child[i] = write_branch(builder, piece, children[i]);
+    return slot;
 }
 
 static void write_job(void *context, uint32_t item, int worker) {

@@ -50,9 +50,9 @@
 #define FAR_AWAY 0x1p20
 
 /* W for each unit of |o| and of t0 M. */
-#define PLACE_ERROR (20 * 0x1p-24f)
+#define POSITION_ERROR (20 * 0x1p-24f)
 #if defined(GRAY_KERNEL_FMA)
-#define MOVING_ERROR PLACE_ERROR
+#define MOVING_ERROR POSITION_ERROR
 #else
 #define MOVING_ERROR (26 * 0x1p-24f)
 #endif
@@ -77,10 +77,10 @@ static inline __attribute__((always_inline)) void fetch_vertex_numbers(const str
 /* Prefetches the next entry of the stack. */
 static inline __attribute__((always_inline)) void prefetch_block(const struct triangle_index *index,
                                                                  uint32_t reference) {
-    const char *place = reference & REF_LEAF ? (const char *)(index->blocks + (reference & ~REF_LEAF))
-                                             : (const char *)(index->nodes + reference);
+    const char *position = reference & REF_LEAF ? (const char *)(index->blocks + (reference & ~REF_LEAF))
+                                                : (const char *)(index->nodes + reference);
     for (int i = 0; i < 5; i++)
-        __builtin_prefetch(place + 64 * i);
+        __builtin_prefetch(position + 64 * i);
 }
 
 /* The axes of triangle_ray_axes by a table, as halves of lanes x, y, z, z: the index is which of the direction's
@@ -510,13 +510,13 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
     if (index->big && descend(s, index->big, kind, true, many))
         return true;
     simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
-          place = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
+          position = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
     int32_t at[4];
-    simd4 start = simd4_max(simd4_all(0), simd4_min(place, simd4_load(index->last_cell)));
+    simd4 start = simd4_max(simd4_all(0), simd4_min(position, simd4_load(index->last_cell)));
     simd4_store_int(at, start);
     start = simd4_whole(start);
     simd4 across = simd4_mul(cell, reciprocal);
-    simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), place), across);
+    simd4 next_t = simd4_mul(simd4_sub(simd4_add(start, simd4_one_unless_negative(reciprocal)), position), across);
     simd4 step_t = simd4_size(across);
     next_t = simd4_add(next_t, simd4_make(0, 0, 0, INFINITY));
     const int32_t *offset = index->offset[simd4_negative(reciprocal) & 7];
@@ -613,7 +613,7 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
     double certain = (s->ray->t_max - enter) * to_local * (1 - 0x1p-20) - 0x1p-20;
     s->certain = certain < 16 ? (float)certain : 16;
     s->longest = 1;
-    s->error = PLACE_ERROR + (float)(far * 8 * 0x1p-46);
+    s->error = POSITION_ERROR + (float)(far * 8 * 0x1p-46);
     s->far_away = far > FAR_AWAY;
     simd4_store(s->widen, simd4_mul(simd4_size(r4), simd4_all((float)(far * 0x1p-45))));
     return RAY_INSIDE;
@@ -646,7 +646,7 @@ static inline __attribute__((always_inline)) enum beginning search_begin(struct 
             return RAY_MISSES;
     }
     s->blur = 0;
-    s->error = PLACE_ERROR * simd8_first(largest) + 0x1p-40f;
+    s->error = POSITION_ERROR * simd8_first(largest) + 0x1p-40f;
     s->moved = false;
     search_start(s, o4, d4, r4, last);
     return RAY_INSIDE;

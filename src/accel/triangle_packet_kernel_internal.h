@@ -425,13 +425,13 @@ static inline __attribute__((always_inline)) uint32_t push_children(struct packe
     uint64_t order[WIDTH];
     unsigned count = 0;
     for (; met; met &= met - 1) {
-        unsigned i = (unsigned)__builtin_ctz(met), place = count++;
+        unsigned i = (unsigned)__builtin_ctz(met), slot = count++;
         uint32_t bits;
         memcpy(&bits, &t[i], sizeof bits);
         uint64_t entry = (uint64_t)bits << 32 | i;
-        for (; place > 0 && order[place - 1] < entry; place--)
-            order[place] = order[place - 1];
-        order[place] = entry;
+        for (; slot > 0 && order[slot - 1] < entry; slot--)
+            order[slot] = order[slot - 1];
+        order[slot] = entry;
     }
     for (unsigned k = 0; k < count; k++) {
         unsigned i = (unsigned)order[k] & (WIDTH - 1);
@@ -554,8 +554,8 @@ static bool begin(struct packet *p, uint64_t active) {
     const struct ray_packet *rays = p->rays;
     double longest, shortest;
     p->groups = (rays->count + LANES - 1) / LANES;
-    unsigned places = p->groups * LANES;
-    if (index->voxel_count != 27 || !(rays->t_min >= 0) || !measure_rays(rays, places, &longest, &shortest))
+    unsigned slots = p->groups * LANES;
+    if (index->voxel_count != 27 || !(rays->t_min >= 0) || !measure_rays(rays, slots, &longest, &shortest))
         return false;
     double scaled = longest * index->scale;
     if (!(longest > 0x1p-900 && longest < 0x1p900) || !(shortest >= 0.5 * longest) ||
@@ -579,7 +579,7 @@ static bool begin(struct packet *p, uint64_t active) {
     float *const d[3] = {p->dx, p->dy, p->dz}, *const inverse[3] = {p->rx, p->ry, p->rz};
     p->mixed = false;
     for (int k = 0; k < 3; k++) {
-        for (unsigned i = 0; i < places; i++)
+        for (unsigned i = 0; i < slots; i++)
             d[k][i] = (float)(rays->direction[k][i] * shrink);
         unsigned any = 0, all = 1;
         for (unsigned g = 0; g < p->groups; g++) {
@@ -596,7 +596,7 @@ static bool begin(struct packet *p, uint64_t active) {
     }
     if (!set_beam(p))
         return false;
-    for (unsigned i = 0; i < places; i++) {
+    for (unsigned i = 0; i < slots; i++) {
         double end = rays->t_max[i] * to_local;
         end = end < 0x1p60 ? end : 0x1p60;
         p->limit[i] = (float)end * (1 + 0x1p-20f);

@@ -136,15 +136,15 @@ static uint32_t best_position(const struct branch *branches, uint32_t number) {
         stack[top].number = sibling;
         stack[top++].gain = shrunk;
         while (top > 0) {
-            uint32_t place = stack[--top].number;
+            uint32_t target = stack[--top].number;
             float gain = stack[top].gain;
             if (gain - moved->area <= best_gain)
                 continue;
-            const struct branch *there = &branches[place];
+            const struct branch *there = &branches[target];
             gain -= half_area(simd4_min(branch_min(there), lo), simd4_max(branch_max(there), hi));
             if (gain > best_gain) {
                 best_gain = gain;
-                best = place;
+                best = target;
             }
             for (int i = 0; there->height > 0 && i < 2; i++) {
                 stack[top].number = there->child[i];
@@ -166,19 +166,19 @@ static uint32_t best_position(const struct branch *branches, uint32_t number) {
 static void reinsert(struct tree *tree, uint32_t number) {
     struct branch *branches = tree->branches;
     uint32_t parent = branches[number].parent, sibling = sibling_of(branches, number);
-    uint32_t place = best_position(branches, number);
-    if (place == NO_BRANCH || place == sibling)
+    uint32_t target = best_position(branches, number);
+    if (target == NO_BRANCH || target == sibling)
         return;
-    uint8_t here = branches[number].height, there = branches[place].height;
-    if (depth_of(branches, place) + 1 + (here > there ? here : there) > MAX_BRANCH_DEPTH)
+    uint8_t here = branches[number].height, there = branches[target].height;
+    if (depth_of(branches, target) + 1 + (here > there ? here : there) > MAX_BRANCH_DEPTH)
         return;
     uint32_t above = branches[parent].parent;
     put_child(branches, above, parent, sibling);
     tree_refit(tree, above);
-    put_child(branches, branches[place].parent, place, parent);
-    branches[parent].child[0] = place;
+    put_child(branches, branches[target].parent, target, parent);
+    branches[parent].child[0] = target;
     branches[parent].child[1] = number;
-    branches[place].parent = parent;
+    branches[target].parent = parent;
     tree_refit(tree, parent);
 }
 

@@ -195,15 +195,15 @@ bool file_version_of(const char *path, const struct file_version *known, struct 
 bool file_digest(const char *path, struct digest *digest) {
     struct stat status;
     char name[64];
-    int place = MAY_FAIL(open(path, O_PATH | O_CLOEXEC));
-    if (place < 0)
+    int handle = MAY_FAIL(open(path, O_PATH | O_CLOEXEC));
+    if (handle < 0)
         return false;
-    (void)snprintf(name, sizeof name, "/proc/self/fd/%d", place);
-    int descriptor = fstat(place, &status) == 0 && S_ISREG(status.st_mode) ? open(name, O_RDONLY | O_CLOEXEC) : -1;
+    (void)snprintf(name, sizeof name, "/proc/self/fd/%d", handle);
+    int descriptor = fstat(handle, &status) == 0 && S_ISREG(status.st_mode) ? open(name, O_RDONLY | O_CLOEXEC) : -1;
     bool ok = descriptor >= 0 && digest_of(descriptor, digest);
     if (descriptor >= 0)
         (void)close(descriptor);
-    (void)close(place);
+    (void)close(handle);
     return ok;
 }
 

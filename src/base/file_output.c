@@ -93,8 +93,8 @@ static bool open_folder(struct file_output *file, struct error *error) {
     char folder[FILE_NAME_SIZE];
     if (file->leaf[0] == '\0' || strcmp(file->leaf, ".") == 0 || strcmp(file->leaf, "..") == 0)
         return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", file->target);
-    if (rules->places) {
-        file->folder = path_policy_open_folder(rules->places, file->target);
+    if (rules->folders) {
+        file->folder = path_policy_open_folder(rules->folders, file->target);
     } else {
         if (!file_make_folders_for(file->target, error))
             return false;
@@ -119,10 +119,10 @@ bool file_is_same_folder(const char *a, const char *b) {
 
 /* The existing file. */
 
-/* The first bytes of the regular file of `place` (O_PATH); -1: it cannot be read. */
-static ssize_t read_head(int place, uint8_t head[FILE_HEAD_SIZE]) {
+/* The first bytes of the regular file of `handle` (O_PATH); -1: it cannot be read. */
+static ssize_t read_head(int handle, uint8_t head[FILE_HEAD_SIZE]) {
     char name[64];
-    (void)snprintf(name, sizeof name, "/proc/self/fd/%d", place);
+    (void)snprintf(name, sizeof name, "/proc/self/fd/%d", handle);
     int descriptor = MAY_FAIL(open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
     if (descriptor < 0)
         return -1;
@@ -150,7 +150,7 @@ static bool is_kept(const struct file_rules *rules, struct file_identity identit
 }
 
 /* Whether a regular file may be replaced. */
-static bool may_replace(const struct file_output *file, int place, const struct stat *status, struct error *error) {
+static bool may_replace(const struct file_output *file, int handle, const struct stat *status, struct error *error) {
     const struct file_rules *rules = file->rules;
     struct file_identity identity = identity_of(status);
     uint8_t head[FILE_HEAD_SIZE] = {0};
@@ -160,7 +160,7 @@ static bool may_replace(const struct file_output *file, int place, const struct 
         return refuse(error, file, "is a file that this run reads or uses for another purpose, and is not replaced");
     if (!rules->may_replace || status->st_size == 0 || rules->force)
         return true;
-    ssize_t size = read_head(place, head);
+    ssize_t size = read_head(handle, head);
     if (size < 0)
         return error_set(error, ERROR_SCENE, "%.600s: cannot be read (%s), so it may be something else than %s%s",
                          file->target, strerror(errno), rules->expected, advice_of(rules));
@@ -197,10 +197,10 @@ static const char *kind_of_file(mode_t mode) {
 static bool inspect(const struct file_output *file, bool *there, struct stat *status, struct error *error) {
     char text[96];
     *there = false;
-    int place = MAY_FAIL(openat(file->folder, file->leaf, O_PATH | O_NOFOLLOW | O_CLOEXEC));
-    if (place < 0)
+    int handle = MAY_FAIL(openat(file->folder, file->leaf, O_PATH | O_NOFOLLOW | O_CLOEXEC));
+    if (handle < 0)
         return errno == ENOENT || cannot_write(error, file, errno);
-    bool ok = MAY_FAIL(fstat(place, status)) == 0;
+    bool ok = MAY_FAIL(fstat(handle, status)) == 0;
     if (!ok) {
         (void)cannot_write(error, file, errno);
     } else if (S_ISDIR(status->st_mode)) {
@@ -211,9 +211,9 @@ static bool inspect(const struct file_output *file, bool *there, struct stat *st
         (void)snprintf(text, sizeof text, "is %s, and nothing is written to it", kind_of_file(status->st_mode));
         ok = refuse(error, file, text);
     } else {
-        ok = may_replace(file, place, status, error) && can_be_renamed(file, status, error);
+        ok = may_replace(file, handle, status, error) && can_be_renamed(file, status, error);
     }
-    (void)close(place);
+    (void)close(handle);
     *there = ok;
     return ok;
 }

@@ -52,7 +52,7 @@ struct file_rules {
     bool named_by_user;                     /* the messages name --force */
     bool force;                             /* may_replace does not matter */
     struct file_quota *quota;               /* or NULL */
-    const struct path_policy *places;       /* folders that may be written; NULL: all */
+    const struct path_policy *folders;      /* folders that may be written; NULL: all */
     struct file_guard *guard;               /* or NULL */
     const struct file_interrupt *interrupt; /* or NULL */
 };

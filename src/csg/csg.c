@@ -142,8 +142,8 @@ static struct crossing own_crossing(const struct crossing *crossing) {
 /* One coordinate's rounding error in the leaf's space at t: of the transformed origin, of the way, of the surface. */
 static double row_error(const double row[4], const struct ray *ray, double t, double surface) {
     double origin = fabs(row[0] * ray->origin.x) + fabs(row[1] * ray->origin.y) + fabs(row[2] * ray->origin.z);
-    double way = fabs(row[0] * ray->direction.x) + fabs(row[1] * ray->direction.y) + fabs(row[2] * ray->direction.z);
-    return ROUNDING * (origin + fabs(row[3]) + fabs(t) * way + surface);
+    double speed = fabs(row[0] * ray->direction.x) + fabs(row[1] * ray->direction.y) + fabs(row[2] * ray->direction.z);
+    return ROUNDING * (origin + fabs(row[3]) + fabs(t) * speed + surface);
 }
 
 /* How far the t of a crossing may be from where it should be; at most `limit`. */
@@ -304,7 +304,7 @@ static bool ask_waiting(struct sweep *s, double until) {
 }
 
 /* Makes sure that the next crossing is the next one of all leaves; false: scratch overflow. */
-static bool ask_ahead(struct sweep *s) {
+static bool test_next_leaves(struct sweep *s) {
     while (s->waiting && s->waiting->count > 0) {
         double first = INFINITY;
         for (uint32_t i = 0; i < s->waiting->count; i++)
@@ -325,7 +325,7 @@ static bool ask_ahead(struct sweep *s) {
  */
 static uint32_t group_end(struct sweep *s, uint32_t first) {
     uint32_t end = first + 1;
-    double reach = 0;
+    double extent = 0;
     for (; end < s->count; end++) {
         double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
         if (!(t - before <= limit))
@@ -337,18 +337,18 @@ static uint32_t group_end(struct sweep *s, uint32_t first) {
             continue;
         }
         if (end == first + 1)
-            reach = before + crossing_error(s, &s->items[first], limit);
+            extent = before + crossing_error(s, &s->items[first], limit);
         double error = crossing_error(s, &s->items[end], limit);
-        if (!(t - error <= reach))
+        if (!(t - error <= extent))
             break;
-        reach = fmax(reach, t + error);
+        extent = fmax(extent, t + error);
     }
     return end;
 }
 
 /* The next surface on the line. False: there is none, or scratch overflow. */
 static bool sweep_next(struct sweep *s, struct crossing *out) {
-    while (ask_ahead(s) && s->next < s->count) {
+    while (test_next_leaves(s) && s->next < s->count) {
         uint32_t first = s->next, end = group_end(s, first);
         if (end == 0)
             return false;

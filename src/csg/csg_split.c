@@ -122,15 +122,15 @@ static bool cut(struct splitting *s, struct piece piece, int axis, uint32_t *pie
     }
     sort_words(s->words, piece.count);
     uint32_t before = *pieces, begun = 0;
-    double reach = -INFINITY;
+    double extent = -INFINITY;
     for (uint32_t i = 0; i < piece.count; i++) {
         uint32_t operand = (uint32_t)s->words[i];
         double low = (double)key_of(s->words[i]);
-        if (i > begun && low - reach > APART * (fabs(low) + fabs(reach))) {
+        if (i > begun && low - extent > APART * (fabs(low) + fabs(extent))) {
             s->pieces[(*pieces)++] = (struct piece){piece.first + begun, i - begun};
             begun = i;
         }
-        reach = fmax(reach, vec3_get(s->spans[s->operands[operand]].box.max, axis));
+        extent = fmax(extent, vec3_get(s->spans[s->operands[operand]].box.max, axis));
         s->order[piece.first + i] = operand;
     }
     if (begun == 0)

@@ -115,12 +115,13 @@ static bool read_map(struct gltf *g, const json_t *object, const char *key, stru
         map->filter = nearest == 9728 ? IMAGE_NEAREST : IMAGE_MIPMAP;
     }
     map->strength = number_or(info, "scale", 1);
-    const json_t *placed = json_object_get(json_object_get(info, "extensions"), "KHR_texture_transform");
-    if (placed) {
+    const json_t *transform = json_object_get(json_object_get(info, "extensions"), "KHR_texture_transform");
+    if (transform) {
         double scale[2] = {1, 1}, offset[2] = {0, 0};
-        if (!gltf_numbers(g, placed, "scale", scale, 2, where) || !gltf_numbers(g, placed, "offset", offset, 2, where))
+        if (!gltf_numbers(g, transform, "scale", scale, 2, where) ||
+            !gltf_numbers(g, transform, "offset", offset, 2, where))
             return false;
-        if (number_or(placed, "rotation", 0) != 0)
+        if (number_or(transform, "rotation", 0) != 0)
             model_warn(g->model, "%s: %s: a turned texture is shown unturned", g->path, where);
         /* glTF counts v from above, we from below: v' = 1 - (s (1 - v) + o) = s v + (1 - s - o). */
         map->scale[0] = scale[0], map->scale[1] = scale[1];
@@ -144,7 +145,7 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
         return false;
     double metallic = unit(number_or(rough, "metallicFactor", 1)), r = unit(number_or(rough, "roughnessFactor", 1));
     const json_t *glass = json_object_get(extensions, "KHR_materials_transmission");
-    double passes = unit(number_or(glass, "transmissionFactor", 0)) * (1 - metallic);
+    double transmission = unit(number_or(glass, "transmissionFactor", 0)) * (1 - metallic);
     double ior = number_or(json_object_get(extensions, "KHR_materials_ior"), "ior", 1.5);
     ior = ior >= 1 ? ior : 1.5;
     double f0 = (ior - 1) / (ior + 1) * ((ior - 1) / (ior + 1));
@@ -173,12 +174,12 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     bool blend = alpha_mode && strcmp(alpha_mode, "BLEND") == 0, mask = alpha_mode && strcmp(alpha_mode, "MASK") == 0;
     if (blend)
         m->dissolve = unit(base[3]);
-    if (passes > 0) {
-        m->dissolve = 1 - passes;
+    if (transmission > 0) {
+        m->dissolve = 1 - transmission;
         m->filter = colour;
         m->ior = ior;
         m->has_ior = true;
-        m->fresnel = passes == 1;
+        m->fresnel = transmission == 1;
     }
     m->map_kd.without_alpha = true;
     if (blend || mask) { /* the alpha of the colour's picture; factors below 1 count before the cut */

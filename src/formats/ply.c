@@ -483,11 +483,11 @@ static bool read_indices(struct ply *ply, const struct property *p, bool restart
             continue;
         }
         if (!(value >= 0 && value < (double)ply->vertex_total && value == floor(value))) {
-            size_t place = ply->format == ASCII ? ply->line : (size_t)(before - ply->data);
+            size_t position = ply->format == ASCII ? ply->line : (size_t)(before - ply->data);
             return error_set(ply->error, ERROR_SCENE,
                              ply->format == ASCII ? "%s:%zu: vertex %.15g, but the file has %llu, counted from 0"
                                                   : "%s: byte %zu: vertex %.15g, but the file has %llu, counted from 0",
-                             ply->path, place, value, (unsigned long long)ply->vertex_total);
+                             ply->path, position, value, (unsigned long long)ply->vertex_total);
         }
         out[i] = (uint32_t)value;
     }

@@ -182,11 +182,11 @@ bool outline_build(struct arena *arena, const struct spline_segment *segments, u
 }
 
 void outline_range(const double b[4], double *lo, double *hi) {
-    double slope[3], places[4] = {0, 1};
+    double slope[3], stops[4] = {0, 1};
     bernstein_derivative(b, 3, slope);
-    int count = 2 + bernstein_roots(slope, 2, places + 2);
+    int count = 2 + bernstein_roots(slope, 2, stops + 2);
     for (int k = 0; k < count; k++) {
-        double value = cubic_value(b, places[k]);
+        double value = cubic_value(b, stops[k]);
         *lo = fmin(*lo, value);
         *hi = fmax(*hi, value);
     }

@@ -39,7 +39,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
         note(link, channel_send(&link->channel, MESSAGE_ABANDON, NULL, 0, -1));
         return false;
     }
-    picture_film_place(request, link->memory.block, film);
+    picture_film_layout(request, link->memory.block, film);
     return true;
 }
 

@@ -103,7 +103,7 @@ static bool fit_overlay(struct sdl *sdl, int width, int height) {
 
 static void show_frame(void *context, const struct window_content *frame) {
     struct sdl *sdl = context;
-    SDL_Rect place = {frame->left, frame->top, frame->shown_width, frame->shown_height};
+    SDL_Rect target = {frame->left, frame->top, frame->shown_width, frame->shown_height};
     int width = (int)frame->window_width, height = (int)frame->window_height;
     if (frame->picture_changed)
         (void)SDL_UpdateTexture(sdl->picture, NULL, frame->picture, 3 * (int)frame->width);
@@ -112,7 +112,7 @@ static void show_frame(void *context, const struct window_content *frame) {
     if (over && (frame->overlay_changed || other))
         (void)SDL_UpdateTexture(sdl->overlay, NULL, frame->overlay, 4 * width);
     (void)SDL_RenderClear(sdl->renderer);
-    (void)SDL_RenderCopy(sdl->renderer, sdl->picture, NULL, &place);
+    (void)SDL_RenderCopy(sdl->renderer, sdl->picture, NULL, &target);
     if (over)
         (void)SDL_RenderCopy(sdl->renderer, sdl->overlay, NULL, NULL);
     SDL_RenderPresent(sdl->renderer);

@@ -28,7 +28,7 @@
 /* The Lua library: $GRAY_LUA, else beside the program as it was installed (PREFIX/bin/gray and PREFIX/share/gray/lua),
  * else above it in the source tree (build/release/gray and lua). NULL when there is none. */
 static const char *find_library(struct arena *arena) {
-    static const char *const places[] = {"../share/gray/lua", "lua", "../lua", "../../lua"};
+    static const char *const folders[] = {"../share/gray/lua", "lua", "../lua", "../../lua"};
     char program[4096], folder[4096];
     const char *given = getenv("GRAY_LUA");
     if (given && given[0] != '\0')
@@ -39,9 +39,9 @@ static const char *find_library(struct arena *arena) {
     if (!slash)
         return NULL;
     *slash = '\0';
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        const char *probe = arena_format(arena, "%s/%s/readobj.lua", program, places[i]);
-        const char *candidate = arena_format(arena, "%s/%s", program, places[i]);
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+        const char *probe = arena_format(arena, "%s/%s/readobj.lua", program, folders[i]);
+        const char *candidate = arena_format(arena, "%s/%s", program, folders[i]);
         if (probe && candidate && file_is_regular(probe) && file_canonical(candidate, folder, sizeof folder))
             return arena_format(arena, "%s", folder);
     }

@@ -441,7 +441,7 @@ static void init_work(struct picture_work *work, struct render_process *process,
         .shards = options->shards,
         .tile_done = tile_done,
         .context = control,
-        .enough = &control->enough,
+        .drain = &control->drain,
     };
     settings_set_draft(&work->job.settings, options->preview ? DRAFT_PREVIEW
                                             : options->quick ? DRAFT_QUICK

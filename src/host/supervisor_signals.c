@@ -43,7 +43,7 @@ static bool finish_tiles(struct supervisor *supervisor) {
         return false;
     supervisor->stop = supervisor->finishing = true;
     supervisor_note_status(supervisor, ERROR_CANCELLED);
-    atomic_store(&supervisor->control->enough, 1);
+    atomic_store(&supervisor->control->drain, 1);
     (void)snprintf(line, sizeof line,
                    "gray: interrupted, %s is not written; tiles under way are finished (Ctrl-C again: at once)",
                    picture->name);

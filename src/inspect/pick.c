@@ -63,8 +63,8 @@ static bool find_route(void *context, uint32_t first, uint32_t count, const stru
 static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     const struct csg *csg = primitive_geometry(p->world, p->primitive)->csg;
     uint32_t length = 0;
-    if (csg && !world_operand_way(p->steps[p->route - 1].node, csg->leaves[hit->leaf].origin, p->steps + p->route,
-                                  ROUTE_LIMIT - p->route, &length))
+    if (csg && !world_operand_path(p->steps[p->route - 1].node, csg->leaves[hit->leaf].origin, p->steps + p->route,
+                                   ROUTE_LIMIT - p->route, &length))
         return false;
     int32_t route = (int32_t)p->route, below = (int32_t)length;
     up = up > route - 1 ? route - 1 : up < -below ? -below : up;
@@ -183,7 +183,7 @@ static void describe_material(const struct material *material, struct picked *ou
     pick_copy_name(out->material, words);
     out->material_serial = base->serial;
     for (int part = 0; part < MATERIAL_PART_PARTS; part++)
-        material_part_get(base, (enum material_part)part, out->look[part]);
+        material_part_get(base, (enum material_part)part, out->inputs[part]);
 }
 
 static bool same_inputs(const struct surface_inputs *a, const struct surface_inputs *b) {

@@ -66,7 +66,7 @@ static void json_light(const struct trace_report *report, struct text_writer *wr
     text_writer_print(writer, "{\"light\":%u,\"kind\":\"%s\",\"lit\":\"%s\"", light->number + 1,
                       light_kind_name(light->light->kind), lit[light->lit]);
     vector(writer, "of", light->light->colour);
-    if (!light->lamp && light->lit != PIXEL_TRACE_LIGHT_NOT_OURS) {
+    if (!light->area_light && light->lit != PIXEL_TRACE_LIGHT_NOT_OURS) {
         number(writer, "distance", light->distance);
         number(writer, "strength", light->strength);
         vector(writer, "to_light", light->to_light);
@@ -115,7 +115,7 @@ static void json_hit(const struct trace_report *report, struct text_writer *writ
         return;
     vector(writer, "lit_normal", ray->bsdf.lit);
     flag(writer, "dark_side", ray->bsdf.dark);
-    flag(writer, "passes", ray->bsdf.passes);
+    flag(writer, "passes", ray->bsdf.transmits);
     number(writer, "index", ray->bsdf.eta);
     if (ray->bsdf.fresnel >= 0)
         number(writer, "fresnel", ray->bsdf.fresnel);
@@ -151,7 +151,7 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         text_writer_print(writer, ",\"media\":%u", ray->media_count);
         number(writer, "media_ior", ray->media_ior);
         number(writer, "distance", ray->distance);
-        text(writer, "meets", ray->met ? "surface" : ray->lamp ? "light" : "background");
+        text(writer, "meets", ray->met ? "surface" : ray->area_light ? "light" : "background");
         if (ray->met)
             json_hit(report, writer, ray);
         text_writer_print(writer, ",\"rays\":[");

@@ -95,8 +95,8 @@ static void print_shading(const struct text_state *t, const struct pixel_trace_r
         indent(t, 1);
         text_writer_print(t->writer, "fresnel: %.6g is reflected, %.6g refracted, index before / behind %.6g%s\n",
                           ray->bsdf.fresnel, 1 - ray->bsdf.fresnel, ray->bsdf.eta,
-                          ray->bsdf.passes ? "" : ": total reflection");
-    } else if (!ray->bsdf.passes && ray->bsdf.eta != 1) {
+                          ray->bsdf.transmits ? "" : ": total reflection");
+    } else if (!ray->bsdf.transmits && ray->bsdf.eta != 1) {
         indent(t, 1);
         text_writer_print(t->writer, "total internal reflection: nothing is refracted\n");
     }
@@ -122,9 +122,9 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
     case PIXEL_TRACE_LIGHT_BLOCKED:
         break;
     }
-    if (!light->lamp && light->distance < INFINITY)
+    if (!light->area_light && light->distance < INFINITY)
         text_writer_print(t->writer, ": distance %.6g, fading %.6g", light->distance, light->strength);
-    if (!light->lamp)
+    if (!light->area_light)
         triple(t, ", reflected by ", light->reflected);
     if (light->has_blocker) {
         text_writer_print(t->writer, ", blocked by ");
@@ -210,10 +210,10 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
         indent(t, 1);
         text_writer_print(t->writer, "what it meets at distance %.6g could not change the pixel any more (--cutoff)\n",
                           ray->distance);
-    } else if (ray->lamp) {
+    } else if (ray->area_light) {
         indent(t, 1);
         text_writer_print(t->writer, "meets a %s that shows itself, at distance %.6g\n",
-                          light_kind_name(ray->lamp->kind), ray->distance);
+                          light_kind_name(ray->area_light->kind), ray->distance);
     } else if (ray->met) {
         print_surface(t, ray);
     } else {

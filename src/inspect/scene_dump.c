@@ -132,15 +132,16 @@ static void dump_material(const struct dump *d, uint32_t material) {
 static void dump_light(const struct dump *d, uint32_t number) {
     const struct light *light = &d->world->lights[number];
     unsigned has = light_properties(light);
-    bool located = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, lamp = !light_is_delta(light);
+    bool located = has & LIGHT_HAS_POSITION, directed = has & LIGHT_HAS_DIRECTION, area_light = !light_is_delta(light);
     struct vec3 at = located ? light->position : light->direction, colour = light->colour;
     text_writer_print(
         d->writer, d->json ? "%s{\"number\":%u,\"kind\":\"%s\",\"lamp\":%s,\"colour\":" : "%.0s%8u  %s%.0s of ",
-        d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), lamp ? "true" : "false");
+        d->json && number > 0 ? "," : "", number + 1, light_kind_name(light->kind), area_light ? "true" : "false");
     if (d->json)
         text_writer_json_vector(d->writer, colour);
     else
-        text_writer_print(d->writer, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z, lamp ? ", a lamp" : "");
+        text_writer_print(d->writer, "(%.6g, %.6g, %.6g)%s", colour.x, colour.y, colour.z,
+                          area_light ? ", a lamp" : "");
     if ((located || directed) && d->json) {
         text_writer_print(d->writer, located ? ",\"position\":" : ",\"direction\":");
         text_writer_json_vector(d->writer, at);

@@ -15,7 +15,7 @@
 #include "math/range.h"
 
 /* A disc whose square fills more than this solid angle is sampled by that of the square, though a fifth of the square
- * is not of the disc: bench/lamps.c. */
+ * is not of the disc: bench/area_lights.c. */
 static const double disc_by_angle = 1.5;
 
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error) {
@@ -97,29 +97,29 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM: {
         struct vec3 normal = vec3_cross(light->edge1, light->edge2);
-        out->shares_cells = light->emits; /* old pictures keep the places of docs/language.md 7.1 */
+        out->shares_cells = light->emissive; /* old pictures keep the places of docs/language.md 7.1 */
         out->corner = light->corner;
         out->edge1 = light->edge1;
         out->edge2 = light->edge2;
         out->weight = intensity_of(vec3_length(normal));
         out->axis = vec3_normalize(normal);
         out->by_angle =
-            light->emits && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
-        return !light_flat_is_behind(light, normal, from);
+            light->emissive && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
+        return !light_planar_is_behind(light, normal, from);
     }
     case LIGHT_DISC:
         out->axis = light->direction;
         frame_tangents(out->axis, &out->right, &out->up);
         light_context_square(out, light->position, light->radius);
         out->weight = light->radius * light->radius; /* of the area pi r^2 */
-        out->by_angle = light->emits &&
+        out->by_angle = light->emissive &&
                         spherical_rectangle_make(out->corner, out->edge1, out->edge2, from, &out->seen) &&
                         out->seen.angle > disc_by_angle;
-        return !light_flat_is_behind(light, light->direction, from);
+        return !light_planar_is_behind(light, light->direction, from);
     case LIGHT_SPHERE:
         if (light_sphere_context(light, out))
             return true;
-        out->single = !light->emits; /* from inside its middle is asked for */
+        out->single = !light->emissive; /* from inside its middle is asked for */
         return out->single;
     case LIGHT_MESH:
         light_mesh_context(light->mesh, out);
@@ -137,16 +137,16 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     return true;
 }
 
-struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 place) {
+struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 xi) {
     if (context->by_angle)
-        return spherical_rectangle_point(&context->seen, place);
+        return spherical_rectangle_point(&context->seen, xi);
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM:
-        return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, place.x), light->edge2, place.y);
+        return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, xi.x), light->edge2, xi.y);
     case LIGHT_DISC:
-        return light_disc_target(light, context, place);
+        return light_disc_target(light, context, xi);
     case LIGHT_SPHERE:
-        return context->single ? light->position : light_sphere_target(light, context, place);
+        return context->single ? light->position : light_sphere_target(light, context, xi);
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPOT:
@@ -163,7 +163,7 @@ static double pdf_of(double weight) {
 }
 
 static struct light_sample delta_sample(const struct light *light, const struct light_context *context,
-                                        struct sample2 place) {
+                                        struct sample2 xi) {
     struct light_sample sample = {.pdf = 1, .is_delta = true};
     struct light_arrival arrival;
     if (!light_arrive(light, context->point, &arrival))
@@ -171,7 +171,7 @@ static struct light_sample delta_sample(const struct light *light, const struct 
     sample.direction = arrival.direction;
     sample.target = arrival.middle;
     if (!context->single)
-        sample.target.at = light_target_at(light, context, place);
+        sample.target.at = light_target_at(light, context, xi);
     sample.radiance = sample.intensity = vec3_scale(light->colour, arrival.strength);
     return sample;
 }
@@ -187,15 +187,15 @@ static struct light_sample surface_sample(const struct light *light, const struc
 }
 
 static struct light_sample planar_sample(const struct light *light, const struct light_context *context,
-                                         struct sample2 place) {
-    struct vec3 target = light_target_at(light, context, place);
+                                         struct sample2 xi) {
+    struct vec3 target = light_target_at(light, context, xi);
     double weight = context->by_angle ? intensity_of(context->seen.angle)
                                       : weight_of_area(context->weight, context->axis, vec3_sub(context->from, target));
     return surface_sample(light, context, target, weight);
 }
 
-static struct light_sample sky_sample(const struct light *light, struct sample2 place) {
-    struct sky_sample sky = sky_table_sample(light->sky, light->table, place);
+static struct light_sample sky_sample(const struct light *light, struct sample2 xi) {
+    struct sky_sample sky = sky_table_sample(light->sky, light->table, xi);
     return (struct light_sample){.direction = sky.direction,
                                  .target = {sky.direction, true},
                                  .radiance = vec3_mul(sky.radiance, light->colour),
@@ -203,30 +203,30 @@ static struct light_sample sky_sample(const struct light *light, struct sample2 
                                  .intensity = vec3_mul(sky.intensity, light->colour)};
 }
 
-struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 place) {
+struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 xi) {
     struct light_sample sample;
     if (light_is_delta(light))
-        return delta_sample(light, context, place);
+        return delta_sample(light, context, xi);
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM:
-        return planar_sample(light, context, place);
+        return planar_sample(light, context, xi);
     case LIGHT_DISC:
-        sample = planar_sample(light, context, place);
+        sample = planar_sample(light, context, xi);
         if (context->by_angle && light_is_beside_disc(light, sample.target.at))
             sample.radiance = sample.intensity = vec3_all(0);
         return sample;
     case LIGHT_SPHERE:
-        return surface_sample(light, context, light_sphere_target(light, context, place), context->weight);
+        return surface_sample(light, context, light_sphere_target(light, context, xi), context->weight);
     case LIGHT_MESH:
-        return light_mesh_sample(light->mesh, context, place);
+        return light_mesh_sample(light->mesh, context, xi);
     case LIGHT_SKY:
-        return sky_sample(light, place);
+        return sky_sample(light, xi);
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPOT:
         break;
     }
-    return delta_sample(light, context, place);
+    return delta_sample(light, context, xi);
 }
 
 static double planar_pdf(const struct light_context *context, const struct light_hit *hit) {
@@ -346,7 +346,7 @@ bool light_surface_box(const struct light *light, struct box *out) {
         *out = light_disc_box(light);
         return true;
     case LIGHT_SPHERE:
-        *out = light_box_around(light->position, vec3_all(light->radius));
+        *out = light_box_centred(light->position, vec3_all(light->radius));
         return true;
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
@@ -360,7 +360,7 @@ bool light_surface_box(const struct light *light, struct box *out) {
 
 /* --- from afar --- */
 
-enum light_reach light_bounds_of(const struct light *light, struct light_bounds *out) {
+enum light_extent light_bounds_of(const struct light *light, struct light_bounds *out) {
     struct vec3 across;
     *out = (struct light_bounds){.box = {light->position, light->position}, .range = INFINITY};
     (void)light_surface_box(light, &out->box);
@@ -404,9 +404,9 @@ enum light_reach light_bounds_of(const struct light *light, struct light_bounds 
         break;
     case LIGHT_DIRECTIONAL:
     case LIGHT_SKY:
-        return light_magnitude(light->colour) > 0 ? LIGHT_REACH_INFINITE : LIGHT_REACH_NONE;
+        return light_magnitude(light->colour) > 0 ? LIGHT_EXTENT_INFINITE : LIGHT_EXTENT_NONE;
     }
-    return light_bounds_finish(out) ? LIGHT_REACH_PLACED : LIGHT_REACH_NONE;
+    return light_bounds_finish(out) ? LIGHT_EXTENT_BOUNDED : LIGHT_EXTENT_NONE;
 }
 
 /* --- photons --- */
@@ -438,11 +438,11 @@ bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint3
         out->even = false;
         return true;
     case LIGHT_PARALLELOGRAM:
-        out->even = !light->emits;
+        out->even = !light->emissive;
         light_parallelogram_emitter(out);
         return true;
     case LIGHT_DISC:
-        out->even = !light->emits;
+        out->even = !light->emissive;
         out->radius = light->radius;
         frame_tangents(light->direction, &out->right, &out->up);
         return true;
@@ -472,9 +472,9 @@ double light_emitter_shine(const struct light_emitter *emitter, struct vec3 dire
     case LIGHT_SPOT:
         return light_cone(light, direction);
     case LIGHT_PARALLELOGRAM:
-        return light_flat_shine(light, vec3_normalize(vec3_cross(light->edge1, light->edge2)), direction);
+        return light_planar_shine(light, vec3_normalize(vec3_cross(light->edge1, light->edge2)), direction);
     case LIGHT_DISC:
-        return light_flat_shine(light, light->direction, direction);
+        return light_planar_shine(light, light->direction, direction);
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPHERE:
@@ -547,17 +547,17 @@ double light_emitter_unit(const struct light_emitter *emitter) {
 
 /* A place on a disc across; *height: of the ball over it, in radii. */
 static struct vec3 round_position(const struct light_emitter *emitter, struct vec3 right, struct vec3 up,
-                                  struct sample2 place, double *height) {
-    struct sample2 round = sample_disc(place);
+                                  struct sample2 xi, double *height) {
+    struct sample2 round = sample_disc(xi);
     double radius = emitter->light->radius, squared = 1 - round.x * round.x - round.y * round.y;
     *height = squared > 0 ? sqrt(squared) : 0;
     return vec3_add_scaled(vec3_add_scaled(emitter->centre, right, radius * round.x), up, radius * round.y);
 }
 
 /* A place on a light that is not a mesh; the photon starts there. */
-static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place) {
+static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec3 direction, struct sample2 xi) {
     const struct light *light = emitter->light;
-    struct sample2 part = {emitter->low[0] + emitter->side * place.x, emitter->low[1] + emitter->side * place.y};
+    struct sample2 part = {emitter->low[0] + emitter->side * xi.x, emitter->low[1] + emitter->side * xi.y};
     struct vec3 right, up, at;
     double height;
     switch (light->kind) {
@@ -568,7 +568,7 @@ static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec
     case LIGHT_SPHERE: /* as it is seen along the direction */
         frame_tangents(direction, &right, &up);
         at = round_position(emitter, right, up, part, &height);
-        return light->emits && height > 0 ? vec3_add_scaled(at, direction, light->radius * height) : at;
+        return light->emissive && height > 0 ? vec3_add_scaled(at, direction, light->radius * height) : at;
     case LIGHT_POINT:
     case LIGHT_DIRECTIONAL:
     case LIGHT_SPOT:
@@ -579,7 +579,7 @@ static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec
     return emitter->centre;
 }
 
-struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place) {
+struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 xi) {
     const struct light *light = emitter->light;
     struct light_photon photon = {.direction = direction};
     struct light_sample sample;
@@ -589,17 +589,17 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
     case LIGHT_SPOT:
     case LIGHT_DISC:
     case LIGHT_SPHERE:
-        photon.origin = emitter_point(emitter, direction, place);
+        photon.origin = emitter_point(emitter, direction, xi);
         photon.power = vec3_scale(light->colour, light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
         break;
     case LIGHT_MESH:
-        return light_mesh_photon(light->mesh, direction, place);
+        return light_mesh_photon(light->mesh, direction, xi);
     case LIGHT_DIRECTIONAL:
         photon.direction = light->direction;
         photon.power = light->colour;
         break;
     case LIGHT_SKY:
-        sample = sky_sample(light, place);
+        sample = sky_sample(light, xi);
         photon.direction = vec3_negate(sample.direction);
         photon.power = sample.intensity;
         break;

@@ -3,9 +3,9 @@
  * (light_photon), and what it has for listings and editors (light_properties). Positions are world coordinates; falloff
  * {0,0,0} counts as {1,0,0}.
  *
- * Two ways of shading. Without `emits` a light with an extent is shaded as from its centre, once, times the share of
- * its shadow rays that reach it (docs/language.md 7.1): a delta light whose shadow rays differ. With `emits` it is an
- * area light of uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the
+ * Two ways of shading. Without `emissive` a light with an extent is shaded as from its centre, once, times the share of
+ * its shadow rays that reach it (docs/language.md 7.1): a delta light whose shadow rays differ. With `emissive` it is
+ * an area light of uniform radiance `colour`: every shadow ray carries its own direction, distance and cosine at the
  * light. */
 #ifndef GRAY_LIGHT_LIGHT_H
 #define GRAY_LIGHT_LIGHT_H
@@ -19,7 +19,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Every kind with its name. Those of a mesh and of a sky are lamps always: `emits` is set. */
+/* Every kind with its name. Those of a mesh and of a sky are lamps always: `emissive` is set. */
 #define LIGHT_KINDS(X)                                                                                                 \
     X(LIGHT_POINT, "point light")                                                                                      \
     X(LIGHT_PARALLELOGRAM, "area light")                                                                               \
@@ -52,12 +52,13 @@ struct light {
     double falloff[3];
     enum light_attenuation attenuation;
     double range, intensity;
-    struct vec3 direction;          /* unit: where a directional light or a spot shines to, the normal of a disc */
-    double cos_inner, cos_outer;    /* spot: full light within the inner angle, none beyond the outer */
-    double radius;                  /* disc, sphere */
-    bool emits, one_sided, visible; /* one_sided: a lamp shines to the side of edge1 x edge2 or of the disc's normal */
-    int samples;                    /* N x N shadow rays; 0: as the settings say */
-    bool has_emission;              /* of a mesh: `emission` takes the place of the materials' */
+    struct vec3 direction;       /* unit: where a directional light or a spot shines to, the normal of a disc */
+    double cos_inner, cos_outer; /* spot: full light within the inner angle, none beyond the outer */
+    double radius;               /* disc, sphere */
+    bool emissive, one_sided,
+        visible;       /* one_sided: a lamp shines to the side of edge1 x edge2 or of the disc's normal */
+    int samples;       /* N x N shadow rays; 0: as the settings say */
+    bool has_emission; /* of a mesh: `emission` takes the place of the materials' */
     struct vec3 emission;
     const struct light_mesh *mesh; /* made by world_build (light_mesh.h) */
     const struct sky *sky;         /* its colour multiplies it */
@@ -72,7 +73,7 @@ bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, 
 
 /* A surface is shaded for it from one direction, whatever is sampled; that direction has no density. */
 static inline bool light_is_delta(const struct light *light) {
-    return !light->emits;
+    return !light->emissive;
 }
 
 /* Where shadow rays end: a point, or the direction of one that is infinitely far. */
@@ -129,9 +130,9 @@ struct light_sample {
 /* The sample for a place in the unit square: equal areas of the square are equal areas of a parallelogram or disc,
  * equal solid angles of a lamp that is a sphere or a rectangle, equal light of a mesh or a sky. A target that the light
  * does not reach has intensity 0 and pdf as it was drawn. Only where light_context_make was true. */
-struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 place);
+struct light_sample light_sample(const struct light *light, const struct light_context *context, struct sample2 xi);
 /* The target of that sample alone, of a light with an extent (not a mesh). */
-struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 place);
+struct vec3 light_target_at(const struct light *light, const struct light_context *context, struct sample2 xi);
 
 /* Where a ray meets a light. */
 struct light_hit {
@@ -194,7 +195,7 @@ struct light_photon {
 /* LOCAL: a photon in the unit direction that is given, from the place on the light; its power is flux by solid angle,
  * the mean over places. Others: the direction follows from the place, the origin is not set, and the power is flux by
  * area across the direction, the mean over places. Fluxes are those of classic intensities (docs/light.md). */
-struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 place);
+struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 xi);
 /* Times this is the power of a photon after a path of `length`. */
 double light_photon_attenuation(const struct light *light, double length);
 

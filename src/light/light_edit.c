@@ -83,9 +83,9 @@ bool light_can_size(const struct light *light) {
     return has(light, LIGHT_HAS_EDGES | LIGHT_HAS_RADIUS | LIGHT_HAS_CONE | LIGHT_HAS_RANGE);
 }
 
-void light_move(struct light *light, struct vec3 way) {
-    light->position = vec3_add(light->position, way);
-    light->corner = vec3_add(light->corner, way);
+void light_move(struct light *light, struct vec3 offset) {
+    light->position = vec3_add(light->position, offset);
+    light->corner = vec3_add(light->corner, offset);
 }
 
 static struct vec3 row_times(const double turn[TURN_NUMBERS], struct vec3 v) {

@@ -12,7 +12,7 @@ enum { TURN_NUMBERS = 9 };
 bool light_can_move(const struct light *light);
 bool light_can_turn(const struct light *light);
 bool light_can_size(const struct light *light);
-void light_move(struct light *light, struct vec3 way);
+void light_move(struct light *light, struct vec3 offset);
 /* The turn has an inverse. Lengths without a direction grow by the cube root of its determinant. The half angle h of a
  * spot's cone becomes h' with tan(h'/2) = size tan(h/2), which keeps every cone between nothing and everything. */
 void light_turn(struct light *light, const double turn[TURN_NUMBERS]);

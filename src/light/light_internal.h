@@ -33,15 +33,15 @@ double light_attenuation(const struct light *light, double distance);
 double light_cone(const struct light *light, struct vec3 from_light);
 
 /* light_shapes.c: parallelograms and discs. False: a lamp that shines to one side is seen from the other. */
-bool light_flat_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
-struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 place);
+bool light_planar_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
+struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 xi);
 bool light_is_beside_disc(const struct light *light, struct vec3 point);
 bool light_parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t);
 bool light_disc_meets_ray(const struct light *light, const struct ray *ray, double *t);
 /* Sets the ball that holds the places of a part. */
 void light_parallelogram_emitter(struct light_emitter *out);
 /* The cosine at a flat lamp, of the side that shines. */
-double light_flat_shine(const struct light *light, struct vec3 normal, struct vec3 direction);
+double light_planar_shine(const struct light *light, struct vec3 normal, struct vec3 direction);
 struct box light_parallelogram_box(const struct light *light);
 struct box light_disc_box(const struct light *light);
 
@@ -49,7 +49,7 @@ struct box light_disc_box(const struct light *light);
 static inline double light_magnitude(struct vec3 c) {
     return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
 }
-static inline struct box light_box_around(struct vec3 centre, struct vec3 half) {
+static inline struct box light_box_centred(struct vec3 centre, struct vec3 half) {
     return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
 }
 /* A delta light: as its attenuation says (light_bounds.c). */
@@ -69,7 +69,7 @@ bool light_bounds_finish(struct light_bounds *bounds);
 /* False: the point is on the sphere, or so near that the cone is a half-space, or inside and the light no lamp. */
 bool light_sphere_context(const struct light *light, struct light_context *out);
 /* Equal areas of the unit square are equal solid angles. */
-struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 place);
+struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 xi);
 /* The nearest crossing in the ray's interval. */
 bool light_sphere_meets_ray(const struct light *light, const struct ray *ray, double *t);
 

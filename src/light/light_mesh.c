@@ -74,20 +74,20 @@ uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint
 }
 
 /* The place's x, spread over the unit interval again within the share of its triangle. */
-struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place) {
+struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi) {
     uint32_t low = 0, high = mesh->count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
-        if (mesh->until[middle] > place.x)
+        if (mesh->until[middle] > xi.x)
             high = middle;
         else
             low = middle + 1;
     }
     double begin = low > 0 ? mesh->until[low - 1] : 0, share = mesh->until[low] - begin;
-    double x = share > 0 ? (place.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
+    double x = share > 0 ? (xi.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
     const struct light_triangle *t = &mesh->triangles[low];
-    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - place.y));
-    return (struct light_point){t, vec3_add_scaled(point, t->edge2, root * place.y)};
+    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - xi.y));
+    return (struct light_point){t, vec3_add_scaled(point, t->edge2, root * xi.y)};
 }
 
 struct vec3 light_triangle_radiance(const struct light_triangle *triangle) {
@@ -109,13 +109,13 @@ void light_mesh_context(const struct light_mesh *mesh, struct light_context *out
 }
 
 struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struct light_context *context,
-                                      struct sample2 place) {
-    struct light_point at = light_mesh_point(mesh, place);
+                                      struct sample2 xi) {
+    struct light_point at = light_mesh_point(mesh, xi);
     const struct light_triangle *t = at.triangle;
-    struct vec3 away = vec3_sub(context->from, at.place);
+    struct vec3 away = vec3_sub(context->from, at.xi);
     double squared = vec3_length_squared(away), across = vec3_dot(t->normal, away);
     double weight = squared > 0 && (across > 0 || !mesh->one_sided) ? fabs(across) / (squared * sqrt(squared)) : 0;
-    struct vec3 target = vec3_add_scaled(at.place, t->normal, across > 0 ? t->offset : -t->offset);
+    struct vec3 target = vec3_add_scaled(at.xi, t->normal, across > 0 ? t->offset : -t->offset);
     return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, context->point)),
                                  .target = {target, false},
                                  .radiance = light_triangle_radiance(t),
@@ -139,12 +139,12 @@ struct vec3 light_mesh_colour(const struct light_mesh *mesh) {
     return vec3_scale(sum, mesh->one_sided ? 0.25 : 0.5);
 }
 
-struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 place) {
-    struct light_point point = light_mesh_point(mesh, place);
+struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 xi) {
+    struct light_point point = light_mesh_point(mesh, xi);
     const struct light_triangle *t = point.triangle;
     double cosine = vec3_dot(t->normal, direction), side = cosine > 0 ? t->offset : -t->offset;
     double shines = cosine > 0 || !mesh->one_sided ? fabs(cosine) : 0;
-    return (struct light_photon){vec3_add_scaled(point.place, t->normal, side), direction,
+    return (struct light_photon){vec3_add_scaled(point.xi, t->normal, side), direction,
                                  vec3_scale(t->intensity, shines)};
 }
 

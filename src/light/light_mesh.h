@@ -48,15 +48,15 @@ uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint
 /* A place on it, for one in the unit square: uniform on the triangle that the place's x falls on. */
 struct light_point {
     const struct light_triangle *triangle;
-    struct vec3 place;
+    struct vec3 xi;
 };
-struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 place);
+struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi);
 /* The cases of LIGHT_MESH, for light.c. */
 void light_mesh_context(const struct light_mesh *mesh, struct light_context *out);
 struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struct light_context *context,
-                                      struct sample2 place);
+                                      struct sample2 xi);
 double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context *context, const struct light_hit *hit);
-struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 place);
+struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 xi);
 /* The mean over places and directions, about. */
 struct vec3 light_mesh_colour(const struct light_mesh *mesh);
 /* Its part of light_bounds_of. */

@@ -148,22 +148,22 @@ static uint32_t build_node(struct building *b, struct item *spare, uint32_t firs
 /* The items of the lights that have a place; the others that send something are listed. */
 static uint32_t collect(const struct light *lights, uint32_t count, struct item *items, uint32_t *infinite,
                         uint32_t *infinite_count) {
-    uint32_t placed = 0;
+    uint32_t bounded = 0;
     for (uint32_t i = 0; i < count; i++) {
-        struct item *item = &items[placed];
+        struct item *item = &items[bounded];
         *item = (struct item){.light = i};
         switch (light_bounds_of(&lights[i], &item->bounds)) {
-        case LIGHT_REACH_NONE:
+        case LIGHT_EXTENT_NONE:
             break;
-        case LIGHT_REACH_PLACED:
-            placed++;
+        case LIGHT_EXTENT_BOUNDED:
+            bounded++;
             break;
-        case LIGHT_REACH_INFINITE:
+        case LIGHT_EXTENT_INFINITE:
             infinite[(*infinite_count)++] = i;
             break;
         }
     }
-    return placed;
+    return bounded;
 }
 
 static bool build_tree(struct light_sampler *out, struct item *items, uint32_t count, uint32_t light_count,
@@ -185,7 +185,7 @@ static bool build_tree(struct light_sampler *out, struct item *items, uint32_t c
 }
 
 /* Shares that do not depend on the point. An infinite light counts as the mean of the others. */
-static bool build_shares(struct light_sampler *out, const struct item *items, uint32_t placed, uint32_t light_count,
+static bool build_shares(struct light_sampler *out, const struct item *items, uint32_t bounded, uint32_t light_count,
                          struct arena *arena) {
     uint32_t *candidates = arena_alloc_array(arena, out->count, sizeof *candidates);
     double *until = arena_alloc_array(arena, out->count, sizeof *until), sum = 0, so_far = 0;
@@ -193,14 +193,14 @@ static bool build_shares(struct light_sampler *out, const struct item *items, ui
     if (!candidates || !until || !share)
         return false;
     bool by_power = out->choice == LIGHT_CHOICE_POWER;
-    for (uint32_t i = 0; i < placed; i++) {
+    for (uint32_t i = 0; i < bounded; i++) {
         candidates[i] = items[i].light;
         until[i] = by_power ? items[i].bounds.steady + items[i].bounds.attenuation : 1;
         sum += until[i];
     }
-    double mean = placed > 0 ? sum / placed : 1;
-    for (uint32_t i = placed; i < out->count; i++) {
-        candidates[i] = out->infinite[i - placed];
+    double mean = bounded > 0 ? sum / bounded : 1;
+    for (uint32_t i = bounded; i < out->count; i++) {
+        candidates[i] = out->infinite[i - bounded];
         until[i] = mean;
         sum += mean;
     }
@@ -223,16 +223,16 @@ bool light_sampler_build(struct light_sampler *out, enum light_choice choice, co
     uint32_t *infinite = arena_alloc_array(arena, light_count, sizeof *infinite);
     bool ok = items && infinite;
     if (ok) {
-        uint32_t placed = collect(lights, light_count, items, infinite, &out->infinite_count);
+        uint32_t bounded = collect(lights, light_count, items, infinite, &out->infinite_count);
         out->infinite = infinite;
-        out->count = placed + out->infinite_count;
+        out->count = bounded + out->infinite_count;
         switch (choice) {
         case LIGHT_CHOICE_TREE:
-            ok = build_tree(out, items, placed, light_count, arena);
+            ok = build_tree(out, items, bounded, light_count, arena);
             break;
         case LIGHT_CHOICE_POWER:
         case LIGHT_CHOICE_UNIFORM:
-            ok = build_shares(out, items, placed, light_count, arena);
+            ok = build_shares(out, items, bounded, light_count, arena);
             break;
         }
     }
@@ -320,8 +320,8 @@ uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, 
         *pmf = tree;
         return sample_tree(s, point, normal, fmin(u / tree, below_one), pmf);
     }
-    double place = (u - tree) / (1 - tree) * s->infinite_count;
-    uint32_t number = place < s->infinite_count ? (uint32_t)place : s->infinite_count - 1;
+    double position = (u - tree) / (1 - tree) * s->infinite_count;
+    uint32_t number = position < s->infinite_count ? (uint32_t)position : s->infinite_count - 1;
     *pmf = (1 - tree) / s->infinite_count;
     return s->infinite[number];
 }

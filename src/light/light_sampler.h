@@ -28,8 +28,8 @@ struct light_bounds {
     double radius, sin_theta_o;
 };
 /* NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
-enum light_reach { LIGHT_REACH_NONE, LIGHT_REACH_PLACED, LIGHT_REACH_INFINITE };
-enum light_reach light_bounds_of(const struct light *light, struct light_bounds *out);
+enum light_extent { LIGHT_EXTENT_NONE, LIGHT_EXTENT_BOUNDED, LIGHT_EXTENT_INFINITE };
+enum light_extent light_bounds_of(const struct light *light, struct light_bounds *out);
 struct light_bounds light_bounds_join(const struct light_bounds *a, const struct light_bounds *b);
 /* About what it brings to a surface with that normal (either side; {0,0,0}: to a point in the open). 0: nothing. */
 double light_bounds_importance(const struct light_bounds *bounds, struct vec3 point, struct vec3 normal);

@@ -5,12 +5,12 @@
 
 /* --- samples --- */
 
-bool light_flat_is_behind(const struct light *light, struct vec3 normal, struct vec3 from) {
-    return light->emits && light->one_sided && !(vec3_dot(normal, vec3_sub(from, light->position)) > 0);
+bool light_planar_is_behind(const struct light *light, struct vec3 normal, struct vec3 from) {
+    return light->emissive && light->one_sided && !(vec3_dot(normal, vec3_sub(from, light->position)) > 0);
 }
 
-struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 place) {
-    struct sample2 round = sample_disc(place);
+struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 xi) {
+    struct sample2 round = sample_disc(xi);
     struct vec3 target = vec3_add_scaled(light->position, context->right, light->radius * round.x);
     return vec3_add_scaled(target, context->up, light->radius * round.y);
 }
@@ -63,7 +63,7 @@ void light_parallelogram_emitter(struct light_emitter *out) {
 }
 
 /* The cosine at a flat lamp, of the side that shines. */
-double light_flat_shine(const struct light *light, struct vec3 normal, struct vec3 direction) {
+double light_planar_shine(const struct light *light, struct vec3 normal, struct vec3 direction) {
     double cosine = vec3_dot(normal, direction);
     return cosine > 0 ? cosine : light->one_sided ? 0 : -cosine;
 }
@@ -80,7 +80,7 @@ struct box light_parallelogram_box(const struct light *light) {
 struct box light_disc_box(const struct light *light) {
     struct vec3 n = light->direction;
     struct vec3 sines = {sqrt(fmax(0, 1 - n.x * n.x)), sqrt(fmax(0, 1 - n.y * n.y)), sqrt(fmax(0, 1 - n.z * n.z))};
-    return light_box_around(light->position, vec3_scale(sines, light->radius));
+    return light_box_centred(light->position, vec3_scale(sines, light->radius));
 }
 
 void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out) {
@@ -104,7 +104,7 @@ static bool inside_context(const struct light *light, double distance, struct li
     out->distance = distance;
     out->bounded = false;
     out->weight = 4;
-    return light->emits && distance < light->radius;
+    return light->emissive && distance < light->radius;
 }
 
 bool light_sphere_context(const struct light *light, struct light_context *out) {
@@ -127,19 +127,19 @@ bool light_sphere_context(const struct light *light, struct light_context *out) 
 }
 
 /* Uniform over all directions; where the ray comes out. */
-static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 place) {
-    double y = 1 - 2 * place.y, level = 2 * sqrt(place.y * (1 - place.y)), sine, cosine;
-    el_sincos(2 * PI * place.x, &sine, &cosine);
+static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 xi) {
+    double y = 1 - 2 * xi.y, level = 2 * sqrt(xi.y * (1 - xi.y)), sine, cosine;
+    el_sincos(2 * PI * xi.x, &sine, &cosine);
     struct vec3 direction = {level * cosine, y, level * sine}, off = vec3_sub(context->from, light->position);
     double along = vec3_dot(off, direction), room = light->radius * light->radius - vec3_length_squared(off);
     return vec3_add_scaled(context->from, direction, sqrt(along * along + (room > 0 ? room : 0)) - along);
 }
 
 /* Uniform in the cone: 1 - cos grows with the square of the place's distance from the middle. */
-struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 place) {
+struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 xi) {
     if (context->distance < light->radius)
-        return inside_target(light, context, place);
-    struct sample2 round = sample_disc(place);
+        return inside_target(light, context, xi);
+    struct sample2 round = sample_disc(xi);
     double squared = round.x * round.x + round.y * round.y;
     double drop = squared * cone_drop(context), cosine = 1 - drop;
     double sine = sqrt(drop * (2 - drop)), radius = sqrt(squared);

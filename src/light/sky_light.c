@@ -13,7 +13,7 @@ enum { MIN_COLUMNS = 128, MAX_COLUMNS = 512, PROBES = 2 };
 static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
 
 /* Texels of a picture of the sky all around. */
-static uint32_t texels_around(const struct sky *sky) {
+static uint32_t texels_across(const struct sky *sky) {
     switch (sky->kind) {
     case SKY_MAP:
     case SKY_CROSS:
@@ -30,7 +30,7 @@ static uint32_t texels_around(const struct sky *sky) {
 }
 
 static uint32_t columns_for(const struct sky *sky) {
-    uint32_t columns = texels_around(sky);
+    uint32_t columns = texels_across(sky);
     return columns < MIN_COLUMNS ? MIN_COLUMNS : columns > MAX_COLUMNS ? MAX_COLUMNS : columns;
 }
 
@@ -124,11 +124,11 @@ static double density_of(const struct sky_table *table, double row_share, double
     return row_share * cell_share * ((double)table->rows * table->columns / (4 * PI));
 }
 
-struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place) {
+struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 xi) {
     double x, y, row_share, cell_share;
-    uint32_t row = find_share(table->row_until, table->rows, place.y, &y, &row_share);
+    uint32_t row = find_share(table->row_until, table->rows, xi.y, &y, &row_share);
     const double *cells = &table->until[(size_t)row * table->columns];
-    uint32_t column = find_share(cells, table->columns, place.x, &x, &cell_share);
+    uint32_t column = find_share(cells, table->columns, xi.x, &x, &cell_share);
     struct sky_sample sample = {.direction = direction_at((column + x) / table->columns, (row + y) / table->rows)};
     sample.pdf = density_of(table, row_share, cell_share);
     if (!(sample.pdf > 0))

@@ -23,7 +23,7 @@ struct sky_sample {
     struct vec3 intensity; /* radiance over pdf as classic light: its mean times (n.l) is what a white surface shows */
 };
 /* The sample for a place of the unit square. */
-struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 place);
+struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 xi);
 /* Its density for a unit direction. */
 double sky_table_pdf(const struct sky_table *table, struct vec3 direction);
 

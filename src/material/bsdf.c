@@ -83,7 +83,7 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
 }
 
 /* A unit vector at the angle to the axis with this cosine. */
-static struct vec3 around(struct vec3 axis, double cosine, double turn) {
+static struct vec3 direction_about(struct vec3 axis, double cosine, double turn) {
     struct vec3 a, b;
     frame_tangents(axis, &a, &b);
     double sine = sqrt(cosine < 1 ? 1 - cosine * cosine : 0), angle = 2 * PI * turn;
@@ -96,7 +96,7 @@ static double power_exponent(double exponent) {
     return exponent > 0 ? exponent : 0;
 }
 static struct vec3 power_sample(struct vec3 axis, double exponent, struct sample2 u) {
-    return around(axis, el_pow(1 - u.x, 1 / (power_exponent(exponent) + 1)), u.y);
+    return direction_about(axis, el_pow(1 - u.x, 1 / (power_exponent(exponent) + 1)), u.y);
 }
 static double power_pdf(double cosine, double exponent) {
     double e = power_exponent(exponent);
@@ -128,10 +128,10 @@ static struct vec3 mirror_direction(const struct bsdf *bsdf, struct vec3 wo) {
 
 /* About an interpolated normal the ray may not leave its side of the surface: the geometric one takes over. */
 bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out) {
-    bool passes = dielectric_refract(bsdf->side, wo, bsdf->eta, out);
-    if (passes && vec3_dot(*out, bsdf->geometric_side) >= 0)
-        passes = dielectric_refract(bsdf->geometric_side, wo, bsdf->eta, out);
-    return passes;
+    bool transmits = dielectric_refract(bsdf->side, wo, bsdf->eta, out);
+    if (transmits && vec3_dot(*out, bsdf->geometric_side) >= 0)
+        transmits = dielectric_refract(bsdf->geometric_side, wo, bsdf->eta, out);
+    return transmits;
 }
 
 /* --- rough boundaries --- */
@@ -194,7 +194,7 @@ static struct facet_path rough_path(const struct bsdf *bsdf, bool refracts, stru
 
 /* A smooth lobe that refracts reflects where the surface reflects totally; of a rough one each facet decides. */
 static bool lobe_transmits(const struct bsdf *bsdf, const struct lobe *lobe) {
-    return (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && (bsdf->passes || !(lobe_flags(lobe->kind) & BSDF_DELTA));
+    return (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && (bsdf->transmits || !(lobe_flags(lobe->kind) & BSDF_DELTA));
 }
 
 /* Whether it gives light at all. */

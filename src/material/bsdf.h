@@ -66,7 +66,7 @@ struct bsdf {
     double fresnel;     /* the share that a smooth surface reflects, or negative */
     /* The GGX lobes have Fresnel's share of each facet beside their weights. */
     bool fresnel_of_facets;
-    bool passes;         /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
+    bool transmits;      /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
     struct vec3 through; /* where it passes: its direction for the view of the hit */
     bool turns_back;     /* where it does not, its share is reflected; else lost */
     struct medium_boundary boundary;

@@ -66,7 +66,7 @@ static void turn_by_heights(const struct bump *bump, const struct texture_image 
  * along as far as the shape supplies their tangents. */
 static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, double s, double t) {
     struct hit out = *hit;
-    struct vec3 way = vec3_add(vec3_scale(hit->along_a, s), vec3_scale(hit->along_b, t));
+    struct vec3 step = vec3_add(vec3_scale(hit->along_a, s), vec3_scale(hit->along_b, t));
     out.pattern_point = vec3_add_scaled(vec3_add_scaled(hit->pattern_point, a, s), b, t);
     out.pattern_normal =
         vec3_add_scaled(vec3_add_scaled(hit->pattern_normal, a, s * hit->curvature), b, t * hit->curvature);
@@ -74,7 +74,7 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
     double uv = vec3_dot(hit->dpdu, hit->dpdv), determinant = uu * vv - uv * uv;
     if (!(determinant > 0) || !isfinite(determinant))
         return out;
-    double wu = vec3_dot(way, hit->dpdu), wv = vec3_dot(way, hit->dpdv);
+    double wu = vec3_dot(step, hit->dpdu), wv = vec3_dot(step, hit->dpdv);
     double du = (vv * wu - uv * wv) / determinant, dv = (uu * wv - uv * wu) / determinant;
     out.u += du;
     out.v += dv;
@@ -132,11 +132,11 @@ static void turn_to_colours(const struct bump *bump, const struct texture_image 
     if (!texture_coordinates(image, hit, &at))
         return;
     struct rgba texel = texture_texel(image, &at);
-    double flat = image_bits(image->image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
+    double neutral = image_bits(image->image) == 8 ? 128.0 / 255 : 32768.0 / 65535;
     if (!(texel.a > 0))
         return;
-    double x = 2 * bump->height * (texel.r / texel.a - flat);
-    double y = 2 * bump->height * (texel.g / texel.a - flat), z = 2 * texel.b / texel.a - 1;
+    double x = 2 * bump->height * (texel.r / texel.a - neutral);
+    double y = 2 * bump->height * (texel.g / texel.a - neutral), z = 2 * texel.b / texel.a - 1;
     turn_along(x, y, z, at.dpdu, at.dpdv, normal);
 }
 

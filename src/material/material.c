@@ -15,7 +15,7 @@ static const struct phong *numbers_of(const struct material *material) {
     return &material_origin(material)->phong;
 }
 
-struct material material_flat(const struct material *material) {
+struct material material_flatten(const struct material *material) {
     struct material out = *material;
     out.phong = *numbers_of(material);
     out.base = out.origin = NULL;
@@ -195,7 +195,7 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->eta = 1;
     bsdf->fresnel = -1;
     bsdf->fresnel_of_facets = inputs->fresnel && inputs->roughness > 0;
-    bsdf->passes = false;
+    bsdf->transmits = false;
     if (!inputs->fresnel && inputs->refract == 0)
         return;
     bsdf->boundary.medium.primitive = hit->primitive;
@@ -203,7 +203,7 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->boundary.medium.absorption = inputs->absorption;
     bsdf->boundary.entering = hit->front;
     bsdf->eta = medium_stack_eta(media ? media : &air, &bsdf->boundary);
-    bsdf->passes = bsdf_refract(bsdf, hit->view, &bsdf->through);
+    bsdf->transmits = bsdf_refract(bsdf, hit->view, &bsdf->through);
     if (inputs->fresnel) {
         inputs->reflect = dielectric_fresnel(vec3_dot(bsdf->side, hit->view), bsdf->eta);
         inputs->refract = 1 - inputs->reflect;

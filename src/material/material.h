@@ -104,7 +104,7 @@ struct surface_inputs {
 
 /* A copy that refers to no other material: the numbers of the base at the end of its chain are its own. Tables of
  * worlds hold such copies, with indices in the place of pointers (flatten_textures). */
-struct material material_flat(const struct material *material);
+struct material material_flatten(const struct material *material);
 /* The texture of an input, NULL where it is a number. */
 static inline const struct texture *material_texture(const struct material *material, enum material_input input) {
     return texture_at(material->textures, material->inputs[input]);

@@ -132,12 +132,12 @@ bool material_split_metal(struct material *material, const struct texture_image 
     material->metal = image ? 1 : numbers.metalness * (1 - numbers.roughness);
     /* What shines through has the filter in ks; refract may change after this. */
     const struct texture *refract = material_input(material, INPUT_REFRACT);
-    const struct texture *passes = texture_keep(arena, texture_map(refract, FUNCTION_STEP, DBL_TRUE_MIN), error);
+    const struct texture *transmits = texture_keep(arena, texture_map(refract, FUNCTION_STEP, DBL_TRUE_MIN), error);
     const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);
     const struct texture *half = smooth ? texture_keep(arena, texture_multiply(metal, smooth), error) : NULL;
-    return passes && half && put_rest_of_metal(material, colour, metal, arena, error) &&
-           put_unless(material, INPUT_KS, texture_mix(colour, plain, metal), passes, arena, error) &&
-           put_unless(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), passes, arena,
+    return transmits && half && put_rest_of_metal(material, colour, metal, arena, error) &&
+           put_unless(material, INPUT_KS, texture_mix(colour, plain, metal), transmits, arena, error) &&
+           put_unless(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), transmits, arena,
                       error) &&
-           put_unless(material, INPUT_REFLECT, texture_multiply(half, smooth), passes, arena, error);
+           put_unless(material, INPUT_REFLECT, texture_multiply(half, smooth), transmits, arena, error);
 }

@@ -127,13 +127,13 @@ static double grid_depth(const struct fog *fog, struct vec3 o, struct vec3 d, do
 }
 
 double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance) {
-    double reach;
+    double optical_depth;
     switch (fog->kind) {
     case FOG_EXPONENTIAL:
         return fog->density > 0 ? faded(fog->density * distance) : 1;
     case FOG_SQUARED:
-        reach = fog->density * distance;
-        return fog->density > 0 ? faded(reach * reach) : 1;
+        optical_depth = fog->density * distance;
+        return fog->density > 0 ? faded(optical_depth * optical_depth) : 1;
     case FOG_LINEAR:
         if (distance <= fog->near)
             return 1;

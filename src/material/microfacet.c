@@ -32,7 +32,7 @@ double dielectric_fresnel(double cos_view, double eta) {
     return 0.5 * (s * s + p * p);
 }
 
-struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place) {
+struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 xi) {
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
     /* The view in the frame of the surface, stretched to where the facets form a hemisphere. */
@@ -42,7 +42,7 @@ struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha
     struct vec3 t1 = across > 0 ? vec3_scale(vec3_make(-v.y, v.x, 0), 1 / sqrt(across)) : vec3_make(1, 0, 0);
     struct vec3 t2 = vec3_cross(v, t1);
     /* A point of the hemisphere's projection along the view: half a disc and half an ellipse. */
-    struct sample2 round = sample_disc(place);
+    struct sample2 round = sample_disc(xi);
     double x = round.x, s = 0.5 * (1 + v.z);
     double y = (1 - s) * sqrt(x * x < 1 ? 1 - x * x : 0) + s * round.y;
     double z = 1 - x * x - y * y;

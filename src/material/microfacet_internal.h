@@ -18,7 +18,7 @@ double dielectric_fresnel(double cos_view, double eta);
 
 /* Normal of a facet visible from `view` (unit, on the normal's side), for a point of the unit square. alpha is the
  * width of the distribution of slopes, in (0, 1]. Unit, on the side of the normal and of the view. */
-struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 place);
+struct vec3 microfacet_normal(struct vec3 normal, struct vec3 view, double alpha, struct sample2 xi);
 
 /* The density of microfacet_normal per solid angle. */
 double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct vec3 facet);

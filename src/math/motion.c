@@ -119,11 +119,11 @@ bool motion_interpolate(const struct transform *from, const struct transform *to
     struct affine turn0 = polar_turn(&positive0), turn1 = polar_turn(&positive1);
     struct affine back0 = transposed(&turn0), back1 = transposed(&turn1);
     struct affine stretch0 = affine_compose(&back0, &linear0), stretch1 = affine_compose(&back1, &linear1);
-    struct affine between = affine_compose(&turn1, &back0);
-    *out = (struct motion){.velocity = velocity, .between = true, .rest = *from, .first = linear0};
+    struct affine has_end = affine_compose(&turn1, &back0);
+    *out = (struct motion){.velocity = velocity, .has_end = true, .rest = *from, .first = linear0};
     out->from = vec3_make(from->forward.m[0][3], from->forward.m[1][3], from->forward.m[2][3]);
     out->to = vec3_make(to->forward.m[0][3], to->forward.m[1][3], to->forward.m[2][3]);
-    out->degrees = turn_about(&between, &out->axis);
+    out->degrees = turn_about(&has_end, &out->axis);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
             out->change.m[i][j] = stretch1.m[i][j] - stretch0.m[i][j];
@@ -147,15 +147,15 @@ static struct affine stretch_at(const struct motion *motion, double share) {
 
 static struct vec3 translation_at(const struct motion *motion, double time) {
     struct vec3 by = vec3_scale(motion->velocity, time);
-    if (!motion->between)
+    if (!motion->has_end)
         return by;
-    struct vec3 way = vec3_scale(vec3_sub(motion->to, motion->from), clamped(time));
-    return vec3_add(by, vec3_add(motion->from, way));
+    struct vec3 offset = vec3_scale(vec3_sub(motion->to, motion->from), clamped(time));
+    return vec3_add(by, vec3_add(motion->from, offset));
 }
 
 struct transform motion_at(const struct motion *motion, double time) {
     struct transform moved = transform_translate(translation_at(motion, time));
-    if (!motion->between)
+    if (!motion->has_end)
         return moved;
     double share = clamped(time);
     struct affine linear = stretch_at(motion, share);
@@ -199,9 +199,9 @@ struct box motion_bounds(const struct motion *motion, const struct box *box, str
     struct box out = *box;
     if (box_is_empty(box))
         return out;
-    if (motion->between && !is_finite(box)) {
+    if (motion->has_end && !is_finite(box)) {
         out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
-    } else if (motion->between) {
+    } else if (motion->has_end) {
         double open = clamped(shutter.open), close = clamped(shutter.close);
         struct affine at_open = stretch_at(motion, open), at_close = stretch_at(motion, close);
         out = box_join(box_transform(&at_open, box), box_transform(&at_close, box));

@@ -15,10 +15,10 @@ static inline double shutter_time(struct shutter shutter, double ray_time) {
     return shutter.open + ray_time * (shutter.close - shutter.open);
 }
 
-/* parent_from_node(t) = translation(t) turn(t) stretch(t); without `between` only a translation. */
+/* parent_from_node(t) = translation(t) turn(t) stretch(t); without `has_end` only a translation. */
 struct motion {
     struct vec3 velocity;  /* at all times */
-    bool between;          /* two poses: from time 0 to time 1, at rest before and after */
+    bool has_end;          /* two poses: from time 0 to time 1, at rest before and after */
     struct transform rest; /* the first of them */
     struct vec3 from, to;  /* their translations */
     struct vec3 axis;      /* in parent space; the turn from the first pose to the second */

@@ -101,7 +101,7 @@ static double evaluate(const double *c, int degree, double x) {
 }
 
 /* The double whose bit pattern is half way between those of l < r, which do not have opposite signs. */
-static double between(double l, double r) {
+static double bit_midpoint(double l, double r) {
     double a = fabs(l), b = fabs(r), middle;
     uint64_t ia, ib;
     memcpy(&ia, &a, sizeof ia);
@@ -131,7 +131,7 @@ static double bracketed_root(const double *c, int degree, double l, double r, bo
         if (next == x)
             return x;
         if (!(next > l && next < r && fabs(step) <= 0.5 * last_step)) {
-            next = between(l, r);
+            next = bit_midpoint(l, r);
             if (next == l || next == r)
                 return x;
             step = x - next;

@@ -117,16 +117,16 @@ bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3
     return out->angle > min_angle;
 }
 
-struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place) {
+struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 xi) {
     double sine, cosine;
-    el_sincos(place.x * seen->angle + seen->k, &sine, &cosine);
+    el_sincos(xi.x * seen->angle + seen->k, &sine, &cosine);
     double f = (cosine * seen->b0 - seen->b1) / sine;
     double c = (f > 0 ? 1 : -1) / sqrt(f * f + seen->b0 * seen->b0);
     c = limited(c, -1, 1);
     double x = limited(-(c * seen->z0) / sqrt(1 - c * c), seen->x0, seen->x1);
     double d = sqrt(x * x + seen->z0 * seen->z0);
     double h0 = seen->y0 / sqrt(d * d + seen->y0 * seen->y0), h1 = seen->y1 / sqrt(d * d + seen->y1 * seen->y1);
-    double h = h0 + place.y * (h1 - h0);
+    double h = h0 + xi.y * (h1 - h0);
     double y = h * h < 1 ? limited(h * d / sqrt(1 - h * h), seen->y0, seen->y1) : h > 0 ? seen->y1 : seen->y0;
     struct vec3 point = vec3_add_scaled(seen->from, seen->x, x);
     return vec3_add_scaled(vec3_add_scaled(point, seen->y, y), seen->z, seen->z0);
@@ -158,13 +158,13 @@ bool spherical_box_make(const struct light_box *box, struct vec3 from, struct sp
     return out->count > 0;
 }
 
-struct vec3 spherical_box_point(const struct spherical_box *seen, struct sample2 place) {
-    double angle = place.x * seen->angle;
+struct vec3 spherical_box_point(const struct spherical_box *seen, struct sample2 xi) {
+    double angle = xi.x * seen->angle;
     uint32_t face = 0;
     while (face + 1 < seen->count && angle >= seen->faces[face].angle)
         angle -= seen->faces[face++].angle;
     double x = angle / seen->faces[face].angle;
-    return spherical_rectangle_point(&seen->faces[face], (struct sample2){x < 1 ? x : 1, place.y});
+    return spherical_rectangle_point(&seen->faces[face], (struct sample2){x < 1 ? x : 1, xi.y});
 }
 
 double spherical_box_pdf(const struct light_box *box, const struct spherical_box *seen, struct vec3 from,

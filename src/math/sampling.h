@@ -50,7 +50,7 @@ struct spherical_rectangle {
 /* False: its edges are not at right angles, or its solid angle is too small. */
 bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
                               struct spherical_rectangle *out);
-struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 place);
+struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, struct sample2 xi);
 
 /* A box with right angles: at most three of its faces are seen from outside, each a rectangle. Directions are uniform
  * in the solid angle of all of them. */
@@ -70,7 +70,7 @@ struct spherical_box {
 /* False: the point is inside, or all solid angles are too small. */
 bool spherical_box_make(const struct light_box *box, struct vec3 from, struct spherical_box *out);
 /* A point on a face; equal areas of the unit square are equal solid angles. */
-struct vec3 spherical_box_point(const struct spherical_box *seen, struct sample2 place);
+struct vec3 spherical_box_point(const struct spherical_box *seen, struct sample2 xi);
 /* The density by solid angle of a direction (of any length) that meets the box. */
 double spherical_box_pdf(const struct light_box *box, const struct spherical_box *seen, struct vec3 from,
                          struct vec3 direction);

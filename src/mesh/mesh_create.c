@@ -76,7 +76,7 @@ struct vec3 mesh_triangle_normal(const struct mesh *mesh, uint32_t triangle) {
                      triangle_edge(e[0], e[1], f[0], f[1]));
 }
 
-static bool is_flat(const struct mesh *mesh, uint32_t triangle) {
+static bool is_degenerate(const struct mesh *mesh, uint32_t triangle) {
     return vec3_max_abs(mesh_triangle_normal(mesh, triangle)) == 0;
 }
 
@@ -203,10 +203,10 @@ static bool add_faces(struct mesh *mesh, const struct mesh_input *input, uint32_
     return good;
 }
 
-static uint32_t drop_flat(struct mesh *mesh, uint32_t *face_of) {
+static uint32_t drop_degenerate(struct mesh *mesh, uint32_t *face_of) {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < mesh->triangle_count; i++) {
-        if (is_flat(mesh, i))
+        if (is_degenerate(mesh, i))
             continue;
         memmove(mesh->corners[kept], mesh->corners[i], sizeof *mesh->corners);
         if (mesh->normals)
@@ -248,7 +248,7 @@ static bool fill(struct mesh *mesh, const struct mesh_input *input, size_t trian
     if (!copy_tables(mesh, input, triangles) || !add_faces(mesh, input, face_of) || !mesh_find_topology(mesh))
         return false;
     bool whole = mesh->triangle_count == input->face_count && triangles == input->face_count;
-    if (!mesh->closed && drop_flat(mesh, face_of) > 0) {
+    if (!mesh->closed && drop_degenerate(mesh, face_of) > 0) {
         whole = false;
         if (!mesh_find_topology(mesh))
             return false;

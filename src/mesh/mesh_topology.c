@@ -47,8 +47,8 @@ bool mesh_find_topology(struct mesh *mesh) {
     uint32_t *same = mem_alloc((size_t)mesh->vertex_count * sizeof *same);
     size_t *start = mem_alloc_zero((size_t)mesh->vertex_count + 2, sizeof *start);
     uint64_t *uses = mem_alloc(3 * (size_t)mesh->triangle_count * sizeof *uses);
-    bool enough = same && start && uses && mesh_weld((const double(*)[3])mesh->vertices, mesh->vertex_count, same);
-    if (enough) {
+    bool has_memory = same && start && uses && mesh_weld((const double(*)[3])mesh->vertices, mesh->vertex_count, same);
+    if (has_memory) {
         /* Count one place further on, so that filling turns starts into ends of the vertex before. */
         for (int pass = 0; pass < 2; pass++) {
             for (uint32_t i = 0; i < mesh->triangle_count; i++)
@@ -79,7 +79,7 @@ bool mesh_find_topology(struct mesh *mesh) {
     mem_free(same);
     mem_free(start);
     mem_free(uses);
-    return enough;
+    return has_memory;
 }
 
 /* A hash table with open addressing, at most half full; it never leaves this function, so the order of its slots has no

@@ -22,7 +22,7 @@ struct triangulate_corner {
 #define NOT_LISTED UINT32_MAX
 
 /* The tolerance for an ear if a complete round found none. */
-enum mercy { EAR_CLEAN, EAR_TOUCHED, EAR_FLAT, EAR_BLOCKED, EAR_ANY };
+enum ear_class { EAR_CLEAN, EAR_TOUCHED, EAR_DEGENERATE, EAR_BLOCKED, EAR_ANY };
 
 struct clipper {
     struct triangulate_corner *corners;
@@ -55,13 +55,13 @@ static void blocker_remove(struct clipper *clipper, uint32_t corner) {
     c[corner].blocker = NOT_LISTED;
 }
 
-static bool same_place(const struct triangulate_corner *a, const struct triangulate_corner *b) {
+static bool same_position(const struct triangulate_corner *a, const struct triangulate_corner *b) {
     return a->x == b->x && a->y == b->y;
 }
 
 /* Whether from `apex` the point lies strictly between the directions to `from` and to `to` (counter-clockwise). */
-static bool between(const struct triangulate_corner *apex, const struct triangulate_corner *from,
-                    const struct triangulate_corner *to, const struct triangulate_corner *point) {
+static bool strictly_inside(const struct triangulate_corner *apex, const struct triangulate_corner *from,
+                            const struct triangulate_corner *to, const struct triangulate_corner *point) {
     return turn(apex, from, point) > 0 && turn(apex, point, to) > 0;
 }
 
@@ -70,21 +70,21 @@ static bool blocks(const struct clipper *clipper, uint32_t corner, const struct 
     const struct triangulate_corner *q = &clipper->corners[corner];
     /* A second visit to a corner of the ear (a bridge) blocks the ear if one of its edges enters the ear. */
     for (int k = 0; k < 3; k++)
-        if (same_place(q, ear[k])) {
+        if (same_position(q, ear[k])) {
             const struct triangulate_corner *from = ear[(k + 1) % 3], *to = ear[(k + 2) % 3];
-            return between(ear[k], from, to, &clipper->corners[q->next]) ||
-                   between(ear[k], from, to, &clipper->corners[q->previous]);
+            return strictly_inside(ear[k], from, to, &clipper->corners[q->next]) ||
+                   strictly_inside(ear[k], from, to, &clipper->corners[q->previous]);
         }
     double a = turn(ear[0], ear[1], q), b = turn(ear[1], ear[2], q), c = turn(ear[2], ear[0], q);
     return forgive_touch ? a > 0 && b > 0 && c > 0 : a >= 0 && b >= 0 && c >= 0;
 }
 
-static bool is_ear(const struct clipper *clipper, uint32_t tip, enum mercy mercy) {
+static bool is_ear(const struct clipper *clipper, uint32_t tip, enum ear_class ear_class) {
     const struct triangulate_corner *c = clipper->corners;
     const struct triangulate_corner *ear[3] = {&c[c[tip].previous], &c[tip], &c[c[tip].next]};
     double area = turn(ear[0], ear[1], ear[2]);
-    if (mercy >= EAR_FLAT)
-        return mercy == EAR_ANY || area == 0 || (mercy == EAR_BLOCKED && area > 0);
+    if (ear_class >= EAR_DEGENERATE)
+        return ear_class == EAR_ANY || area == 0 || (ear_class == EAR_BLOCKED && area > 0);
     if (!(area > 0))
         return false;
     double x0 = fmin(ear[0]->x, fmin(ear[1]->x, ear[2]->x)), x1 = fmax(ear[0]->x, fmax(ear[1]->x, ear[2]->x));
@@ -95,7 +95,7 @@ static bool is_ear(const struct clipper *clipper, uint32_t tip, enum mercy mercy
             continue;
         if (q == tip || q == c[tip].previous || q == c[tip].next)
             continue;
-        if (blocks(clipper, q, ear, mercy == EAR_TOUCHED))
+        if (blocks(clipper, q, ear, ear_class == EAR_TOUCHED))
             return false;
     }
     return true;
@@ -103,14 +103,14 @@ static bool is_ear(const struct clipper *clipper, uint32_t tip, enum mercy mercy
 
 static void clip_all(struct clipper *clipper, uint32_t count, uint32_t (*triangles)[3]) {
     struct triangulate_corner *c = clipper->corners;
-    enum mercy mercy = EAR_CLEAN;
+    enum ear_class ear_class = EAR_CLEAN;
     uint32_t left = count, tip = 0, tried = 0;
     while (left > 3) {
-        if (!is_ear(clipper, tip, mercy)) {
+        if (!is_ear(clipper, tip, ear_class)) {
             tip = c[tip].next;
             if (++tried >= left) {
                 tried = 0;
-                mercy++; /* EAR_ANY takes the first corner, so it never goes further */
+                ear_class++; /* EAR_ANY takes the first corner, so it never goes further */
             }
             continue;
         }
@@ -125,13 +125,13 @@ static void clip_all(struct clipper *clipper, uint32_t count, uint32_t (*triangl
         blocker_remove(clipper, tip);
         for (int side = 0; side < 2; side++) {
             uint32_t corner = side ? next : previous;
-            bool in_the_way = !(turn_at(clipper, corner) > 0);
-            if (!in_the_way)
+            bool is_blocking = !(turn_at(clipper, corner) > 0);
+            if (!is_blocking)
                 blocker_remove(clipper, corner);
             else if (c[corner].blocker == NOT_LISTED)
                 blocker_add(clipper, corner);
         }
-        mercy = EAR_CLEAN;
+        ear_class = EAR_CLEAN;
         tried = 0;
         tip = c[next].next; /* not the neighbour: fewer slivers */
     }

@@ -146,7 +146,7 @@ static bool make_film(struct output_session *output, struct picture *picture, st
         return false;
     if (!share_create(&picture->memory, bytes, error))
         return error_prefix(error, "%s", picture->name);
-    picture_film_place(request, picture->memory.block, &picture->film);
+    picture_film_layout(request, picture->memory.block, &picture->film);
     if (!checkpoint_restore(&output->checkpoint, &picture->tiles, &picture->film, notice, error)) {
         share_destroy(&picture->memory);
         return false;

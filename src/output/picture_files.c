@@ -26,10 +26,10 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     (void)snprintf(files->quota.words, sizeof files->quota.words,
                    "the pictures of the run take more than %s (--picture-bytes allows more)",
                    size_words(files->quota.limit, size));
-    bool ok = path_policy_add(&files->places, ".", PATH_POLICY_WRITE, &files->places_error);
+    bool ok = path_policy_add(&files->folders, ".", PATH_POLICY_WRITE, &files->folders_error);
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
-        ok = path_policy_add(&files->places, options->script.allow_write[i], PATH_POLICY_WRITE, &files->places_error);
-    const struct path_policy *places = options->script.no_sandbox ? NULL : &files->places;
+        ok = path_policy_add(&files->folders, options->script.allow_write[i], PATH_POLICY_WRITE, &files->folders_error);
+    const struct path_policy *folders = options->script.no_sandbox ? NULL : &files->folders;
     files->picture = (struct file_rules){.may_replace = image_is_picture,
                                          .expected = "a picture",
                                          .advice = by_user ? NULL : advice,
@@ -37,7 +37,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
                                          .is_direct = by_user,
                                          .named_by_user = by_user,
                                          .force = by_user && options->force,
-                                         .places = by_user ? NULL : places,
+                                         .folders = by_user ? NULL : folders,
                                          .guard = &files->guard,
                                          .quota = &files->quota,
                                          .interrupt = &files->interrupt};
@@ -47,15 +47,15 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     files->part = (struct file_rules){.may_replace = tile_file_is,
                                       .expected = "a checkpoint or part",
                                       .advice = advice,
-                                      .places = files->picture.places,
+                                      .folders = files->picture.folders,
                                       .guard = &files->guard,
                                       .quota = &files->quota};
     files->checkpoint = files->named_checkpoint = files->part;
     files->checkpoint.advice = files->named_checkpoint.advice = " (--checkpoint FILE chooses another file)";
-    files->named_checkpoint.places = NULL;
+    files->named_checkpoint.folders = NULL;
     files->checkpoint.quota = files->named_checkpoint.quota = NULL;
     files->saved = (struct file_rules){
-        .never_replace = true, .role = FILE_ROLE_BESIDE, .places = files->picture.places, .guard = &files->guard};
+        .never_replace = true, .role = FILE_ROLE_BESIDE, .folders = files->picture.folders, .guard = &files->guard};
     for (int i = 0; i < options->script_count; i++) {
         struct file_identity identity;
         if (file_identity_of(options->scripts[i], &identity))
@@ -64,7 +64,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
 }
 
 void picture_files_destroy(struct picture_files *files) {
-    path_policy_destroy(&files->places);
+    path_policy_destroy(&files->folders);
     file_guard_destroy(&files->guard);
 }
 
@@ -72,7 +72,7 @@ void picture_files_keep(struct picture_files *files, struct file_identity identi
     for (int role = 0; written && role < FILE_ROLES; role++)
         file_set_remove(&files->guard.own[role], identity);
     if (!file_set_add(&files->guard.kept, identity))
-        (void)error_no_memory(&files->places_error, "the list of files that are read");
+        (void)error_no_memory(&files->folders_error, "the list of files that are read");
 }
 
 void picture_files_own(struct picture_files *files, const char *name) {
@@ -117,7 +117,7 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
         return error_set(error, ERROR_SCENE, "the name '-' means standard output only on the command line (-o -)");
     if (from_script[length - 1] == '/')
         return error_set(error, ERROR_SCENE, "%.600s: is a folder, a picture cannot be written there", from_script);
-    if (!files->options->script.no_sandbox && !path_policy_may_create(&files->places, from_script))
+    if (!files->options->script.no_sandbox && !path_policy_may_create(&files->folders, from_script))
         return error_set(error, ERROR_SCENE,
                          "%s: pictures of scripts must be below the working directory, without a hidden name "
                          "(-o FILE or --allow-write DIR allow other places)",
@@ -146,8 +146,8 @@ bool picture_files_name(struct picture_files *files, const char *from_script, un
     notice[0] = '\0';
     if (output)
         return output_name(output, number, name, NAME_LIMIT) || name_is_too_long(error);
-    if (files->places_error.kind != ERROR_NONE) {
-        *error = files->places_error;
+    if (files->folders_error.kind != ERROR_NONE) {
+        *error = files->folders_error;
         return false;
     }
     return name_from_script(files, from_script, name, notice, error);

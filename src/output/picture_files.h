@@ -15,8 +15,8 @@ enum { NAME_LIMIT = 4096 };
 /* One for each run. picture_files_destroy releases what it holds. */
 struct picture_files {
     const struct options *options; /* not owned */
-    struct path_policy places;     /* where scripts may have pictures written: the working directory, --allow-write */
-    struct error places_error;     /* why there may be fewer */
+    struct path_policy folders;    /* where scripts may have pictures written: the working directory, --allow-write */
+    struct error folders_error;    /* why there may be fewer */
     struct file_guard guard;
     struct file_interrupt interrupt; /* descriptor -1: none */
     struct file_quota quota;         /* --picture-bytes: of all files of pictures */

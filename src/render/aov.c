@@ -124,10 +124,10 @@ static double clamp01(double x) {
 /* Black, blue, red, yellow, white at 0, 1/4 ... 1. */
 static void heat(double x, double rgb[3]) {
     static const double stops[5][3] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}};
-    double place = clamp01(x) * 4;
-    int below = place >= 3 ? 3 : (int)place;
+    double position = clamp01(x) * 4;
+    int below = position >= 3 ? 3 : (int)position;
     for (int c = 0; c < 3; c++)
-        rgb[c] = stops[below][c] + (place - below) * (stops[below + 1][c] - stops[below][c]);
+        rgb[c] = stops[below][c] + (position - below) * (stops[below + 1][c] - stops[below][c]);
 }
 
 static double fraction(double x) {
@@ -170,8 +170,8 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
 /* Pictures beside the picture, tile by tile after the picture is done. */
 
 /* Through the middle of the lens, when the shutter opens. */
-static bool middle_ray(const struct renderer *renderer, const struct pixel_sample *place, struct ray *out) {
-    double x = (double)place->x + place->dx, y = (double)place->y + place->dy;
+static bool middle_ray(const struct renderer *renderer, const struct pixel_sample *position, struct ray *out) {
+    double x = (double)position->x + position->dx, y = (double)position->y + position->dy;
     if (camera_is_plain(&renderer->camera)) {
         *out = camera_ray(&renderer->camera, x, y);
         return true;
@@ -219,9 +219,9 @@ void renderer_layer_item(void *context, uint32_t item, int index) {
         for (int64_t x = r.x0; x < r.x1 && !renderer_stopped(renderer, worker); x++) {
             size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
             float values[AOV_COUNT][3] = {{0}};
-            struct pixel_sample place = renderer_first_sample(renderer, x, y);
+            struct pixel_sample position = renderer_first_sample(renderer, x, y);
             struct ray ray;
-            if (middle_ray(renderer, &place, &ray))
+            if (middle_ray(renderer, &position, &ray))
                 aov_surface(renderer->job->world, &ray, mask, &worker->scratch, values);
             if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
                 measure_pixel(renderer, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);

@@ -118,11 +118,11 @@ struct ray camera_ray(const struct camera_frame *frame, double x, double y) {
 }
 
 /* A place of the unit square on the lens: a disc, or a regular polygon of triangles around the centre. */
-static struct sample2 place_on_lens(const struct lens *lens, struct sample2 place) {
+static struct sample2 point_on_lens(const struct lens *lens, struct sample2 position) {
     if (lens->blades < 3)
-        return sample_disc(place);
-    double turn = 2 * PI / lens->blades, sector = floor(place.x * lens->blades);
-    double along = place.x * lens->blades - sector, out = sqrt(place.y), s0, c0, s1, c1;
+        return sample_disc(position);
+    double turn = 2 * PI / lens->blades, sector = floor(position.x * lens->blades);
+    double along = position.x * lens->blades - sector, out = sqrt(position.y), s0, c0, s1, c1;
     double start = lens->blade_angle * (PI / 180) + sector * turn;
     el_sincos(start, &s0, &c0);
     el_sincos(start + turn, &s1, &c1);
@@ -153,7 +153,7 @@ static struct vec3 panorama_direction(const struct camera_frame *frame, double x
     return vec3_add_scaled(vec3_scale(level, c_lat), frame->unit_down, s_lat);
 }
 
-bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 place, int eye,
+bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 position, int eye,
                         struct ray *out) {
     const struct lens *lens = &frame->lens;
     if (lens->stereo == STEREO_SIDE && eye == 0) {
@@ -186,7 +186,7 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
         out->direction = vec3_add_scaled(out->direction, offset, -1 / lens->screen);
     }
     if (lens->aperture > 0) {
-        struct sample2 p = place_on_lens(lens, place);
+        struct sample2 p = point_on_lens(lens, position);
         struct vec3 offset = vec3_scale(frame->unit_right, lens->aperture * p.x);
         offset = vec3_add_scaled(offset, frame->unit_down, lens->aperture * p.y);
         out->origin = vec3_add(out->origin, offset);
@@ -198,22 +198,22 @@ bool camera_ray_through(const struct camera_frame *frame, double x, double y, st
 bool camera_project(const struct camera_frame *frame, struct vec3 point, double *x, double *y) {
     const struct lens *lens = &frame->lens;
     struct vec3 to = vec3_sub(point, frame->eye);
-    double ahead = vec3_dot(to, frame->forward), right = vec3_dot(to, frame->unit_right),
+    double depth = vec3_dot(to, frame->forward), right = vec3_dot(to, frame->unit_right),
            down = vec3_dot(to, frame->unit_down), pixel = vec3_length(frame->right);
-    double across = sqrt(right * right + down * down), distance = sqrt(across * across + ahead * ahead);
+    double across = sqrt(right * right + down * down), distance = sqrt(across * across + depth * depth);
     switch (lens->projection) {
     case PROJECTION_PERSPECTIVE:
-        if (!(ahead > 0))
+        if (!(depth > 0))
             return false;
-        *x = frame->width / 2 + right / (ahead * pixel);
-        *y = frame->height / 2 + down / (ahead * pixel);
+        *x = frame->width / 2 + right / (depth * pixel);
+        *y = frame->height / 2 + down / (depth * pixel);
         break;
     case PROJECTION_ORTHOGRAPHIC:
         *x = frame->width / 2 + right / pixel;
         *y = frame->height / 2 + down / pixel;
         break;
     case PROJECTION_FISHEYE: {
-        double angle = el_atan2(across, ahead), r = angle / frame->radian * (frame->height / 2);
+        double angle = el_atan2(across, depth), r = angle / frame->radian * (frame->height / 2);
         *x = frame->width / 2 + (across > 0 ? r * right / across : 0);
         *y = frame->height / 2 + (across > 0 ? r * down / across : 0);
         if (angle > frame->radian)
@@ -223,8 +223,8 @@ bool camera_project(const struct camera_frame *frame, struct vec3 point, double 
     case PROJECTION_PANORAMA:
         if (!(distance > 0))
             return false;
-        *x = (el_atan2(right, ahead) / (2 * PI) + 0.5) * frame->width;
-        *y = (el_atan2(down, sqrt(right * right + ahead * ahead)) / PI + 0.5) * frame->height;
+        *x = (el_atan2(right, depth) / (2 * PI) + 0.5) * frame->width;
+        *y = (el_atan2(down, sqrt(right * right + depth * depth)) / PI + 0.5) * frame->height;
         break;
     }
     *x -= lens->shift_x * frame->width;

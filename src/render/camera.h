@@ -48,7 +48,7 @@ static inline bool camera_spreads(const struct camera_frame *frame) {
 }
 /* The ray through (x, y) from a place on the lens (of the unit square) for an eye: -1 left, 1 right, 0 as the picture
  * has it (by halves side by side, else the middle). False: nothing is shown there. */
-bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 place, int eye,
+bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 position, int eye,
                         struct ray *out);
 /* Where a point of the world is in the picture, as a pinhole sees it: the way back from camera_ray_through. For a
  * stereo pair, the result is the middle between the eyes. False: nowhere. */

@@ -32,12 +32,12 @@ static void probe_tile(void *context, uint32_t tile, int index) {
         return;
     uint64_t begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     for (uint32_t i = 0; i < RAYS; i++) {
-        struct pixel_sample place =
+        struct pixel_sample position =
             renderer_first_sample(renderer, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
                                   r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
         if (renderer_stopped(renderer, worker) || renderer_is_done(renderer))
             return;
-        colours[i] = renderer_sample(renderer, worker, &place);
+        colours[i] = renderer_sample(renderer, worker, &position);
     }
     uint64_t took = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun;
     time_estimate_probe(&renderer->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,

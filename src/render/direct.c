@@ -37,8 +37,8 @@ static bool target_is_free(struct integrator_state *state, const struct hit *hit
 }
 
 /* The places of the shadow rays of one hit to a light with an extent, asked batch by batch. */
-static struct sample_set places_on_light(const struct integrator_state *state, const struct light *light,
-                                         const struct light_context *context, uint32_t number, uint64_t key) {
+static struct sample_set samples_on_light(const struct integrator_state *state, const struct light *light,
+                                          const struct light_context *context, uint32_t number, uint64_t key) {
     const struct settings *settings = &state->job->settings;
     uint32_t side = (uint32_t)(light->samples ? light->samples : settings->area_samples);
     if (settings->coarse && side > (uint32_t)settings->area_samples)
@@ -70,8 +70,8 @@ static double visible_share(struct integrator_state *state, const struct light *
         return 0;
     if (context.single)
         return target_is_free(state, hit, from, middle);
-    struct sample_set places = places_on_light(state, light, &context, number, key);
-    uint32_t all = places.side * places.side, seen = 0, have = 0;
+    struct sample_set positions = samples_on_light(state, light, &context, number, key);
+    uint32_t all = positions.side * positions.side, seen = 0, have = 0;
     struct occluder_candidates occluder_candidates = light_occluder_candidates(world, &context, hit);
     state->shadow_rays += all;
     if (occluder_candidates.known && occluder_candidates.count == 0) {
@@ -80,7 +80,7 @@ static double visible_share(struct integrator_state *state, const struct light *
     }
     struct vec3 targets[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        targets[have++] = light_target_at(light, &context, sample_set_point(&places, cell));
+        targets[have++] = light_target_at(light, &context, sample_set_point(&positions, cell));
         if (have < AREA_BATCH && cell + 1 < all)
             continue;
         seen += world_visible(world, &occluder_candidates, &(struct shadow_rays){from, hit->time, targets, have},
@@ -137,12 +137,12 @@ static struct vec3 light_of_samples(struct integrator_state *state, const struct
     struct light_context context;
     if (!light_context_make(light, hit->point, from, &context))
         return sum;
-    struct sample_set places = places_on_light(state, light, &context, number, key);
-    uint32_t all = places.side * places.side, have = 0;
+    struct sample_set positions = samples_on_light(state, light, &context, number, key);
+    uint32_t all = positions.side * positions.side, have = 0;
     struct vec3 targets[AREA_BATCH], carried[AREA_BATCH];
     bool visible[AREA_BATCH];
     for (uint32_t cell = 0; cell < all; cell++) {
-        struct light_sample sample = light_sample(light, &context, sample_set_point(&places, cell));
+        struct light_sample sample = light_sample(light, &context, sample_set_point(&positions, cell));
         struct vec3 arriving = vec3_mul(bsdf_classic(bsdf, lobes, hit->view, sample.direction), sample.intensity);
         if (arriving.x != 0 || arriving.y != 0 || arriving.z != 0) {
             targets[have] = sample.target.at;

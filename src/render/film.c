@@ -254,8 +254,8 @@ bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint3
         order[tile] = (struct tile_cost){cost[tile], random_mix(tile), tile};
     qsort(order, count, sizeof *order, dearest_first);
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t turn = i / shards, place = i % shards;
-        uint32_t owner = turn % 2 ? shards - 1 - place : place;
+        uint32_t turn = i / shards, position = i % shards;
+        uint32_t owner = turn % 2 ? shards - 1 - position : position;
         if (owner != shard - 1 && atomic_load(&film->tiles[order[i].tile]) == FILM_TILE_WANTED)
             atomic_store(&film->tiles[order[i].tile], FILM_TILE_ELSEWHERE);
     }

@@ -39,7 +39,7 @@ struct observation {
     enum observation_kind kind;
     union {
         struct {
-            const struct pixel_sample *place;
+            const struct pixel_sample *position;
             struct vec3 colour;
         } sample;
         double part;
@@ -69,7 +69,7 @@ struct observation {
             double distance, strength; /* attenuation times the cone of a spot */
             struct vec3 to_light;      /* unit */
             struct vec3 reflected;     /* of unit light */
-        } place;
+        } position;
         struct observed_shadow {
             uint32_t asked, arrived;
             uint32_t blocker; /* the primitive that stopped a single ray, where known */
@@ -104,15 +104,15 @@ static inline void observe(const struct observer *observer, const struct observa
     observer->notice(observer->context, what);
 }
 
-static inline void observe_sample_begin(const struct observer *observer, const struct pixel_sample *place) {
+static inline void observe_sample_begin(const struct observer *observer, const struct pixel_sample *position) {
     if (observer)
-        observe(observer, &(struct observation){OBSERVED_SAMPLE_BEGIN, .sample.place = place});
+        observe(observer, &(struct observation){OBSERVED_SAMPLE_BEGIN, .sample.position = position});
 }
 
-static inline void observe_sample_end(const struct observer *observer, const struct pixel_sample *place,
+static inline void observe_sample_end(const struct observer *observer, const struct pixel_sample *position,
                                       struct vec3 colour) {
     if (observer)
-        observe(observer, &(struct observation){OBSERVED_SAMPLE_END, .sample = {place, colour}});
+        observe(observer, &(struct observation){OBSERVED_SAMPLE_END, .sample = {position, colour}});
 }
 
 static inline void observe_split(const struct observer *observer, double part) {
@@ -151,7 +151,7 @@ static inline void observe_light_sample(const struct observer *observer, double 
                                         struct vec3 to_light, struct vec3 reflected) {
     if (observer)
         observe(observer,
-                &(struct observation){OBSERVED_LIGHT_SAMPLE, .place = {distance, strength, to_light, reflected}});
+                &(struct observation){OBSERVED_LIGHT_SAMPLE, .position = {distance, strength, to_light, reflected}});
 }
 
 static inline void observe_shadow_rays(const struct observer *observer, uint32_t asked, uint32_t arrived,

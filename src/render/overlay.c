@@ -16,7 +16,7 @@ struct place3 {
 
 /* A line in the picture, cut at its borders; depth, or 1 / depth, goes evenly from one end to the other. */
 struct stroke {
-    struct place3 from, way;
+    struct place3 from, delta;
     double steps; /* dots are drawn at from + i / steps * way */
     uint32_t box; /* of the chunk */
 };
@@ -76,10 +76,10 @@ static double surface_depth(struct overlay_drawing *drawing, struct world_scratc
 /* Finding strokes. */
 
 /* The part of a line from 0 to 1 on which low <= from + t * way <= high; false: none. */
-static bool cut(double from, double way, double low, double high, double *t0, double *t1) {
-    if (way == 0)
+static bool cut(double from, double delta, double low, double high, double *t0, double *t1) {
+    if (delta == 0)
         return from >= low && from <= high;
-    double a = (low - from) / way, b = (high - from) / way;
+    double a = (low - from) / delta, b = (high - from) / delta;
     *t0 = fmax(*t0, fmin(a, b));
     *t1 = fmin(*t1, fmax(a, b));
     return *t0 < *t1;
@@ -96,15 +96,15 @@ static void line(struct overlay_drawing *drawing, uint32_t box, int eye, struct 
         !cut(a.y, dy, film->y0, (double)film->y0 + film->height, &t0, &t1))
         return;
     double from = drawing->inverse ? 1 / a.depth : a.depth, to = drawing->inverse ? 1 / b.depth : b.depth,
-           way = t1 - t0;
+           delta = t1 - t0;
     drawing->strokes[(size_t)box * drawing->room + drawing->stroke_count[box]++] =
         (struct stroke){{a.x + t0 * dx - film->x0, a.y + t0 * dy - film->y0, from + t0 * (to - from)},
-                        {way * dx, way * dy, way * (to - from)},
-                        ceil(fmax(fabs(dx), fabs(dy)) * way),
+                        {delta * dx, delta * dy, delta * (to - from)},
+                        ceil(fmax(fabs(dx), fabs(dy)) * delta),
                         box};
 }
 
-static bool place(const struct overlay_drawing *drawing, int eye, struct vec3 point, struct place3 *out) {
+static bool position(const struct overlay_drawing *drawing, int eye, struct vec3 point, struct place3 *out) {
     out->depth = depth_of(drawing, point);
     if (eye == 0)
         return camera_project(&drawing->camera, point, &out->x, &out->y);
@@ -125,18 +125,18 @@ static void edge(struct overlay_drawing *drawing, uint32_t box, int eye, struct 
         double da = depth_of(drawing, a), db = depth_of(drawing, b);
         if (da < near && db < near)
             return;
-        struct vec3 way = vec3_sub(b, a);
+        struct vec3 delta = vec3_sub(b, a);
         if (da < near)
-            a = vec3_add_scaled(a, way, (near - da) / (db - da));
+            a = vec3_add_scaled(a, delta, (near - da) / (db - da));
         else if (db < near)
-            b = vec3_add_scaled(a, way, (near - da) / (db - da));
-        if (place(drawing, eye, a, &from) && place(drawing, eye, b, &to))
+            b = vec3_add_scaled(a, delta, (near - da) / (db - da));
+        if (position(drawing, eye, a, &from) && position(drawing, eye, b, &to))
             line(drawing, box, eye, from, to);
         return;
     }
-    bool have = place(drawing, eye, a, &from);
+    bool have = position(drawing, eye, a, &from);
     for (int i = 1; i <= PIECES; i++) {
-        bool next = place(drawing, eye, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &to);
+        bool next = position(drawing, eye, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &to);
         /* A panorama ends at the back: what jumps from edge to edge is no line. */
         if (have && next && fabs(to.x - from.x) < drawing->camera.width / 2)
             line(drawing, box, eye, from, to);
@@ -180,12 +180,12 @@ static void draw_stroke(struct overlay_drawing *drawing, struct world_scratch *s
                         double top, double bottom) {
     double t0 = 0, t1 = 1, width = drawing->job->film->width;
     const struct vec3 *colour = &drawing->boxes[stroke->box].colour;
-    if (!cut(stroke->from.y, stroke->way.y, top, bottom, &t0, &t1))
+    if (!cut(stroke->from.y, stroke->delta.y, top, bottom, &t0, &t1))
         return;
     double last = fmin(stroke->steps, ceil(t1 * stroke->steps) + 1), last_x = -1, last_y = -1;
     for (double i = fmax(0, floor(t0 * stroke->steps) - 1); i <= last; i++) {
-        double t = stroke->steps > 0 ? i / stroke->steps : 0, depth = stroke->from.depth + t * stroke->way.depth;
-        double x = floor(stroke->from.x + t * stroke->way.x), y = floor(stroke->from.y + t * stroke->way.y);
+        double t = stroke->steps > 0 ? i / stroke->steps : 0, depth = stroke->from.depth + t * stroke->delta.depth;
+        double x = floor(stroke->from.x + t * stroke->delta.x), y = floor(stroke->from.y + t * stroke->delta.y);
         bool another = x < last_x || x > last_x || y < last_y || y > last_y;
         if (another && x >= 0 && x < width && y >= top && y < bottom)
             dot(drawing, scratch, (uint32_t)x, (uint32_t)y, drawing->inverse ? 1 / depth : depth, colour);

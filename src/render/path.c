@@ -51,8 +51,8 @@ void path_tracer_destroy(struct path_tracer *tracer) {
 
 /* --- pixels --- */
 
-static struct pixel_sample sample_place(const struct path_tracer *tracer, const struct renderer *renderer, int64_t x,
-                                        int64_t y, uint32_t number) {
+static struct pixel_sample sample_position(const struct path_tracer *tracer, const struct renderer *renderer, int64_t x,
+                                           int64_t y, uint32_t number) {
     uint64_t pixel = (uint64_t)y * renderer->job->width + (uint64_t)x;
     struct sampler sampler = sampler_make_sobol(renderer->job->settings.seed, pixel, number);
     struct filter_sample at = filter_sample(&tracer->filter, sampler_point(&sampler, SAMPLER_PIXEL));
@@ -85,14 +85,14 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     struct path_pixel pixel = begin_pixel(film, part->x0, y, begin);
     while (next < all) {
         for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
-            batch->places[batch->count++] =
-                sample_place(tracer, renderer, part->x0 + (int64_t)(next / each), y, begin + (uint32_t)(next % each));
+            batch->positions[batch->count++] = sample_position(tracer, renderer, part->x0 + (int64_t)(next / each), y,
+                                                               begin + (uint32_t)(next % each));
         renderer_sample_batch(renderer, worker);
         if (renderer_stopped(renderer, worker))
             return false;
         for (uint32_t i = 0; i < batch->count; i++) {
-            int64_t x = batch->places[i].x;
-            path_pixel_add(&pixel, batch->colours[i], batch->places[i].weight);
+            int64_t x = batch->positions[i].x;
+            path_pixel_add(&pixel, batch->colours[i], batch->positions[i].weight);
             if (pixel.samples < end)
                 continue;
             finish_pixel(film, worker, x, y, &pixel);
@@ -174,8 +174,8 @@ void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *rende
     const struct film *film = renderer->job->film;
     uint32_t samples = path_film_load(film, pixel_index(film, x, y)).samples;
     for (uint32_t i = 0; i < samples && !renderer_stopped(renderer, worker); i++) {
-        struct pixel_sample place = sample_place(tracer, renderer, x, y, i);
-        (void)renderer_sample(renderer, worker, &place);
+        struct pixel_sample position = sample_position(tracer, renderer, x, y, i);
+        (void)renderer_sample(renderer, worker, &position);
     }
 }
 

@@ -51,8 +51,8 @@ struct path_vertex {
     const struct hit *hit;
     const struct bsdf *bsdf;
     struct light_receiver receiver;
-    uint32_t lobes;    /* that scatter */
-    uint32_t stand_in; /* highlights that stand for the mirror image of lights which no mirror shows */
+    uint32_t lobes;      /* that scatter */
+    uint32_t substitute; /* highlights that stand for the mirror image of lights which no mirror shows */
 };
 
 /* A ray that was scattered at a receiver. */
@@ -62,17 +62,17 @@ struct path_segment {
     double pdf; /* of its direction by solid angle; 0: it had no other one */
 };
 
-/* Light that comes straight from one light of the scene: `choice` chooses it, `place` lies on it. */
+/* Light that comes straight from one light of the scene: `choice` chooses it, `xi` lies on it. */
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, double choice, struct sample2 place);
+                        const struct path_vertex *vertex, double choice, struct sample2 xi);
 /* What scattered rays bring, weighted against path_direct: of a surface whose material emits `emission` at the hit; of
  * the lamps that the ray meets before t_max; of skies where it meets nothing. */
 struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
                           struct vec3 emission);
-struct vec3 path_lamps(const struct path_tracer *tracer, const struct path_segment *segment, double t_max);
+struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max);
 struct vec3 path_environment(const struct path_tracer *tracer, const struct path_segment *segment);
 /* The nearest lamp that shows itself on a line of sight before t_max, and where. */
-bool path_lamp_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
-                    struct vec3 *radiance);
+bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
+                          struct vec3 *radiance);
 
 #endif

@@ -72,14 +72,14 @@ static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_
 }
 
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, double choice, struct sample2 place) {
+                        const struct path_vertex *vertex, double choice, struct sample2 xi) {
     const struct world_lights *lights = &tracer->lights;
     const struct vec3 none = {0, 0, 0};
     const struct light_receiver *receiver = &vertex->receiver;
     struct world_light_sample sample;
     double pmf;
     uint32_t number = light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, choice, &pmf);
-    if (number == LIGHT_NONE || !world_lights_sample(lights, receiver, number, place, &sample))
+    if (number == LIGHT_NONE || !world_lights_sample(lights, receiver, number, xi, &sample))
         return none;
     struct vec3 f = scattered(vertex, vertex->lobes, sample.direction);
     double pdf = pmf * sample.pdf;
@@ -91,8 +91,8 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
         double other = bsdf_pdf(vertex->bsdf, vertex->lobes, vertex->hit->view, sample.direction);
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
-    if (vertex->stand_in && !shown)
-        f = vec3_add_scaled(f, scattered(vertex, vertex->stand_in, sample.direction), 1 / pdf);
+    if (vertex->substitute && !shown)
+        f = vec3_add_scaled(f, scattered(vertex, vertex->substitute, sample.direction), 1 / pdf);
     return is_black(f) ? none : vec3_mul(f, arriving(tracer, state, vertex, &sample));
 }
 
@@ -113,20 +113,20 @@ struct vec3 path_emission(const struct path_tracer *tracer, const struct path_se
     return vec3_scale(radiance, met_weight(tracer, segment, pdf));
 }
 
-struct vec3 path_lamps(const struct path_tracer *tracer, const struct path_segment *segment, double t_max) {
+struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max) {
     const struct world_lights *lights = &tracer->lights;
     struct vec3 sum = {0, 0, 0};
     struct world_lights_traversal traversal;
     struct light_hit hit;
     struct ray ray = *segment->ray;
     uint32_t number;
-    if (lights->lamp_count == 0)
+    if (lights->area_light_count == 0)
         return sum;
     ray.t_max = t_max;
     world_lights_met_begin(&traversal, lights, &ray);
     while (world_lights_met_next(&traversal, &number, &hit)) {
         struct medium_effect effect;
-        if (!world_lights_reach(lights, number, segment->receiver->primitive))
+        if (!world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
         (void)medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
         struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
@@ -143,7 +143,7 @@ struct vec3 path_environment(const struct path_tracer *tracer, const struct path
     for (uint32_t i = 0; i < lights->sampler.infinite_count; i++) {
         uint32_t number = lights->sampler.infinite[i];
         const struct light *light = &lights->lights[number];
-        if (light_is_delta(light) || !world_lights_reach(lights, number, segment->receiver->primitive))
+        if (light_is_delta(light) || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
         double pdf = world_lights_pdf(lights, segment->receiver, number, direction, &hit);
         sum = vec3_add_scaled(sum, light_emitted(light, segment->ray, &hit), met_weight(tracer, segment, pdf));
@@ -151,13 +151,13 @@ struct vec3 path_environment(const struct path_tracer *tracer, const struct path
     return sum;
 }
 
-bool path_lamp_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
-                    struct vec3 *radiance) {
+bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
+                          struct vec3 *radiance) {
     const struct world_lights *lights = &tracer->lights;
     struct ray limited = *ray;
     struct light_hit hit;
     uint32_t number;
-    if (lights->lamp_count == 0)
+    if (lights->area_light_count == 0)
         return false;
     limited.t_max = t_max;
     if (!world_lights_seen(lights, &limited, &number, &hit))

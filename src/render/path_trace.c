@@ -37,9 +37,9 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
     struct vec3 radiance;
     bool seen = false;
     if (path->sight)
-        seen = path_lamp_seen(tracer, &path->ray, end, &end, &radiance);
+        seen = path_area_light_seen(tracer, &path->ray, end, &end, &radiance);
     else
-        add_light(path, path_lamps(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}, end));
+        add_light(path, path_area_lights(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}, end));
     double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     struct medium_effect effect;
     const struct fog *fog = path->sight ? state->job->fog : NULL;
@@ -78,7 +78,7 @@ static void choose_lobes(struct path_vertex *vertex) {
             others |= UINT32_C(1) << i;
     }
     vertex->lobes = traced ? others : others | highlights;
-    vertex->stand_in = traced && bsdf->alpha == 0 ? highlights : 0;
+    vertex->substitute = traced && bsdf->alpha == 0 ? highlights : 0;
 }
 
 /* False: the path ends here. Weights above 1 do not keep it alive for ever. */

@@ -95,7 +95,7 @@ static void measure_chunk(void *context, uint32_t chunk, int worker) {
             continue;
         double power = vec3_max_abs(photon->power);
         max = power > max ? power : max;
-        box = box_add_point(box, photon->place);
+        box = box_add_point(box, photon->position);
         landed++;
     }
     b->firsts[chunk] = landed;
@@ -111,7 +111,7 @@ static void enter_chunk(void *context, uint32_t chunk, int worker) {
         const struct photon *photon = &b->photons[i];
         if (photon->light == PHOTON_NOWHERE)
             continue;
-        struct vec3 p = vec3_scale(vec3_sub(photon->place, b->map->origin), 1 / b->map->unit);
+        struct vec3 p = vec3_scale(vec3_sub(photon->position, b->map->origin), 1 / b->map->unit);
         b->entries[next++] = (struct entry){{(float)p.x, (float)p.y, (float)p.z}, i};
     }
 }
@@ -533,9 +533,10 @@ static void gather_leaf(struct density_query *g, uint32_t k) {
         const struct photon_spot *spot = &map->spots[i];
         float dx = spot->at[0] - g->at[0], dy = spot->at[1] - g->at[1], dz = spot->at[2] - g->at[2];
         float height = dx * g->up[0] + dy * g->up[1] + dz * g->up[2];
-        float squared = dx * dx + dy * dy + dz * dz + 15 * height * height, reach = spot->radius * spot->radius;
-        if (squared < reach)
-            add_photon(g, i, (double)((1 - squared / reach) / reach));
+        float squared = dx * dx + dy * dy + dz * dz + 15 * height * height,
+              radius_squared = spot->radius * spot->radius;
+        if (squared < radius_squared)
+            add_photon(g, i, (double)((1 - squared / radius_squared) / radius_squared));
     }
 }
 

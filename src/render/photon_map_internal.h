@@ -13,7 +13,7 @@
 /* A photon as it landed. Power: irradiance times area, in the unit in which a light's colour times its fading is
  * irradiance (docs/light.md). */
 struct photon {
-    struct vec3 place, power;
+    struct vec3 position, power;
     uint32_t from;  /* unit direction to where it came from, packed by photon_pack */
     uint32_t light; /* index into the world's lights; PHOTON_NOWHERE: it did not land */
 };

@@ -416,11 +416,11 @@ static uint32_t light_parts(const struct light *light, const struct specular_obj
 /* Light of an environment: a direction by its own choice, then a place of the rectangle across it that holds the shadow
  * of the box of all casters, before the whole scene. Its power is that of a photon that represents all. */
 static struct light_photon start_from_environment(const struct photon_target *target, struct sample2 turn,
-                                                  struct sample2 place) {
+                                                  struct sample2 xi) {
     struct light_photon photon = light_photon(&target->emitter, vec3_all(0), turn);
     struct vec3 axes[2], direction = photon.direction;
     frame_tangents(direction, &axes[0], &axes[1]);
-    const double at[2] = {place.x, place.y};
+    const double at[2] = {xi.x, xi.y};
     double area = 1, before = fmin(box_min(&target->across, direction), box_min(&target->scene, direction));
     photon.origin = vec3_scale(direction, before - target->size * 0x1p-6);
     for (int k = 0; k < 2; k++) {
@@ -572,10 +572,10 @@ static const struct photon_cell *cell_at(const struct photon_target *target, dou
 
 /* In the part of a square that a cell is. */
 static struct light_photon start_across(const struct photon_target *target, const struct photon_cell *cell,
-                                        struct sample2 place, double *weight) {
-    struct light_photon photon = light_photon(&target->emitter, vec3_all(0), place);
+                                        struct sample2 xi, double *weight) {
+    struct light_photon photon = light_photon(&target->emitter, vec3_all(0), xi);
     double size = ldexp(target->size, -(int)target->level);
-    double x = target->corner[0] + (cell->i + place.x) * size, y = target->corner[1] + (cell->j + place.y) * size;
+    double x = target->corner[0] + (cell->i + xi.x) * size, y = target->corner[1] + (cell->j + xi.y) * size;
     photon.origin = vec3_add_scaled(vec3_scale(target->emitter.right, x), target->emitter.up, y);
     photon.origin = vec3_add_scaled(photon.origin, photon.direction, target->behind);
     *weight = *weight * size * size;
@@ -584,11 +584,11 @@ static struct light_photon start_across(const struct photon_target *target, cons
 
 /* A unit direction within a cell; *share: the solid angle there for that in the cell's middle. */
 static struct vec3 cell_direction(const struct photon_target *target, const struct photon_cell *cell,
-                                  struct sample2 place, double *share) {
+                                  struct sample2 xi, double *share) {
     double width = ldexp(2, -(int)target->level), density, middle_density;
     (void)face_direction(cell->face, -1 + width * (cell->i + 0.5), -1 + width * (cell->j + 0.5), &middle_density);
     struct vec3 direction =
-        face_direction(cell->face, -1 + width * (cell->i + place.x), -1 + width * (cell->j + place.y), &density);
+        face_direction(cell->face, -1 + width * (cell->i + xi.x), -1 + width * (cell->j + xi.y), &density);
     *share = density / middle_density;
     return vec3_normalize(direction);
 }

@@ -22,8 +22,8 @@ static struct pixel_trace_light *light_of(const struct pixel_trace *pixel_trace)
 }
 
 /* A sample of any pixel; of others than the trace's only the first colour is kept. */
-static void begin_sample(struct pixel_trace *pixel_trace, const struct pixel_sample *place) {
-    pixel_trace->on = place->x == (int64_t)pixel_trace->x && place->y == (int64_t)pixel_trace->y;
+static void begin_sample(struct pixel_trace *pixel_trace, const struct pixel_sample *position) {
+    pixel_trace->on = position->x == (int64_t)pixel_trace->x && position->y == (int64_t)pixel_trace->y;
     if (!pixel_trace->on)
         return;
     struct pixel_trace_sample *sample = take(pixel_trace, sizeof *sample);
@@ -31,7 +31,7 @@ static void begin_sample(struct pixel_trace *pixel_trace, const struct pixel_sam
     if (!sample)
         return;
     *sample = (struct pixel_trace_sample){
-        .x = (double)place->x + place->dx, .y = (double)place->y + place->dy, .number = place->number};
+        .x = (double)position->x + position->dx, .y = (double)position->y + position->dy, .number = position->number};
     if (pixel_trace->last_sample)
         pixel_trace->last_sample->next = sample;
     else
@@ -44,12 +44,12 @@ static void begin_sample(struct pixel_trace *pixel_trace, const struct pixel_sam
     pixel_trace->weight = vec3_all(1);
 }
 
-static void end_sample(struct pixel_trace *pixel_trace, const struct pixel_sample *place, struct vec3 colour) {
-    int64_t dx = place->x - (int64_t)pixel_trace->x, dy = place->y - (int64_t)pixel_trace->y;
+static void end_sample(struct pixel_trace *pixel_trace, const struct pixel_sample *position, struct vec3 colour) {
+    int64_t dx = position->x - (int64_t)pixel_trace->x, dy = position->y - (int64_t)pixel_trace->y;
     if (pixel_trace->on)
         pixel_trace->last_sample->colour = colour;
     pixel_trace->on = false;
-    if (place->number == 0 && dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1) {
+    if (position->number == 0 && dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1) {
         pixel_trace->first[1 + dy][1 + dx] = colour;
         pixel_trace->known[1 + dy][1 + dx] = true;
     }
@@ -112,7 +112,7 @@ static void begin_ray(struct pixel_trace *pixel_trace, const struct observed_beg
     is_recorded->share = seen->share;
     is_recorded->media_count = ray->media ? ray->media->count : 0;
     is_recorded->media_ior = ray->media ? medium_stack_ior(ray->media) : 1;
-    is_recorded->lamp = seen->light;
+    is_recorded->area_light = seen->light;
     is_recorded->met = seen->hit && !seen->light;
     if (is_recorded->met)
         is_recorded->hit = *seen->hit;
@@ -166,7 +166,7 @@ static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const 
     if (!is_recorded)
         return;
     *is_recorded = (struct pixel_trace_light){
-        .number = number, .light = light, .lamp = !light_is_delta(light), .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
+        .number = number, .light = light, .area_light = !light_is_delta(light), .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
     if (ray->last_light)
         ray->last_light->next = is_recorded;
     else
@@ -174,14 +174,14 @@ static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const 
     ray->last_light = is_recorded;
 }
 
-static void record_light_position(struct pixel_trace *pixel_trace, const struct observed_light_sample *place) {
+static void record_light_position(struct pixel_trace *pixel_trace, const struct observed_light_sample *position) {
     struct pixel_trace_light *light = light_of(pixel_trace);
     if (!light)
         return;
-    light->distance = place->distance;
-    light->strength = place->strength;
-    light->to_light = place->to_light;
-    light->reflected = place->reflected;
+    light->distance = position->distance;
+    light->strength = position->strength;
+    light->to_light = position->to_light;
+    light->reflected = position->reflected;
 }
 
 static void count_shadow_rays(struct pixel_trace *pixel_trace, const struct observed_shadow *shadow) {
@@ -245,10 +245,10 @@ static void notice(void *context, const struct observation *what) {
     struct pixel_trace *pixel_trace = context;
     switch (what->kind) {
     case OBSERVED_SAMPLE_BEGIN:
-        begin_sample(pixel_trace, what->sample.place);
+        begin_sample(pixel_trace, what->sample.position);
         break;
     case OBSERVED_SAMPLE_END:
-        end_sample(pixel_trace, what->sample.place, what->sample.colour);
+        end_sample(pixel_trace, what->sample.position, what->sample.colour);
         break;
     case OBSERVED_SPLIT:
         split_rays(pixel_trace, what->part);
@@ -269,7 +269,7 @@ static void notice(void *context, const struct observation *what) {
         begin_light(pixel_trace, what->light.number, what->light.light);
         break;
     case OBSERVED_LIGHT_SAMPLE:
-        record_light_position(pixel_trace, &what->place);
+        record_light_position(pixel_trace, &what->position);
         break;
     case OBSERVED_SHADOW_RAYS:
         count_shadow_rays(pixel_trace, &what->shadow);

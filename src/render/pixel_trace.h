@@ -35,7 +35,7 @@ struct pixel_trace_light {
     uint32_t number; /* in the world, from 0 */
     const struct light *light;
     enum pixel_trace_lit lit;
-    bool lamp;
+    bool area_light;
     double distance, strength; /* fading times the cone of a spot */
     struct vec3 to_light;      /* unit */
     struct vec3 reflected;     /* by the lobes, of unit light */
@@ -60,7 +60,7 @@ struct pixel_trace_ray {
     /* What it met: a hit, else a light that shows itself, else the sky. */
     bool met;
     struct hit hit;
-    const struct light *lamp;
+    const struct light *area_light;
     double distance; /* of either, world units; infinite */
     /* The surface. */
     struct pixel_trace_link *links;

@@ -28,8 +28,8 @@ static void cost_item(void *context, uint32_t item, int index) {
     for (uint32_t i = 0; i < count && !renderer_stopped(renderer, worker); i++) {
         uint32_t x = r.x0 + (r.x1 - r.x0) * (2 * i + 1) / (2 * count);
         uint32_t y = r.y0 + (r.y1 - r.y0) * ((2 * i + 1) * 3 % (2 * count)) / (2 * count);
-        struct pixel_sample place = renderer_first_sample(renderer, x, y);
-        (void)renderer_sample(renderer, worker, &place);
+        struct pixel_sample position = renderer_first_sample(renderer, x, y);
+        (void)renderer_sample(renderer, worker, &position);
     }
     renderer->cost[item] = 1 + state->hits + state->reflected_rays + state->refracted_rays - before;
 }
@@ -53,7 +53,7 @@ static bool choose_tiles(struct renderer *renderer, struct error *error) {
 }
 
 bool renderer_is_done(const struct renderer *renderer) {
-    return renderer->job->enough && atomic_load_explicit(renderer->job->enough, memory_order_relaxed) != 0;
+    return renderer->job->drain && atomic_load_explicit(renderer->job->drain, memory_order_relaxed) != 0;
 }
 
 /* Makes a tile or a part of it; false: stopped. A ray that was given up leaves a wrong colour: what ends after a wish
@@ -91,10 +91,10 @@ static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
              make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
 }
 
-void renderer_pass_item(void *context, uint32_t place, int index) {
+void renderer_pass_item(void *context, uint32_t position, int index) {
     struct renderer *renderer = context;
     struct film *film = renderer->job->film;
-    uint32_t tile = renderer->order[place];
+    uint32_t tile = renderer->order[position];
     uint8_t before = atomic_load(&film->tiles[tile]);
     if (renderer_is_done(renderer) || (before != FILM_TILE_WANTED && before < FILM_TILE_PASSED))
         return;
@@ -141,12 +141,12 @@ static void make_quarter(struct renderer *renderer, uint32_t number, int index) 
         end_tile(renderer, tile, !(before & QUARTER_FAILED));
 }
 
-static void tile_item(void *context, uint32_t place, int index) {
+static void tile_item(void *context, uint32_t position, int index) {
     struct renderer *renderer = context;
-    if (place < renderer->whole_tiles)
-        make_tile(renderer, renderer->order[place], index);
+    if (position < renderer->whole_tiles)
+        make_tile(renderer, renderer->order[position], index);
     else
-        make_quarter(renderer, place - renderer->whole_tiles, index);
+        make_quarter(renderer, position - renderer->whole_tiles, index);
 }
 
 /* Makes whatever becomes wanted until no more can. */

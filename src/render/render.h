@@ -43,7 +43,7 @@ struct render_job {
     struct progress_estimate
         *progress_estimate; /* or NULL; zero: reports the progress, from an estimate made before the first tile */
     const _Atomic int
-        *enough; /* or NULL; while it is not 0 no further tile is begun, and the render counts as stopped */
+        *drain; /* or NULL; while it is not 0 no further tile is begun, and the render counts as stopped */
 };
 
 /* What films for pictures of an integrator record. */

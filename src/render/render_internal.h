@@ -14,7 +14,7 @@
 
 /* Samples that are traced together, in the order in which they are wanted. */
 struct batch {
-    struct pixel_sample places[PACKET_RAYS];
+    struct pixel_sample positions[PACKET_RAYS];
     struct vec3 colours[PACKET_RAYS];
     uint32_t count;
     struct ray_packet packet;
@@ -80,7 +80,7 @@ bool renderer_prepare_at(const struct render_job *job, double ray_time, struct c
                          struct error *error);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
-struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place);
+struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);
 /* The samples of a batch, as renderer_sample would bring them. What the camera rays meet is looked for together. */
 void renderer_sample_batch(struct renderer *renderer, struct worker *worker);
 static inline bool renderer_stopped(const struct renderer *renderer, const struct worker *worker) {
@@ -102,7 +102,7 @@ void renderer_report_end(struct renderer *renderer); /* all tiles are done */
 bool renderer_makes_passes(const struct renderer *renderer);
 bool renderer_make_passes(struct renderer *renderer);
 /* A pool_function of passes: the tile of that place in the order. */
-void renderer_pass_item(void *context, uint32_t place, int worker);
+void renderer_pass_item(void *context, uint32_t position, int worker);
 
 /* No further tile is to be begun. */
 bool renderer_is_done(const struct renderer *renderer);

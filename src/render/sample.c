@@ -31,30 +31,30 @@ static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *work
 static struct vec3 sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
                                   struct sample2 at, double time, double share) {
     const struct sampler sampler = worker->state.sampler;
-    struct sample2 place = sampler_lens(&sampler);
+    struct sample2 position = sampler_lens(&sampler);
     struct ray ray, right_ray;
     bool anaglyph = camera->lens.stereo == STEREO_ANAGLYPH;
-    if (!camera_ray_through(camera, at.x, at.y, place, anaglyph ? -1 : 0, &ray))
+    if (!camera_ray_through(camera, at.x, at.y, position, anaglyph ? -1 : 0, &ray))
         return vec3_all(0);
     ray.time = time;
     struct vec3 colour = trace_from_eye(renderer, worker, &ray, share, sampler.key);
     if (!anaglyph)
         return colour;
-    (void)camera_ray_through(camera, at.x, at.y, place, 1, &right_ray);
+    (void)camera_ray_through(camera, at.x, at.y, position, 1, &right_ray);
     right_ray.time = time;
     struct vec3 right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
     return vec3_make(colour.x, right.y, right.z);
 }
 
-static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
+static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
     const struct settings *settings = &renderer->job->settings;
-    uint64_t pixel = (uint64_t)place->y * renderer->job->width + (uint64_t)place->x;
+    uint64_t pixel = (uint64_t)position->y * renderer->job->width + (uint64_t)position->x;
     switch (renderer->sampler) {
     case SAMPLER_STRATA:
-        worker->state.sampler = sampler_make(settings->seed, pixel, place->number, (uint32_t)settings->samples);
+        worker->state.sampler = sampler_make(settings->seed, pixel, position->number, (uint32_t)settings->samples);
         break;
     case SAMPLER_SOBOL:
-        worker->state.sampler = sampler_make_sobol(settings->seed, pixel, place->number);
+        worker->state.sampler = sampler_make_sobol(settings->seed, pixel, position->number);
         break;
     }
 }
@@ -66,10 +66,11 @@ static double sample_share(const struct renderer *renderer, uint64_t number) {
     return number > 0 ? 1.0 / renderer->job->settings.samples : 1;
 }
 
-static struct vec3 sample_single(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
-    begin_sample(renderer, worker, place);
-    double x = (double)place->x + place->dx, y = (double)place->y + place->dy,
-           share = sample_share(renderer, place->number);
+static struct vec3 sample_single(struct renderer *renderer, struct worker *worker,
+                                 const struct pixel_sample *position) {
+    begin_sample(renderer, worker, position);
+    double x = (double)position->x + position->dx, y = (double)position->y + position->dy,
+           share = sample_share(renderer, position->number);
     const struct camera_frame *camera = &renderer->camera;
     double time = renderer->timed ? sampler_time(&worker->state.sampler) : 0;
     if (renderer->timed && renderer->job->settings.motion.moves) {
@@ -86,10 +87,10 @@ static struct vec3 sample_single(struct renderer *renderer, struct worker *worke
     return trace_from_eye(renderer, worker, &ray, share, worker->state.sampler.key);
 }
 
-struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *place) {
-    observe_sample_begin(worker->state.observer, place);
-    struct vec3 colour = sample_single(renderer, worker, place);
-    observe_sample_end(worker->state.observer, place, colour);
+struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
+    observe_sample_begin(worker->state.observer, position);
+    struct vec3 colour = sample_single(renderer, worker, position);
+    observe_sample_end(worker->state.observer, position, colour);
     return colour;
 }
 
@@ -98,7 +99,7 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     struct batch *batch = &worker->batch;
     if (!renderer->together || batch->count == 1) {
         for (uint32_t i = 0; i < batch->count; i++)
-            batch->colours[i] = renderer_sample(renderer, worker, &batch->places[i]);
+            batch->colours[i] = renderer_sample(renderer, worker, &batch->positions[i]);
         return;
     }
     struct ray_packet *packet = &batch->packet;
@@ -106,8 +107,9 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     packet->origin = renderer->camera.eye;
     packet->t_min = packet->time = 0;
     for (uint32_t i = 0; i < batch->count; i++) {
-        const struct pixel_sample *place = &batch->places[i];
-        struct ray ray = camera_ray(&renderer->camera, (double)place->x + place->dx, (double)place->y + place->dy);
+        const struct pixel_sample *position = &batch->positions[i];
+        struct ray ray =
+            camera_ray(&renderer->camera, (double)position->x + position->dx, (double)position->y + position->dy);
         packet->direction[0][i] = ray.direction.x;
         packet->direction[1][i] = ray.direction.y;
         packet->direction[2][i] = ray.direction.z;
@@ -117,12 +119,13 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     uint64_t met = world_nearest_packet(renderer->job->world, packet, &worker->scratch, batch->answers);
     worker->camera_rays += batch->count;
     for (uint32_t i = 0; i < batch->count; i++) {
-        const struct pixel_sample *place = &batch->places[i];
-        struct ray ray = camera_ray(&renderer->camera, (double)place->x + place->dx, (double)place->y + place->dy);
-        double share = sample_share(renderer, place->number);
+        const struct pixel_sample *position = &batch->positions[i];
+        struct ray ray =
+            camera_ray(&renderer->camera, (double)position->x + position->dx, (double)position->y + position->dy);
+        double share = sample_share(renderer, position->number);
         ray.footprint.spread *= share;
         ray.footprint.width *= share;
-        begin_sample(renderer, worker, place);
+        begin_sample(renderer, worker, position);
         batch->colours[i] = integrator_radiance_met(renderer, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
                                                     worker->state.sampler.key);
     }

@@ -111,8 +111,8 @@ static struct film_record get_film_record(struct eye *eye) {
     return (struct film_record){floats, get_u32(eye)};
 }
 
-static uint64_t check_of(uint64_t place, uint32_t kind, const uint8_t *payload, size_t size) {
-    return hash_bytes(payload, size, place * 64 + kind);
+static uint64_t check_of(uint64_t position, uint32_t kind, const uint8_t *payload, size_t size) {
+    return hash_bytes(payload, size, position * 64 + kind);
 }
 
 /* Writing. */

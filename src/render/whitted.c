@@ -189,17 +189,17 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
                                      const struct path *path) {
     const struct world *world = state->job->world;
     bool met = hit != NULL;
-    struct light_hit lamp_hit;
-    const struct light *lamp = visible_light(world, ray, met ? hit->t : ray->t_max, &lamp_hit);
-    double end = lamp ? lamp_hit.t : met ? hit->t : ray->t_max;
+    struct light_hit area_light_hit;
+    const struct light *area_light = visible_light(world, ray, met ? hit->t : ray->t_max, &area_light_hit);
+    double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
 
     /* What is between here and there. */
-    double distance = met || lamp ? end * vec3_length(ray->direction) : INFINITY;
+    double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
     struct medium_effect air;
     struct path dimmed;
     bool affected = medium_transmittance(MEDIUM_RAY_SIGHT, state->job->fog, ray, distance, &air);
     struct vec3 left = air.transmittance;
-    observe_ray_begin(state->observer, ray, hit, lamp, distance, path->weight);
+    observe_ray_begin(state->observer, ray, hit, area_light, distance, path->weight);
     if (affected) {
         dimmed = path_on(path, vec3_max_abs(left));
         path = &dimmed;
@@ -209,8 +209,8 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     bool looked = !(path->weight < path->cutoff);
     if (!looked)
         left = vec3_all(0);
-    else if (lamp)
-        colour = light_emitted(lamp, ray, &lamp_hit);
+    else if (area_light)
+        colour = light_emitted(area_light, ray, &area_light_hit);
     else if (met)
         colour = shade_hit(state, ray, hit, path);
     else

@@ -180,15 +180,15 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
         batch->count = 0;
         for (int k = begin; k < end; k++) {
             if (k == centre && !first)
-                batch->places[batch->count++] = renderer_first_sample(renderer, x, y);
+                batch->positions[batch->count++] = renderer_first_sample(renderer, x, y);
             else if (k != centre)
-                batch->places[batch->count++] = sample_of_grid(part->whitted, x, y, k, n);
+                batch->positions[batch->count++] = sample_of_grid(part->whitted, x, y, k, n);
         }
         renderer_sample_batch(renderer, part->worker);
         uint32_t next = 0;
         for (int k = begin; k < end; k++) {
             bool is_first = k == centre && first;
-            double weight = is_first ? 1 : batch->places[next].weight;
+            double weight = is_first ? 1 : batch->positions[next].weight;
             sum = vec3_add(sum, vec3_scale(is_first ? *first : batch->colours[next++], weight));
             weights += weight;
         }
@@ -202,14 +202,14 @@ void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, st
     int n = renderer->job->settings.samples;
     bool marked = film->marked[(size_t)(y - film->y0) * film->width + (size_t)(x - film->x0)];
     bool has_first = !whitted->full || renderer->job->settings.keep_first, reuse = first_counts(renderer);
-    struct pixel_sample place = renderer_first_sample(renderer, x, y);
+    struct pixel_sample position = renderer_first_sample(renderer, x, y);
     if (has_first || reuse)
-        (void)renderer_sample(renderer, worker, &place);
+        (void)renderer_sample(renderer, worker, &position);
     for (int k = 0; marked && k < n * n && !renderer_stopped(renderer, worker); k++) {
         if (reuse && k == n / 2 * n + n / 2)
             continue;
-        place = sample_of_grid(whitted, x, y, k, n);
-        (void)renderer_sample(renderer, worker, &place);
+        position = sample_of_grid(whitted, x, y, k, n);
+        (void)renderer_sample(renderer, worker, &position);
     }
 }
 
@@ -247,11 +247,11 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
     batch->count = 0;
     for (int64_t y = y0; y < y0 + PATCH && y < part->area.y1; y++) {
         for (int64_t x = x0; x < x0 + PATCH && x < part->area.x1; x++)
-            batch->places[batch->count++] = renderer_first_sample(part->renderer, x, y);
+            batch->positions[batch->count++] = renderer_first_sample(part->renderer, x, y);
     }
     renderer_sample_batch(part->renderer, part->worker);
     for (uint32_t i = 0; i < batch->count; i++)
-        *first_at(part, batch->places[i].x, batch->places[i].y) = batch->colours[i];
+        *first_at(part, batch->positions[i].x, batch->positions[i].y) = batch->colours[i];
 }
 
 /* For a viewer: the first pass as far as it is, and what will be sampled again. */

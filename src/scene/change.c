@@ -37,7 +37,7 @@ bool change_keeps_world(const struct change *change) {
 }
 
 /* Of the first one that does not come before it. */
-static uint32_t place_in(const struct change_list *list, const struct change *like) {
+static uint32_t slot_in(const struct change_list *list, const struct change *like) {
     uint32_t i = 0;
     while (i < list->count && (list->items[i].kind < like->kind ||
                                (list->items[i].kind == like->kind && target_of(&list->items[i]) < target_of(like))))
@@ -46,7 +46,7 @@ static uint32_t place_in(const struct change_list *list, const struct change *li
 }
 
 bool change_list_set(struct change_list *list, const struct change *change, bool present) {
-    uint32_t at = place_in(list, change);
+    uint32_t at = slot_in(list, change);
     bool there = at < list->count && change_same_target(&list->items[at], change);
     if (!present) {
         if (there) {
@@ -74,7 +74,7 @@ bool change_list_set(struct change_list *list, const struct change *change, bool
 }
 
 const struct change *change_list_find(const struct change_list *list, const struct change *like) {
-    uint32_t at = place_in(list, like);
+    uint32_t at = slot_in(list, like);
     return at < list->count && change_same_target(&list->items[at], like) ? &list->items[at] : NULL;
 }
 
@@ -186,7 +186,7 @@ static struct node *begin_node(struct change_application *l) {
     return node;
 }
 
-static void place_node(struct change_application *l) {
+static void transform_node(struct change_application *l) {
     struct affine matrix;
     struct transform map;
     memcpy(matrix.m, l->change->numbers, sizeof matrix.m);
@@ -423,8 +423,8 @@ static void add_light(struct change_application *l) {
 static bool lay(struct change_application *l) {
     struct node *node;
     switch (l->change->kind) {
-    case CHANGE_PLACE:
-        place_node(l);
+    case CHANGE_TRANSFORM:
+        transform_node(l);
         break;
     case CHANGE_GONE:
         if ((node = begin_node(l)))

@@ -13,7 +13,7 @@
 /* In the order in which they are made: what is added is there before it is changed. */
 enum change_kind {
     CHANGE_ADD,       /* a new node under another */
-    CHANGE_PLACE,     /* of a node: a map after its own, in its parent's space */
+    CHANGE_TRANSFORM, /* of a node: a map after its own, in its parent's space */
     CHANGE_GONE,      /* a node is not drawn */
     CHANGE_OWN,       /* a shape gets a material of its own */
     CHANGE_MATERIAL,  /* a part of a material's base */

@@ -51,7 +51,7 @@ static uint32_t operands_of(const struct scene_traversal *t, const struct node *
     if (node->kind != NODE_CSG)
         return 0;
     switch (t->operands) {
-    case OPERANDS_PLACED:
+    case OPERANDS_AS_CHILD:
         return node_is_placing(node) ? 1 : 0;
     case OPERANDS_OF_SOLIDS:
         return node->operation == NODE_BOUNDED ? 1 : node->operand_count;

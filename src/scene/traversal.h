@@ -3,7 +3,7 @@
  * it, so that they agree. A node that hangs under several others is visited on every path to it. The stack is in memory
  * of its own: depth is limited by memory alone.
  *
- *   struct scene_traversal t = {.operands = OPERANDS_PLACED, .frame_size = sizeof(struct my_frame)};
+ *   struct scene_traversal t = {.operands = OPERANDS_AS_CHILD, .frame_size = sizeof(struct my_frame)};
  *   scene_traversal_begin(&t, root);
  *   while ((event = scene_traversal_next(&t)) != SCENE_END) ...
  *   scene_traversal_end(&t); */
@@ -20,7 +20,7 @@ struct scene_step {
 
 /* Which operands of NODE_CSG are visited. */
 enum scene_operands {
-    OPERANDS_PLACED,    /* what a clipped or bounded node places as if it were a child: its first one */
+    OPERANDS_AS_CHILD,  /* what a clipped or bounded node places as if it were a child: its first one */
     OPERANDS_OF_SOLIDS, /* all, but of a bounded node the first one only: the bound is no part of the solid */
     OPERANDS_ALL
 };

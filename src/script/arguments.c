@@ -633,7 +633,7 @@ enum {
     LIKE_HANDLE = LIKE_NUMBER - 1, /* bit `type` for each type of handle */
 };
 
-static int looks_of(lua_State *L, int index) {
+static int kinds_of(lua_State *L, int index) {
     const struct handle *handle = handle_at(L, index);
     if (handle)
         return handle->type == HANDLE_GHOST ? LIKE_HANDLE : 1 << handle->type;
@@ -641,7 +641,7 @@ static int looks_of(lua_State *L, int index) {
            (lua_isstring(L, index) ? LIKE_TEXT : 0) | (lua_istable(L, index) ? LIKE_TABLE : 0);
 }
 
-static bool looks_like(lua_State *L, int index, enum kind kind, unsigned flags) {
+static bool resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
     static const int wanted[KIND_COUNT] = {
         [KIND_NUMBER] = LIKE_NUMBER,
         [KIND_WHOLE] = LIKE_NUMBER,
@@ -678,7 +678,7 @@ static bool looks_like(lua_State *L, int index, enum kind kind, unsigned flags) 
     };
     assert(wanted[kind]); /* every kind has its line */
     int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE : 0);
-    return (looks_of(L, index) & accepted) != 0;
+    return (kinds_of(L, index) & accepted) != 0;
 }
 
 /* How well the arguments fit a form: how many of the first ones do, then how near their number is to the form's. */
@@ -692,7 +692,7 @@ static struct fit form_fit(lua_State *L, const struct script_function *function,
     bool optional;
     for (; form_next(function, &form, &index, &optional); count++) {
         if (fit.leading == count &&
-            looks_like(L, first + count, function->parameters[index].kind, function->parameters[index].flags))
+            resembles(L, first + count, function->parameters[index].kind, function->parameters[index].flags))
             fit.leading++;
     }
     fit.difference = given < count ? count - given : given - count;
@@ -742,7 +742,7 @@ static int read_rest(struct script_context *c, const struct script_parameter *p,
                      struct script_value *value) {
     lua_State *L = c->lua;
     int end = argument_path;
-    while (end <= lua_gettop(L) && (lua_isnil(L, end) || looks_like(L, end, KIND_NODE, 0)))
+    while (end <= lua_gettop(L) && (lua_isnil(L, end) || resembles(L, end, KIND_NODE, 0)))
         end++;
     if (end == argument_path)
         return end;

@@ -12,9 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool try_file(const struct script_context *context, char out[PATH_SIZE], const char *folder, const char *between,
-                     const char *name) {
-    int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, between, name);
+static bool try_file(const struct script_context *context, char out[PATH_SIZE], const char *folder,
+                     const char *separator, const char *name) {
+    int length = snprintf(out, PATH_SIZE, "%s%s%s", folder, separator, name);
     return (size_t)length < PATH_SIZE && path_policy_is_readable(context->path_policy, out);
 }
 

@@ -49,7 +49,7 @@ bool gr_change_node(struct script_context *context, const struct script_value *a
     if (!transform_from_affine(&map, &ignored))
         return error_set(error, ERROR_SCENE, "matrix is singular: it has no inverse");
     struct change *change =
-        note(context, CHANGE_PLACE, args[CHANGENODE_NAME].text, args[CHANGENODE_SERIAL].number, error);
+        note(context, CHANGE_TRANSFORM, args[CHANGENODE_NAME].text, args[CHANGENODE_SERIAL].number, error);
     if (change)
         memcpy(change->numbers, map.m, sizeof map.m);
     return change != NULL;

@@ -166,21 +166,21 @@ static bool set_attenuation(struct light *light, const struct script_value *args
 /* A light with an extent: fading as from its centre, or a lamp whose surface emits. */
 static bool make_area_light(struct script_context *context, struct light *light, const struct script_value *args,
                             struct script_result *result, struct error *error) {
-    struct script_value lamp[LIGHT_OWN];
+    struct script_value area_light[LIGHT_OWN];
     for (int i = 0; i < LIGHT_OWN; i++)
-        lamp[i] = args[i];
-    light->emits = args[LIGHT_EMISSION].given;
+        area_light[i] = args[i];
+    light->emissive = args[LIGHT_EMISSION].given;
     light->samples = (int)args[LIGHT_SAMPLES].number;
     light->visible = args[LIGHT_VISIBLE].boolean;
-    if (!args[LIGHT_COLOUR].given && !light->emits)
+    if (!args[LIGHT_COLOUR].given && !light->emissive)
         return error_set(error, ERROR_SCENE, "colour is missing");
-    if (light->emits && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
+    if (light->emissive && (args[LIGHT_FALLOFF].given || args[LIGHT_RANGE].given || args[LIGHT_INTENSITY].given))
         return error_set(error, ERROR_SCENE, "a light with emission has no falloff, range or intensity");
-    if (light->emits && !args[LIGHT_COLOUR].given)
-        lamp[LIGHT_COLOUR].vector = vec3_all(1);
-    if (light->emits)
-        lamp[LIGHT_COLOUR].vector = vec3_mul(lamp[LIGHT_COLOUR].vector, args[LIGHT_EMISSION].vector);
-    return set_attenuation(light, args, error) && give_light(context, light, lamp, result, error);
+    if (light->emissive && !args[LIGHT_COLOUR].given)
+        area_light[LIGHT_COLOUR].vector = vec3_all(1);
+    if (light->emissive)
+        area_light[LIGHT_COLOUR].vector = vec3_mul(area_light[LIGHT_COLOUR].vector, args[LIGHT_EMISSION].vector);
+    return set_attenuation(light, args, error) && give_light(context, light, area_light, result, error);
 }
 
 static bool set_direction(struct light *light, struct vec3 direction, const char *name, struct error *error) {
@@ -258,16 +258,16 @@ static bool gr_disc_light(struct script_context *context, const struct script_va
 static bool gr_mesh_light(struct script_context *context, const struct script_value *args, struct script_result *result,
                           struct error *error) {
     struct light light = {.kind = LIGHT_MESH,
-                          .emits = true,
+                          .emissive = true,
                           .samples = (int)args[MESHLIGHT_SAMPLES].number,
                           .has_emission = args[MESHLIGHT_EMISSION].given,
                           .emission = args[MESHLIGHT_EMISSION].vector};
-    struct script_value lamp[MESHLIGHT_COUNT];
+    struct script_value area_light[MESHLIGHT_COUNT];
     for (int i = 0; i < MESHLIGHT_COUNT; i++)
-        lamp[i] = args[i];
+        area_light[i] = args[i];
     if (!args[LIGHT_COLOUR].given)
-        lamp[LIGHT_COLOUR].vector = vec3_all(1);
-    if (!give_light(context, &light, lamp, result, error))
+        area_light[LIGHT_COLOUR].vector = vec3_all(1);
+    if (!give_light(context, &light, area_light, result, error))
         return false;
     ((struct scene_light *)result->pointer)->node = args[MESHLIGHT_MESH].node;
     return true;
@@ -275,9 +275,9 @@ static bool gr_mesh_light(struct script_context *context, const struct script_va
 
 static bool gr_sky_light(struct script_context *context, const struct script_value *args, struct script_result *result,
                          struct error *error) {
-    struct light light = {.kind = LIGHT_SKY, .emits = true, .samples = (int)args[SKYLIGHT_SAMPLES].number};
+    struct light light = {.kind = LIGHT_SKY, .emissive = true, .samples = (int)args[SKYLIGHT_SAMPLES].number};
     struct sky *sky = arena_alloc(&context->scene.arena, sizeof *sky);
-    struct script_value lamp[SKYLIGHT_COUNT];
+    struct script_value area_light[SKYLIGHT_COUNT];
     if (!sky)
         return error_no_memory(error, "a sky");
     *sky = (struct sky){.kind = SKY_GRADIENT};
@@ -287,10 +287,10 @@ static bool gr_sky_light(struct script_context *context, const struct script_val
         *sky = (struct sky){.kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector};
     light.sky = sky;
     for (int i = 0; i < SKYLIGHT_COUNT; i++)
-        lamp[i] = args[i];
+        area_light[i] = args[i];
     if (!args[LIGHT_COLOUR].given)
-        lamp[LIGHT_COLOUR].vector = vec3_all(1);
-    return give_light(context, &light, lamp, result, error);
+        area_light[LIGHT_COLOUR].vector = vec3_all(1);
+    return give_light(context, &light, area_light, result, error);
 }
 
 /* The rows of the table. */

@@ -291,9 +291,9 @@ struct search {
 
 static void scan_file(struct search *search, const char *path, int depth);
 
-static bool try_path(const struct search *search, char out[PATHS], const char *folder, const char *between,
+static bool try_path(const struct search *search, char out[PATHS], const char *folder, const char *separator,
                      const char *name, const char *end) {
-    int length = snprintf(out, PATHS, "%s%s%s%s", folder, between, name, end);
+    int length = snprintf(out, PATHS, "%s%s%s%s", folder, separator, name, end);
     return (size_t)length < PATHS && path_policy_is_readable(search->path_policy, out);
 }
 
@@ -427,9 +427,9 @@ bool order_detect(const char *path, const char *library_folder, const struct pat
     conclude(&search.evidence, finding);
     if (!search.evidence.is_new && !search.evidence.is_old) {
         struct siblings siblings = {.search = &search, .self = slash ? slash + 1 : path};
-        const char *around = folder > 0 ? search.folder : ".";
-        if (file_canonical(around, siblings.folder, sizeof siblings.folder))
-            (void)file_list(around, SIBLINGS, ask_sibling, &siblings);
+        const char *start = folder > 0 ? search.folder : ".";
+        if (file_canonical(start, siblings.folder, sizeof siblings.folder))
+            (void)file_list(start, SIBLINGS, ask_sibling, &siblings);
         if (siblings.votes_old > siblings.votes_new) {
             finding->order = ORDER_OLD;
             memcpy(finding->reason, siblings.reason, sizeof finding->reason);

@@ -19,7 +19,7 @@ struct control {
     _Atomic uint32_t tiles_done;                /* of the picture being made */
     _Atomic uint32_t tiles;                     /* 0 until its scene is built */
     _Atomic uint32_t handout;                   /* an enum handout */
-    _Atomic int enough;                         /* not 0: finish the tiles under way, begin no others */
+    _Atomic int drain;                          /* not 0: finish the tiles under way, begin no others */
     struct progress_estimate progress_estimate; /* the progress of the picture, where it is wanted */
     _Atomic uint32_t build_step;                /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done;                /* thousandths of that step */

@@ -75,7 +75,7 @@ bool picture_film_size(const struct picture_request *request, size_t *bytes, str
     return film_size_layered(request->width, request->height, request->record, layers, bytes, error);
 }
 
-void picture_film_place(const struct picture_request *request, void *block, struct film *film) {
+void picture_film_layout(const struct picture_request *request, void *block, struct film *film) {
     film_layout(film, block, request->width, request->height, request->record);
     film_layout_layers(film, block, request->layers & AOV_ALL);
     film->x0 = request->x0;

@@ -60,13 +60,13 @@ struct picked {
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];
-    uint64_t route;                      /* to it (viewer/view_overlay_internal.h); 0: not known */
-    uint64_t solid;                      /* of an operand: the route to the solid; else 0 */
-    uint32_t levels;                     /* nodes above it */
-    int32_t up;                          /* as it was asked for, but no farther than there are nodes */
-    uint32_t below;                      /* operands below it on the way to the surface that was hit */
-    uint32_t material_serial;            /* of the base, which can be changed; 0: it is plain gray */
-    double look[MATERIAL_PART_PARTS][3]; /* of that base */
+    uint64_t route;                        /* to it (viewer/view_overlay_internal.h); 0: not known */
+    uint64_t solid;                        /* of an operand: the route to the solid; else 0 */
+    uint32_t levels;                       /* nodes above it */
+    int32_t up;                            /* as it was asked for, but no farther than there are nodes */
+    uint32_t below;                        /* operands below it on the way to the surface that was hit */
+    uint32_t material_serial;              /* of the base, which can be changed; 0: it is plain gray */
+    double inputs[MATERIAL_PART_PARTS][3]; /* of that base */
     uint32_t idle_parts; /* bit k: part k changes nothing at the point, as glTF's metalness replaces ks */
     bool can_own;        /* a shape was hit and selected: it can be given a material of its own */
     double distance;     /* from the eye */
@@ -142,7 +142,7 @@ enum { LIGHTS_PER_MESSAGE = 32 };
 struct light_info {
     uint32_t kind;       /* an enum light_kind, for its name */
     uint32_t properties; /* of enum light_property */
-    bool placed;         /* its position is known */
+    bool has_position;   /* its position is known */
     struct vec3 position, colour;
     struct vec3 direction, edge1, edge2; /* as in struct light, zero where it has none */
     double radius, cos_outer;
@@ -241,7 +241,7 @@ bool message_is_valid(const struct message *message);
 /* Bytes of the memory of the film, layers and overlay included. False: too large. */
 bool picture_film_size(const struct picture_request *request, size_t *bytes, struct error *error);
 /* The film in that memory, with its layers and the part of the picture that it is. */
-void picture_film_place(const struct picture_request *request, void *block, struct film *film);
+void picture_film_layout(const struct picture_request *request, void *block, struct film *film);
 /* Where the overlay of a picture in a window is in that memory: behind the layers. */
 void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *buffers);
 /* The film of a pass in the same memory: the rectangle of the picture, divided. */

@@ -554,15 +554,15 @@ bool output_name_numbered(const char *pattern) {
 }
 
 bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
-    struct piece place = find_number(pattern);
+    struct piece position = find_number(pattern);
     size_t length = 0;
     for (const char *at = pattern; *at && length < size;) {
-        if (place.length > 0 && at == place.text) {
+        if (position.length > 0 && at == position.text) {
             int width = atoi(at + 1);
             bool zeros = at[1] == '0';
             int printed = snprintf(out + length, size - length, zeros ? "%0*u" : "%*u", width, number);
             length += (size_t)printed;
-            at += place.length;
+            at += position.length;
             continue;
         }
         if (at[0] == '%' && at[1] == '%')

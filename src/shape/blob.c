@@ -39,16 +39,16 @@ static double field(const struct blob_element *e, double distance) {
 /* ---- building ---- */
 
 /* The search for the point that is furthest along a direction. */
-struct reach {
+struct extent {
     const struct blob *blob;
     struct vec3 g;
     double furthest; /* dot(g, p) of the cells found so far */
     uint32_t work;
 };
 
-static bool may_be_inside(struct reach *search, const struct box *cell) {
+static bool may_be_inside(struct extent *search, const struct box *cell) {
     struct vec3 middle = vec3_add(vec3_scale(cell->min, 0.5), vec3_scale(cell->max, 0.5));
-    double reach = vec3_length(vec3_sub(cell->max, middle)), sum = 0;
+    double extent = vec3_length(vec3_sub(cell->max, middle)), sum = 0;
     const struct part_tree *tree = &search->blob->tree;
     for (uint32_t n = 0; n < tree->node_count;) {
         const struct part_node *node = &tree->nodes[n];
@@ -60,7 +60,7 @@ static bool may_be_inside(struct reach *search, const struct box *cell) {
         for (uint32_t i = 0; i < node->count; i++) {
             const struct blob_element *e = &search->blob->elements[tree->order[node->first + i]];
             double distance = vec3_length(vec3_sub(middle, axis_point(e, middle)));
-            sum += field(e, e->strength > 0 ? fmax(0, distance - reach) : distance + reach);
+            sum += field(e, e->strength > 0 ? fmax(0, distance - extent) : distance + extent);
             search->work++;
         }
         n++;
@@ -79,7 +79,7 @@ static unsigned front(struct vec3 g) {
 
 /* Cells behind the current maximum are left out, and so are those in which the sum cannot attain the threshold; the
  * cells in front come first. A cell of the last level, or any when the search has taken too long, counts as full. */
-static void reach_along(struct reach *search, const struct box *cell, int depth) {
+static void extent_along(struct extent *search, const struct box *cell, int depth) {
     double max = vec3_dot(search->g, corner(cell, front(search->g)));
     if (max <= search->furthest)
         return;
@@ -91,7 +91,7 @@ static void reach_along(struct reach *search, const struct box *cell, int depth)
             for (unsigned i = 0; i < 8; i++) {
                 struct vec3 end = corner(cell, i ^ front(search->g));
                 struct box child = {vec3_min(middle, end), vec3_max(middle, end)};
-                reach_along(search, &child, depth + 1);
+                extent_along(search, &child, depth + 1);
             }
             return;
         }
@@ -100,7 +100,7 @@ static void reach_along(struct reach *search, const struct box *cell, int depth)
 }
 
 /* k (1 - x^2)^2 = threshold. */
-static double reach_of_one(const struct blob *blob) {
+static double extent_of_one(const struct blob *blob) {
     const struct blob_element *e = &blob->elements[0];
     return e->radius * sqrt(fmax(1 - sqrt(blob->threshold / e->strength), 0)) * (1 + 0x1p-40);
 }
@@ -109,10 +109,10 @@ static double furthest(const struct blob *blob, struct vec3 g) {
     const struct blob_element *e = &blob->elements[0];
     if (blob->count == 1)
         return e->strength >= blob->threshold
-                   ? fmax(vec3_dot(g, e->a), vec3_dot(g, e->b)) + reach_of_one(blob) * vec3_length(g)
+                   ? fmax(vec3_dot(g, e->a), vec3_dot(g, e->b)) + extent_of_one(blob) * vec3_length(g)
                    : vec3_dot(g, e->a);
-    struct reach search = {.blob = blob, .g = g, .furthest = -INFINITY};
-    reach_along(&search, &blob->bounds, 0);
+    struct extent search = {.blob = blob, .g = g, .furthest = -INFINITY};
+    extent_along(&search, &blob->bounds, 0);
     return search.furthest > -INFINITY ? search.furthest : vec3_dot(g, e->a); /* the threshold is attained nowhere */
 }
 

@@ -36,7 +36,7 @@ static struct vec3 control(const struct curve_piece *piece, int k) {
     return vec3_make(piece->c[0][k], piece->c[1][k], piece->c[2][k]);
 }
 
-static struct vec3 place(const struct curve_piece *piece, double x) {
+static struct vec3 curve_point(const struct curve_piece *piece, double x) {
     return vec3_make(cubic_value(piece->c[0], x), cubic_value(piece->c[1], x), cubic_value(piece->c[2], x));
 }
 
@@ -167,7 +167,7 @@ static struct vec3 across(struct vec3 a, struct vec3 direction) {
 
 static bool offer(const struct curve_piece *piece, uint32_t part, double x, const struct line *line,
                   struct geom_scratch *scratch) {
-    struct vec3 q = vec3_sub(place(piece, x), line->origin);
+    struct vec3 q = vec3_sub(curve_point(piece, x), line->origin);
     double s = vec3_dot(q, line->direction), width = fabs(cubic_value(piece->c[3], x));
     if (!(2 * vec3_length(vec3_add_scaled(q, line->direction, -s)) <= width))
         return true;
@@ -252,7 +252,7 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
         facing = fabs(along.x) < 0.9 ? across(vec3_make(1, 0, 0), along) : across(vec3_make(0, 1, 0), along);
     facing = vec3_normalize(facing);
     struct vec3 side = vec3_cross(along, facing);
-    double off = width > 0 ? vec3_dot(vec3_sub(point, place(piece, x)), side) / width : 0;
+    double off = width > 0 ? vec3_dot(vec3_sub(point, curve_point(piece, x)), side) / width : 0;
     off = fmin(fmax(off, -0.5), 0.5);
     struct vec3 round = vec3_add(vec3_scale(side, 2 * off), vec3_scale(facing, sqrt(1 - 4 * off * off)));
     double size = fmax(vec3_max_abs(curve->bounds.min), vec3_max_abs(curve->bounds.max));

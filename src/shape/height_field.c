@@ -132,7 +132,7 @@ static struct vec3 point_at(const struct height_field *f, uint32_t column, uint3
 
 /* The greatest dot(g, p) over the points of a block of 2^k cells a side, if it is above what was found: blocks whose
  * corners do not reach so far are left out, the one in front comes first. */
-static void reach_along(const struct height_field *f, struct vec3 g, int k, uint32_t i, uint32_t j, double *found) {
+static void extent_along(const struct height_field *f, struct vec3 g, int k, uint32_t i, uint32_t j, double *found) {
     const struct level *level = &f->levels[k];
     if (i >= level->columns || j >= level->rows)
         return;
@@ -147,12 +147,12 @@ static void reach_along(const struct height_field *f, struct vec3 g, int k, uint
     if (vec3_dot(g, vec3_make(x, g.y > 0 ? r.hi : r.lo, z)) <= *found)
         return;
     for (uint32_t n = 0; n < 4; n++)
-        reach_along(f, g, k - 1, 2 * i + ((n & 1) ^ right), 2 * j + ((n >> 1) ^ behind), found);
+        extent_along(f, g, k - 1, 2 * i + ((n & 1) ^ right), 2 * j + ((n >> 1) ^ behind), found);
 }
 
 static double furthest(const struct height_field *f, struct vec3 g) {
     double found = f->open ? -INFINITY : fmax(g.x, 0) + g.y * f->floor + fmax(g.z, 0);
-    reach_along(f, g, f->level_count - 1, 0, 0, &found);
+    extent_along(f, g, f->level_count - 1, 0, 0, &found);
     return found;
 }
 
@@ -404,8 +404,8 @@ bool height_field_nearest(const struct height_field *f, const struct ray *ray, s
 }
 
 /* The cell at a place of the unit square, and where in it. */
-static uint32_t cell_at(double place, uint32_t cells, double *inside) {
-    double scaled = fmin(fmax(place, 0), 1) * cells;
+static uint32_t cell_at(double position, uint32_t cells, double *inside) {
+    double scaled = fmin(fmax(position, 0), 1) * cells;
     uint32_t cell = (uint32_t)scaled;
     if (cell >= cells)
         cell = cells - 1;

@@ -283,7 +283,7 @@ static bool push(const struct search *f, double x, double sign) {
 
 /* The root between lo and hi, where G has different signs: steps of Newton's inside the bracket while they shrink, else
  * halves. G' is infinite where w is zero, at the ends of the halves of the hyperbola; there halving starts it off. */
-static double root_between(const struct search *f, double sign, double lo, double hi, double g_lo, double g_hi) {
+static double bracketed_root(const struct search *f, double sign, double lo, double hi, double g_lo, double g_hi) {
     const struct hyperbola *hy = f->hy;
     const double *p = f->piece->p, *q = f->piece->q;
     bool rising = g_lo < 0;
@@ -379,9 +379,9 @@ static bool roots_of_half(const struct search *f, double sign, double lo, double
                 g = value(hy, sign, radius_at(f->piece, x), height_at(f->piece, x));
             }
         }
-        if (middle > lo && (g_lo < 0) != (g < 0) && !push(f, root_between(f, sign, lo, middle, g_lo, g), sign))
+        if (middle > lo && (g_lo < 0) != (g < 0) && !push(f, bracketed_root(f, sign, lo, middle, g_lo, g), sign))
             return false;
-        return (g < 0) == (g_hi < 0) || push(f, root_between(f, sign, middle, hi, g, g_hi), sign);
+        return (g < 0) == (g_hi < 0) || push(f, bracketed_root(f, sign, middle, hi, g, g_hi), sign);
     }
     struct span stack[DEEPEST + 2];
     stack[0] = (struct span){.lo = lo, .hi = hi, .g_lo = g_lo, .g_hi = g_hi};
@@ -394,7 +394,7 @@ static bool roots_of_half(const struct search *f, double sign, double lo, double
         if (!odd && (!turn || none || span.depth == DEEPEST))
             continue;
         if (!turn || span.depth == DEEPEST) {
-            if (!push(f, root_between(f, sign, span.lo, span.hi, span.g_lo, span.g_hi), sign))
+            if (!push(f, bracketed_root(f, sign, span.lo, span.hi, span.g_lo, span.g_hi), sign))
                 return false;
             continue;
         }
@@ -412,7 +412,7 @@ static bool roots_of_half(const struct search *f, double sign, double lo, double
 }
 
 /* Where the piece passes the radius h; one of its ends is beyond, the other is not. */
-static double place_of_radius(const struct outline_piece *piece, double h) {
+static double parameter_of_radius(const struct outline_piece *piece, double h) {
     if (piece->straight)
         return (h - piece->p[0]) / (piece->p[3] - piece->p[0]);
     double b[4], roots[3];
@@ -429,7 +429,7 @@ static bool piece_crossings(const struct search *f) {
     const struct outline_piece *c = f->piece;
     bool in0 = c->p[0] > hy->h, in1 = c->p[3] > hy->h;
     if (hy->c == 0)
-        return in0 == in1 || push(f, place_of_radius(c, hy->h), 1);
+        return in0 == in1 || push(f, parameter_of_radius(c, hy->h), 1);
     if (!in0 && !in1)
         return true;
     double lo = 0, hi = 1, g_lo[2], g_hi[2];
@@ -439,14 +439,14 @@ static bool piece_crossings(const struct search *f) {
         g_hi[k] = value(hy, sign, c->p[3], c->q[3]);
     }
     if (in0 != in1) {
-        double x = place_of_radius(c, hy->h), g = hy->c * height_at(c, x) - hy->c * hy->y_foot;
+        double x = parameter_of_radius(c, hy->h), g = hy->c * height_at(c, x) - hy->c * hy->y_foot;
         if (in0)
             hi = x, g_hi[0] = g_hi[1] = g;
         else
             lo = x, g_lo[0] = g_lo[1] = g;
         if (!(lo < hi)) { /* nothing but the end itself is beyond h */
-            bool between = in0 ? (g_lo[0] < 0) != (g_lo[1] < 0) : (g_hi[0] < 0) != (g_hi[1] < 0);
-            return !between || push(f, lo < 1 ? lo : 1, 1);
+            bool differs = in0 ? (g_lo[0] < 0) != (g_lo[1] < 0) : (g_hi[0] < 0) != (g_hi[1] < 0);
+            return !differs || push(f, lo < 1 ? lo : 1, 1);
         }
     }
     return roots_of_half(f, -1, lo, hi, g_lo[0], g_hi[0]) && roots_of_half(f, 1, lo, hi, g_lo[1], g_hi[1]);

@@ -80,7 +80,7 @@ static bool disc_holds(double inner, double a, double b) {
     return square <= 1 && square >= inner * inner;
 }
 /* How far it reaches along a direction whose parts along u and v are given. */
-static double disc_reach(double u, double v) {
+static double disc_extent(double u, double v) {
     return vec3_length(vec3_make(u, v, 0));
 }
 
@@ -157,22 +157,22 @@ bool planar_polygon(struct arena *arena, const struct vec3 *points, const uint32
         x_lo = fmin(x_lo, vec3_dot(p, x)), x_hi = fmax(x_hi, vec3_dot(p, x));
         z_lo = fmin(z_lo, vec3_dot(p, z)), z_hi = fmax(z_hi, vec3_dot(p, z));
     }
-    double(*flat_points)[2] = arena_alloc_array(arena, count, sizeof *flat_points);
+    double(*planar_points)[2] = arena_alloc_array(arena, count, sizeof *planar_points);
     struct vec3 *corners = arena_alloc_array(arena, count, sizeof *corners);
     uint32_t *own_ends = arena_alloc_array(arena, outlines, sizeof *own_ends);
     struct polygon *polygon = arena_alloc(arena, sizeof *polygon);
     *why = NULL;
-    if (!flat_points || !corners || !own_ends || !polygon)
+    if (!planar_points || !corners || !own_ends || !polygon)
         return false;
     for (uint32_t i = 0; i < count; i++) {
         struct vec3 p = vec3_sub(points[i], points[0]);
-        flat_points[i][0] = (vec3_dot(p, x) - x_lo) / (x_hi - x_lo);
-        flat_points[i][1] = (vec3_dot(p, z) - z_lo) / (z_hi - z_lo);
+        planar_points[i][0] = (vec3_dot(p, x) - x_lo) / (x_hi - x_lo);
+        planar_points[i][1] = (vec3_dot(p, z) - z_lo) / (z_hi - z_lo);
         corners[i] = vec3_add_scaled(points[i], n, -vec3_dot(n, p));
     }
     for (uint32_t i = 0; i < outlines; i++)
         own_ends[i] = ends[i];
-    *polygon = (struct polygon){outlines, own_ends, (const double(*)[2])flat_points, largest, corners};
+    *polygon = (struct polygon){outlines, own_ends, (const double(*)[2])planar_points, largest, corners};
     *out = (struct planar){.kind = PLANAR_POLYGON,
                            .origin = vec3_add_scaled(vec3_add_scaled(points[0], x, x_lo), z, z_lo),
                            .u = vec3_scale(x, x_hi - x_lo),
@@ -292,9 +292,9 @@ void planar_extent(const struct planar *f, struct vec3 g, double *lo, double *hi
         *hi += fmax(u, 0) + fmax(v, 0);
         return;
     case PLANAR_DISC: {
-        double reach = disc_reach(u, v);
-        *lo -= reach;
-        *hi += reach;
+        double extent = disc_extent(u, v);
+        *lo -= extent;
+        *hi += extent;
         return;
     }
     case PLANAR_TRIANGLE:

@@ -141,8 +141,8 @@ static bool outline_crossings(const struct prism *prism, double ox, double oz, d
                 count = 1;
             }
             for (int k = 0; k < count; k++) {
-                double x = roots[k], way = dx * (cubic_value(c->p, x) - ox) + dz * (cubic_value(c->q, x) - oz);
-                if (!geom_scratch_push(scratch, (struct crossing){.t = way, .u = x, .part = SIDES + part}))
+                double x = roots[k], along = dx * (cubic_value(c->p, x) - ox) + dz * (cubic_value(c->q, x) - oz);
+                if (!geom_scratch_push(scratch, (struct crossing){.t = along, .u = x, .part = SIDES + part}))
                     return false;
             }
         }
@@ -230,8 +230,8 @@ void prism_describe(const struct prism *prism, const struct ray *ray, const stru
                     struct surface *out) {
     struct vec3 p = ray_at(ray, crossing->t), n = {0, 0, 0}, min = prism->bounds.min, max = prism->bounds.max;
     struct vec3 size = vec3_sub(max, min);
-    double reach = fmax(vec3_max_abs(min), vec3_max_abs(max));
-    *out = (struct surface){.has_uv = true, .error = 0x1p-48 * reach};
+    double extent = fmax(vec3_max_abs(min), vec3_max_abs(max));
+    *out = (struct surface){.has_uv = true, .error = 0x1p-48 * extent};
     if (crossing->part < SIDES) {
         bool top = crossing->part == TOP;
         n.y = top ? 1 : -1;

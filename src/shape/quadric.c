@@ -118,9 +118,9 @@ struct box quadric_bounds(const struct quadric *q) {
         return q->limits;
     if (!(e.value > 0))
         return box_empty();
-    struct vec3 reach = {sqrt(e.part.cx * e.value), sqrt(e.part.cy * e.value), sqrt(e.part.cz * e.value)};
-    reach = vec3_scale(reach, FORM_ROUNDING);
-    struct box whole = {vec3_sub(e.part.centre, reach), vec3_add(e.part.centre, reach)};
+    struct vec3 extent = {sqrt(e.part.cx * e.value), sqrt(e.part.cy * e.value), sqrt(e.part.cz * e.value)};
+    extent = vec3_scale(extent, FORM_ROUNDING);
+    struct box whole = {vec3_sub(e.part.centre, extent), vec3_add(e.part.centre, extent)};
     return box_meet(whole, q->limits);
 }
 
@@ -131,13 +131,13 @@ bool quadric_extent(const struct quadric *q, struct vec3 g, double *lo, double *
         return false;
     double form = (e.part.cx * g.x + 2 * e.part.kxy * g.y + 2 * e.part.kxz * g.z) * g.x +
                   (e.part.cy * g.y + 2 * e.part.kyz * g.z) * g.y + e.part.cz * g.z * g.z;
-    double middle = vec3_dot(g, e.part.centre), reach = form > 0 ? sqrt(form * e.value) * FORM_ROUNDING : 0;
+    double middle = vec3_dot(g, e.part.centre), extent = form > 0 ? sqrt(form * e.value) * FORM_ROUNDING : 0;
     /* The box that limits it may be nearer. */
     struct vec3 half = vec3_scale(vec3_sub(own.max, own.min), 0.5), box_centre = vec3_add(own.min, half);
     double box_middle = vec3_dot(g, box_centre);
-    double box_reach = fabs(g.x) * half.x + fabs(g.y) * half.y + fabs(g.z) * half.z;
-    *lo = fmax(middle - reach, box_middle - box_reach);
-    *hi = fmin(middle + reach, box_middle + box_reach);
+    double box_extent = fabs(g.x) * half.x + fabs(g.y) * half.y + fabs(g.z) * half.z;
+    *lo = fmax(middle - extent, box_middle - box_extent);
+    *hi = fmin(middle + extent, box_middle + box_extent);
     return true;
 }
 
@@ -202,14 +202,14 @@ static void describe_face_image(const struct box *limits, struct surface *out) {
     for (int axis = 0; axis < 3; axis++) {
         bool ends = has_both_ends(limits, axis);
         double lo = ends ? vec3_get(limits->min, axis) : 0, size = ends ? vec3_get(limits->max, axis) - lo : 1;
-        double place = (vec3_get(out->point, axis) - lo) / size;
+        double fraction = (vec3_get(out->point, axis) - lo) / size;
         double along_u = vec3_get(level, axis), along_v = vec3_get(up, axis);
         if (along_u != 0) {
-            out->u = along_u > 0 ? place : 1 - place;
+            out->u = along_u > 0 ? fraction : 1 - fraction;
             out->dpdu = vec3_scale(level, size);
         }
         if (along_v != 0) {
-            out->v = along_v > 0 ? place : 1 - place;
+            out->v = along_v > 0 ? fraction : 1 - fraction;
             out->dpdv = vec3_scale(up, size);
         }
     }

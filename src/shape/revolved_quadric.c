@@ -127,9 +127,9 @@ static void extend_by_circle(const struct revolved_quadric *c, double s, double 
     double rounding = 0x1p-48 * (fabs(c->a) * s * s + fabs(c->b * s) + fabs(c->c));
     if (!(s >= c->lo && s <= c->hi && square >= -rounding))
         return;
-    double reach = across * sqrt(fmax(square, 0));
-    *lo = fmin(*lo, along * s - reach);
-    *hi = fmax(*hi, along * s + reach);
+    double extent = across * sqrt(fmax(square, 0));
+    *lo = fmin(*lo, along * s - extent);
+    *hi = fmax(*hi, along * s + extent);
 }
 
 void revolved_quadric_extent(const struct revolved_quadric *c, struct vec3 g, double *lo, double *hi) {
@@ -171,10 +171,10 @@ void revolved_quadric_extent(const struct revolved_quadric *c, struct vec3 g, do
 
 struct revolved_quadric revolved_quadric_frustum(struct vec3 from, double from_radius, struct vec3 to, double to_radius,
                                                  bool open) {
-    struct vec3 way = vec3_sub(to, from);
-    double length = vec3_length(way), slope = (to_radius - from_radius) / length;
+    struct vec3 difference = vec3_sub(to, from);
+    double length = vec3_length(difference), slope = (to_radius - from_radius) / length;
     return (struct revolved_quadric){.base = from,
-                                     .axis = vec3_normalize(way),
+                                     .axis = vec3_normalize(difference),
                                      .a = slope * slope,
                                      .b = 2 * from_radius * slope,
                                      .c = from_radius * from_radius,
@@ -202,11 +202,11 @@ struct revolved_quadric revolved_quadric_paraboloid(double radius, double height
  * The slope follows from the rim; differences of squares are products, so that nothing cancels. */
 
 struct revolved_quadric revolved_quadric_one_sheet(double waist, double rim, double lo, double hi, bool open) {
-    double reach = fmax(fabs(lo), fabs(hi)), slope = (rim - waist) / reach * ((rim + waist) / reach);
+    double extent = fmax(fabs(lo), fabs(hi)), slope = (rim - waist) / extent * ((rim + waist) / extent);
     return revolved_quadric_upright(slope, 0, waist * waist, lo, hi, open);
 }
 
-struct revolved_quadric revolved_quadric_two_sheets(double gap, double reach, double rim, bool open) {
-    double slope = rim / (reach - gap) * (rim / (reach + gap));
-    return revolved_quadric_upright(slope, 0, -slope * gap * gap, -reach, reach, open);
+struct revolved_quadric revolved_quadric_two_sheets(double gap, double extent, double rim, bool open) {
+    double slope = rim / (extent - gap) * (rim / (extent + gap));
+    return revolved_quadric_upright(slope, 0, -slope * gap * gap, -extent, extent, open);
 }

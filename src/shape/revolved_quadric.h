@@ -59,6 +59,6 @@ struct revolved_quadric revolved_quadric_paraboloid(double radius, double height
 /* One sheet: radius `waist` at y = 0 and `rim` > waist at y = lo or hi, whichever is farther. lo < hi. */
 struct revolved_quadric revolved_quadric_one_sheet(double waist, double rim, double lo, double hi, bool open);
 /* Two sheets with their tips at y = -gap and y = gap, radius `rim` at y = -reach and y = reach > gap > 0. */
-struct revolved_quadric revolved_quadric_two_sheets(double gap, double reach, double rim, bool open);
+struct revolved_quadric revolved_quadric_two_sheets(double gap, double extent, double rim, bool open);
 
 #endif

@@ -25,9 +25,9 @@ const char *shape_kind_name(enum shape_kind kind) {
 static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, double *hi) {
     switch (shape->kind) {
     case SHAPE_SPHERE: {
-        double middle = vec3_dot(g, shape->sphere.centre), reach = vec3_length(g) * shape->sphere.radius;
-        *lo = middle - reach;
-        *hi = middle + reach;
+        double middle = vec3_dot(g, shape->sphere.centre), extent = vec3_length(g) * shape->sphere.radius;
+        *lo = middle - extent;
+        *hi = middle + extent;
         return true;
     }
     case SHAPE_REVOLVED_QUADRIC:

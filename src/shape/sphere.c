@@ -35,19 +35,19 @@ static struct vec3 scaled(struct vec3 a, int exponent) {
 }
 
 static bool solve_scaled(struct vec3 f, struct vec3 d, double radius, double t[2]) {
-    double reach = fmax(vec3_max_abs(f), radius), speed = vec3_max_abs(d);
+    double extent = fmax(vec3_max_abs(f), radius), speed = vec3_max_abs(d);
     if (!(speed > 0) || !vec3_finite(d) || !vec3_finite(f) || !isfinite(radius))
         return false;
-    int reach_exponent, speed_exponent;
-    (void)frexp(reach, &reach_exponent);
+    int extent_exponent, speed_exponent;
+    (void)frexp(extent, &extent_exponent);
     (void)frexp(speed, &speed_exponent);
-    radius = ldexp(radius, -reach_exponent);
+    radius = ldexp(radius, -extent_exponent);
     if (!(radius > 0x1p-299)) /* from there it is less than a point */
         return false;
-    if (!solve(scaled(f, -reach_exponent), scaled(d, -speed_exponent), radius, t))
+    if (!solve(scaled(f, -extent_exponent), scaled(d, -speed_exponent), radius, t))
         return false;
-    t[0] = ldexp(t[0], reach_exponent - speed_exponent);
-    t[1] = ldexp(t[1], reach_exponent - speed_exponent);
+    t[0] = ldexp(t[0], extent_exponent - speed_exponent);
+    t[1] = ldexp(t[1], extent_exponent - speed_exponent);
     return true;
 }
 
@@ -134,7 +134,7 @@ void ellipsoid_describe(const struct ellipsoid *e, const struct ray *ray, const 
 }
 
 void ellipsoid_extent(const struct ellipsoid *e, struct vec3 g, double *lo, double *hi) {
-    double middle = vec3_dot(g, e->centre), reach = vec3_length(vec3_mul(g, e->radii));
-    *lo = middle - reach;
-    *hi = middle + reach;
+    double middle = vec3_dot(g, e->centre), extent = vec3_length(vec3_mul(g, e->radii));
+    *lo = middle - extent;
+    *hi = middle + extent;
 }

@@ -34,8 +34,8 @@ static struct norm norm_of(double a, double b, double p) {
 }
 
 static double value_at(const struct superellipsoid *s, struct vec3 p) {
-    double flat = norm_of(fabs(p.x), fabs(p.z), 2 / s->e).value;
-    return norm_of(flat, fabs(p.y), 2 / s->n).value;
+    double section = norm_of(fabs(p.x), fabs(p.z), 2 / s->e).value;
+    return norm_of(section, fabs(p.y), 2 / s->n).value;
 }
 
 static double slope_part(double gradient, double coordinate, double direction) {
@@ -44,9 +44,9 @@ static double slope_part(double gradient, double coordinate, double direction) {
 
 /* N at a point and its slope along d, and the gradient; outward. */
 static double value_and_slope(const struct superellipsoid *s, struct vec3 p, struct vec3 d, double *slope) {
-    struct norm flat = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(flat.value, fabs(p.y), 2 / s->n);
-    *slope =
-        slope_part(all.da * flat.da, p.x, d.x) + slope_part(all.db, p.y, d.y) + slope_part(all.da * flat.db, p.z, d.z);
+    struct norm section = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(section.value, fabs(p.y), 2 / s->n);
+    *slope = slope_part(all.da * section.da, p.x, d.x) + slope_part(all.db, p.y, d.y) +
+             slope_part(all.da * section.db, p.z, d.z);
     return all.value;
 }
 
@@ -168,16 +168,19 @@ static void search_piece(struct search *f, double lo, double hi, bool lo_in, boo
     struct range x = range_of(fabs(p.x), fabs(q.x)), y = range_of(fabs(p.y), fabs(q.y)),
                  z = range_of(fabs(p.z), fabs(q.z));
     double e = 2 / f->s->e, n = 2 / f->s->n;
-    struct norm flat_lo = norm_of(x.lo, z.lo, e), flat_hi = norm_of(x.hi, z.hi, e);
-    if (norm_of(flat_lo.value, y.lo, n).value > 1 + 0x1p-40 || norm_of(flat_hi.value, y.hi, n).value < 1 - 0x1p-40)
+    struct norm section_lo = norm_of(x.lo, z.lo, e), section_hi = norm_of(x.hi, z.hi, e);
+    if (norm_of(section_lo.value, y.lo, n).value > 1 + 0x1p-40 ||
+        norm_of(section_hi.value, y.hi, n).value < 1 - 0x1p-40)
         return;
     /* The slopes of |(a, b)| at both ends of what the ratio a / b can be. */
-    struct norm flat_a = norm_of(x.lo, z.hi, e), flat_b = norm_of(x.hi, z.lo, e);
-    struct norm all_a = norm_of(flat_lo.value, y.hi, n), all_b = norm_of(flat_hi.value, y.lo, n);
-    struct range all_flat = range_of(all_a.da, all_b.da), all_y = range_of(all_a.db, all_b.db), slope = {0, 0};
-    slope = range_add_scaled(slope, range_times(all_flat, range_of(flat_a.da, flat_b.da)), fabs(q.x) - fabs(p.x));
+    struct norm section_a = norm_of(x.lo, z.hi, e), section_b = norm_of(x.hi, z.lo, e);
+    struct norm all_a = norm_of(section_lo.value, y.hi, n), all_b = norm_of(section_hi.value, y.lo, n);
+    struct range full_norm = range_of(all_a.da, all_b.da), all_y = range_of(all_a.db, all_b.db), slope = {0, 0};
+    slope =
+        range_add_scaled(slope, range_times(full_norm, range_of(section_a.da, section_b.da)), fabs(q.x) - fabs(p.x));
     slope = range_add_scaled(slope, all_y, fabs(q.y) - fabs(p.y));
-    slope = range_add_scaled(slope, range_times(all_flat, range_of(flat_a.db, flat_b.db)), fabs(q.z) - fabs(p.z));
+    slope =
+        range_add_scaled(slope, range_times(full_norm, range_of(section_a.db, section_b.db)), fabs(q.z) - fabs(p.z));
     bool monotonic = slope.lo >= 0 || slope.hi <= 0;
     if (monotonic || depth == 0) {
         if (lo_in != hi_in)
@@ -236,10 +239,10 @@ bool superellipsoid_contains(const struct superellipsoid *s, struct vec3 point) 
 
 /* The gradient without infinities: at a crease only its largest components count. */
 static struct vec3 outward(const struct superellipsoid *s, struct vec3 p) {
-    struct norm flat = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(flat.value, fabs(p.y), 2 / s->n);
+    struct norm section = norm_of(fabs(p.x), fabs(p.z), 2 / s->e), all = norm_of(section.value, fabs(p.y), 2 / s->n);
     double min = 0x1p-200, max = 0x1p200;
-    double gx = fmin(fmax(all.da, min), max) * fmin(fmax(flat.da, min), max), gy = fmin(all.db, max * max);
-    double gz = fmin(fmax(all.da, min), max) * fmin(fmax(flat.db, min), max);
+    double gx = fmin(fmax(all.da, min), max) * fmin(fmax(section.da, min), max), gy = fmin(all.db, max * max);
+    double gz = fmin(fmax(all.da, min), max) * fmin(fmax(section.db, min), max);
     return vec3_normalize(vec3_make(copysign(gx, p.x), copysign(gy, p.y), copysign(gz, p.z)));
 }
 

@@ -28,14 +28,14 @@ static double inner(const struct torus *torus, struct vec3 p) {
 
 /* Newton from a root of the quartic, between its neighbours; mostly it is good already. */
 static double polished(const struct torus *torus, struct vec3 o, struct vec3 d, double t, double lo, double hi) {
-    double reach = torus->major + torus->minor, enough = reach * reach * 0x1p-51, before = INFINITY, last = t;
+    double extent = torus->major + torus->minor, tolerance = extent * extent * 0x1p-51, before = INFINITY, last = t;
     for (int step = 0; step < 4; step++) {
         struct vec3 p = vec3_add_scaled(o, d, t);
         double rho = ring(p), from_ring = rho - torus->major;
         double value = from_ring * from_ring + p.y * p.y - torus->minor * torus->minor;
         if (!(fabs(value) < before)) /* no better than the step before */
             return last;
-        if (fabs(value) <= enough)
+        if (fabs(value) <= tolerance)
             return t;
         double share = rho > 0 ? from_ring / rho : 0;
         double slope = 2 * (share * (p.x * d.x + p.z * d.z) + p.y * d.y), next = t - value / slope;
@@ -55,20 +55,19 @@ static int quartic_roots(const struct torus *torus, struct vec3 o, struct vec3 d
     double oo = vec3_dot(o, o);
     double m = vec3_dot(o, d), k = oo + (torus->major - torus->minor) * (torus->major + torus->minor);
     double r4 = 4 * torus->major * torus->major;
-    double flat_dd = d.x * d.x + d.z * d.z, flat_od = o.x * d.x + o.z * d.z, flat_oo = o.x * o.x + o.z * o.z;
-    double quartic[5] = {k * k - r4 * flat_oo, 4 * m * k - 2 * r4 * flat_od, 2 * k + 4 * m * m - r4 * flat_dd, 4 * m,
-                         1};
+    double xz_dd = d.x * d.x + d.z * d.z, xz_od = o.x * d.x + o.z * d.z, xz_oo = o.x * o.x + o.z * o.z;
+    double quartic[5] = {k * k - r4 * xz_oo, 4 * m * k - 2 * r4 * xz_od, 2 * k + 4 * m * m - r4 * xz_dd, 4 * m, 1};
     return roots_polynomial(quartic, 4, lo, hi, roots);
 }
 
 int torus_crossings(const struct torus *torus, const struct ray *ray, struct crossing out[4]) {
-    double length = vec3_length(ray->direction), reach = torus->major + torus->minor;
+    double length = vec3_length(ray->direction), extent = torus->major + torus->minor;
     if (!(length > 0) || !isfinite(length))
         return 0;
     struct vec3 d = vec3_normalize(ray->direction);
     double shift = -vec3_dot(ray->origin, d);
     struct vec3 o = vec3_add_scaled(ray->origin, d, shift);
-    double room = reach * reach - vec3_dot(o, o);
+    double room = extent * extent - vec3_dot(o, o);
     if (!(room > 0))
         return 0;
     double hi = sqrt(room), lo = -hi;
@@ -82,7 +81,7 @@ int torus_crossings(const struct torus *torus, const struct ray *ray, struct cro
         } else if (!(fabs(o.y) < torus->minor)) {
             return 0;
         }
-        double margin = reach * 0x1p-20;
+        double margin = extent * 0x1p-20;
         if (!(lo <= hi + margin)) /* a line along the top may still touch it */
             return 0;
         lo -= margin;

@@ -105,7 +105,7 @@ static void format_change(const struct change *c, char *line, size_t size) {
     char name[8 * CHANGE_NAME], a[400], b[120];
     quote(name, sizeof name, c->name);
     switch (c->kind) {
-    case CHANGE_PLACE:
+    case CHANGE_TRANSFORM:
         format_numbers(a, sizeof a, c->numbers, 12);
         (void)snprintf(line, size, "gr.change_node(%s, %u, %s)\n", name, c->serial, a);
         return;

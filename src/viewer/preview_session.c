@@ -94,10 +94,10 @@ static void describe_light(const struct world *world, const struct light *light,
     const struct light *built = world && number < world->light_count ? &world->lights[number] : light;
     unsigned properties = light_properties(light);
     struct vec3 position = light->position;
-    bool placed = light_can_move(light) || light_centre(built, &position);
+    bool has_position = light_can_move(light) || light_centre(built, &position);
     *out = (struct light_info){.kind = (uint32_t)light->kind,
                                .properties = properties,
-                               .placed = placed,
+                               .has_position = has_position,
                                .position = position,
                                .colour = light->colour,
                                .direction = properties & LIGHT_HAS_DIRECTION ? light->direction : vec3_all(0),
@@ -189,7 +189,7 @@ static bool answer_click(const struct preview_state *work, const struct preview_
         return false;
     const struct material *before = changes_before(&work->changed, picked->material_serial);
     for (int part = 0; before && part < MATERIAL_PART_PARTS; part++)
-        material_part_get(before, (enum material_part)part, picked->look[part]);
+        material_part_get(before, (enum material_part)part, picked->inputs[part]);
     return true;
 }
 

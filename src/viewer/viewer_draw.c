@@ -103,8 +103,8 @@ void viewer_draw_tiles(struct viewer *viewer) {
     struct tone tone = tone_of(viewer);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool done = state == FILM_TILE_DONE, under_way = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
-        if (viewer->display.drawn[tile] || (!done && !under_way))
+        bool done = state == FILM_TILE_DONE, in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
+        if (viewer->display.drawn[tile] || (!done && !in_progress))
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {

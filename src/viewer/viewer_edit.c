@@ -87,7 +87,7 @@ static struct change node_change(const struct viewer *viewer, enum change_kind k
     const struct affine none = affine_identity();
     if (now)
         return *now;
-    if (kind == CHANGE_PLACE)
+    if (kind == CHANGE_TRANSFORM)
         memcpy(change.numbers, none.m, sizeof none.m);
     return change;
 }
@@ -110,7 +110,7 @@ static bool map_to_parent(const struct viewer *viewer, const struct transform *i
 }
 
 struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point) {
-    struct change change = node_change(viewer, CHANGE_PLACE);
+    struct change change = node_change(viewer, CHANGE_TRANSFORM);
     struct transform now, parent, then_back = transform_invert(&viewer->edit.selection.applied);
     if (!map_of(&change, &now) || !transform_from_affine(&viewer->edit.selection.picked.world_from_parent, &parent))
         return point;
@@ -120,7 +120,7 @@ struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point) {
 }
 
 static void apply_in_world(struct viewer *viewer, const struct transform *in_world) {
-    struct change change = node_change(viewer, CHANGE_PLACE);
+    struct change change = node_change(viewer, CHANGE_TRANSFORM);
     struct transform before, by;
     if (!map_of(&change, &before) || !map_to_parent(viewer, in_world, &by))
         return;
@@ -152,7 +152,7 @@ static void move_by(struct viewer *viewer, struct vec3 route) {
 static struct vec3 selection_position(const struct viewer *viewer) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     if (viewer->edit.selection.kind == SELECTED_LIGHT)
-        return light && light->placed ? light->position : viewer->fly_camera.centre;
+        return light && light->has_position ? light->position : viewer->fly_camera.centre;
     return pivot(viewer);
 }
 
@@ -258,7 +258,7 @@ void viewer_take_picked(struct viewer *viewer, const struct picked *picked) {
     viewer->edit.joins = false;
     if (!picked->hit)
         return;
-    struct change change = node_change(viewer, CHANGE_PLACE);
+    struct change change = node_change(viewer, CHANGE_TRANSFORM);
     (void)map_of(&change, &viewer->edit.selection.applied);
     viewer->fly_camera.centre = picked->position;
 }
@@ -290,8 +290,8 @@ static uint32_t count_of(const struct viewer *viewer, enum change_kind kind) {
 struct vec3 viewer_new_position(const struct viewer *viewer) {
     if (viewer->edit.selection.kind == SELECTED_NODE)
         return viewer_moved_point(viewer, viewer->edit.selection.picked.position);
-    struct vec3 eye = viewer->pass.view.camera.eye, ahead = vec3_normalize(viewer->pass.view.camera.view);
-    return vec3_add_scaled(eye, ahead, vec3_length(vec3_sub(viewer->fly_camera.centre, eye)));
+    struct vec3 eye = viewer->pass.view.camera.eye, forward = vec3_normalize(viewer->pass.view.camera.view);
+    return vec3_add_scaled(eye, forward, vec3_length(vec3_sub(viewer->fly_camera.centre, eye)));
 }
 
 /* What the child would say of a new ball or cube under the root. */
@@ -306,9 +306,9 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
                             .position = layout,
                             .has_box = true,
                             .world_from_parent = viewer->scene.world_from_root};
-    const struct material look = added_material(three(change->numbers));
+    const struct material inputs = added_material(three(change->numbers));
     for (int part = 0; part < MATERIAL_PART_PARTS; part++)
-        material_part_get(&look, (enum material_part)part, picked.look[part]);
+        material_part_get(&inputs, (enum material_part)part, picked.inputs[part]);
     pick_copy_name(picked.name, added_kind_name(change->added));
     pick_copy_name(picked.shape, added_kind_name(change->added));
     pick_copy_name(picked.material, "phong");
@@ -394,7 +394,7 @@ static struct change material_change(const struct viewer *viewer, enum material_
     struct change change = {.kind = CHANGE_MATERIAL, .serial = picked->material_serial, .part = part};
     const struct change *now = change_list_find(&viewer->edit.steps.now, &change);
     if (!now)
-        memcpy(change.numbers, picked->look[part], sizeof picked->look[part]);
+        memcpy(change.numbers, picked->inputs[part], sizeof picked->inputs[part]);
     return now ? *now : change;
 }
 

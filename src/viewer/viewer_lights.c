@@ -85,9 +85,9 @@ static bool marker_point(const struct viewer *viewer, const struct camera_frame 
     double wide = (right - left) / 2, high = (bottom - top) / 2, size = fmax(fabs(dx), fabs(dy));
     dx = size > 0 ? dx / size : 0;
     dy = size > 0 ? dy / size : 1;
-    double reach = fmin(wide / fmax(fabs(dx), 1e-9), high / fmax(fabs(dy), 1e-9));
-    *x = left + wide + reach * dx;
-    *y = top + high + reach * dy;
+    double extent = fmin(wide / fmax(fabs(dx), 1e-9), high / fmax(fabs(dy), 1e-9));
+    *x = left + wide + extent * dx;
+    *y = top + high + extent * dy;
     return isfinite(*x) && isfinite(*y);
 }
 
@@ -96,7 +96,7 @@ bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame 
     const struct light_info *light = viewer_light(viewer, number);
     if (!light || !(largest(light->colour) > 0)) /* one that was taken away is black */
         return false;
-    if (light->placed)
+    if (light->has_position)
         return marker_point(viewer, frame, light->position, x, y, seen);
     struct vec3 from = light->properties & LIGHT_HAS_DIRECTION ? vec3_negate(light->direction) : vec3_make(0, 1, 0);
     double far = 1e6 * (1 + vec3_max_abs(frame->eye));
@@ -277,7 +277,7 @@ void viewer_add_light(struct viewer *viewer) {
     put(change.numbers + 3, vec3_all(0.5));
     viewer_make_edit(viewer, &change, true, false);
     select_new(viewer, &(struct light_info){.properties = LIGHT_HAS_POSITION,
-                                            .placed = true,
+                                            .has_position = true,
                                             .position = three(change.numbers),
                                             .colour = vec3_all(0.5),
                                             .moves = true});

@@ -51,7 +51,7 @@ static void draw_circle(struct viewer *viewer, const struct camera_frame *frame,
 /* What the selected light is like: its extent, and where it shines to. */
 static void draw_form(struct viewer *viewer, const struct camera_frame *frame, const struct light_info *light) {
     struct vec3 at = light->position, a = vec3_scale(light->edge1, 0.5), b = vec3_scale(light->edge2, 0.5);
-    double reach = 0.2 * vec3_length(vec3_sub(at, frame->eye));
+    double extent = 0.2 * vec3_length(vec3_sub(at, frame->eye));
     struct vec3 corners[4] = {vec3_add(at, vec3_add(a, b)), vec3_add(at, vec3_sub(a, b)), vec3_sub(at, vec3_add(a, b)),
                               vec3_sub(at, vec3_sub(a, b))};
     uint32_t has = light->properties;
@@ -63,12 +63,12 @@ static void draw_form(struct viewer *viewer, const struct camera_frame *frame, c
     }
     if (has & LIGHT_HAS_CONE) {
         double along = light->cos_outer, aside = sqrt(fmax(0, 1 - along * along));
-        draw_circle(viewer, frame, vec3_add_scaled(at, light->direction, reach * along), light->direction,
-                    reach * aside);
+        draw_circle(viewer, frame, vec3_add_scaled(at, light->direction, extent * along), light->direction,
+                    extent * aside);
     }
-    if (light->placed && vec3_max_abs(light->direction) > 0)
-        viewer_draw_edge(viewer, frame, at, vec3_add_scaled(at, light->direction, reach), outline);
-    if (!light->placed && (has & LIGHT_HAS_DIRECTION)) { /* an arrow through the middle of the view */
+    if (light->has_position && vec3_max_abs(light->direction) > 0)
+        viewer_draw_edge(viewer, frame, at, vec3_add_scaled(at, light->direction, extent), outline);
+    if (!light->has_position && (has & LIGHT_HAS_DIRECTION)) { /* an arrow through the middle of the view */
         struct vec3 middle = viewer->fly_camera.centre;
         double half = 0.15 * vec3_length(vec3_sub(middle, frame->eye));
         struct vec3 tip = vec3_add_scaled(middle, light->direction, half), right, up;
@@ -93,7 +93,7 @@ void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame)
         canvas_line(canvas, x - r / 2, y, x + r / 2, y, colour);
         if (!(light->properties & LIGHT_IS_ENVIRONMENT))
             canvas_line(canvas, x, y - r / 2, x, y + r / 2, colour);
-        bool distant = !light->placed && (light->properties & LIGHT_HAS_DIRECTION);
+        bool distant = !light->has_position && (light->properties & LIGHT_HAS_DIRECTION);
         for (int ray = 0; distant && ray < 4; ray++) {
             double u = ray < 2 ? 1 : -1, v = ray % 2 ? 1 : -1;
             canvas_line(canvas, x + u * r, y + v * r, x + 1.6 * u * r, y + 1.6 * v * r, colour);
@@ -292,7 +292,7 @@ static void choose_part(struct viewer *viewer, struct column *column) {
     column->y += panel_line_height(panel) + 4 * scale;
 }
 
-static void draw_look(struct viewer *viewer, struct column *column) {
+static void draw_inputs(struct viewer *viewer, struct column *column) {
     struct panel *panel = &viewer->display.panel;
     char row[128];
     double numbers[3];
@@ -335,7 +335,7 @@ static void draw_node(struct viewer *viewer, struct column *column) {
     draw_text(viewer, column, row);
     draw_tools(viewer, column);
     if (viewer->edit.selection.kind == SELECTED_NODE)
-        draw_look(viewer, column);
+        draw_inputs(viewer, column);
 }
 
 static void draw_light(struct viewer *viewer, struct column *column) {
@@ -347,7 +347,7 @@ static void draw_light(struct viewer *viewer, struct column *column) {
     (void)snprintf(row, sizeof row, "light %u of %u: %s", viewer->edit.selection.light, viewer->lights.count,
                    light_kind_name((enum light_kind)light->kind));
     draw_text(viewer, column, row);
-    if (light->placed)
+    if (light->has_position)
         draw_point(viewer, column, "at", light->position);
     if (vec3_max_abs(light->direction) > 0)
         draw_point(viewer, column, "to", light->direction);

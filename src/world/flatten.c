@@ -124,7 +124,7 @@ static void *room_for_one(void *list, uint32_t count, uint32_t *capacity, size_t
     return moved;
 }
 
-static bool place_moving(struct flattening *f, const struct pose *pose, struct primitive *out) {
+static bool instantiate_moving(struct flattening *f, const struct pose *pose, struct primitive *out) {
     struct world *world = f->world;
     struct moving *moving =
         room_for_one(world->moving, world->moving_count, &f->moving_capacity, sizeof *world->moving);
@@ -168,8 +168,8 @@ static bool keep_limit(struct flattening *f, const struct box *limit) {
     return true;
 }
 
-static bool place(struct flattening *f, const struct pose *pose, const struct graphics_state *state,
-                  uint32_t prototype) {
+static bool instantiate(struct flattening *f, const struct pose *pose, const struct graphics_state *state,
+                        uint32_t prototype) {
     struct world *world = f->world;
     if (world->primitive_count == f->primitive_capacity && !grow_primitives(f))
         return false;
@@ -177,7 +177,8 @@ static bool place(struct flattening *f, const struct pose *pose, const struct gr
         return false;
     struct primitive *primitive = &f->primitives[world->primitive_count++];
     primitive->prototype = prototype;
-    return pose->above != LINK_NONE ? place_moving(f, pose, primitive) : flatten_map(f, &pose->from_node, primitive);
+    return pose->above != LINK_NONE ? instantiate_moving(f, pose, primitive)
+                                    : flatten_map(f, &pose->from_node, primitive);
 }
 
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
@@ -259,22 +260,22 @@ static bool find_prototype(struct flattening *f, const struct node *node, const 
     return true;
 }
 
-static bool place_node(struct flattening *f, const struct node *node, const struct pose *pose,
-                       const struct graphics_state *state) {
+static bool instantiate_node(struct flattening *f, const struct node *node, const struct pose *pose,
+                             const struct graphics_state *state) {
     uint32_t first, parts;
     if ((node->kind != NODE_GEOMETRY && node->kind != NODE_CSG) || node_is_placing(node))
         return true;
     if (!find_prototype(f, node, pose, state, &first, &parts))
         return false;
     for (uint32_t i = 0; i < parts; i++)
-        if (!place(f, pose, state, first + i))
+        if (!instantiate(f, pose, state, first + i))
             return false;
     return true;
 }
 
 /* Of every node on the path. What is said about the operand of a clipped or bounded node is not said of its children.
  */
-struct place_frame {
+struct instance_frame {
     struct pose pose, of_children;
     const struct graphics_state *state_of_operand, *state; /* NULL: nothing above says anything */
 };
@@ -335,7 +336,7 @@ bool flatten_check_transform(struct flattening *f, const struct node *node, cons
 }
 
 static bool enter_node(struct flattening *f, const struct node *node, const struct pose *parent,
-                       const struct graphics_state *state, struct place_frame *frame) {
+                       const struct graphics_state *state, struct instance_frame *frame) {
     frame->pose.above = parent->above;
     frame->state = state;
     if (node_moves(node)) {
@@ -345,19 +346,19 @@ static bool enter_node(struct flattening *f, const struct node *node, const stru
         struct transform parent_from_node = node_parent_from_node(node);
         frame->pose.from_node = transform_compose(&parent->from_node, &parent_from_node);
     }
-    if (!flatten_check_transform(f, node, &frame->pose.from_node) || !place_node(f, node, &frame->pose, state))
+    if (!flatten_check_transform(f, node, &frame->pose.from_node) || !instantiate_node(f, node, &frame->pose, state))
         return false;
     bool operand = node_is_placing(node) && f->world->authored.draws[node->operands[0]->index];
     frame->state_of_operand = operand ? surround(f, node, &frame->pose, state) : NULL;
     return !operand || frame->state_of_operand;
 }
 
-static bool place_all(struct flattening *f, struct scene_traversal *t) {
+static bool instantiate_all(struct flattening *f, struct scene_traversal *t) {
     const struct pose ground = {LINK_NONE, transform_identity()};
     enum scene_event event;
     uint32_t steps = 0;
     while ((event = scene_traversal_next(t)) < SCENE_END) {
-        struct place_frame *frame = scene_traversal_frame(t, 0);
+        struct instance_frame *frame = scene_traversal_frame(t, 0);
         if ((++steps & 4095) == 0 && pool_cancelled(f->pool))
             return error_set(f->error, ERROR_CANCELLED, "stopped while the scene was flattened");
         if (event == SCENE_CHILDREN)
@@ -365,7 +366,7 @@ static bool place_all(struct flattening *f, struct scene_traversal *t) {
                 (struct pose){frame->pose.above, scene_step_map(&t->steps[t->depth - 1], &frame->pose.from_node)};
         if (event != SCENE_ENTER)
             continue;
-        const struct place_frame *above = t->depth > 1 ? scene_traversal_frame(t, 1) : NULL;
+        const struct instance_frame *above = t->depth > 1 ? scene_traversal_frame(t, 1) : NULL;
         bool operand = above && scene_traversal_operand(t) != SCENE_CHILD;
         const struct pose *parent = !above ? &ground : operand ? &above->pose : &above->of_children;
         const struct graphics_state *state = !above ? NULL : operand ? above->state_of_operand : above->state;
@@ -375,15 +376,15 @@ static bool place_all(struct flattening *f, struct scene_traversal *t) {
     return event == SCENE_END || error_no_memory(f->error, "flattening the scene");
 }
 
-static bool place_scene(struct flattening *f, const struct node *root) {
+static bool instantiate_scene(struct flattening *f, const struct node *root) {
     uint32_t total = f->scene->node_total;
     f->prototype_of = mem_alloc(total * sizeof *f->prototype_of);
     if (!f->prototype_of)
         return error_no_memory(f->error, "flattening the scene");
     for (uint32_t i = 0; i < total; i++)
         f->prototype_of[i] = PROTOTYPE_UNKNOWN;
-    struct scene_traversal t = world_traversal(f->world, root, sizeof(struct place_frame));
-    bool ok = place_all(f, &t);
+    struct scene_traversal t = world_traversal(f->world, root, sizeof(struct instance_frame));
+    bool ok = instantiate_all(f, &t);
     scene_traversal_end(&t);
     mem_free(f->prototype_of);
     return ok;
@@ -401,7 +402,7 @@ bool flatten_scene(struct flattening *f, const struct node *root) {
     if (!f->primitives)
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->primitive_capacity);
     f->world->primitives = f->primitives;
-    bool ok = place_scene(f, root);
+    bool ok = instantiate_scene(f, root);
     flatten_map_end(f);
     return ok;
 }

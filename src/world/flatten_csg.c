@@ -18,7 +18,7 @@ struct csg_draft {
     struct csg_leaf *leaves;
     struct csg_token *program;
     uint32_t leaf_count, leaf_capacity, length, capacity;
-    uint32_t met; /* shapes so far, those too that the algebra has taken away again (world_operand_way counts alike) */
+    uint32_t met; /* shapes so far, those too that the algebra has taken away again (world_operand_path counts alike) */
     bool unseen;  /* its surfaces are not shown: leaves need no material */
 };
 

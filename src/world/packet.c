@@ -23,7 +23,7 @@ struct packet_search {
     uint64_t found;
 };
 
-static uint32_t places(const struct ray_packet *rays) {
+static uint32_t slot_count(const struct ray_packet *rays) {
     return (rays->count + PACKET_STEP - 1) / PACKET_STEP * PACKET_STEP;
 }
 
@@ -32,7 +32,7 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
     const double low[3] = {box->min.x, box->min.y, box->min.z}, high[3] = {box->max.x, box->max.y, box->max.z};
     const double origin[3] = {s->rays->origin.x, s->rays->origin.y, s->rays->origin.z};
     uint64_t met = 0;
-    uint32_t count = places(s->rays);
+    uint32_t count = slot_count(s->rays);
 #ifdef __SSE2__
     const __m128d size = _mm_castsi128_pd(_mm_set1_epi64x(INT64_MAX)), slack = _mm_set1_pd(0x1p-49);
     for (uint32_t i = 0; i < count; i += 2) {
@@ -85,7 +85,7 @@ static bool is_plain_mesh(const struct world *world, uint32_t index) {
 static const struct ray_packet *primitive_rays(const struct packet_search *s, uint32_t index, struct ray_packet *out) {
     const struct primitive *primitive = &s->world->primitives[index];
     const struct ray_packet *rays = s->rays;
-    uint32_t count = places(rays);
+    uint32_t count = slot_count(rays);
     out->t_min = rays->t_min;
     out->time = rays->time;
     out->count = rays->count;
@@ -177,7 +177,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
     s.scratch = scratch;
     s.best = out;
     s.found = 0;
-    for (uint32_t i = 0; i < places(rays); i++) {
+    for (uint32_t i = 0; i < slot_count(rays); i++) {
         for (int k = 0; k < 3; k++)
             s.inverse[k][i] = 1 / rays->direction[k][i];
         s.limit[i] = rays->t_max[i];
@@ -223,7 +223,7 @@ static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64
 /* The rays of `active` that none of the candidates stops; what stops some is asked first the next time. */
 static uint64_t pass(struct packet_search *s, struct occluder_candidates *occluder_candidates) {
     uint64_t alive = ray_packet_all(s->rays);
-    for (uint32_t i = 0; i < places(s->rays); i++) {
+    for (uint32_t i = 0; i < slot_count(s->rays); i++) {
         for (int k = 0; k < 3; k++)
             s->inverse[k][i] = 1 / s->rays->direction[k][i];
         s->limit[i] = s->rays->t_max[i];
@@ -278,10 +278,10 @@ uint32_t world_visible(const struct world *world, struct occluder_candidates *oc
                               .t_max = 1,
                               .time = shadow_rays->time,
                               .skip_primitive = occluder_candidates->skip_primitive};
-            bool free_way = !world_any(world, &ray, scratch);
-            seen += free_way;
+            bool unoccluded = !world_any(world, &ray, scratch);
+            seen += unoccluded;
             if (visible)
-                visible[i] = free_way;
+                visible[i] = unoccluded;
         }
         return seen;
     }

@@ -5,14 +5,15 @@
 #include <string.h>
 
 struct scene_traversal world_traversal(const struct world *world, const struct node *root, size_t frame_size) {
-    struct scene_traversal t = {.operands = OPERANDS_PLACED, .draws = world->authored.draws, .frame_size = frame_size};
+    struct scene_traversal t = {
+        .operands = OPERANDS_AS_CHILD, .draws = world->authored.draws, .frame_size = frame_size};
     scene_traversal_begin(&t, root);
     return t;
 }
 
 uint32_t world_primitives_of(const struct world *world, const struct node *node, uint32_t next) {
-    bool places = next < world->primitive_count && primitive_node(world, next) == node;
-    return places ? primitive_prototype(world, next)->parts : 0;
+    bool is_primitive_node = next < world->primitive_count && primitive_node(world, next) == node;
+    return is_primitive_node ? primitive_prototype(world, next)->parts : 0;
 }
 
 bool world_visit_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
@@ -33,13 +34,13 @@ bool world_visit_paths(const struct world *world, const struct node *root, world
 
 size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size) {
     size_t used = 0;
-    char place[16] = "";
+    char suffix[16] = "";
     for (uint32_t i = 0; i < depth; i++) {
         if (steps[i].placement > 0)
-            (void)snprintf(place, sizeof place, " [%u]", steps[i].placement);
+            (void)snprintf(suffix, sizeof suffix, " [%u]", steps[i].placement);
         int length =
             snprintf(used < size ? out + used : NULL, used < size ? size - used : 0, "%s%s#%u%s", i > 0 ? " / " : "",
-                     steps[i].node->name, steps[i].node->serial, steps[i].placement > 0 ? place : "");
+                     steps[i].node->name, steps[i].node->serial, steps[i].placement > 0 ? suffix : "");
         used += length > 0 ? (size_t)length : 0;
     }
     for (char *c = out; size > 0 && *c; c++)
@@ -125,8 +126,8 @@ static bool keep_operand(void *context, uint32_t first, uint32_t end, const stru
     return false;
 }
 
-bool world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
-                       uint32_t *length) {
+bool world_operand_path(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
+                        uint32_t *length) {
     struct wanted_operand wanted = {.steps = steps, .capacity = capacity, .origin = origin};
     bool ok = world_visit_operands(solid, keep_operand, &wanted);
     *length = wanted.depth;

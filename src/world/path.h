@@ -45,7 +45,7 @@ typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, co
 bool world_visit_operands(const struct node *solid, world_operand_visit *visit, void *context);
 /* The way down to the shape that a leaf was made of; steps has room for `capacity`. length: 0: there is none, or
  * it is longer. False: no memory. */
-bool world_operand_way(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
-                       uint32_t *length);
+bool world_operand_path(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
+                        uint32_t *length);
 
 #endif

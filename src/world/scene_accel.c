@@ -126,7 +126,7 @@ static void visit_halves(const struct kd_tree *tree, uint32_t limit, scene_accel
         double *low = node->axis == 0 ? &upper.min.x : node->axis == 1 ? &upper.min.y : &upper.min.z;
         *high = *low = node->split;
         stack[depth].cell = upper;
-        stack[depth++].node = node->place;
+        stack[depth++].node = node->offset;
         stack[depth].cell = lower;
         stack[depth++].node = number + 1;
     }

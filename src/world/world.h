@@ -70,8 +70,8 @@ struct world {
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
-    /* Flat (material_flat), as shapes show them: one whose images lie otherwise on balls or boxes stands here several
-     * times, with the same number. */
+    /* Flat (material_flatten), as shapes show them: one whose images lie otherwise on balls or boxes stands here
+     * several times, with the same number. */
     struct material *materials;
     const uint32_t *material_numbers;
     const struct texture *textures; /* what materials and bumps read; parts come before what reads them */

@@ -1,7 +1,7 @@
 /* Builds a world: flattens the scene, works out lights and boxes, builds the accelerator; and destroys it. */
 #include "base/mem.h"
 #include "world/flatten_internal.h"
-#include "world/light_lamps_internal.h"
+#include "world/mesh_lights_internal.h"
 #include "world/world_internal.h"
 
 #include <string.h>
@@ -28,7 +28,7 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
         !world->media)
         return error_no_memory(error, "the materials of the scene");
     for (uint32_t i = 0; i < count; i++)
-        world->materials[i] = material_flat(world->authored.materials[i]);
+        world->materials[i] = material_flatten(world->authored.materials[i]);
     if (!flatten_textures(world, arena, error))
         return false;
     for (uint32_t i = 0; i < count; i++) {
@@ -65,12 +65,12 @@ static bool build(struct world *world, const struct world_input *input, struct a
                                     .error = error};
     if (!flatten_scene(&flattening, input->root) ||
         !light_lists_resolve(world, input->lights, copied, arena, input->root, error) ||
-        !light_lamps_resolve(&flattening, input->lights, copied, input->root))
+        !mesh_lights_resolve(&flattening, input->lights, copied, input->root))
         return false;
     world->boxes = arena_alloc_array(arena, world->primitive_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");
-    if (!make_materials(world, arena, error) || !world_place_boxes(world, flattening.limits, pool, error))
+    if (!make_materials(world, arena, error) || !world_primitive_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);
     return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error);

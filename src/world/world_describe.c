@@ -80,7 +80,7 @@ static enum hit_convexity convexity_of(const struct prototype *prototype, const 
 
 /* The surface of an object in the world; map NULL: the object's space is the world. Every field of the hit is written
  * once: clearing it as a whole would take longer than all the rest. */
-static void place_surface(const struct surface *surface, const struct transform *map, struct hit *hit) {
+static void surface_to_world(const struct surface *surface, const struct transform *map, struct hit *hit) {
     const struct vec3 zero = {0, 0, 0};
     if (map) {
         hit->point = affine_point(&map->forward, surface->point);
@@ -147,7 +147,7 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     uint32_t slot_count = in_csg ? leaf->slot_count : prototype->slot_count;
     if (surface.material_slot < slot_count)
         material += surface.material_slot;
-    place_surface(&surface, map, hit);
+    surface_to_world(&surface, map, hit);
     hit->t = crossing->t;
     hit->view = vec3_scale(ray->direction, -1 / length);
     hit->primitive = index;

@@ -12,6 +12,6 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
 
 /* The boxes of all primitives in the world, cut by `limits` where there are any (NULL: none), and what is
  * counted on the way: triangles, scratch, hulls. Errors: cancelled. */
-bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error);
+bool world_primitive_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error);
 
 #endif

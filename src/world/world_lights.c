@@ -8,7 +8,7 @@
 #include "light/light_mesh.h"
 #include "material/classic.h"
 #include "material/material_eval.h"
-#include "world/light_lamps_internal.h"
+#include "world/mesh_lights_internal.h"
 
 #include <string.h>
 
@@ -17,15 +17,15 @@
 /* Of a thing: its brightest material. */
 struct emission {
     struct vec3 colour;
-    bool emits, varies;
+    bool emissive, varies;
 };
 
-static void look_at_materials(const struct world *world, uint32_t first, uint32_t slots, struct emission *out) {
+static void collect_emission(const struct world *world, uint32_t first, uint32_t slots, struct emission *out) {
     for (uint32_t i = first; i < first + (slots > 1 ? slots : 1); i++) {
         const struct material *material = &world->materials[i];
         struct vec3 colour = material_emission(material), bound = material_emission_bound(material);
         bool brighter = vec3_max_abs(colour) > vec3_max_abs(out->colour);
-        out->emits = out->emits || vec3_max_abs(colour) > 0 || vec3_max_abs(bound) > 0;
+        out->emissive = out->emissive || vec3_max_abs(colour) > 0 || vec3_max_abs(bound) > 0;
         out->varies = out->varies || material_emission_varies(material);
         out->colour = brighter ? colour : out->colour;
     }
@@ -34,12 +34,12 @@ static void look_at_materials(const struct world *world, uint32_t first, uint32_
 static struct emission emission_of_prototype(const struct world *world, const struct prototype *prototype) {
     struct emission out = {.varies = prototype->holes || prototype->cull != CULL_NONE};
     if (!prototype->geometry.csg) {
-        look_at_materials(world, prototype->material, prototype->slot_count, &out);
+        collect_emission(world, prototype->material, prototype->slot_count, &out);
         return out;
     }
     for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++) {
         const struct csg_leaf *leaf = &prototype->geometry.csg->leaves[i];
-        look_at_materials(world, leaf->material, leaf->slot_count, &out);
+        collect_emission(world, leaf->material, leaf->slot_count, &out);
     }
     return out;
 }
@@ -221,7 +221,7 @@ static bool derive_mesh(struct derived *d, bool *ok) {
     d->light.kind = LIGHT_MESH;
     d->emitter.by_triangle = true;
     struct light unit = {.colour = {1, 1, 1}};
-    *ok = light_lamps_primitive(d->world, d->primitive, &unit, d->arena, d->error);
+    *ok = mesh_lights_primitive(d->world, d->primitive, &unit, d->arena, d->error);
     d->light.mesh = unit.mesh;
     return *ok && unit.mesh->count > 0;
 }
@@ -287,11 +287,11 @@ static void take_light(struct building *b, uint32_t number) {
 static bool take_primitive(struct building *b, uint32_t primitive) {
     const struct world *world = b->out->world;
     const struct emission *emission = &b->of_prototype[world->primitives[primitive].prototype];
-    if (!emission->emits || b->of_primitive[primitive] != LIGHT_NONE)
+    if (!emission->emissive || b->of_primitive[primitive] != LIGHT_NONE)
         return true;
     struct derived d = {.world = world,
                         .primitive = primitive,
-                        .light = {.emits = true, .colour = emission->colour},
+                        .light = {.emissive = true, .colour = emission->colour},
                         .emitter = {.primitive = primitive, .shown = true, .decided = emission->varies},
                         .arena = b->arena,
                         .error = b->error};
@@ -311,26 +311,27 @@ static bool take_background(struct building *b, struct pool *pool) {
     for (uint32_t i = 0; i < b->out->count; i++)
         if (light_properties(&b->lights[i]) & LIGHT_IS_ENVIRONMENT)
             return true;
-    *light = (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &b->out->world->sky};
+    *light = (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = &b->out->world->sky};
     b->emitters[b->out->count++] = (struct emitter){.primitive = WORLD_NOTHING};
     return light_prepare(light, b->arena, pool, b->error);
 }
 
-static bool build_lamps(struct building *b, struct pool *pool) {
+static bool build_area_lights(struct building *b, struct pool *pool) {
     struct world_lights *out = b->out;
-    uint32_t *lamps = arena_alloc_array(b->arena, out->world->light_count, sizeof *lamps);
+    uint32_t *area_lights = arena_alloc_array(b->arena, out->world->light_count, sizeof *area_lights);
     struct box *boxes = mem_alloc_zero((size_t)out->world->light_count + 1, sizeof *boxes);
-    bool ok = (lamps && boxes) || error_no_memory(b->error, "the lights of the scene");
+    bool ok = (area_lights && boxes) || error_no_memory(b->error, "the lights of the scene");
     for (uint32_t i = 0; ok && i < out->world->light_count; i++) {
         const struct light *light = &b->lights[i];
-        struct box *box = &boxes[out->lamp_count];
+        struct box *box = &boxes[out->area_light_count];
         if ((light_is_delta(light) && !light->visible) || !light_surface_box(light, box))
             continue;
         *box = box_pad(*box);
-        lamps[out->lamp_count++] = i;
+        area_lights[out->area_light_count++] = i;
     }
-    out->lamps = lamps;
-    ok = ok && (out->lamp_count == 0 || box_tree_build(&out->surfaces, boxes, out->lamp_count, pool, b->error));
+    out->area_lights = area_lights;
+    ok = ok &&
+         (out->area_light_count == 0 || box_tree_build(&out->surfaces, boxes, out->area_light_count, pool, b->error));
     mem_free(boxes);
     return ok;
 }
@@ -348,7 +349,7 @@ static bool allocate(struct building *b) {
     }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         b->of_primitive[i] = LIGHT_NONE;
-        emitting += b->of_prototype[world->primitives[i].prototype].emits;
+        emitting += b->of_prototype[world->primitives[i].prototype].emissive;
     }
     size_t max = (size_t)world->light_count + emitting + 1;
     b->lights = arena_alloc_array(b->arena, max, sizeof *b->lights);
@@ -375,7 +376,7 @@ static bool build(struct building *b, bool background, enum light_choice choice,
         if (!take_primitive(b, i))
             return false;
     }
-    return (!background || take_background(b, pool)) && build_lamps(b, pool) &&
+    return (!background || take_background(b, pool)) && build_area_lights(b, pool) &&
            light_sampler_build(&out->sampler, choice, out->lights, out->count, b->arena, b->error);
 }
 
@@ -422,23 +423,23 @@ static bool view_make(const struct world_lights *lights, const struct light_rece
 }
 
 static struct light_sample view_sample(const struct view *view, const struct light *light,
-                                       const struct light_receiver *receiver, struct sample2 place) {
+                                       const struct light_receiver *receiver, struct sample2 xi) {
     if (!view->by_bound)
-        return light_sample(light, &view->context, place);
+        return light_sample(light, &view->context, xi);
     struct light_sample sample = {.pdf = 1 / view->bound.angle};
-    sample.target.at = spherical_box_point(&view->bound, place);
+    sample.target.at = spherical_box_point(&view->bound, xi);
     sample.direction = vec3_normalize(vec3_sub(sample.target.at, receiver->point));
     return sample;
 }
 
 bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t number,
-                         struct sample2 place, struct world_light_sample *out) {
+                         struct sample2 xi, struct world_light_sample *out) {
     const struct light *light = &lights->lights[number];
     const struct emitter *emitter = &lights->emitters[number];
     struct view view;
-    if (!world_lights_reach(lights, number, receiver->primitive) || !view_make(lights, receiver, number, &view))
+    if (!world_lights_illuminate(lights, number, receiver->primitive) || !view_make(lights, receiver, number, &view))
         return false;
-    struct light_sample sample = view_sample(&view, light, receiver, place);
+    struct light_sample sample = view_sample(&view, light, receiver, xi);
     if (!(sample.pdf > 0) || !is_own_triangle(lights, number, sample.triangle))
         return false;
     bool own = emitter->shown && receiver->primitive == emitter->primitive && receiver->primitive != WORLD_NOTHING;
@@ -452,8 +453,8 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
                                        .triangle = sample.triangle};
     if (sample.is_delta)
         out->radiance = vec3_scale(sample.intensity, radiance_of(1));
-    bool alone = emitter->shown && !emitter->by_triangle && !out->decided;
-    out->skip_primitive = alone ? emitter->primitive + 1 : 0;
+    bool single = emitter->shown && !emitter->by_triangle && !out->decided;
+    out->skip_primitive = single ? emitter->primitive + 1 : 0;
     return out->decided || !is_dark(out->radiance);
 }
 
@@ -475,7 +476,7 @@ struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t pr
     if (light == LIGHT_NONE)
         return emission;
     const struct emitter *emitter = &lights->emitters[light];
-    if (emitter->unmet || !world_lights_reach(lights, light, primitive))
+    if (emitter->unmet || !world_lights_illuminate(lights, light, primitive))
         return vec3_all(0);
     return emitter->has_own ? emitter->emission : vec3_mul(emission, emitter->emission);
 }
@@ -483,7 +484,7 @@ struct vec3 world_lights_radiance(const struct world_lights *lights, uint32_t pr
 double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                         struct vec3 direction, const struct light_hit *hit) {
     struct view view;
-    if (lights->emitters[light].unmet || !world_lights_reach(lights, light, receiver->primitive))
+    if (lights->emitters[light].unmet || !world_lights_illuminate(lights, light, receiver->primitive))
         return 0;
     double pmf = light_sampler_pmf(&lights->sampler, receiver->point, receiver->normal, light);
     if (!(pmf > 0) || !view_make(lights, receiver, light, &view))
@@ -508,8 +509,8 @@ double world_lights_pdf_of_hit(const struct world_lights *lights, const struct l
 enum { HOLE_LIMIT = 1000 };
 
 /* What the rest of a ray meets, with what its material makes of it. */
-static bool look(const struct world *world, const struct ray *rest, struct world_scratch *scratch, struct hit *hit,
-                 struct bsdf *bsdf) {
+static bool next_surface(const struct world *world, const struct ray *rest, struct world_scratch *scratch,
+                         struct hit *hit, struct bsdf *bsdf) {
     if (!world_nearest(world, rest, scratch, hit))
         return false;
     material_eval(&world->materials[hit->material], hit, NULL, NULL, bsdf);
@@ -523,7 +524,7 @@ double world_lights_visible(const struct world_lights *lights, const struct ray 
     struct hit hit;
     struct bsdf bsdf;
     double share = 1;
-    for (int i = 0; i < HOLE_LIMIT && share > 0 && look(lights->world, &rest, scratch, &hit, &bsdf); i++) {
+    for (int i = 0; i < HOLE_LIMIT && share > 0 && next_surface(lights->world, &rest, scratch, &hit, &bsdf); i++) {
         share *= 1 - fmin(bsdf.opacity, 1);
         rest.t_min = hit.t;
     }
@@ -539,7 +540,7 @@ struct vec3 world_lights_seen_by(const struct world_lights *lights, const struct
     struct vec3 sum = {0, 0, 0};
     double share = 1;
     *t = 0;
-    for (int i = 0; i < HOLE_LIMIT && share > 0 && look(lights->world, &rest, scratch, &hit, &bsdf); i++) {
+    for (int i = 0; i < HOLE_LIMIT && share > 0 && next_surface(lights->world, &rest, scratch, &hit, &bsdf); i++) {
         double opacity = fmin(bsdf.opacity, 1);
         if (opacity > 0 && world_lights_shows(lights, sample, &hit)) {
             struct vec3 radiance = world_lights_radiance(lights, receiver->primitive, &hit, bsdf.emission);
@@ -559,16 +560,16 @@ void world_lights_met_begin(struct world_lights_traversal *traversal, const stru
     traversal->lights = lights;
     traversal->ray = ray;
     traversal->tree.top = 0;
-    if (lights->lamp_count > 0)
+    if (lights->area_light_count > 0)
         box_tree_traversal_begin(&traversal->tree, &lights->surfaces, ray);
 }
 
 bool world_lights_met_next(struct world_lights_traversal *traversal, uint32_t *light, struct light_hit *hit) {
     uint32_t item;
     while (box_tree_traversal_next(&traversal->tree, traversal->ray->t_max, &item)) {
-        *light = traversal->lights->lamps[item];
-        const struct light *lamp = &traversal->lights->lights[*light];
-        if (!light_is_delta(lamp) && light_meets_ray(lamp, traversal->ray, hit))
+        *light = traversal->lights->area_lights[item];
+        const struct light *area_light = &traversal->lights->lights[*light];
+        if (!light_is_delta(area_light) && light_meets_ray(area_light, traversal->ray, hit))
             return true;
     }
     return false;
@@ -581,11 +582,11 @@ bool world_lights_seen(const struct world_lights *lights, const struct ray *ray,
     struct light_hit met;
     uint32_t item;
     bool found = false;
-    if (lights->lamp_count == 0)
+    if (lights->area_light_count == 0)
         return false;
     box_tree_traversal_begin(&traversal, &lights->surfaces, ray);
     while (box_tree_traversal_next(&traversal, limited.t_max, &item)) {
-        uint32_t number = lights->lamps[item];
+        uint32_t number = lights->area_lights[item];
         if (!lights->lights[number].visible || !light_meets_ray(&lights->lights[number], &limited, &met))
             continue;
         *light = number;

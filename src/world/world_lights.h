@@ -45,9 +45,9 @@ struct world_lights {
     struct light_sampler sampler;
     const struct emitter *emitters; /* by light */
     const uint32_t *of_primitive;   /* its light; LIGHT_NONE: it emits nothing, or scattered rays alone bring it */
-    struct box_tree surfaces;       /* over the lamps with a surface of their own; `lamps` by item */
-    const uint32_t *lamps;
-    uint32_t lamp_count;
+    struct box_tree surfaces;       /* over the lamps with a surface of their own; `area_lights` by item */
+    const uint32_t *area_lights;
+    uint32_t area_light_count;
     bool holes; /* something in the world has holes */
 };
 
@@ -80,7 +80,7 @@ struct world_light_sample {
 };
 /* False: nothing arrives from there. */
 bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
-                         struct sample2 place, struct world_light_sample *out);
+                         struct sample2 xi, struct world_light_sample *out);
 /* The share of light that arrives along a shadow ray: holes let through what their opacity leaves. */
 double world_lights_visible(const struct world_lights *lights, const struct ray *ray, struct world_scratch *scratch);
 /* The radiance of a `decided` sample that arrives along the ray to it, the same for holes; *t: where the ray meets the
@@ -121,7 +121,7 @@ bool world_lights_seen(const struct world_lights *lights, const struct ray *ray,
 double world_lights_pdf(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                         struct vec3 direction, const struct light_hit *hit);
 /* Whether a light reaches a primitive (WORLD_NOTHING: anything), by its lists. */
-static inline bool world_lights_reach(const struct world_lights *lights, uint32_t light, uint32_t primitive) {
+static inline bool world_lights_illuminate(const struct world_lights *lights, uint32_t light, uint32_t primitive) {
     const uint8_t *lit = lights->lights[light].lit;
     return !lit || primitive == WORLD_NOTHING || lit[primitive];
 }

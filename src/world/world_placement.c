@@ -74,7 +74,7 @@ static struct box primitive_bounds(const struct world *world, uint32_t primitive
     return box_pad(geometry_bounds_under(geometry, &world_from_object.forward));
 }
 
-bool world_place_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
+bool world_primitive_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
     uint32_t exact = EXACT_IN_ALL;
     world->moves = world->moving_count > 0;
     for (uint32_t i = 0; i < world->primitive_count; i++) {

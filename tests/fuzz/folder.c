@@ -16,10 +16,10 @@ void __sanitizer_set_report_fd(void *descriptor) __attribute__((weak));
 static char folder[256];
 static pid_t owner;
 
-static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *place) {
+static int remove_entry(const char *path, const struct stat *status, int kind, struct FTW *entry) {
     (void)status;
     (void)kind;
-    return place->level == 0 ? 0 : remove(path);
+    return entry->level == 0 ? 0 : remove(path);
 }
 
 void fuzz_empty_folder(void) {

@@ -22,14 +22,14 @@ static void repair(uint8_t *bytes, size_t size) {
     }
 }
 
-static void look_everywhere(const struct image *image) {
-    static const double places[] = {0, 1, 0.5, -0.25, 1e300, -1e-300, 3.75, INFINITY, NAN};
+static void lookup_everywhere(const struct image *image) {
+    static const double coordinates[] = {0, 1, 0.5, -0.25, 1e300, -1e-300, 3.75, INFINITY, NAN};
     static const double widths[] = {0, 1e-9, 0.1, 1, 1e9, INFINITY, NAN};
-    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
+    for (size_t i = 0; i < sizeof coordinates / sizeof coordinates[0]; i++)
         for (size_t k = 0; k < sizeof widths / sizeof widths[0]; k++)
             for (int mode = 0; mode < 9; mode++) {
                 struct rgba c =
-                    image_lookup(image, (struct image_point){places[i], places[k], widths[k], widths[i % 7]},
+                    image_lookup(image, (struct image_point){coordinates[i], coordinates[k], widths[k], widths[i % 7]},
                                  (struct image_sampling){(enum image_filter)(mode % 3), (enum image_wrap)(mode / 3),
                                                          (enum image_wrap)(mode % 3)});
                 if (!(c.r >= 0 && c.r <= c.a && c.g >= 0 && c.g <= c.a && c.b >= 0 && c.b <= c.a && c.a <= 1))
@@ -49,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     struct image *image = image_parse_png("fuzz.png", bytes, size, &error);
     free(bytes);
     if (image)
-        look_everywhere(image);
+        lookup_everywhere(image);
     else if (error.kind == ERROR_NONE || !strstr(error.text, "fuzz.png") || strchr(error.text, '\n'))
         abort();
     image_release(image);

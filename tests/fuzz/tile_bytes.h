@@ -16,12 +16,12 @@ static inline uint64_t tile_bytes_number(const uint8_t *bytes, int count) {
 }
 
 static inline void tile_bytes_repair(uint8_t *bytes, size_t size) {
-    uint64_t place = 0;
-    for (size_t at = 16; size >= at && size - at >= 24; place++) {
+    uint64_t position = 0;
+    for (size_t at = 16; size >= at && size - at >= 24; position++) {
         uint64_t kind = tile_bytes_number(bytes + at, 4), length = tile_bytes_number(bytes + at + 8, 8);
         if (length > size - at - 24)
             return;
-        uint64_t check = hash_bytes(bytes + at + 16, (size_t)length, place * 64 + kind);
+        uint64_t check = hash_bytes(bytes + at + 16, (size_t)length, position * 64 + kind);
         for (size_t i = 0; i < 8; i++)
             bytes[at + 16 + length + i] = (uint8_t)(check >> (8 * i));
         at += 24 + (size_t)length;

@@ -187,8 +187,8 @@ static inline bool is_needed(const struct script_function *function, int index) 
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
     bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
     bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0;
-    bool lamp_colour = function->result == RESULT_LIGHT && strcmp(p->name, "colour") == 0; /* or an emission */
-    return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || lamp_colour;
+    bool area_light_colour = function->result == RESULT_LIGHT && strcmp(p->name, "colour") == 0; /* or an emission */
+    return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || area_light_colour;
 }
 
 static inline void table_call(const struct script_function *function, int wrong, const char *with,

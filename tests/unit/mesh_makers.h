@@ -130,18 +130,18 @@ static inline void maker_tiny_ball(struct maker *m, double shrink) {
     maker_triangle(m, a, b, maker_vertex(m, 1.7, -0.4142, 1.9));
 }
 
-/* A torus with a square section that turns by `twist` quarter turns along the ring, in `around` steps. */
-static inline void maker_twisted_torus(struct maker *m, int around, int section, int twist) {
+/* A torus with a square section that turns by `twist` quarter turns along the ring, in `segments` steps. */
+static inline void maker_twisted_torus(struct maker *m, int segments, int section, int twist) {
     uint32_t base = m->vertex_count;
-    for (int i = 0; i < around; i++)
+    for (int i = 0; i < segments; i++)
         for (int j = 0; j < section; j++) {
-            double a = 2 * M_PI * i / around, b = 2 * M_PI * j / section + 2 * M_PI * twist * i / around;
+            double a = 2 * M_PI * i / segments, b = 2 * M_PI * j / section + 2 * M_PI * twist * i / segments;
             double r = 2 + 0.7 * cos(b) * (1 + 0.2 * cos(2 * b));
             maker_vertex(m, r * cos(a), 0.7 * sin(b), r * sin(a));
         }
-    for (int i = 0; i < around; i++)
+    for (int i = 0; i < segments; i++)
         for (int j = 0; j < section; j++) {
-            int k = (i + 1) % around, l = (j + 1) % section;
+            int k = (i + 1) % segments, l = (j + 1) % section;
             uint32_t p = base + (uint32_t)(i * section + j), q = base + (uint32_t)(i * section + l);
             uint32_t r = base + (uint32_t)(k * section + j), s = base + (uint32_t)(k * section + l);
             maker_triangle(m, p, q, r);
@@ -152,7 +152,7 @@ static inline void maker_twisted_torus(struct maker *m, int around, int section,
 enum soup {
     SOUP_EVEN,
     SOUP_SLIVERS,
-    SOUP_FLAT,
+    SOUP_PLANAR,
     SOUP_MIXED_SIZES,
     SOUP_TINY_IN_HUGE,
     SOUP_LATTICE,
@@ -185,7 +185,7 @@ static inline void maker_soup(struct maker *m, enum soup kind, uint32_t triangle
                 if (kind == SOUP_LATTICE)
                     p[k] = floor(4 * p[k]) / 4 + 0.25 * floor(test_uniform(random, 0, 2));
             }
-            if (kind == SOUP_FLAT)
+            if (kind == SOUP_PLANAR)
                 p[1] = 0.25;
             corner[j] = maker_vertex(m, p[0], p[1], p[2]);
         }

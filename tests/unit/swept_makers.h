@@ -64,9 +64,9 @@ static inline struct shape random_lathe(struct arena *arena, struct test_random 
     bool axis = test_uniform(random, 0, 1) < 0.5, loop = !axis && test_uniform(random, 0, 1) < 0.3;
     for (uint32_t i = 0; i < count; i++) {
         double turn = loop ? 6.283185307 * i / count : 3.14159265 * i / (count - 1);
-        double reach = test_uniform(random, 0.5, 1);
-        points[i][0] = loop ? 1.5 + reach * cos(turn) : fmax(0.05, reach * sin(turn));
-        points[i][1] = loop ? reach * sin(turn) : -reach * cos(turn);
+        double extent = test_uniform(random, 0.5, 1);
+        points[i][0] = loop ? 1.5 + extent * cos(turn) : fmax(0.05, extent * sin(turn));
+        points[i][1] = loop ? extent * sin(turn) : -extent * cos(turn);
     }
     if (axis)
         points[0][0] = points[count - 1][0] = 0;
@@ -79,9 +79,9 @@ static inline struct shape random_prism(struct arena *arena, struct test_random 
     for (uint32_t i = 0; i < count + 6; i++) {
         bool hole = i >= count;
         double turn = hole ? 6.283185307 * (i - count) / 6 : 6.283185307 * i / count;
-        double reach = hole ? test_uniform(random, 0.1, 0.25) : test_uniform(random, 0.4, 1.2);
-        points[i][0] = reach * cos(turn);
-        points[i][1] = reach * sin(turn);
+        double extent = hole ? test_uniform(random, 0.1, 0.25) : test_uniform(random, 0.4, 1.2);
+        points[i][0] = extent * cos(turn);
+        points[i][1] = extent * sin(turn);
     }
     struct error error = {0};
     struct prism_input in = {
@@ -209,7 +209,7 @@ static inline struct crossing_list list_of(const struct shape *shape, const stru
 }
 
 struct tally {
-    uint64_t rays, crossings, disorder, bad_residual, bad_place, missed, outside_bounds, bad_slope, slopes, disagree,
+    uint64_t rays, crossings, disorder, bad_residual, bad_position, missed, outside_bounds, bad_slope, slopes, disagree,
         turned;
 };
 
@@ -219,7 +219,7 @@ static inline void check_crossing(const struct shape *shape, const struct ray *r
     struct crossing copy = *c;
     shape_describe(shape, ray, &copy, &s);
     struct vec3 p = ray_at(ray, copy.t), n = vec3_normalize(s.normal);
-    tally->bad_place += !(vec3_length(vec3_sub(p, s.point)) < 1e-9 * size + 1e-14 * vec3_length(ray->origin));
+    tally->bad_position += !(vec3_length(vec3_sub(p, s.point)) < 1e-9 * size + 1e-14 * vec3_length(ray->origin));
     /* On the surface to 1e-9 of its size, and the normal points out. */
     struct vec3 out = vec3_add_scaled(p, n, 1e-9 * size), in = vec3_add_scaled(p, n, -1e-9 * size);
     tally->bad_residual += shape_contains(shape, out, scratch) || !shape_contains(shape, in, scratch);
@@ -287,13 +287,13 @@ static inline void check_ray(const struct shape *shape, const struct ray *ray, d
 }
 
 static inline void check_tally(const struct tally *t, const char *name) {
-    if (t->disorder || t->bad_residual || t->bad_place || t->missed || t->outside_bounds || t->disagree || t->turned ||
-        t->bad_slope * 2000 > t->slopes)
+    if (t->disorder || t->bad_residual || t->bad_position || t->missed || t->outside_bounds || t->disagree ||
+        t->turned || t->bad_slope * 2000 > t->slopes)
         test_fail(
             __FILE__, __LINE__,
             "%s: %lu rays, %lu crossings: disorder %lu, residual %lu, place %lu, missed %lu, bounds %lu, slope %lu of "
             "%lu, nearest %lu, turned %lu",
-            name, t->rays, t->crossings, t->disorder, t->bad_residual, t->bad_place, t->missed, t->outside_bounds,
+            name, t->rays, t->crossings, t->disorder, t->bad_residual, t->bad_position, t->missed, t->outside_bounds,
             t->bad_slope, t->slopes, t->disagree, t->turned);
 }
 

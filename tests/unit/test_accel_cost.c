@@ -153,8 +153,8 @@ TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
 TEST(a_mesh_whose_voxels_spare_more_than_the_walk_costs_gets_them) {
     struct cost_sample cost_sample = {.level_count = 4, .items = 1e6};
     for (uint32_t l = 0; l < 4; l++)
-        cost_sample.levels[l] =
-            (struct cost_level){.cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = 1, .around = 1};
+        cost_sample.levels[l] = (struct cost_level){
+            .cells = {1, 1, 1}, .filled = 1, .visited = 1, .occupied = 1, .listed = 1, .neighbours = 1};
     CHECK_EQ_INT(accel_over_mesh(&cost_sample).level, 0);
     cost_sample.levels[3].filled = 1e6;
     CHECK_EQ_INT(accel_over_mesh(&cost_sample).level, 3);

@@ -166,8 +166,9 @@ TEST(rays_at_a_tiny_dense_ball_in_a_wide_scene_meet_what_trying_every_triangle_m
                 double blend = i % 3 ? test_uniform(&random, 0, 1) : 0;
                 struct vec3 target =
                     vec3_make(a[0] + blend * (b[0] - a[0]), a[1] + blend * (b[1] - a[1]), a[2] + blend * (b[2] - a[2]));
-                double reach = pow(10, test_uniform(&random, -size - 1, 1));
-                struct vec3 origin = i % 5 ? vec3_add(middle, test_point(&random, reach)) : vec3_make(b[0], b[1], b[2]);
+                double extent = pow(10, test_uniform(&random, -size - 1, 1));
+                struct vec3 origin =
+                    i % 5 ? vec3_add(middle, test_point(&random, extent)) : vec3_make(b[0], b[1], b[2]);
                 struct ray ray = test_ray(origin, vec3_sub(target, origin));
                 hits += meets_the_same(index, &set, &ray, &cost);
             }

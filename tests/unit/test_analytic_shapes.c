@@ -78,7 +78,7 @@ static struct transform then(struct transform first, struct transform second) {
     return transform_compose(&second, &first);
 }
 
-static struct transform random_transform(struct test_random *random, double reach) {
+static struct transform random_transform(struct test_random *random, double margin) {
     struct transform t = transform_identity();
     for (int i = 0; i < 3; i++) {
         struct vec3 logs = random_vec3(random, 0.5), factors = {exp(logs.x), exp(logs.y), exp(logs.z)};
@@ -87,7 +87,7 @@ static struct transform random_transform(struct test_random *random, double reac
         t = then(t, transform_scale(factors));
         t = then(t, transform_rotate(i, test_uniform(random, 0, 360)));
     }
-    return then(t, transform_translate(random_vec3(random, reach)));
+    return then(t, transform_translate(random_vec3(random, margin)));
 }
 
 /* A star with a hole, and a second outline beside it. */
@@ -335,13 +335,13 @@ static double size_of(const struct shape *s) {
     return isfinite(size) ? size : 1;
 }
 
-static bool is_flat(const struct shape *s) {
+static bool is_planar(const struct shape *s) {
     return s->kind == SHAPE_PLANAR && s->planar.kind != PLANAR_PLANE;
 }
 
 /* Whether a planar shape contains a point, by other formulas: by distances and areas in space, for a polygon by winding
  * numbers. */
-static bool flat_has(const struct shape *s, enum form form, struct vec3 p, double *clearance) {
+static bool planar_has(const struct shape *s, enum form form, struct vec3 p, double *clearance) {
     const struct planar *f = &s->planar;
     switch ((int)form) { /* the flat ones */
     case DISC:
@@ -436,28 +436,28 @@ static void check_crossing(const struct shape *s, const struct ray *ray, const s
 /* The list of crossings against point tests along the line. */
 static void march(const struct shape *s, enum form form, const struct ray *ray, const struct crossing *list,
                   uint32_t count, struct counts *n) {
-    if (is_flat(s)) {
+    if (is_planar(s)) {
         double height = (double)implicit(s, point_of(ray->origin)), climb = vec3_dot(s->planar.normal, ray->direction);
         struct vec3 p = ray_at(ray, -height / climb);
         double clearance = 0;
-        bool has = flat_has(s, form, p, &clearance);
+        bool has = planar_has(s, form, p, &clearance);
         n->missed += clearance > 1e-9 && has != (count == 1);
         return;
     }
     bool closed = shape_is_closed(s);
     enum { STEPS = 60 };
     double size = size_of(s), speed = vec3_length(ray->direction);
-    double middle = -vec3_dot(ray->origin, ray->direction) / (speed * speed), reach = 2 * size / speed;
+    double middle = -vec3_dot(ray->origin, ray->direction) / (speed * speed), margin = 2 * size / speed;
     bool was_negative = false, was_within = false;
     uint32_t passed = 0;
     bool odd_before = false;
     for (int i = 0; i <= STEPS; i++) {
-        double t = middle + reach * (2.0 * i / STEPS - 1 + 1e-3);
+        double t = middle + margin * (2.0 * i / STEPS - 1 + 1e-3);
         while (passed < count && list[passed].t < t)
             passed++;
         struct vec3 p = ray_at(ray, t);
-        bool near = (passed > 0 && t - list[passed - 1].t < 1e-7 * reach) ||
-                    (passed < count && list[passed].t - t < 1e-7 * reach);
+        bool near = (passed > 0 && t - list[passed - 1].t < 1e-7 * margin) ||
+                    (passed < count && list[passed].t - t < 1e-7 * margin);
         long double value = implicit(s, point_of(p));
         bool negative = value < 0, within = within_limits(s, p, 0), odd = passed % 2 == 1;
         near = near || fabsl(value) < 1e-9L;
@@ -667,9 +667,9 @@ TEST(analytic_shapes_have_tight_world_boxes_under_any_affine_map) {
                     struct vec3 p = ray_at(&ray, scratch.items[list.first + k].t), w = affine_point(&map.forward, p);
                     outside += !box_contains(&padded, w) || !box_contains(&own, vec3_scale(p, 1 - 0x1p-40));
                     for (int j = 0; j < 6; j++) {
-                        double reach = j % 2 ? vec3_get(w, j / 2) : -vec3_get(w, j / 2);
-                        if (reach > reached[j]) {
-                            reached[j] = reach;
+                        double margin = j % 2 ? vec3_get(w, j / 2) : -vec3_get(w, j / 2);
+                        if (margin > reached[j]) {
+                            reached[j] = margin;
                             best[j] = p;
                         }
                     }

@@ -179,17 +179,17 @@ TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
 
 /* No ray hits anything, and without an accelerator every ray tests every box: the cost is known. */
 TEST(the_cost_of_a_ray_that_tries_everything_is_the_number_of_things) {
-    enum { THINGS = 37 };
+    enum { OBJECTS = 37 };
     struct stage s;
     stage_begin(&s, 1);
-    for (int i = 0; i < THINGS; i++)
+    for (int i = 0; i < OBJECTS; i++)
         stage_move(&s, stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1)), 3 * i, 0, 30);
     s.settings.accel = ACCEL_NONE;
     s.settings.aov = UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES;
     CHECK(stage_render(&s, 20, 10));
     for (uint32_t y = 0; y < 10; y++)
         for (uint32_t x = 0; x < 20; x++) {
-            CHECK(layer(&s, AOV_COST, x, y)[0] == THINGS);
+            CHECK(layer(&s, AOV_COST, x, y)[0] == OBJECTS);
             CHECK(layer(&s, AOV_SAMPLES, x, y)[0] == 1);
         }
     stage_end(&s);

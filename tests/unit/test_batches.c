@@ -83,7 +83,7 @@ static void make_rays(struct test_random *random, const struct world *world, str
 /* In batches of any length, including 0, so that they begin and end anywhere. */
 static void check_batches(const struct world *world, const char *what) {
     static struct ray rays[RAYS];
-    static struct hit hits[RAYS], alone;
+    static struct hit hits[RAYS], single;
     static bool met[RAYS];
     struct test_random random = {world->accel.kind + UINT64_C(1)};
     struct world_scratch scratch;
@@ -98,12 +98,12 @@ static void check_batches(const struct world *world, const char *what) {
         world_any_batch(world, rays + first, count, &scratch, met + first);
     }
     for (uint32_t i = 0; i < RAYS; i++) {
-        memset(&alone, 0, sizeof alone);
-        bool hit = world_nearest(world, &rays[i], &scratch, &alone);
+        memset(&single, 0, sizeof single);
+        bool hit = world_nearest(world, &rays[i], &scratch, &single);
         bool same = hit == (hits[i].primitive != WORLD_NOTHING) && world_any(world, &rays[i], &scratch) == met[i];
         found += hit;
         blocked += met[i];
-        wrong += !same || (hit && memcmp(&alone, &hits[i], sizeof alone) != 0);
+        wrong += !same || (hit && memcmp(&single, &hits[i], sizeof single) != 0);
     }
     if (wrong > 0)
         test_fail(__FILE__, __LINE__, "%s: %u of %d rays differ from the same rays alone", what, wrong, RAYS);

@@ -60,14 +60,14 @@ TEST(boxes_of_spheres_boxes_and_quadric_ellipsoids_are_the_closed_forms_under_af
         struct shape ellipsoid = {.kind = SHAPE_QUADRIC, .quadric = &quadric};
         struct vec3 ball_centre = affine_point(&map.forward, centre), origin = affine_point(&map.forward, vec3_all(0));
         struct vec3 ball, egg;
-        double *ball_reach[3] = {&ball.x, &ball.y, &ball.z}, *egg_reach[3] = {&egg.x, &egg.y, &egg.z};
+        double *ball_extent[3] = {&ball.x, &ball.y, &ball.z}, *egg_extent[3] = {&egg.x, &egg.y, &egg.z};
         double corners[8][3];
         for (int k = 0; k < 3; k++) {
             const double *row = map.forward.m[k];
-            *ball_reach[k] = radii.x * sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+            *ball_extent[k] = radii.x * sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
             /* Points are (r_x p - s r_y q, r_y q, r_z r) for p, q, r on the unit ball. */
             double p = radii.x * row[0], q = radii.y * (row[1] - s * row[0]), r = radii.z * row[2];
-            *egg_reach[k] = sqrt(p * p + q * q + r * r);
+            *egg_extent[k] = sqrt(p * p + q * q + r * r);
         }
         for (int k = 0; k < 8; k++) {
             corners[k][0] = k & 1 ? box.box.max.x : box.box.min.x;

@@ -33,7 +33,7 @@ static void add_changed(const char *name, const struct bytes *b, size_t at, uint
     free(copy);
 }
 
-static size_t place_of(const struct bytes *b, const char *word) {
+static size_t offset_of(const struct bytes *b, const char *word) {
     for (size_t i = 0; i + strlen(word) <= b->size; i++)
         if (memcmp(b->data + i, word, strlen(word)) == 0)
             return i;
@@ -75,12 +75,13 @@ static void add_binaries(const struct maker *m) {
     write_ply(&ply, m, PLY_LITTLE);
     write_ply(&big, m, PLY_BIG);
     write_stl(&stl, m, true, "x");
-    size_t data = place_of(&ply, "end_header\n") + 11, faces = data + 12 * (size_t)m->vertex_count;
+    size_t data = offset_of(&ply, "end_header\n") + 11, faces = data + 12 * (size_t)m->vertex_count;
     add_changed("b1.ply", &ply, 0, 'p', 1, ply.size - 5);
     add_changed("b2.ply", &ply, data + 12, 0x7fc00000, 4, ply.size);
     add_changed("b3.ply", &ply, faces + 1, 0x7fffffff, 4, ply.size);
     add_changed("b4.ply", &ply, faces, 255, 1, ply.size);
-    add_changed("b5.ply", &big, place_of(&big, "end_header\n") + 11 + 12, 0xc07f, 2, big.size); /* NaN, big end first */
+    add_changed("b5.ply", &big, offset_of(&big, "end_header\n") + 11 + 12, 0xc07f, 2,
+                big.size); /* NaN, big end first */
     add_changed("b6.ply", &big, 0, 'p', 1, big.size - 7);
     add_changed("b7.stl", &stl, 0, 'x', 1, stl.size - 20);
     add_changed("b8.stl", &stl, 80, 215000000, 4, stl.size); /* 10 GB */
@@ -95,7 +96,7 @@ static void add_binaries(const struct maker *m) {
 
 #ifdef HAVE_JANSSON
 static void replace(struct bytes *out, const struct bytes *in, const char *word, const char *by) {
-    size_t at = place_of(in, word);
+    size_t at = offset_of(in, word);
     bytes_add(out, in->data, at);
     bytes_add(out, by, strlen(by));
     bytes_add(out, in->data + at + strlen(word), in->size - at - strlen(word));

@@ -36,7 +36,7 @@ static struct view view_make(double lean, double degrees, double alpha, double e
     bsdf->fresnel = -1;
     bsdf->turns_back = true;
     struct vec3 through;
-    bsdf->passes = bsdf_refract(bsdf, view.wo, &through);
+    bsdf->transmits = bsdf_refract(bsdf, view.wo, &through);
     return view;
 }
 
@@ -44,7 +44,7 @@ static void add(struct view *view, enum lobe_kind kind, struct vec3 weight, doub
     view->bsdf.lobes[view->bsdf.count++] = (struct lobe){kind, weight, exponent};
 }
 
-static struct sample2 place_of(uint64_t key, uint32_t i) {
+static struct sample2 xi_of(uint64_t key, uint32_t i) {
     uint64_t bits = random_combine(key, i);
     return (struct sample2){random_unit(bits), random_unit(random_combine(bits, 1))};
 }
@@ -91,7 +91,7 @@ static void check_distribution(const char *what, const struct view *view) {
     struct tally t = {.lost = 0};
     for (uint32_t i = 0; i < SAMPLES; i++) {
         struct bsdf_sample sample;
-        if (!bsdf_sample(&view->bsdf, BSDF_ALL, BSDF_IMPORTANCE, view->wo, place_of(17, i), &sample))
+        if (!bsdf_sample(&view->bsdf, BSDF_ALL, BSDF_IMPORTANCE, view->wo, xi_of(17, i), &sample))
             t.lost += 1;
         else if (sample.flags & BSDF_DELTA)
             t.delta += 1;
@@ -190,7 +190,7 @@ TEST(the_weight_of_a_sample_is_f_times_cosine_over_density) {
             for (int mode = 0; mode < 2; mode++) {
                 for (uint32_t i = 0; i < 2000; i++) {
                     struct bsdf_sample sample;
-                    if (!bsdf_sample(&view.bsdf, BSDF_ALL, (enum bsdf_mode)mode, view.wo, place_of(3, i), &sample))
+                    if (!bsdf_sample(&view.bsdf, BSDF_ALL, (enum bsdf_mode)mode, view.wo, xi_of(3, i), &sample))
                         continue;
                     CHECK_NEAR(vec3_length(sample.direction), 1, 1e-9);
                     bool through = vec3_dot(sample.direction, view.bsdf.geometric_side) < 0;
@@ -259,9 +259,9 @@ TEST(weights_of_highlights_are_closed_forms) {
         add(&blinn, LOBE_BLINN, vec3_all(0.5), exponent);
         for (uint32_t i = 0; i < 1000; i++) {
             struct bsdf_sample sample;
-            if (bsdf_sample(&phong.bsdf, BSDF_ALL, BSDF_RADIANCE, phong.wo, place_of(5, i), &sample))
+            if (bsdf_sample(&phong.bsdf, BSDF_ALL, BSDF_RADIANCE, phong.wo, xi_of(5, i), &sample))
                 CHECK_NEAR(sample.weight.x, 0.5 * 2 / (exponent + 1), 1e-12);
-            if (bsdf_sample(&blinn.bsdf, BSDF_ALL, BSDF_RADIANCE, blinn.wo, place_of(6, i), &sample)) {
+            if (bsdf_sample(&blinn.bsdf, BSDF_ALL, BSDF_RADIANCE, blinn.wo, xi_of(6, i), &sample)) {
                 double v_h = vec3_dot(blinn.wo, vec3_normalize(vec3_add(blinn.wo, sample.direction)));
                 CHECK_NEAR(sample.weight.x, 0.5 * 8 * v_h / (exponent + 1), 1e-12);
             }
@@ -275,8 +275,8 @@ TEST(the_diffuse_lobe_is_reciprocal) {
     struct view view = view_make(0, 50, 0, 1);
     add(&view, LOBE_DIFFUSE, vec3_make(0.5, 0.1, 0.2), 0);
     for (uint32_t i = 0; i < 200; i++) {
-        struct vec3 a = direction_at(89 * place_of(1, i).x, 6 * place_of(1, i).y);
-        struct vec3 b = direction_at(89 * place_of(2, i).x, 6 * place_of(2, i).y);
+        struct vec3 a = direction_at(89 * xi_of(1, i).x, 6 * xi_of(1, i).y);
+        struct vec3 b = direction_at(89 * xi_of(2, i).x, 6 * xi_of(2, i).y);
         double ab = bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, a, b).x / b.z;
         double ba = bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, b, a).x / a.z;
         CHECK_NEAR(ab, ba, 1e-14);
@@ -323,7 +323,7 @@ TEST(rough_boundaries_are_those_of_walter_with_fresnel_s_share_of_each_facet) {
     static const double etas[] = {1 / 1.5, 1.5, 1 / 1.33, 2.4};
     for (int e = 0; e < 4; e++)
         for (int k = 0; k < 40; k++) {
-            double degrees = 2 + 2.1 * k, alpha = 0.05 + 0.95 * place_of(4, (uint32_t)k).x;
+            double degrees = 2 + 2.1 * k, alpha = 0.05 + 0.95 * xi_of(4, (uint32_t)k).x;
             struct view view = rough_view(degrees, alpha, etas[e]);
             for (int cell = 0; cell < CELLS; cell++) {
                 struct vec3 wi = direction_in(cell, 1, 1, 3);
@@ -381,7 +381,7 @@ TEST(every_lobe_but_classic_highlights_is_reciprocal_with_the_square_of_the_inde
         if (lobe_flags((enum lobe_kind)kind) & (BSDF_DELTA | BSDF_EXPONENT))
             continue;
         for (uint32_t k = 0; k < 4000; k++) {
-            struct sample2 a = place_of(21, k), b = place_of(22, k), c = place_of(23, k);
+            struct sample2 a = xi_of(21, k), b = xi_of(22, k), c = xi_of(23, k);
             double alpha = 0.1 + 0.9 * c.x;
             struct vec3 wo = direction_at(1 + 87 * a.x, 6.28 * a.y), wi = direction_at(1 + 87 * b.x, 6.28 * b.y);
             bool through = c.y < 0.5, fresnel = k & 1;
@@ -401,7 +401,7 @@ TEST(lobes_with_facets_are_drawn_as_often_as_they_are_expected_to_give_light) {
     int reflected = 0;
     for (uint32_t i = 0; i < 20000; i++) {
         struct bsdf_sample sample;
-        if (bsdf_sample(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, view.wo, place_of(31, i), &sample))
+        if (bsdf_sample(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, view.wo, xi_of(31, i), &sample))
             reflected += sample.flags & BSDF_REFLECTS ? 1 : 0;
     }
     CHECK(reflected > 500 && reflected < 2500); /* a smooth surface reflects a twenty-fifth */
@@ -443,7 +443,7 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
             material_eval(&glass, &hit, front ? NULL : &inside, &tir, &bsdf);
             double eta = front ? 1 / 1.5 : 1.5, sine = eta * sin(degrees * pi / 180), up = front ? 1 : -1;
             CHECK_NEAR(bsdf.eta, eta, 1e-15);
-            CHECK_EQ_INT(bsdf.passes, sine < 1);
+            CHECK_EQ_INT(bsdf.transmits, sine < 1);
             CHECK_EQ_INT(bsdf_branches(&bsdf, branches), sine < 1 ? 2 : 1);
             CHECK_NEAR(branches[0].weight.x, sine < 1 ? 0.25 : 1, 0);
             uint32_t mirror = bsdf_lobes_with(&bsdf, BSDF_REFLECTS) & bsdf_lobes_with(&bsdf, BSDF_TRACED);
@@ -502,14 +502,14 @@ TEST(what_is_reflected_totally_joins_the_mirror_or_is_lost) {
             struct bsdf_sample sample;
             glass.phong.roughness = rough * 0.5;
             material_eval(&glass, &hit, &inside, &context, &bsdf);
-            CHECK(!bsdf.passes);
+            CHECK(!bsdf.transmits);
             uint32_t refraction = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
             CHECK_EQ_INT(bsdf_branches(&bsdf, branches), rough ? 2 : 1);
             CHECK(branches[0].rough == rough);
             CHECK_NEAR(branches[0].weight.y, total && !rough ? 1 : 0.25, 0);
             int back = 0, out = 0;
             for (uint32_t i = 0; i < 1000; i++) {
-                if (!bsdf_sample(&bsdf, refraction, BSDF_RADIANCE, hit.view, place_of(9, i), &sample))
+                if (!bsdf_sample(&bsdf, refraction, BSDF_RADIANCE, hit.view, xi_of(9, i), &sample))
                     continue;
                 CHECK((sample.direction.z < 0) == ((sample.flags & BSDF_REFLECTS) != 0));
                 *(sample.flags & BSDF_REFLECTS ? &back : &out) += 1;

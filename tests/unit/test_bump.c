@@ -59,7 +59,7 @@ static struct vec3 stripes(double x, double y) {
     return vec3_all(fmod(x * 128, 1) < 0.5 ? 0 : 1);
 }
 
-static struct vec3 flat_blue(double x, double y) {
+static struct vec3 neutral_blue(double x, double y) {
     (void)x, (void)y;
     return vec3_make(128.0 / 255, 128.0 / 255, 1);
 }
@@ -103,16 +103,16 @@ static struct material *cut_out(struct stage *s, struct image *image, struct mat
 }
 
 /* The shading normal of the material and the hit of a ray. */
-static bool look_at(struct stage *s, struct ray ray, struct hit *hit, struct vec3 *normal) {
+static bool shading_normal(struct stage *s, struct ray ray, struct hit *hit, struct vec3 *normal) {
     struct world_scratch scratch;
-    struct surface_inputs look;
+    struct surface_inputs inputs;
     if (!world_scratch_init(&scratch, &s->world))
         return false;
     *normal = vec3_all(0);
     bool met = world_nearest(&s->world, &ray, &scratch, hit);
     if (met) {
-        material_inputs_at(&s->world.materials[hit->material], hit, &look);
-        *normal = look.normal;
+        material_inputs_at(&s->world.materials[hit->material], hit, &inputs);
+        *normal = inputs.normal;
     }
     world_scratch_destroy(&scratch);
     return met;
@@ -126,7 +126,7 @@ static void check_vector(struct vec3 a, struct vec3 b, double tolerance) {
     CHECK_NEAR(vec3_length(vec3_sub(a, b)), 0, tolerance);
 }
 
-static void random_place(struct stage *s, struct test_random *random, struct node *node) {
+static void random_transform(struct stage *s, struct test_random *random, struct node *node) {
     stage_scale(s, node, test_uniform(random, 0.4, 2), test_uniform(random, -2, -0.4), test_uniform(random, 0.4, 2));
     for (int axis = 0; axis < 3; axis++)
         stage_rotate(s, node, axis, test_uniform(random, 0, 360));
@@ -175,7 +175,7 @@ static uint32_t fill_shapes(struct shape out[8], struct mesh *mesh) {
 
 TEST(relief_of_constant_pictures_leaves_every_bit_of_the_normal) {
     struct mesh *mesh = square_mesh(true);
-    struct image *level = paint(half, 37, 20, 8), *blue = paint(flat_blue, 16, 16, 8);
+    struct image *level = paint(half, 37, 20, 8), *blue = paint(neutral_blue, 16, 16, 8);
     struct test_random random = {5};
     struct shape shapes[8];
     uint32_t count = fill_shapes(shapes, mesh), met = 0;
@@ -183,14 +183,14 @@ TEST(relief_of_constant_pictures_leaves_every_bit_of_the_normal) {
         struct stage s;
         stage_begin(&s, 1);
         struct material *m = i % 2 ? bump_over(&s, MATERIAL_BUMP, level, 3) : bump_over(&s, MATERIAL_NORMAL, blue, 1);
-        random_place(&s, &random, add_shape(&s, shapes[i / 2], m));
+        random_transform(&s, &random, add_shape(&s, shapes[i / 2], m));
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         for (int k = 0; k < 400; k++) {
             struct hit hit;
             struct vec3 normal = {0, 0, 0};
             struct ray ray = down_z(test_uniform(&random, -2, 2), test_uniform(&random, -2, 2));
             ray.footprint.spread = k % 3 ? 0 : test_uniform(&random, 0, 0.02);
-            if (!look_at(&s, ray, &hit, &normal))
+            if (!shading_normal(&s, ray, &hit, &normal))
                 continue;
             met++;
             CHECK(memcmp(&normal, &hit.normal, sizeof normal) == 0);
@@ -214,7 +214,7 @@ TEST(bump_ramp_tilts_the_normal_by_the_closed_form_under_affine_maps) {
         double height = test_uniform(&random, -0.8, 0.8);
         struct material *m = bump_over(&s, MATERIAL_BUMP, i % 2 ? down : right, height);
         struct node *node = stage_cube(&s, s.root, m);
-        random_place(&s, &random, node);
+        random_transform(&s, &random, node);
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         struct transform map = node_parent_from_node(node);
         for (int k = 0; k < 20; k++) {
@@ -225,7 +225,7 @@ TEST(bump_ramp_tilts_the_normal_by_the_closed_form_under_affine_maps) {
             struct ray ray = {.origin = from, .direction = vec3_sub(to, from), .t_max = INFINITY};
             struct hit hit;
             struct vec3 normal = {0, 0, 0};
-            if (!look_at(&s, ray, &hit, &normal) || fabs(hit.pattern_point.z - 1) > 1e-9)
+            if (!shading_normal(&s, ray, &hit, &normal) || fabs(hit.pattern_point.z - 1) > 1e-9)
                 continue;
             met++;
             struct vec3 tilted = i % 2 ? vec3_make(0, RAMP * height, 1) : vec3_make(-RAMP * height, 0, 1);
@@ -252,15 +252,15 @@ TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
         double a = 0.4 + 2.3 * i / 300, b = -0.9 + 1.8 * ((i * 37) % 300) / 300;
         struct vec3 direction = {sin(b) * sin(a), cos(a), cos(b) * sin(a)};
         struct ray ray = {.origin = vec3_scale(direction, 9), .direction = vec3_negate(direction), .t_max = INFINITY};
-        struct vec3 around[4], normal, p[4];
+        struct vec3 corners[4], normal, p[4];
         struct hit hit;
-        CHECK(look_at(&s, ray, &hit, &normal));
+        CHECK(shading_normal(&s, ray, &hit, &normal));
         const double steps[4][2] = {{e, 0}, {-e, 0}, {0, e}, {0, -e}};
         for (int k = 0; k < 4; k++) {
             double a1 = a + steps[k][0], b1 = b + steps[k][1];
-            around[k] = vec3_make(sin(b1) * sin(a1), cos(a1), cos(b1) * sin(a1));
-            double u = (atan2(-around[k].z, -around[k].x) + pi) / (2 * pi), v = a1 / pi;
-            p[k] = vec3_scale(around[k], 1 + height * waves(u, v).x);
+            corners[k] = vec3_make(sin(b1) * sin(a1), cos(a1), cos(b1) * sin(a1));
+            double u = (atan2(-corners[k].z, -corners[k].x) + pi) / (2 * pi), v = a1 / pi;
+            p[k] = vec3_scale(corners[k], 1 + height * waves(u, v).x);
         }
         struct vec3 real = vec3_normalize(vec3_cross(vec3_sub(p[0], p[1]), vec3_sub(p[2], p[3])));
         real = vec3_dot(real, direction) < 0 ? vec3_negate(real) : real;
@@ -287,7 +287,7 @@ TEST(bump_heights_stand_out_of_the_hollow_that_an_operand_leaves) {
     struct hit hit;
     struct vec3 normal = {0, 0, 0};
     /* The floor of the hollow is the inner box's side -z, whose pictures run to the left. */
-    CHECK(look_at(&s, down_z(0.5, 0.5), &hit, &normal));
+    CHECK(shading_normal(&s, down_z(0.5, 0.5), &hit, &normal));
     CHECK_NEAR(hit.normal_geometric.z, 1, 0);
     check_vector(normal, vec3_normalize(vec3_make(RAMP * 0.5 / 0.8, 0, 1)), 1e-9);
     stage_end(&s);
@@ -308,7 +308,7 @@ TEST(normal_maps_turn_to_where_their_colours_point) {
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         struct hit hit;
         struct vec3 normal, wanted = i & 1 ? vec3_make(0, slope, rise) : vec3_make(i & 4 ? -slope : slope, 0, rise);
-        CHECK(look_at(&s, down_z(0.3, 0.6), &hit, &normal));
+        CHECK(shading_normal(&s, down_z(0.3, 0.6), &hit, &normal));
         check_vector(normal, vec3_normalize(wanted), 1e-9);
         stage_end(&s);
     }
@@ -326,7 +326,7 @@ TEST(relief_turns_the_interpolated_normal_of_smooth_meshes) {
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     struct hit hit;
     struct vec3 normal = {0, 0, 0};
-    CHECK(look_at(&s, down_z(0.75, 0.5), &hit, &normal));
+    CHECK(shading_normal(&s, down_z(0.75, 0.5), &hit, &normal));
     CHECK(hit.normal.x > 0.2);
     struct vec3 wanted = vec3_normalize(vec3_add(hit.normal, vec3_make(-RAMP * 0.25, 0, 0)));
     check_vector(normal, wanted, 1e-9);
@@ -346,10 +346,10 @@ TEST(bumps_finer_than_a_pixel_average_to_flat) {
         struct hit hit;
         struct vec3 normal = {0, 0, 0};
         struct ray ray = down_z(0.2 + 0.003 * i, 0.5);
-        CHECK(look_at(&s, ray, &hit, &normal));
+        CHECK(shading_normal(&s, ray, &hit, &normal));
         near_tilt = fmax(near_tilt, fabs(normal.x));
         ray.footprint.width = 0.1;
-        CHECK(look_at(&s, ray, &hit, &normal));
+        CHECK(shading_normal(&s, ray, &hit, &normal));
         far_tilt = fmax(far_tilt, fabs(normal.x));
     }
     CHECK(near_tilt > 0.9);
@@ -378,7 +378,7 @@ TEST(bumps_grow_with_the_object_bit_by_bit) {
         struct vec3 normal = {0, 0, 0};
         struct ray ray = down_z(0.3 * size, 0.6 * size);
         ray.origin.z = 50 * size;
-        CHECK(look_at(&s, ray, &hit, &normal));
+        CHECK(shading_normal(&s, ray, &hit, &normal));
         if (i == -6)
             first[relative] = normal;
         CHECK(fabs(normal.x) > 1e-3 && fabs(normal.y) > 1e-3);

@@ -95,13 +95,13 @@ TEST(what_is_in_focus_is_as_sharp_as_through_a_pinhole) {
  */
 TEST(samples_of_pixel_and_lens_are_stratified_together) {
     double error[2] = {0, 0};
-    for (int alone = 0; alone < 2; alone++) {
+    for (int single = 0; single < 2; single++) {
         struct stage s;
         dot_stage(&s, vec3_make(-50, 0, -10), 50); /* the edge of a huge ball in the middle: a vertical line */
         s.camera.fov = 1e-4;
         s.settings.lens.aperture = 1;
         s.settings.lens.focus = 5;
-        error[alone] = stage_variance_about_half(&s, alone);
+        error[single] = stage_variance_about_half(&s, single);
         stage_end(&s);
     }
     CHECK(error[0] < 0.3 * error[1]);
@@ -144,15 +144,16 @@ TEST(panorama_shows_longitude_and_latitude) {
     static const struct {
         struct vec3 at;
         double x, y;
-    } places[] = {{{10, 0, 0}, 150, 50}, {{0, 0, -10}, 100, 50}, {{-10, 0, 0}, 50, 50}, {{7.071, 7.071, 0}, 150, 25}};
+    } positions[] = {
+        {{10, 0, 0}, 150, 50}, {{0, 0, -10}, 100, 50}, {{-10, 0, 0}, 50, 50}, {{7.071, 7.071, 0}, 150, 25}};
     for (int i = 0; i < 4; i++) {
         struct stage s;
-        dot_stage(&s, places[i].at, 0.3);
+        dot_stage(&s, positions[i].at, 0.3);
         s.settings.lens.projection = PROJECTION_PANORAMA;
         CHECK(stage_render(&s, 200, 100));
         struct moments m = moments_of(&s, 0, 200, 0);
-        CHECK_NEAR(m.x, places[i].x, 0.05);
-        CHECK_NEAR(m.y, places[i].y, 0.05);
+        CHECK_NEAR(m.x, positions[i].x, 0.05);
+        CHECK_NEAR(m.y, positions[i].y, 0.05);
         stage_end(&s);
     }
 }

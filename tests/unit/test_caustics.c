@@ -31,18 +31,18 @@ static struct material *fresnel_glass(struct stage *s, double ior) {
     return material;
 }
 
-static struct node *thing(struct stage *s, struct shape shape, const struct material *material) {
+static struct node *object(struct stage *s, struct shape shape, const struct material *material) {
     struct node *node = stage_sphere(s, s->root, material);
     node->shape = shape;
     return node;
 }
 
 static struct node *box(struct stage *s, struct vec3 min, struct vec3 max, const struct material *material) {
-    return thing(s, (struct shape){.kind = SHAPE_BOX, .box = {min, max}}, material);
+    return object(s, (struct shape){.kind = SHAPE_BOX, .box = {min, max}}, material);
 }
 
 static struct node *ball(struct stage *s, struct vec3 centre, double radius, const struct material *material) {
-    return thing(s, (struct shape){.kind = SHAPE_SPHERE, .sphere = {centre, radius}}, material);
+    return object(s, (struct shape){.kind = SHAPE_SPHERE, .sphere = {centre, radius}}, material);
 }
 
 static struct light *add_light(struct stage *s, struct light light) {
@@ -69,7 +69,7 @@ static struct photon_statistics send(struct stage *s, int photons, struct photon
     return statistics;
 }
 
-static struct vec3 photon_place(const struct photon_map *map, uint32_t i) {
+static struct vec3 photon_position(const struct photon_map *map, uint32_t i) {
     const float *at = map->spots[i].at;
     return vec3_add_scaled(map->origin, vec3_make((double)at[0], (double)at[1], (double)at[2]), map->unit);
 }
@@ -182,11 +182,11 @@ TEST(a_pane_of_index_1_gives_back_the_light_of_lights_with_an_extent) {
     pane_gives_back("area light", panel, 0.015);
     pane_gives_back("disc", disc, 0.015);
     pane_gives_back("sphere", globe, 0.015);
-    panel.emits = disc.emits = globe.emits = true;
+    panel.emissive = disc.emissive = globe.emissive = true;
     pane_gives_back("lamp: parallelogram", panel, 0.015);
     pane_gives_back("lamp: disc", disc, 0.015);
     pane_gives_back("lamp: sphere", globe, 0.015);
-    struct light mesh = {.kind = LIGHT_MESH, .emits = true, .has_emission = true, .emission = {2, 2, 2}};
+    struct light mesh = {.kind = LIGHT_MESH, .emissive = true, .has_emission = true, .emission = {2, 2, 2}};
     pane_gives_back("lamp: mesh", mesh, 0.03);
     disc.one_sided = true;
     pane_gives_back("lamp: one-sided disc", disc, 0.015);
@@ -204,7 +204,7 @@ TEST(a_ball_of_index_1_gives_back_the_light_of_skies) {
     sky_make_clear(vec3_normalize(vec3_make(1, 0.7, 0.4)), 3, vec3_all(0.3), &skies[2]);
     const char *const names[3] = {"constant sky", "graded sky", "clear sky"};
     for (int i = 0; i < 3; i++)
-        pane_gives_back(names[i], (struct light){.kind = LIGHT_SKY, .emits = true, .sky = &skies[i], .samples = 16},
+        pane_gives_back(names[i], (struct light){.kind = LIGHT_SKY, .emissive = true, .sky = &skies[i], .samples = 16},
                         0.02);
 }
 
@@ -215,9 +215,10 @@ TEST(a_sky_sends_no_photons_through_the_ground) {
     struct stage s;
     struct photon_map map;
     stage_begin(&s, 2);
-    thing(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), 0)}, white(&s));
+    object(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), 0)}, white(&s));
     ball(&s, vec3_make(0, 2, 0), 1, fresnel_glass(&s, 1.5));
-    add_light(&s, (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &below, .samples = 1});
+    add_light(&s,
+              (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = &below, .samples = 1});
     CHECK(send(&s, 20000, &map).sent == 20000);
     CHECK(map.count == 0);
     photon_map_destroy(&map);
@@ -302,10 +303,10 @@ TEST(a_lamp_sends_a_mirror_its_view_factor) {
                                  .direction = {0, -1, 0},
                                  .radius = 1,
                                  .colour = {1, 1, 1},
-                                 .emits = true,
+                                 .emissive = true,
                                  .one_sided = true});
-    thing(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 1, 0), 1, 0)},
-          mirror(&s));
+    object(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 1, 0), 1, 0)},
+           mirror(&s));
     double r = 0.5, x = 1 + (1 + r * r) / (r * r), factor = 0.5 * (x - sqrt(x * x - 4));
     arrives("a lamp", &s, pi * factor, 0.015);
 }
@@ -369,7 +370,7 @@ static void ring_on_floor(struct stage *s) {
     s->settings.caustics.radius = 0.01; /* no search for radii: only positions are used */
     box(s, vec3_make(-20, -1, -20), vec3_make(20, 0, 20), white(s));
     struct revolved_quadric ring = revolved_quadric_cylinder(vec3_make(0, 0, 0), vec3_make(0, 1, 0), 1, true);
-    thing(s, (struct shape){.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = ring}, mirror(s));
+    object(s, (struct shape){.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = ring}, mirror(s));
 }
 
 /* Where light along a line of constant z inside the ring is brightest. */
@@ -377,7 +378,7 @@ static double brightest(const struct photon_map *map, double z, double low, doub
     enum { BINS = 60 };
     double bins[BINS] = {0}, width = (high - low) / BINS;
     for (uint32_t i = 0; i < map->count; i++) {
-        struct vec3 p = photon_place(map, i);
+        struct vec3 p = photon_position(map, i);
         double bin = (p.x - low) / width;
         if (fabs(p.z - z) < 0.005 && bin >= 0 && bin < BINS)
             bins[(int)bin] += photon_power(map, i).x;
@@ -429,13 +430,13 @@ static double beam_behind_ball(double ior, double screen) {
     stage_begin(&s, 2);
     add_light(&s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {1, 1, 1}});
     struct planar aperture = planar_disc(vec3_make(0, 2, 0), vec3_make(0, 1, 0), 3, 0.1);
-    thing(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = aperture}, white(&s));
+    object(&s, (struct shape){.kind = SHAPE_PLANAR, .planar = aperture}, white(&s));
     ball(&s, vec3_make(0, 0, 0), 1, stage_glass(&s, 0, 1, ior));
     box(&s, vec3_make(-5, -screen - 1, -5), vec3_make(5, -screen, 5), white(&s));
     (void)send(&s, 80000, &map);
     double sum = 0;
     for (uint32_t i = 0; i < map.count; i++) {
-        struct vec3 p = photon_place(&map, i);
+        struct vec3 p = photon_position(&map, i);
         sum += p.x * p.x + p.z * p.z;
     }
     CHECK(map.count > 400);
@@ -468,7 +469,7 @@ static void busy_scene(struct stage *s, int threads) {
     ball(s, vec3_make(2, 0.5, 1), 0.5, rough);
     inverse_square(s, vec3_make(3, 5, 2), 20);
     static const struct sky grey = {.kind = SKY_CONSTANT, .colour = {0.25, 0.25, 0.25}};
-    add_light(s, (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = &grey, .samples = 1});
+    add_light(s, (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = &grey, .samples = 1});
     add_light(s, (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -1, 0}, .colour = {0.5, 0.5, 0.5}});
     add_light(s, (struct light){.kind = LIGHT_PARALLELOGRAM,
                                 .position = {-2, 5, -1},
@@ -477,8 +478,9 @@ static void busy_scene(struct stage *s, int threads) {
                                 .edge2 = {0, 0, 2},
                                 .colour = {0.5, 0.5, 0.25},
                                 .falloff = {1, 0, 0}});
-    add_light(s, (struct light){
-                     .kind = LIGHT_SPHERE, .position = {0, 5, 3}, .radius = 0.5, .colour = {8, 8, 8}, .emits = true});
+    add_light(s,
+              (struct light){
+                  .kind = LIGHT_SPHERE, .position = {0, 5, 3}, .radius = 0.5, .colour = {8, 8, 8}, .emissive = true});
 }
 
 TEST(any_number_of_threads_makes_the_same_photon_map) {
@@ -542,7 +544,7 @@ TEST(the_map_gives_the_sum_over_all_discs) {
         struct vec3 light = photon_map_light(&map, &s.world, &hit, &bsdf);
         double sum = 0;
         for (uint32_t k = 0; k < map.count; k++) {
-            struct vec3 d = vec3_sub(photon_place(&map, k), hit.point);
+            struct vec3 d = vec3_sub(photon_position(&map, k), hit.point);
             double radius = (double)map.spots[k].radius * map.unit;
             double squared = vec3_dot(d, d) + 15 * d.y * d.y, share = 1 - squared / (radius * radius);
             if (share > 0 && photon_unpack(map.lights[k].from).y > 0)

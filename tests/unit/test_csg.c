@@ -21,13 +21,13 @@ static struct transform then(struct transform first, struct transform second) {
     return transform_compose(&second, &first);
 }
 
-static struct transform random_transform(struct test_random *random, double reach) {
+static struct transform random_transform(struct test_random *random, double extent) {
     double x = exp(test_uniform(random, -0.7, 0.7)), y = exp(test_uniform(random, -0.7, 0.7));
     double z = exp(test_uniform(random, -0.7, 0.7)) * (test_uniform(random, 0, 1) < 0.3 ? -1 : 1);
     struct transform t = transform_scale(vec3_make(x, y, z));
     for (int axis = 0; axis < 3; axis++)
         t = then(t, transform_rotate(axis, test_uniform(random, 0, 360)));
-    return then(t, transform_translate(random_vec3(random, reach)));
+    return then(t, transform_translate(random_vec3(random, extent)));
 }
 
 /* A random tree of `count` leaves as a postfix program: leaves are pushed and combined at random. */
@@ -522,14 +522,14 @@ TEST(csg_needs_no_more_scratch_than_it_says_and_grows_into_it) {
     for (uint32_t i = 1; i < COUNT; i++)
         program[length++] = (struct csg_token){CSG_DIFFERENCE, 0};
     const struct csg *csg = build(&arena, leaves, COUNT, program, length);
-    struct geom_scratch enough, small;
-    CHECK(geom_scratch_init(&enough, csg->max_crossings) && geom_scratch_init(&small, 16));
+    struct geom_scratch large, small;
+    CHECK(geom_scratch_init(&large, csg->max_crossings) && geom_scratch_init(&small, 16));
     for (int i = 0; i < 1000; i++) {
         struct ray ray = line_through(random_vec3(&random, 100), random_vec3(&random, 0.1));
-        struct crossing_list list = all_crossings(csg, &ray, &enough), again = all_crossings(csg, &ray, &small);
+        struct crossing_list list = all_crossings(csg, &ray, &large), again = all_crossings(csg, &ray, &small);
         CHECK_EQ_INT(list.count, 2 * COUNT);
         CHECK_EQ_INT(again.count, 2 * COUNT);
-        CHECK(enough.capacity == csg->max_crossings && small.capacity > 2 * COUNT);
+        CHECK(large.capacity == csg->max_crossings && small.capacity > 2 * COUNT);
     }
     /* If the scratch is too small, every query reports it and leaves the scratch unchanged. */
     struct ray ray = line_through(vec3_make(100, 1, 2), vec3_all(0));
@@ -545,7 +545,7 @@ TEST(csg_needs_no_more_scratch_than_it_says_and_grows_into_it) {
         CHECK(question != 3 || !csg_contains(csg, vec3_all(0), &small));
         CHECK(small.overflow && small.used == small.capacity - (question == 3 ? 0 : 3));
     }
-    geom_scratch_destroy(&enough);
+    geom_scratch_destroy(&large);
     geom_scratch_destroy(&small);
     arena_destroy(&arena);
 }

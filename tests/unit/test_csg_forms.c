@@ -320,14 +320,14 @@ TEST(csg_clipped_solids_are_their_surface_inside_of_the_clip) {
             own[i] = program[length + i];
             own[i].leaf = (uint16_t)(own[i].operation == CSG_LEAF ? own[i].leaf - count : 0);
         }
-        const struct csg *thing = build(&arena, leaves, count, program, length);
+        const struct csg *object = build(&arena, leaves, count, program, length);
         const struct csg *clip = build(&arena, leaves + count, behind, own, more);
         const struct csg *clipped = csg_build_clipped(
             &arena, &(struct csg_program){leaves, count + behind, program, length + more}, length, &error);
         CHECK(clipped && clipped->clipped && !clipped->open);
         for (int i = 0; clipped && i < 100; i++) {
             struct ray ray = random_line(&random);
-            struct crossing_list list = crossings_of(thing, &ray, &scratch);
+            struct crossing_list list = crossings_of(object, &ray, &scratch);
             struct crossing all[64];
             uint32_t n = list.count < 64 ? list.count : 64;
             memcpy(all, &scratch.items[list.first], n * sizeof *all);

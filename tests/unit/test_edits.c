@@ -67,13 +67,13 @@ TEST(edits_undone_and_made_again_in_any_order_hold_what_their_steps_say) {
 
 TEST(edits_of_one_drag_are_one_step) {
     struct edits edits = {0};
-    struct change target, change = change_of(CHANGE_PLACE, 3, 1);
+    struct change target, change = change_of(CHANGE_TRANSFORM, 3, 1);
     CHECK(edits_make(&edits, &change, true, false));
     for (int i = 2; i < 50; i++) {
         change.numbers[0] = i;
         CHECK(edits_make(&edits, &change, true, true));
     }
-    struct change other = change_of(CHANGE_PLACE, 4, 1);
+    struct change other = change_of(CHANGE_TRANSFORM, 4, 1);
     CHECK(edits_make(&edits, &other, true, true)); /* of another target: a separate step */
     CHECK_EQ_INT(edits.count, 2);
     CHECK(edits_undo(&edits, &target) && target.serial == 4);
@@ -141,14 +141,14 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
     const struct change changes[] = {
         {.kind = CHANGE_ADD, .serial = group->serial, .added = ADDED_CUBE, .numbers = {0.1, 0.2, 0.3}},
         {.kind = CHANGE_ADD, .serial = group->serial, .added = ADDED_COPY, .number = 1, .source = ball->serial},
-        {.kind = CHANGE_PLACE, .serial = UINT32_MAX, .numbers = {2, 0, 0, 5, 0, 2, 0, 0, 0, 0, 2, 0}},
-        {.kind = CHANGE_PLACE, .serial = ball->serial, .numbers = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 7}},
+        {.kind = CHANGE_TRANSFORM, .serial = UINT32_MAX, .numbers = {2, 0, 0, 5, 0, 2, 0, 0, 0, 0, 2, 0}},
+        {.kind = CHANGE_TRANSFORM, .serial = ball->serial, .numbers = {0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 7}},
         {.kind = CHANGE_GONE, .serial = ball->serial},
         {.kind = CHANGE_MATERIAL, .serial = red->serial, .numbers = {0, 1, 0}},
         {.kind = CHANGE_ADD_LIGHT, .numbers = {9, 8, 7, 0.5, 0.5, 0.5}},
         {.kind = CHANGE_LIGHT, .serial = 1, .numbers = {0, 0, 1, 2, 2, 2}},
         {.kind = CHANGE_DARK, .serial = 2},
-        {.kind = CHANGE_PLACE, .serial = 12345, .name = "nowhere"},
+        {.kind = CHANGE_TRANSFORM, .serial = 12345, .name = "nowhere"},
         {.kind = CHANGE_MATERIAL, .serial = 12345},
         {.kind = CHANGE_LIGHT, .serial = 12345},
     };
@@ -283,8 +283,8 @@ TEST(changes_of_what_is_not_there_are_told_once_and_left_out) {
         SCENE_HEAD "gr.change_delete('no such', 77)\n" SCENE_TAIL("{0, 0, 6}", LIGHT) SCENE_TAIL("{0, 0, 6}", LIGHT),
         "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    const char *told = strstr(result.err, "the node 'no such' (77) is skipped");
-    CHECK(told && !strstr(told + 15, "the node"));
+    const char *reported = strstr(result.err, "the node 'no such' (77) is skipped");
+    CHECK(reported && !strstr(reported + 15, "the node"));
     free(result.out);
     free(result.err);
 }
@@ -304,8 +304,8 @@ TEST(edits_as_lua_text_are_read_back_to_the_bit) {
     struct test_random random = {5};
     struct change changes[] = {
         {.kind = CHANGE_ADD, .name = "root", .added = ADDED_CONE, .numbers = {0.1, 0.7, 1.0 / 3}},
-        {.kind = CHANGE_PLACE, .serial = UINT32_MAX, .name = "cone"},
-        {.kind = CHANGE_PLACE, .serial = 2, .name = "ba'l\\l\n"},
+        {.kind = CHANGE_TRANSFORM, .serial = UINT32_MAX, .name = "cone"},
+        {.kind = CHANGE_TRANSFORM, .serial = 2, .name = "ba'l\\l\n"},
         {.kind = CHANGE_MATERIAL, .serial = 1, .numbers = {1.0 / 7, 2.0 / 7, 3.0 / 7}},
         {.kind = CHANGE_ADD_LIGHT, .numbers = {0.3, 3, 1, 0.1, 0.2, 0.3}},
         {.kind = CHANGE_LIGHT,
@@ -393,7 +393,7 @@ TEST(picking_returns_the_path_of_a_node_its_position_and_its_box) {
     CHECK(picked.serial == ball->serial && picked.parent_serial == group->serial && picked.levels == 2);
     CHECK_NEAR(picked.distance, 9, 1e-9); /* from z = 10 to z = 1 */
     CHECK_NEAR(picked.position.z, 1, 1e-9);
-    CHECK(picked.material_serial == red->serial && picked.look[MATERIAL_PART_KD][1] == 0.5 && picked.can_own);
+    CHECK(picked.material_serial == red->serial && picked.inputs[MATERIAL_PART_KD][1] == 0.5 && picked.can_own);
     CHECK(picked.has_box);
     CHECK_NEAR(picked.corners[0].x, -2, 1e-12);
     CHECK_NEAR(picked.corners[7].z, 1, 1e-12);
@@ -631,8 +631,8 @@ static struct node *grow(struct forest *f, int depth) {
         s->root->last_child->node->singular = true; /* it is only in the solid */
         node->singular = test_uniform(&f->random, 0, 1) < 0.1;
     } else if (what < 0.35) {
-        static const double places[2][3] = {{-0.4, 0, 0}, {0.6, 0.1, 0}};
-        static const struct placements twice = {.count = 2, .at = places};
+        static const double positions[2][3] = {{-0.4, 0, 0}, {0.6, 0.1, 0}};
+        static const struct placements twice = {.count = 2, .at = positions};
         node = scene_node(&s->scene, NODE_GROUP, "twice", &s->error);
         node->placements = &twice;
         CHECK(node_add_child(&s->scene, node, grow(f, depth - 1), &s->error));
@@ -665,7 +665,7 @@ TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
             .world = &s.world, .camera = s.camera, .settings = s.settings, .width = 100, .height = 100};
         for (int i = 0; i < 200; i++) {
             double x = test_uniform(&f.random, 25, 75), y = test_uniform(&f.random, 25, 75);
-            struct picked picked, leaf, between;
+            struct picked picked, leaf, middle;
             CHECK(pick_at(&job, s.root, (struct pick_query){x, y, 0}, &picked, &s.error));
             CHECK(pick_at(&job, s.root, (struct pick_query){x, y, -1000}, &leaf, &s.error));
             CHECK(leaf.hit == picked.hit);
@@ -684,11 +684,11 @@ TEST(picking_goes_down_to_the_operand_whose_surface_was_hit) {
             CHECK_NEAR(vec3_length(p), 1, 1e-9);
             /* It is also in the box of every node in between. */
             int32_t up = -(int32_t)(test_uniform(&f.random, 0, picked.below + 0.99));
-            CHECK(pick_at(&job, s.root, (struct pick_query){x, y, up}, &between, &s.error));
-            CHECK(between.levels == picked.levels + (uint32_t)-up && between.has_box);
+            CHECK(pick_at(&job, s.root, (struct pick_query){x, y, up}, &middle, &s.error));
+            CHECK(middle.levels == picked.levels + (uint32_t)-up && middle.has_box);
             struct box box = box_empty();
             for (int corner = 0; corner < 8; corner++)
-                box = box_join(box, (struct box){between.corners[corner], between.corners[corner]});
+                box = box_join(box, (struct box){middle.corners[corner], middle.corners[corner]});
             for (int axis = 0; axis < 3; axis++)
                 CHECK(vec3_get(leaf.position, axis) >= vec3_get(box.min, axis) - 1e-9 &&
                       vec3_get(leaf.position, axis) <= vec3_get(box.max, axis) + 1e-9);

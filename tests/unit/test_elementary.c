@@ -20,7 +20,7 @@ typedef long double one_ruler(long double);
 typedef long double two_ruler(long double, long double);
 
 /* The distance between neighbouring doubles just above |x|. */
-static double last_place(double x) {
+static double last_digit_unit(double x) {
     int exponent;
     x = fabs(x);
     if (x < DBL_MIN)
@@ -29,7 +29,7 @@ static double last_place(double x) {
     return ldexp(1.0, exponent - 53);
 }
 
-static double error_in_last_places(double got, long double want) {
+static double error_in_digit_units(double got, long double want) {
     double near = (double)want;
     if (isnan(near))
         return isnan(got) ? 0.0 : HUGE_VAL;
@@ -37,7 +37,7 @@ static double error_in_last_places(double got, long double want) {
         return got == near ? 0.0 : HUGE_VAL;
     if (isnan(got))
         return HUGE_VAL;
-    return (double)(fabsl((long double)got - want) / (long double)last_place(near));
+    return (double)(fabsl((long double)got - want) / (long double)last_digit_unit(near));
 }
 
 /* Either uniform in [lo, hi], or a random sign and mantissa with an exponent from lo to hi. */
@@ -60,7 +60,7 @@ static void check_one(const char *name, one_function *function, one_ruler *ruler
     double worst = 0.0, where = 0.0;
     for (int i = 0; i < 50000; i++) {
         double x = draw(&random, range);
-        double error = error_in_last_places(function(x), ruler(x));
+        double error = error_in_digit_units(function(x), ruler(x));
         if (error > worst) {
             worst = error;
             where = x;
@@ -76,7 +76,7 @@ static void check_two(const char *name, two_function *function, two_ruler *ruler
     double worst = 0.0, at_x = 0.0, at_y = 0.0;
     for (int i = 0; i < 100000; i++) {
         double x = draw(&random, first), y = draw(&random, second);
-        double error = error_in_last_places(function(x, y), ruler(x, y));
+        double error = error_in_digit_units(function(x, y), ruler(x, y));
         if (error > worst) {
             worst = error;
             at_x = x;
@@ -96,7 +96,7 @@ static void check_two(const char *name, two_function *function, two_ruler *ruler
 static void reference_one(const char *name, one_function *function, const struct reference1 *points, int count) {
     for (int i = 0; i < count; i++) {
         double got = function(points[i].x);
-        if (!(error_in_last_places(got, points[i].want) <= 1.0))
+        if (!(error_in_digit_units(got, points[i].want) <= 1.0))
             test_fail(__FILE__, __LINE__, "%s(%a) = %a, not %a", name, points[i].x, got, points[i].want);
     }
 }
@@ -104,7 +104,7 @@ static void reference_one(const char *name, one_function *function, const struct
 static void reference_two(const char *name, two_function *function, const struct reference2 *points, int count) {
     for (int i = 0; i < count; i++) {
         double got = function(points[i].x, points[i].y);
-        if (!(error_in_last_places(got, points[i].want) <= 1.0))
+        if (!(error_in_digit_units(got, points[i].want) <= 1.0))
             test_fail(__FILE__, __LINE__, "%s(%a, %a) = %a, not %a", name, points[i].x, points[i].y, got,
                       points[i].want);
     }

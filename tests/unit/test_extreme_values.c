@@ -51,7 +51,7 @@ static bool all_finite(const float *rgb) {
     return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
 }
 
-static void look_at(struct gallery *gallery, const struct film *film) {
+static void point_at(struct gallery *gallery, const struct film *film) {
     size_t count = (size_t)film->width * film->height;
     for (size_t i = 0; i < count; i++) {
         uint32_t x = (uint32_t)i % film->width, y = (uint32_t)i / film->width;
@@ -124,7 +124,7 @@ static bool render_small(void *context, const struct render_request *request, st
     bool ok = world_build(&world, &input, &arena, gallery->pool, error) &&
               render_run(&job, gallery->pool, &statistics, error);
     if (ok)
-        look_at(gallery, &film);
+        point_at(gallery, &film);
     gallery->clamped = gallery->clamped || statistics.clamped > 0;
     mem_free(block);
     world_destroy(&world);
@@ -450,9 +450,9 @@ static void put_value(const char *text, const char *value, char *out, size_t siz
     size_t used = 0;
     out[0] = '\0';
     for (const char *at = text; *at && used + 64 < size; at++) {
-        bool alone = *at == 'V' && (at == text || !strchr("abcdefghijklmnopqrstuvwxyz_", at[-1]));
-        used += (size_t)snprintf(out + used, size - used, alone ? "(%.*s)" : "%.*s", alone ? (int)strlen(value) : 1,
-                                 alone ? value : at);
+        bool single = *at == 'V' && (at == text || !strchr("abcdefghijklmnopqrstuvwxyz_", at[-1]));
+        used += (size_t)snprintf(out + used, size - used, single ? "(%.*s)" : "%.*s", single ? (int)strlen(value) : 1,
+                                 single ? value : at);
     }
 }
 

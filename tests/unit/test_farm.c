@@ -412,11 +412,11 @@ TEST(other_ranks_end_when_the_first_one_is_silent_for_very_long) {
     end_farm(2);
 }
 
-static int told;
+static int reported;
 static void count_line(void *context, const char *line) {
     (void)context;
     CHECK(strncmp(line, "gray: rank ", 11) == 0);
-    told++;
+    reported++;
 }
 
 TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_answered) {
@@ -445,9 +445,9 @@ TEST(ranks_with_another_picture_late_ones_and_those_after_a_failure_are_answered
             farm_report(farms[i % 2], "more than there is room for");
         farm_end(farms[0], true);
         post(1, 0, BYE, "", 1);
-        told = 0;
+        reported = 0;
         farm_finish(farms[0], well, count_line, NULL);
-        CHECK_EQ_INT(told, 4); /* another one, and three times an unknown message */
+        CHECK_EQ_INT(reported, 4); /* another one, and three times an unknown message */
         bool asked = farm_begin(farms[1], &later, &films[1], &already, &error);
         CHECK(well ? asked && already : !asked && error.kind == ERROR_CANCELLED);
         farm_finish(farms[1], true, count_line, NULL);

@@ -117,7 +117,7 @@ static void survive(const char *variable, uint64_t number) {
     size_t size = 0;
     char *said = content("err.txt", &size), *picture = content("sub/a.png", NULL);
     bool known = status == 0 || status == 1 || status == 3;
-    bool told = status == 0 || (said && size > 10 && strncmp(said, "  ", 2) != 0);
+    bool reported = status == 0 || (said && size > 10 && strncmp(said, "  ", 2) != 0);
     /* The leak checker does not work in a confined process that cannot read /proc. */
     bool blind = said && strstr(said, "LeakSanitizer has encountered a fatal error");
     bool clean = !said || blind || (!strstr(said, "Sanitizer") && !strstr(said, "runtime error"));
@@ -126,9 +126,9 @@ static void survive(const char *variable, uint64_t number) {
     bool second = shell("test ! -e b.pfm || cmp -s b.pfm whole/b.pfm") == 0;
     bool all = status != 0 || (whole && shell("test -e b.pfm") == 0);
     bool tidy = shell("ls -A . sub | grep -q 'part-'") != 0;
-    if (!known || !told || !clean || !(old || whole) || !second || !all || !tidy)
+    if (!known || !reported || !clean || !(old || whole) || !second || !all || !tidy)
         test_fail(__FILE__, __LINE__, "%s=%llu: status %d%s%s%s%s%s; standard error:\n%s", variable,
-                  (unsigned long long)number, status, told ? "" : ", no line", clean ? "" : ", a report",
+                  (unsigned long long)number, status, reported ? "" : ", no line", clean ? "" : ", a report",
                   (old || whole) && second ? "" : ", a harmed picture", all ? "" : ", a missing picture",
                   tidy ? "" : ", something left behind", said ? said : "");
     free(said);
@@ -166,9 +166,9 @@ static void survive_line(const char *variable, uint64_t step, const char *line, 
                    "rm -rf whole; mkdir whole; GRAY_FAULT_COUNT=$PWD/counts $gray %s >whole/out.txt && mv %s whole",
                    line, names);
     CHECK_EQ_INT(shell(text), 0);
-    char *told = content("counts", NULL);
-    CHECK(told && sscanf(told, "%llu %llu", &counts[0], &counts[1]) == 2);
-    free(told);
+    char *reported = content("counts", NULL);
+    CHECK(reported && sscanf(reported, "%llu %llu", &counts[0], &counts[1]) == 2);
+    free(reported);
     uint64_t last = counts[strcmp(variable, kind_of) == 0];
     CHECK(last > 5);
     for (uint64_t number = 1; number <= last; number += step) {

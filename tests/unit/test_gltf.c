@@ -80,13 +80,13 @@ TEST(gltf_buffers_and_pictures_may_be_files_beside_it) {
 }
 
 /* The point in the space of node `name`. */
-static struct vec3 place_of(const struct node *node, const char *name, struct vec3 p, bool *found) {
+static struct vec3 position_of(const struct node *node, const char *name, struct vec3 p, bool *found) {
     if (strcmp(node->name, name) == 0) {
         *found = true;
         return affine_point(&node->parent_from_node.forward, p);
     }
     for (const struct node_child *c = node->first_child; c && !*found; c = c->next) {
-        struct vec3 q = place_of(c->node, name, p, found);
+        struct vec3 q = position_of(c->node, name, p, found);
         if (*found)
             return affine_point(&node->parent_from_node.forward, q);
     }
@@ -113,13 +113,13 @@ TEST(gltf_nodes_are_placed_by_matrix_and_by_parts_and_share_their_mesh) {
     struct node *root = model_add_nodes(&scene, &model, &placing, &error);
     CHECK_EQ_INT(root->kind, NODE_GROUP);
     bool found = false;
-    struct vec3 p = place_of(root, "a", vec3_make(1, 0, 0), &found);
+    struct vec3 p = position_of(root, "a", vec3_make(1, 0, 0), &found);
     CHECK(found);
     CHECK_NEAR(p.x, 1, 1e-12);
     CHECK_NEAR(p.y, 4, 1e-12);
     CHECK_NEAR(p.z, 13, 1e-12);
     found = false;
-    p = place_of(root, "b", vec3_make(1, 0, 0), &found);
+    p = position_of(root, "b", vec3_make(1, 0, 0), &found);
     CHECK(found);
     CHECK_NEAR(p.x, 5, 1e-12);
     CHECK_NEAR(p.y, 1, 1e-12);
@@ -330,14 +330,14 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     struct node *node = model_add_nodes(&scene, &model, &placing, &error);
     /* The texel at uv: (2 u + 0.5, 3 v + 0.25) counted from the top, clamped and mirrored. */
     struct hit hit = {.has_uv = true, .u = 0.05, .v = 1 - 0.125};
-    struct surface_inputs look;
-    material_inputs_at(node->slots[0], &hit, &look);
-    CHECK_NEAR(look.kd.x, 0.5 * 120 / 255.0, 1e-12);
-    CHECK_NEAR(look.kd.y, 120 / 255.0, 1e-12);
-    CHECK_NEAR(look.kd.z, 1, 1e-12);
+    struct surface_inputs inputs;
+    material_inputs_at(node->slots[0], &hit, &inputs);
+    CHECK_NEAR(inputs.kd.x, 0.5 * 120 / 255.0, 1e-12);
+    CHECK_NEAR(inputs.kd.y, 120 / 255.0, 1e-12);
+    CHECK_NEAR(inputs.kd.z, 1, 1e-12);
     hit = (struct hit){.has_colour = true, .colour = {0.5, 0.25, 0}};
-    material_inputs_at(node->slots[2], &hit, &look);
-    CHECK_NEAR(look.kd.y, 0.25, 0);
+    material_inputs_at(node->slots[2], &hit, &inputs);
+    CHECK_NEAR(inputs.kd.y, 0.25, 0);
     scene_destroy(&scene);
     assets_destroy(&assets);
     model_destroy(&model);

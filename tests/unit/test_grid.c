@@ -17,7 +17,7 @@ struct answer {
     double t;
 };
 
-static void look_at(const struct box *boxes, uint32_t item, const struct ray *ray, struct answer *best) {
+static void point_at(const struct box *boxes, uint32_t item, const struct ray *ray, struct answer *best) {
     struct crossing pair[2];
     if (!box_shape_crossings(&boxes[item], ray, pair))
         return;
@@ -34,7 +34,7 @@ static void look_at(const struct box *boxes, uint32_t item, const struct ray *ra
 static struct answer brute_force(const struct box *boxes, uint32_t count, const struct ray *ray) {
     struct answer best = {0};
     for (uint32_t i = 0; i < count; i++)
-        look_at(boxes, i, ray, &best);
+        point_at(boxes, i, ray, &best);
     return best;
 }
 
@@ -47,7 +47,7 @@ static struct answer through_grid(const struct grid *grid, const struct box *box
         CHECK(w.t_exit >= last_exit && w.count > 0);
         last_exit = w.t_exit;
         for (uint32_t i = 0; i < w.count; i++)
-            look_at(boxes, w.items[i], ray, &best);
+            point_at(boxes, w.items[i], ray, &best);
         if (best.found && best.t <= w.t_exit)
             break;
     }

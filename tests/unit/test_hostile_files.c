@@ -113,7 +113,7 @@ static char *next_message(char **rest) {
 /* All files that are read in the same way and must end with this status; use: the script with %s for the file, or NULL:
  * the file is the script. */
 static void check_scripts(const char *how, const char *use, const char *options, int status) {
-    char arguments[4000], path[1024], text[400], place[40];
+    char arguments[4000], path[1024], text[400], position[40];
     int count = 0;
     (void)snprintf(arguments, sizeof arguments, "-q -j 1 %s", options);
     for (int i = 0; i < row_count; i++) {
@@ -142,8 +142,8 @@ static void check_scripts(const char *how, const char *use, const char *options,
             strcmp(rows[i].line, "-") == 0)
             continue;
         char *line = next_message(&rest);
-        (void)snprintf(place, sizeof place, "%d.lua:1: ", i);
-        size_t skipped = line && strncmp(line, place, strlen(place)) == 0 ? strlen(place) : 0;
+        (void)snprintf(position, sizeof position, "%d.lua:1: ", i);
+        size_t skipped = line && strncmp(line, position, strlen(position)) == 0 ? strlen(position) : 0;
         check_line(&rows[i], line ? line + skipped : "nothing");
     }
     char *more = next_message(&rest);

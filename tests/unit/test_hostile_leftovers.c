@@ -16,7 +16,7 @@
 #define LEFT ".gray.part-0123456789abcdef"
 
 /* The check of a picture's name that every run makes before rendering. */
-static int check_ahead(const char *picture, time_t seconds) {
+static int check_later(const char *picture, time_t seconds) {
     struct file_guard guard = {0};
     const struct file_rules rules = {.guard = &guard, .role = FILE_ROLE_PICTURE};
     const struct file_target target = {.path = picture, .rules = &rules};
@@ -28,15 +28,15 @@ static int check_ahead(const char *picture, time_t seconds) {
 }
 
 static int an_hour_later(void) {
-    return check_ahead("x.png", 3600);
+    return check_later("x.png", 3600);
 }
 
 static int half_a_minute_later(void) {
-    return check_ahead("x.png", 30);
+    return check_later("x.png", 30);
 }
 
 static int an_hour_later_in_a_folder(void) {
-    return check_ahead("d/x.png", 3600);
+    return check_later("d/x.png", 3600);
 }
 
 TEST(hostile_the_next_run_removes_only_what_a_kill_has_left) {

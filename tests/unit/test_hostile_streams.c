@@ -26,12 +26,12 @@ static void fresh_folder(const char *files, const char *scene) {
 }
 
 /* Without a separate render process (--no-fork, for debuggers) the signal itself may end the program. */
-static const char *end_of(pid_t program, int signal, bool alone) {
+static const char *end_of(pid_t program, int signal, bool single) {
     (void)kill(program, signal);
     int status = attack_wait(program, 20);
-    return status == 130 || (alone && status == 128 + signal) ? NULL
-           : status < 0                                       ? "it does not end at the signal"
-                                                              : "it does not end with 130";
+    return status == 130 || (single && status == 128 + signal) ? NULL
+           : status < 0                                        ? "it does not end at the signal"
+                                                               : "it does not end with 130";
 }
 
 /* The program must still run after a while, and end at the signal. */
@@ -124,8 +124,8 @@ static void interrupt_stream(const char *name, const char *scene, const char *op
         _exit(127);
     }
     (void)close(ends[1]);
-    bool full = is_full(ends[0], program), alone = strstr(options, "--no-fork") != NULL;
-    attack_report(name, 0, full ? end_of(program, signal, alone) : "it ended, or never filled the pipe");
+    bool full = is_full(ends[0], program), single = strstr(options, "--no-fork") != NULL;
+    attack_report(name, 0, full ? end_of(program, signal, single) : "it ended, or never filled the pipe");
     (void)close(ends[0]);
 }
 

@@ -47,16 +47,16 @@ TEST(hostile_no_value_of_the_program_reaches_a_script_after_its_end) {
         "function() table.sort({1, 2, 3}, function() os.exit(true) end) end",
         "function() gr.render(gr.node('r'), 'x.png', 1e6, 1e6, {0,0,9}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {}) end",
     };
-    static const char *const ways[] = {"guarded", "in_coroutine", "handled"};
+    static const char *const variants[] = {"guarded", "in_coroutine", "handled"};
     for (size_t d = 0; d < sizeof deeds / sizeof *deeds; d++)
-        for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
+        for (size_t w = 0; w < sizeof variants / sizeof *variants; w++) {
             char text[4096];
-            (void)snprintf(text, sizeof text, "%s%s(%s)\n", closers, ways[w], deeds[d]);
+            (void)snprintf(text, sizeof text, "%s%s(%s)\n", closers, variants[w], deeds[d]);
             struct test_result result =
                 test_gray_scene(text, "--script-time 0.1 --script-memory 64 --script-output 1 scene.lua", NULL);
             if (result.status > 3 || strstr(result.out, "userdata: ") || strstr(result.err, "userdata: "))
-                test_fail(__FILE__, __LINE__, "%s by %s ends with %d and \"%.200s\"", deeds[d], ways[w], result.status,
-                          result.out);
+                test_fail(__FILE__, __LINE__, "%s by %s ends with %d and \"%.200s\"", deeds[d], variants[w],
+                          result.status, result.out);
             free_result(&result);
         }
 }
@@ -82,18 +82,18 @@ static const char *const lost = "gray: standard output cannot be written\n";
 
 /* If its standard output cannot be written, the program ends with status 3 and reports it once. */
 static void check_lost(const char *arguments) {
-    static const char *const places[] = {">/dev/full", ">&-", "| true"};
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    static const char *const outputs[] = {">/dev/full", ">&-", "| true"};
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++) {
         char line[1024];
-        bool piped = places[i][0] == '|';
+        bool piped = outputs[i][0] == '|';
         /* The reader is gone before the writer begins. */
         (void)snprintf(line, sizeof line, "{ %s\"$gray\" %s 2>err.txt %s; echo $? >status; } %s",
-                       piped ? "sleep 0.2; " : "", arguments, piped ? "" : places[i], piped ? places[i] : "");
+                       piped ? "sleep 0.2; " : "", arguments, piped ? "" : outputs[i], piped ? outputs[i] : "");
         (void)shell(line);
         char *status = test_read_file(test_path("status"), NULL), *said = test_read_file(test_path("err.txt"), NULL);
         const char *found = said ? strstr(said, lost) : NULL;
         if (!status || strcmp(status, "3\n") != 0 || !found || strstr(found + strlen(lost), lost))
-            test_fail(__FILE__, __LINE__, "gray %s %s: status %s, \"%s\"", arguments, places[i], status, said);
+            test_fail(__FILE__, __LINE__, "gray %s %s: status %s, \"%s\"", arguments, outputs[i], status, said);
         free(status);
         free(said);
     }

@@ -5,16 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PLACES = 60 };
+enum { COPIES = 60 };
 
 struct scatter {
-    double at[PLACES][3], turn[PLACES], size[PLACES];
-    struct affine matrices[PLACES];
+    double at[COPIES][3], turn[COPIES], size[COPIES];
+    struct affine matrices[COPIES];
 };
 
 static void scatter(struct scatter *out) {
     struct test_random random = {5};
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < COPIES; i++) {
         for (int k = 0; k < 3; k++)
             out->at[i][k] = test_uniform(&random, -3, 3);
         out->turn[i] = test_uniform(&random, -180, 180);
@@ -25,7 +25,7 @@ static void scatter(struct scatter *out) {
 }
 
 /* The instanced node: a ball beside a cube, under a node that moves them. */
-static struct node *thing(struct stage *s) {
+static struct node *object(struct stage *s) {
     struct node *group = scene_node(&s->scene, NODE_GROUP, "thing", &s->error);
     stage_sphere(s, group, stage_phong(s, vec3_make(0.9, 0.4, 0.2), vec3_all(0.3), 10));
     struct node *cube = stage_cube(s, group, stage_phong(s, vec3_make(0.2, 0.4, 0.9), vec3_all(0.3), 10));
@@ -41,17 +41,17 @@ static void finish(struct stage *s) {
 
 /* kind 0: nodes, 1: positions with rotations and sizes, 2: the matrices of the nodes */
 static void build(struct stage *s, const struct scatter *all, int kind, struct placements *placements) {
-    struct node *of = thing(s), *parent = stage_group(s, s->root);
+    struct node *of = object(s), *parent = stage_group(s, s->root);
     stage_rotate(s, parent, 1, 20);
     finish(s);
     if (kind == 1) {
         *placements =
-            (struct placements){.count = PLACES, .at = all->at, .turn = all->turn, .size = all->size, .axis = 2};
+            (struct placements){.count = COPIES, .at = all->at, .turn = all->turn, .size = all->size, .axis = 2};
         parent->placements = placements;
         CHECK(node_add_child(&s->scene, parent, of, &s->error));
         return;
     }
-    for (int i = 0; i < PLACES; i++) {
+    for (int i = 0; i < COPIES; i++) {
         struct node *node = stage_group(s, parent);
         CHECK(node_add_child(&s->scene, node, of, &s->error));
         stage_scale(s, node, all->size[i], all->size[i], all->size[i]);
@@ -71,7 +71,7 @@ TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
         build(&s, &all, kind, &placements);
         CHECK(stage_render(&s, 100, 80));
         size_t size = (size_t)100 * 80 * film_record_size(s.film.record);
-        CHECK_EQ_INT(s.world.primitive_count, 2 * PLACES);
+        CHECK_EQ_INT(s.world.primitive_count, 2 * COPIES);
         CHECK_EQ_INT(s.world.prototype_count, 2);
         if (reference)
             CHECK(memcmp(reference, s.film.pixels, size) == 0);
@@ -85,8 +85,8 @@ TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
 TEST(placements_by_matrix_stand_where_the_matrix_says) {
     struct scatter all;
     scatter(&all);
-    struct placements placements = {.count = PLACES, .matrices = all.matrices};
-    for (uint32_t i = 0; i < PLACES; i++) {
+    struct placements placements = {.count = COPIES, .matrices = all.matrices};
+    for (uint32_t i = 0; i < COPIES; i++) {
         struct transform t = placement_transform(&placements, i);
         CHECK(memcmp(&t.forward, &all.matrices[i], sizeof t.forward) == 0);
         struct vec3 p = {0.3, -0.2, 0.7}, q = affine_point(&t.inverse, affine_point(&t.forward, p));
@@ -167,12 +167,12 @@ TEST(a_dense_heap_in_a_huge_scene_costs_about_what_it_costs_alone) {
             stage_scale(&s, ball, 0.02, 0.02, 0.02);
             stage_move(&s, ball, p[0], p[1], p[2]);
         }
-        struct node *around[2];
+        struct node *parents[2];
         for (int i = 0; i < 2 && kind == 1; i++) { /* a floor and a hall */
-            around[i] = stage_cube(&s, s.root, plain);
-            stage_move(&s, around[i], -0.5, i ? -0.5 : -1, -0.5);
-            stage_scale(&s, around[i], 20000, i ? 20000 : 1, 20000);
-            stage_move(&s, around[i], 0, i ? 0 : -1, 0);
+            parents[i] = stage_cube(&s, s.root, plain);
+            stage_move(&s, parents[i], -0.5, i ? -0.5 : -1, -0.5);
+            stage_scale(&s, parents[i], 20000, i ? 20000 : 1, 20000);
+            stage_move(&s, parents[i], 0, i ? 0 : -1, 0);
         }
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         struct world_scratch scratch;

@@ -14,7 +14,7 @@
 
 enum { SIDE = 6 };
 
-static const char things[] =
+static const char objects[] =
     "local red = gr.material({0.8, 0.3, 0.2}, {0.5, 0.5, 0.5}, 20)\n"
     "local glass = gr.difresnel_material(gr.rr_material({0, 0, 0}, {1, 1, 1}, 100, 0.1, 0.9, 1.5))\n"
     "local image = gr.image_material{material = red, image = 'pic.png', channel = 'opacity'}\n"
@@ -193,8 +193,8 @@ static bool answer(enum question question, const struct render_request *request,
         add_bytes(sum, job->film->layers, sizeof(float[3]) * SIDE * SIDE);
         return ok;
     case ASK_PICK:
-        for (int place = 0; place < SIDE * SIDE; place++) {
-            if (!pick_at(job, request->root, (struct pick_query){place % SIDE + 0.5, place / SIDE + 0.5, place % 3 - 1},
+        for (int pixel = 0; pixel < SIDE * SIDE; pixel++) {
+            if (!pick_at(job, request->root, (struct pick_query){pixel % SIDE + 0.5, pixel / SIDE + 0.5, pixel % 3 - 1},
                          &picked, error))
                 return false;
             add_text(sum, picked.path);
@@ -297,7 +297,7 @@ static void run_seen(const char *renders,
 #endif
     (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
     CHECK(png_write(FILE_AT(path), 8, 6, white_row, NULL, &error));
-    (void)snprintf(text, sizeof text, "%s%s", things, renders);
+    (void)snprintf(text, sizeof text, "%s%s", objects, renders);
     failed_runs = pictures = 0;
     if (!listen_to_text(&listener, text, NULL, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);

@@ -150,7 +150,7 @@ TEST(kd_tree_is_the_same_after_scaling_by_powers_of_two) {
         CHECK_EQ_INT(tree.node_count, other.node_count);
         CHECK_EQ_INT(tree.entry_count, other.entry_count);
         for (uint32_t i = 0; i < tree.node_count; i++) {
-            CHECK(tree.nodes[i].axis == other.nodes[i].axis && tree.nodes[i].place == other.nodes[i].place);
+            CHECK(tree.nodes[i].axis == other.nodes[i].axis && tree.nodes[i].offset == other.nodes[i].offset);
             CHECK(tree.nodes[i].axis == KD_LEAF || tree.nodes[i].split * s == other.nodes[i].split);
         }
         kd_tree_destroy(&other);

@@ -43,10 +43,10 @@ static void make_mesh(struct example *e, struct vec3 middle, double size) {
     e->light.mesh = &e->mesh;
 }
 
-/* Above the origin, with a size of about `size`, visible from below; `lamp`: with a radiance even if it is optional for
- * the kind.
+/* Above the origin, with a size of about `size`, visible from below; `area_light`: with a radiance even if it is
+ * optional for the kind.
  */
-static void example_begin(struct example *e, enum light_kind kind, bool lamp, double size) {
+static void example_begin(struct example *e, enum light_kind kind, bool area_light, double size) {
     char warning[256];
     struct error error;
     const double s = size;
@@ -57,7 +57,7 @@ static void example_begin(struct example *e, enum light_kind kind, bool lamp, do
     case LIGHT_POINT:
         break;
     case LIGHT_PARALLELOGRAM:
-        e->light.emits = lamp;
+        e->light.emissive = area_light;
         e->light.edge1 = vec3_make(s, 0, 0.2 * s);
         e->light.edge2 = vec3_make(0, 0.1 * s, s); /* not at right angles */
         e->light.corner =
@@ -72,21 +72,21 @@ static void example_begin(struct example *e, enum light_kind kind, bool lamp, do
         e->light.cos_outer = 0.7;
         break;
     case LIGHT_DISC:
-        e->light.emits = lamp;
+        e->light.emissive = area_light;
         e->light.direction = vec3_normalize(vec3_make(0.2, -1, 0));
         e->light.radius = s / 2;
         e->light.one_sided = true;
         break;
     case LIGHT_SPHERE:
-        e->light.emits = lamp;
+        e->light.emissive = area_light;
         e->light.radius = s / 2;
         break;
     case LIGHT_MESH:
-        e->light.emits = true;
+        e->light.emissive = true;
         make_mesh(e, e->light.position, s / 2);
         break;
     case LIGHT_SKY:
-        e->light.emits = true;
+        e->light.emissive = true;
         sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &e->sky);
         e->light.sky = &e->sky;
         break;
@@ -99,7 +99,7 @@ static void example_end(struct example *e) {
     pool_destroy(e->pool);
 }
 
-static struct sample2 place_of(uint64_t seed, uint64_t index) {
+static struct sample2 xi_of(uint64_t seed, uint64_t index) {
     return (struct sample2){random_unit(random_combine(seed, 2 * index)),
                             random_unit(random_combine(seed, 2 * index + 1))};
 }
@@ -152,13 +152,13 @@ static bool hit_of_sample(const struct light *light, const struct light_context 
 }
 
 /* Near lamps are sampled by solid angle if possible, far ones by area. */
-#define FOR_EVERY_LAMP(e, context)                                                                                     \
+#define FOR_EVERY_AREA_LIGHT(e, context)                                                                               \
     for (int kind_ = 0; kind_ < LIGHT_KIND_COUNT; kind_++)                                                             \
         for (int far_ = 0; far_ < 2; far_++)                                                                           \
-            for (bool once_ = lamp_begin(&(e), (enum light_kind)kind_, far_, &(context)); once_;                       \
+            for (bool once_ = area_light_begin(&(e), (enum light_kind)kind_, far_, &(context)); once_;                 \
                  once_ = (example_end(&(e)), false))
 
-static bool lamp_begin(struct example *e, enum light_kind kind, bool far, struct light_context *context) {
+static bool area_light_begin(struct example *e, enum light_kind kind, bool far, struct light_context *context) {
     const struct vec3 from = {0, far ? -1 : 0.4, 0.1};
     example_begin(e, kind, true, 1.5);
     e->light.edge1.z = far ? e->light.edge1.z : 0; /* at right angles: by solid angle */
@@ -204,13 +204,13 @@ TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
     enum { N = 40000 };
     struct example e;
     struct light_context context;
-    FOR_EVERY_LAMP(e, context) {
+    FOR_EVERY_AREA_LIGHT(e, context) {
         static int counted[CELLS];
         int lost = 0, used = 0;
         double chi = 0, all = 0, rest = 0, rest_counted = 0;
         memset(counted, 0, sizeof counted);
         for (uint64_t i = 0; i < N; i++) {
-            struct light_sample sample = light_sample(&e.light, &context, place_of(77, i));
+            struct light_sample sample = light_sample(&e.light, &context, xi_of(77, i));
             bool on = vec3_max_abs(sample.intensity) > 0;
             lost += !on;
             counted[cell_of(sample.direction)] += on;
@@ -239,10 +239,10 @@ TEST(the_mean_of_one_over_pdf_is_the_solid_angle_of_a_lamp) {
     enum { N = 40000, SIDE = 400 };
     struct example e;
     struct light_context context;
-    FOR_EVERY_LAMP(e, context) {
+    FOR_EVERY_AREA_LIGHT(e, context) {
         double mean = 0, angle = 0;
         for (uint64_t i = 0; i < N; i++) {
-            struct light_sample sample = light_sample(&e.light, &context, place_of(5, i));
+            struct light_sample sample = light_sample(&e.light, &context, xi_of(5, i));
             mean += vec3_max_abs(sample.intensity) > 0 ? 1 / sample.pdf / N : 0;
         }
         for (int i = 0; i < SIDE * SIDE; i++) {
@@ -262,10 +262,10 @@ TEST(the_mean_of_one_over_pdf_is_the_solid_angle_of_a_lamp) {
 TEST(a_sample_of_every_lamp_shows_what_a_ray_to_it_sees) {
     struct example e;
     struct light_context context;
-    FOR_EVERY_LAMP(e, context) {
+    FOR_EVERY_AREA_LIGHT(e, context) {
         int on = 0;
         for (uint64_t i = 0; i < 500; i++) {
-            struct light_sample sample = light_sample(&e.light, &context, place_of(9, i));
+            struct light_sample sample = light_sample(&e.light, &context, xi_of(9, i));
             struct ray ray;
             struct light_hit hit;
             CHECK(!sample.is_delta);
@@ -297,7 +297,7 @@ TEST(a_light_without_emission_shades_from_one_direction_and_has_no_density) {
         struct light_arrival arrival;
         CHECK(light_context_make(&e.light, from, from, &context));
         for (uint64_t i = 0; i < 20 && light_is_delta(&e.light); i++) {
-            struct light_sample sample = light_sample(&e.light, &context, place_of(3, i));
+            struct light_sample sample = light_sample(&e.light, &context, xi_of(3, i));
             struct light_hit hit = {.t = 1, .point = sample.target.at};
             CHECK(light_arrive(&e.light, from, &arrival));
             CHECK(sample.is_delta && sample.pdf == 1);
@@ -316,7 +316,7 @@ TEST(a_light_without_emission_shades_from_one_direction_and_has_no_density) {
 
 /* --- photons --- */
 
-enum { GRID = 24, PLACES = 16, PHOTONS = 100000 };
+enum { GRID = 24, SAMPLES = 16, PHOTONS = 100000 };
 static const double floor_radius = 2;
 
 /* The light on a disc in the plane y = 0, by samples. */
@@ -327,19 +327,19 @@ static struct vec3 flux_by_samples(const struct light *light) {
         struct sample2 round = sample_disc(at);
         struct vec3 from = {floor_radius * round.x, 0, floor_radius * round.y};
         struct light_context context;
-        for (uint64_t i = 0; i < PLACES && light_context_make(light, from, from, &context); i++) {
-            struct light_sample sample = light_sample(light, &context, place_of(k, i));
+        for (uint64_t i = 0; i < SAMPLES && light_context_make(light, from, from, &context); i++) {
+            struct light_sample sample = light_sample(light, &context, xi_of(k, i));
             if (sample.direction.y > 0)
                 sum = vec3_add_scaled(sum, sample.intensity, sample.direction.y);
         }
     }
-    return vec3_scale(sum, pi * floor_radius * floor_radius / (GRID * GRID * PLACES));
+    return vec3_scale(sum, pi * floor_radius * floor_radius / (GRID * GRID * SAMPLES));
 }
 
 /* A uniformly drawn photon and the inverse of its density: LOCAL over all directions, others over a perpendicular
  * square that contains the disc. */
 static struct light_photon photon_at(const struct light_emitter *emitter, uint64_t index) {
-    struct sample2 a = place_of(11, index), b = place_of(12, index);
+    struct sample2 a = xi_of(11, index), b = xi_of(12, index);
     struct vec3 direction = grid_direction(a.x * ROWS, a.y * COLUMNS);
     if (emitter->domain == LIGHT_DOMAIN_LOCAL) {
         struct light_photon photon = light_photon(emitter, direction, b);
@@ -374,10 +374,10 @@ static struct vec3 flux_by_photons(const struct light *light) {
 
 TEST(photons_of_every_light_carry_what_its_samples_bring) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
-        for (int lamp = 0; lamp < 2; lamp++) {
+        for (int area_light = 0; area_light < 2; area_light++) {
             struct example e;
             /* Without emission it is sampled as if from its centre: small, so that positions do not matter. */
-            example_begin(&e, (enum light_kind)kind, lamp, lamp ? 1.2 : 0.2);
+            example_begin(&e, (enum light_kind)kind, area_light, area_light ? 1.2 : 0.2);
             struct vec3 sampled = flux_by_samples(&e.light), sent = flux_by_photons(&e.light);
             CHECK(sampled.x > 0);
             CHECK_NEAR(sent.x / sampled.x, 1, 0.03);
@@ -414,20 +414,20 @@ TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
 /* The importance is 0 only if no sample brings light; otherwise it is about as large as the light of the samples. */
 TEST(the_bounds_of_every_light_hold_what_its_samples_bring) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
-        for (int lamp = 0; lamp < 2; lamp++) {
+        for (int area_light = 0; area_light < 2; area_light++) {
             struct example e;
             struct light_bounds bounds;
-            example_begin(&e, (enum light_kind)kind, lamp, 0.4);
-            enum light_reach reach = light_bounds_of(&e.light, &bounds);
-            CHECK(reach != LIGHT_REACH_NONE);
+            example_begin(&e, (enum light_kind)kind, area_light, 0.4);
+            enum light_extent extent = light_bounds_of(&e.light, &bounds);
+            CHECK(extent != LIGHT_EXTENT_NONE);
             int lit = 0;
-            for (uint64_t i = 0; i < 400 && reach == LIGHT_REACH_PLACED; i++) {
-                struct sample2 a = place_of(41, i), b = place_of(42, i);
+            for (uint64_t i = 0; i < 400 && extent == LIGHT_EXTENT_BOUNDED; i++) {
+                struct sample2 a = xi_of(41, i), b = xi_of(42, i);
                 struct vec3 from = {8 * a.x - 4, 8 * a.y - 2, 8 * b.x - 4}, normal = {0, i % 2 ? -0.6 : 0.8, 0.6};
                 struct light_context context;
                 double brought = 0, importance = light_bounds_importance(&bounds, from, vec3_normalize(normal));
                 for (uint64_t k = 0; k < 64 && light_context_make(&e.light, from, from, &context); k++) {
-                    struct light_sample sample = light_sample(&e.light, &context, place_of(43, k));
+                    struct light_sample sample = light_sample(&e.light, &context, xi_of(43, k));
                     double cosine = fabs(vec3_dot(sample.direction, vec3_normalize(normal)));
                     brought += (sample.intensity.x + sample.intensity.y + sample.intensity.z) / 3 * cosine / 64;
                 }
@@ -435,10 +435,10 @@ TEST(the_bounds_of_every_light_hold_what_its_samples_bring) {
                 CHECK(brought < 3 * importance + 1e-12);
                 lit += brought > 0.2 * importance && brought > 0;
             }
-            CHECK(reach == LIGHT_REACH_INFINITE || lit > 20);
+            CHECK(extent == LIGHT_EXTENT_INFINITE || lit > 20);
             struct box box;
             CHECK(!light_surface_box(&e.light, &box) ||
-                  (box_contains(&box, e.light.position) && reach == LIGHT_REACH_PLACED));
+                  (box_contains(&box, e.light.position) && extent == LIGHT_EXTENT_BOUNDED));
             example_end(&e);
         }
     }

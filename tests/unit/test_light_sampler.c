@@ -43,7 +43,7 @@ static struct light random_light(uint64_t seed, uint64_t i) {
     light.edge1 = vector(key, 11, 0.6);
     light.edge2 = vector(key, 12, 0.6);
     light.corner = vec3_sub(light.position, vec3_scale(vec3_add(light.edge1, light.edge2), 0.5));
-    light.emits = light.kind != LIGHT_POINT && light.kind != LIGHT_SPOT && random_combine(key, 13) % 2;
+    light.emissive = light.kind != LIGHT_POINT && light.kind != LIGHT_SPOT && random_combine(key, 13) % 2;
     light.one_sided = random_combine(key, 14) % 2;
     return light;
 }
@@ -128,8 +128,8 @@ static double brings(const struct light *light, struct vec3 point, struct vec3 n
     if (!light_context_make(light, point, point, &context))
         return 0;
     for (uint64_t i = 0; i < 16; i++) {
-        struct sample2 place = {random_unit(random_combine(5, i)), random_unit(random_combine(6, i))};
-        struct light_sample sample = light_sample(light, &context, place);
+        struct sample2 xi = {random_unit(random_combine(5, i)), random_unit(random_combine(6, i))};
+        struct light_sample sample = light_sample(light, &context, xi);
         max = fmax(max, vec3_max_abs(sample.intensity) * fabs(vec3_dot(sample.direction, normal)));
     }
     return max;
@@ -217,14 +217,14 @@ TEST(a_thousand_lamps_in_a_corridor_have_a_tenth_of_the_variance_of_uniform_choi
             struct vec3 at = {number(3, i, -1.4, 1.4), 2.9, 0.2 * i + number(4, i, 0, 0.2)};
             struct light *light = &tree.all[i];
             *light = (struct light){
-                .kind = LIGHT_SPHERE, .position = at, .radius = 0.04, .emits = true, .colour = {1, 1, 1}};
+                .kind = LIGHT_SPHERE, .position = at, .radius = 0.04, .emissive = true, .colour = {1, 1, 1}};
             if (shape == 1)
                 *light = (struct light){.kind = LIGHT_DISC,
                                         .position = at,
                                         .direction = {0, -1, 0},
                                         .radius = 0.05,
                                         .one_sided = true,
-                                        .emits = true,
+                                        .emissive = true,
                                         .colour = {1, 1, 1}};
             if (shape == 2)
                 *light = (struct light){.kind = LIGHT_POINT,

@@ -20,19 +20,19 @@ static double patch_at(struct stage *s, double x, double z) {
     return stage_pixel(s, 0, 0).x;
 }
 
-static struct light lamp(enum light_kind kind, struct vec3 position, double radius) {
+static struct light area_light(enum light_kind kind, struct vec3 position, double radius) {
     return (struct light){.kind = kind,
                           .position = position,
                           .direction = {0, -1, 0},
                           .radius = radius,
                           .colour = {1, 1, 1},
                           .falloff = {1, 0, 0},
-                          .emits = true,
+                          .emissive = true,
                           .samples = 32};
 }
 
 static struct light rectangle(struct vec3 corner, struct vec3 edge1, struct vec3 edge2) {
-    struct light light = lamp(LIGHT_PARALLELOGRAM, corner, 0);
+    struct light light = area_light(LIGHT_PARALLELOGRAM, corner, 0);
     light.corner = corner;
     light.edge1 = edge1;
     light.edge2 = edge2;
@@ -46,7 +46,7 @@ TEST(disc_lamp_gives_its_view_factor) {
     static const double radius[] = {0.25, 1, 4};
     for (int i = 0; i < 3; i++) {
         double r = radius[i], h = 2;
-        s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, h, 0), r);
+        s.lights[0] = area_light(LIGHT_DISC, vec3_make(0, h, 0), r);
         CHECK_NEAR(patch_at(&s, 0, 0), r * r / (r * r + h * h), 2e-3);
         /* At distance a from the axis: B-13. */
         double a = 1.5, hh = h / a, rr = r / a, z = 1 + hh * hh + rr * rr;
@@ -73,12 +73,12 @@ TEST(sphere_lamp_gives_its_view_factor) {
     stage_floor(&s);
     for (int i = 0; i < 3; i++) {
         double r = 0.3 + 0.6 * i, h = 2, x = 0.8 * i, distance = sqrt(h * h + x * x);
-        s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(x, h, 0), r);
+        s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(x, h, 0), r);
         CHECK_NEAR(patch_at(&s, 0, 0), r * r / (distance * distance) * h / distance, 2e-4);
     }
     /* Half below the horizon: the centre lies in the plane of the patch; B-38 for an angle of 90 degrees. */
     double r = 1, d = 2, root = sqrt(d * d / (r * r) - 1);
-    s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(d, 0, 0), r);
+    s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(d, 0, 0), r);
     CHECK_NEAR(patch_at(&s, 0, 0), (atan(1 / root) - root * r * r / (d * d)) / pi, 1e-3);
     stage_end(&s);
 }
@@ -88,7 +88,7 @@ TEST(the_inside_of_a_ball_lamp_is_lit) {
     struct stage s;
     stage_floor(&s);
     for (int i = 0; i < 3; i++) {
-        s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0.5 * i, 0.9 * i, 0), 3);
+        s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0.5 * i, 0.9 * i, 0), 3);
         CHECK_NEAR(patch_at(&s, 0, 0), 1, 0.01);
     }
     stage_end(&s);
@@ -113,9 +113,9 @@ TEST(a_flat_shape_hides_what_is_below_it) {
             if (kind == 0)
                 s.lights[0] = rectangle(vec3_make(2, -0.9, -0.5), vec3_make(0, 2, 0), vec3_make(0, 0, 1));
             else
-                s.lights[0] = lamp(kind == 1 ? LIGHT_DISC : LIGHT_SPHERE, middle, 1);
+                s.lights[0] = area_light(kind == 1 ? LIGHT_DISC : LIGHT_SPHERE, middle, 1);
             s.lights[0].direction = vec3_make(-1, 0, 0);
-            s.lights[0].emits = false;
+            s.lights[0].emissive = false;
             seen[planar] = patch_at(&s, 0, 0) * sqrt(4.01) / 0.1; /* divided by the cosine of the centre */
             stage_end(&s);
         }
@@ -129,7 +129,7 @@ TEST(a_one_sided_lamp_lights_its_side_only) {
     struct stage s;
     stage_floor(&s);
     for (int flip = 0; flip < 2; flip++) {
-        s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, 2, 0), 1);
+        s.lights[0] = area_light(LIGHT_DISC, vec3_make(0, 2, 0), 1);
         s.lights[0].one_sided = true;
         s.lights[0].direction.y = flip ? 1 : -1;
         CHECK_NEAR(patch_at(&s, 0, 0), flip ? 0 : 0.2, 1e-3);
@@ -236,7 +236,7 @@ TEST(a_visible_lamp_shows_its_radiance_and_its_outline) {
         stage_begin(&s, 1);
         s.settings.full = true;
         s.settings.samples = 4;
-        s.lights[0] = lamp(kinds[i], vec3_make(0, 0, 0), 2);
+        s.lights[0] = area_light(kinds[i], vec3_make(0, 0, 0), 2);
         s.lights[0].direction = vec3_make(0, 0, 1);
         if (kinds[i] == LIGHT_PARALLELOGRAM)
             s.lights[0] = rectangle(vec3_make(-1, -1, 0), vec3_make(3, 0, 0), vec3_make(1, 2, 0));
@@ -276,23 +276,23 @@ static struct node *leaning_square(struct stage *s, double degrees, double half,
 }
 
 /* All kinds that have a position, on one side of the square (y = 2 or -2), in the direction of the tilt. */
-static struct light light_at(int kind, bool emits, double y) {
-    struct light light = lamp((enum light_kind)kind, vec3_make(6, y, 0), 0.5);
+static struct light light_at(int kind, bool emissive, double y) {
+    struct light light = area_light((enum light_kind)kind, vec3_make(6, y, 0), 0.5);
     if (kind == LIGHT_PARALLELOGRAM)
         light = rectangle(vec3_make(6, y - 0.5, -0.5), vec3_make(0, 0, 1), vec3_make(0, 1, 0));
     light.direction = vec3_normalize(vec3_make(-6, -y, 0));
     light.cos_inner = 0.9;
     light.cos_outer = 0.8;
-    light.emits = emits;
+    light.emissive = emissive;
     light.samples = 4;
     return light;
 }
 
 TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_leans) {
     for (int kind = LIGHT_POINT; kind <= LIGHT_SPHERE; kind++)
-        for (int emits = 0; emits < 2; emits++)
+        for (int emissive = 0; emissive < 2; emissive++)
             for (int side = 0; side < 2; side++) {
-                if (emits && (kind == LIGHT_POINT || kind == LIGHT_DIRECTIONAL || kind == LIGHT_SPOT))
+                if (emissive && (kind == LIGHT_POINT || kind == LIGHT_DIRECTIONAL || kind == LIGHT_SPOT))
                     continue;
                 struct stage s;
                 stage_begin(&s, 1);
@@ -300,7 +300,7 @@ TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_lean
                 material->phong.two_sided = true;
                 (void)leaning_square(&s, 75, 4, material);
                 s.light_count = 1;
-                s.lights[0] = light_at(kind, emits, side ? 2 : -2);
+                s.lights[0] = light_at(kind, emissive, side ? 2 : -2);
                 double above = patch_at(&s, 0, 0);
                 s.camera = (struct camera){{3, -1000, 0}, {-3, 1000, 0}, {0, 0, -1}, 1e-4};
                 CHECK(stage_render(&s, 1, 1));
@@ -323,7 +323,7 @@ TEST(a_visible_lamp_counts_once_in_a_mirror) {
             struct material *mirror = stage_glass(&s, 1, 0, 1);
             mirror->phong.roughness = rough ? 0.1 : 0;
             stage_sphere(&s, s.root, mirror);
-            s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 0, 40), 25);
+            s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0, 0, 40), 25);
             s.lights[0].visible = visible == 1;
             s.lights[0].colour = vec3_all(1);
             s.light_count = 1;
@@ -342,7 +342,7 @@ TEST(a_light_may_say_how_many_shadow_rays_it_wants) {
     struct stage s;
     stage_floor(&s);
     for (int n = 1; n <= 20; n += 19) {
-        s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 2, 0), 1);
+        s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0, 2, 0), 1);
         s.lights[0].samples = n;
         s.statistics.shadow_rays = 0;
         (void)patch_at(&s, 0, 0);
@@ -358,7 +358,7 @@ TEST(half_of_a_lamp_behind_a_wall_gives_half_of_the_light) {
     stage_move(&s, wall, 0, 0, -0.5);
     stage_scale(&s, wall, 10, 1e-3, 10);
     stage_move(&s, wall, 0, 1, 0);
-    s.lights[0] = lamp(LIGHT_SPHERE, vec3_make(0, 2, 0), 0.5);
+    s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0, 2, 0), 0.5);
     s.camera = (struct camera){{-1, 0.5, 0}, {1, -0.5, 0}, {0, 1, 0}, 1e-4}; /* below the wall's edge */
     CHECK(stage_render(&s, 1, 1));
     CHECK_NEAR(stage_pixel(&s, 0, 0).x, 0.5 * 0.25 / 4, 3e-4);
@@ -375,8 +375,8 @@ static void lit_scene(struct stage *s, double unit) {
     for (int i = 0; i < 5; i++)
         stage_move(s, stage_sphere(s, top, white), 3 * i - 6, 1, i % 2);
     stage_scale(s, top, unit, unit, unit);
-    s->lights[0] = lamp(LIGHT_SPHERE, vec3_make(-3 * unit, 4 * unit, unit), unit);
-    s->lights[1] = lamp(LIGHT_DISC, vec3_make(3 * unit, 5 * unit, 2 * unit), unit);
+    s->lights[0] = area_light(LIGHT_SPHERE, vec3_make(-3 * unit, 4 * unit, unit), unit);
+    s->lights[1] = area_light(LIGHT_DISC, vec3_make(3 * unit, 5 * unit, 2 * unit), unit);
     s->lights[2] = rectangle(vec3_make(0, 6 * unit, 0), vec3_make(unit, 0, 0), vec3_make(0, 0.5 * unit, unit));
     s->lights[3] = (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0, -0.6, -0.8}, .colour = {0.2, 0.1, 0}};
     s->lights[4] = (struct light){.kind = LIGHT_SPOT,
@@ -387,8 +387,8 @@ static void lit_scene(struct stage *s, double unit) {
                                   .cos_outer = 0.9,
                                   .attenuation = ATTENUATION_RANGE,
                                   .range = 9 * unit};
-    s->lights[5] = lamp(LIGHT_SPHERE, vec3_make(0, 3 * unit, 3 * unit), 0.5 * unit);
-    s->lights[5].emits = false;
+    s->lights[5] = area_light(LIGHT_SPHERE, vec3_make(0, 3 * unit, 3 * unit), 0.5 * unit);
+    s->lights[5].emissive = false;
     s->lights[5].colour = vec3_all(0.3);
     for (int i = 0; i < 6; i++) {
         s->lights[i].samples = 2;
@@ -474,8 +474,8 @@ TEST(disc_map_keeps_areas_and_stays_inside) {
 TEST(samples_of_pixel_and_lamp_are_stratified_together) {
     struct stage s;
     stage_floor(&s);
-    double h = 1, r = 2, exact = r * r / (r * r + h * h), together = 0, alone = 0;
-    s.lights[0] = lamp(LIGHT_DISC, vec3_make(0, h, 0), r);
+    double h = 1, r = 2, exact = r * r / (r * r + h * h), together = 0, single = 0;
+    s.lights[0] = area_light(LIGHT_DISC, vec3_make(0, h, 0), r);
     s.lights[0].samples = 1;
     for (uint64_t seed = 0; seed < 64; seed++) {
         s.settings.seed = seed;
@@ -488,8 +488,8 @@ TEST(samples_of_pixel_and_lamp_are_stratified_together) {
             s.settings.seed = 1000 + seed * 64 + i;
             mean += patch_at(&s, 0, 0) / 64;
         }
-        alone += (mean - exact) * (mean - exact);
+        single += (mean - exact) * (mean - exact);
     }
-    CHECK(together < 0.2 * alone);
+    CHECK(together < 0.2 * single);
     stage_end(&s);
 }

@@ -374,9 +374,10 @@ TEST(descriptors_that_a_scene_holds_are_missed_with_status_3) {
                            left, cases[i].then);
             put_scene(text);
             struct run run = run_limited("-q scene.lua", RLIMIT_NOFILE, 30);
-            bool enough = left >= cases[i].needs;
-            bool right = enough ? run.status == 0
-                                : run.status == 3 && strstr(run.err, "Too many open files") && messages(run.err) == 1;
+            bool sufficient = left >= cases[i].needs;
+            bool right = sufficient
+                             ? run.status == 0
+                             : run.status == 3 && strstr(run.err, "Too many open files") && messages(run.err) == 1;
             if (!right)
                 fail(text, left, &run);
             forget(&run);

@@ -298,11 +298,11 @@ TEST(pictures_of_a_culled_cube_show_its_front_or_its_inside) {
  * back faces are not culled, else nothing. */
 TEST(clips_heed_what_a_mesh_does_not_show) {
     static const char *const culls[] = {"none", "back", "front"};
-    static const char around[] = "gr.clipped_by(box, gr.sphere{centre={0.5,0.5,0.5}, radius=2})";
+    static const char clip_call[] = "gr.clipped_by(box, gr.sphere{centre={0.5,0.5,0.5}, radius=2})";
     static const char far_half[] = "gr.clipped_by(box, gr.box{min={-1,-1,-1}, max={2,2,0.5}})";
     for (int i = 0; i < 3; i++) {
         struct test_picture plain, clipped, cut;
-        if (!picture_of(culls[i], "box", &plain) || !picture_of(culls[i], around, &clipped) ||
+        if (!picture_of(culls[i], "box", &plain) || !picture_of(culls[i], clip_call, &clipped) ||
             !picture_of(culls[i], far_half, &cut))
             return;
         CHECK(memcmp(plain.rgb, clipped.rgb, 3 * 40 * 40) == 0);

@@ -43,8 +43,8 @@ TEST(a_motion_begins_and_ends_at_its_poses_and_its_inverse_is_one) {
         CHECK(difference(&start.forward, &from.forward) < 1e-12);
         CHECK(difference(&end.forward, &to.forward) < 1e-12);
         CHECK(difference(&early.forward, &from.forward) < 1e-12);
-        struct transform between = motion_at(&motion, test_uniform(&random, 0, 1)), identity = transform_identity();
-        struct affine back = affine_compose(&between.inverse, &between.forward);
+        struct transform middle = motion_at(&motion, test_uniform(&random, 0, 1)), identity = transform_identity();
+        struct affine back = affine_compose(&middle.inverse, &middle.forward);
         CHECK(difference(&back, &identity.forward) < 1e-11);
     }
 }
@@ -105,7 +105,7 @@ static struct material *bright(struct stage *s) {
 }
 
 /* Seen straight from the front, one pixel a unit, `size` pixels wide and high, the origin in the middle. */
-static void flat_view(struct stage *s, double size) {
+static void frontal_view(struct stage *s, double size) {
     s->camera = (struct camera){{0, 0, 50}, {0, 0, -1}, {0, 1, 0}, 40};
     s->settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
     s->settings.lens.view_height = size;
@@ -123,13 +123,13 @@ TEST(a_moving_edge_is_its_box_filter) {
     stage_move(&s, block, -48, -20, 0);
     block->velocity = vec3_make(24, 0, 0);
     s.settings.shutter = (struct shutter){0, 0.5};
-    flat_view(&s, 8);
+    frontal_view(&s, 8);
     CHECK(stage_render(&s, 32, 8));
     for (uint32_t x = 0; x < 32; x++) {
         double left = (double)x - 16, expected = 0;
         for (int i = 0; i < 1000; i++) {
-            double place = left + (i + 0.5) / 1000;
-            expected += fmin(fmax((4 - place) / 12, 0), 1) / 1000;
+            double position = left + (i + 0.5) / 1000;
+            expected += fmin(fmax((4 - position) / 12, 0), 1) / 1000;
         }
         double mean = 0;
         for (uint32_t y = 0; y < 8; y++) {
@@ -248,7 +248,7 @@ TEST(moving_the_camera_is_moving_everything_the_other_way) {
         stage_begin(&s, 2);
         struct node *ball = stage_sphere(&s, s.root, bright(&s));
         stage_scale(&s, ball, 2, 2, 2);
-        flat_view(&s, 8);
+        frontal_view(&s, 8);
         if (i == 0)
             ball->velocity = vec3_make(4, 1, 0);
         else
@@ -268,15 +268,15 @@ TEST(moving_the_camera_is_moving_everything_the_other_way) {
 /* Stratifying pixel and time together must have less variance than the same number of independent times. */
 TEST(samples_of_pixel_and_time_are_stratified_together) {
     double error[2] = {0, 0};
-    for (int alone = 0; alone < 2; alone++) {
+    for (int single = 0; single < 2; single++) {
         struct stage s;
         stage_begin(&s, 1);
         struct node *block = stage_cube(&s, s.root, bright(&s));
         stage_scale(&s, block, 40, 40, 1);
         stage_move(&s, block, -41, -20, 0);
         block->velocity = vec3_make(2, 0, 0);
-        flat_view(&s, 0.001);
-        error[alone] = stage_variance_about_half(&s, alone);
+        frontal_view(&s, 0.001);
+        error[single] = stage_variance_about_half(&s, single);
         stage_end(&s);
     }
     CHECK(error[0] < 0.1 * error[1]);

@@ -186,7 +186,7 @@ TEST_LONG(parallel_planes_light_each_other_for_every_seed) {
 
 /* --- form factors: a white surface shows E / pi of a lamp of radiance 1 --- */
 
-static void look_along_z(struct stage *s, double height, double z) {
+static void camera_along_z(struct stage *s, double height, double z) {
     s->camera = (struct camera){{0, 0, z}, {0, 0, -1}, {0, 1, 0}, 50};
     s->settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
     s->settings.lens.view_height = height;
@@ -203,7 +203,7 @@ static void check_cube(bool opposite, int samples, int seeds) {
     else
         (void)add_rectangle(&s, glowing(&s, 1, 0, 0), vec3_make(-0.5, -0.5, -0.5), vec3_make(1, 0, 0),
                             vec3_make(0, 0, 1));
-    look_along_z(&s, 1, 0);
+    camera_along_z(&s, 1, 0);
     for (int seed = 1; seed <= seeds; seed++)
         check_estimate(render_twice(&s, samples, 1, (uint64_t)seed), opposite ? 0.199825 : 0.200044);
     stage_end(&s);
@@ -223,7 +223,7 @@ static void check_discs(int samples, int seeds) {
     stage_begin(&s, 1);
     (void)add_planar(&s, glowing(&s, 0, 1, 0), planar_disc(vec3_make(0, 0, -0.5), vec3_make(0, 0, 1), 1, 0));
     (void)add_planar(&s, glowing(&s, 1, 0, 0), planar_disc(vec3_make(0, 0, 0.5), vec3_make(0, 0, -1), 1, 0));
-    look_along_z(&s, 2, 0);
+    camera_along_z(&s, 2, 0);
     for (int seed = 1; seed <= seeds; seed++) {
         struct estimate square = render_twice(&s, samples, 1, (uint64_t)seed);
         double disc = 4 / 3.14159265358979323846;
@@ -254,7 +254,7 @@ static void check_pane(int samples, int seeds) {
     stage_scale(&s, pane, 10, 10, 1);
     (void)add_planar(&s, behind, planar_plane(vec3_make(0, 0, 1), -5));
     (void)add_planar(&s, before, planar_plane(vec3_make(0, 0, -1), -5));
-    look_along_z(&s, 1, 3);
+    camera_along_z(&s, 1, 3);
     for (int seed = 1; seed <= seeds; seed++) {
         (void)render_path(&s, samples, 100, (uint64_t)seed);
         check_estimate(estimate_of(&s, 0), 1.0 / 13);

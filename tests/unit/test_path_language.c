@@ -59,15 +59,15 @@ static struct light *add_light(struct stage *s, enum light_kind kind) {
 }
 
 /* A ball casts a shadow on the floor. */
-static void check_light_as_whitted(enum light_kind kind, bool emits, double tolerance) {
+static void check_light_as_whitted(enum light_kind kind, bool emissive, double tolerance) {
     struct stage s;
     (void)begin_floor(&s);
     struct node *ball = stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.5, 0.5, 0.5), vec3_all(0), 1));
     stage_scale(&s, ball, 0.4, 0.4, 0.4);
     stage_move(&s, ball, 0, 1, 0);
     struct light *light = add_light(&s, kind);
-    light->emits = emits;
-    light->colour = vec3_all(emits ? 4 : 0.8);
+    light->emissive = emissive;
+    light->colour = vec3_all(emissive ? 4 : 0.8);
     double want = whitted_mean(&s);
     CHECK(want > 0.05);
     CHECK_NEAR(path_mean(&s, 256, 1), want, tolerance * want);
@@ -172,7 +172,7 @@ TEST(scattered_rays_meet_the_sky_light_and_lines_of_sight_the_background) {
     (void)begin_floor(&s);
     struct light *light = add_light(&s, LIGHT_SKY);
     light->sky = &blue;
-    light->emits = true;
+    light->emissive = true;
     light->colour = vec3_all(1);
     s.sky.colour = vec3_all(0.75);
     CHECK_NEAR(path_mean(&s, 256, 1), 0.25, 0.001); /* a white floor below the sky light */
@@ -194,11 +194,11 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
     for (int visible = 0; visible < 2; visible++) {
         struct stage s;
         struct node *floor = begin_floor(&s);
-        struct light *lamp = add_light(&s, LIGHT_SPHERE);
-        lamp->emits = true;
-        lamp->visible = visible;
-        lamp->colour = vec3_all(4);
-        lamp->position = vec3_make(6, 3, 0);
+        struct light *area_light = add_light(&s, LIGHT_SPHERE);
+        area_light->emissive = true;
+        area_light->visible = visible;
+        area_light->colour = vec3_all(4);
+        area_light->position = vec3_make(6, 3, 0);
         light[visible] = path_mean(&s, 256, 4);
         s.camera.view = vec3_make(6, -1, 0);
         s.camera.fov = 3;
@@ -233,7 +233,7 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
         s.camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
         struct light *light = add_light(&s, (enum light_kind)kind);
         light->position.x = 0;
-        light->emits = kind != LIGHT_POINT && kind != LIGHT_SPOT && kind != LIGHT_DIRECTIONAL;
+        light->emissive = kind != LIGHT_POINT && kind != LIGHT_SPOT && kind != LIGHT_DIRECTIONAL;
         light->sky = &grey;
         light->cos_outer = 0.5;
         s.authored[0].exclude = &dark;
@@ -248,7 +248,7 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
 }
 
 TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_through_it) {
-    double lamp[2], point[2];
+    double area_light[2], point[2];
     for (int pane = 0; pane < 2; pane++) {
         struct stage s;
         (void)begin_floor(&s);
@@ -262,15 +262,15 @@ TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_throug
         light->position.y = 4;
         point[pane] = path_mean(&s, 16, 8);
         light->kind = LIGHT_SPHERE;
-        light->emits = true;
+        light->emissive = true;
         light->radius = 0.8;
         light->colour = vec3_all(4);
-        lamp[pane] = path_mean(&s, 1024, 8);
+        area_light[pane] = path_mean(&s, 1024, 8);
         stage_end(&s);
     }
     CHECK(point[0] > 0.1);
     CHECK_NEAR(point[1], 0, 1e-9);
-    CHECK_NEAR(lamp[1], lamp[0], 0.02 * lamp[0]);
+    CHECK_NEAR(area_light[1], area_light[0], 0.02 * area_light[0]);
 }
 
 TEST(materials_that_emit_light_the_scene_from_both_sides) {

@@ -21,9 +21,9 @@ static void begin(struct stage *s, int threads) {
     stage_scale(s, room, 4, 4, 4);
     struct material *glowing = stage_phong(s, vec3_all(0), vec3_all(0), 1);
     glowing->phong.emission = vec3_all(20);
-    struct node *lamp = stage_sphere(s, s->root, glowing);
-    stage_scale(s, lamp, 0.4, 0.4, 0.4);
-    stage_move(s, lamp, 1, 2.2, 0.5);
+    struct node *area_light = stage_sphere(s, s->root, glowing);
+    stage_scale(s, area_light, 0.4, 0.4, 0.4);
+    stage_move(s, area_light, 1, 2.2, 0.5);
     struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_all(0.3), vec3_all(0), 1));
     stage_move(s, ball, -1, -1, -1);
 }

@@ -199,7 +199,7 @@ TEST(a_working_directory_that_is_gone_holds_nothing) {
 static char race_from[600], race_to[600], race_kept[600];
 
 /* The file is moved away, and a link that leads out replaces it. */
-static void change_places(void) {
+static void exchange_names(void) {
     (void)rename(race_from, race_kept);
     (void)rename(race_to, race_from);
 }
@@ -222,11 +222,11 @@ static void race(const char *outer, const char *mode, int number) {
     CHECK(symlink(test_path(outer), race_to) == 0);
     int before = fault_errno(number);
     fault_at(FAULT_OF_CALL, number ? 1 : 0);
-    fault_before(number ? 2 : 1, change_places);
+    fault_before(number ? 2 : 1, exchange_names);
     FILE *stream = path_policy_stream(&path_policy, test_path("below/sub/f"), mode);
     int why = errno;
     fault_at(FAULT_OF_CALL, 0);
-    fault_before(0, change_places);
+    fault_before(0, exchange_names);
     (void)fault_errno(before);
     if (stream)
         test_fail(__FILE__, __LINE__, "%s was opened in the place of below/sub", outer);
@@ -358,8 +358,8 @@ TEST(a_process_that_cannot_be_confined_says_why) {
                 fault_apart();
                 fault_at((enum fault_kind)kind, k);
                 bool ok = confine_process(&options, 1, report, sizeof report, &error);
-                bool told = ok ? report[0] != '\0' : error.text[0] != '\0' && error.kind != ERROR_NONE;
-                _exit(!told ? 3 : fault_count((enum fault_kind)kind) < k ? 2 : ok ? 1 : 0);
+                bool reported = ok ? report[0] != '\0' : error.text[0] != '\0' && error.kind != ERROR_NONE;
+                _exit(!reported ? 3 : fault_count((enum fault_kind)kind) < k ? 2 : ok ? 1 : 0);
             }
             int how = 0;
             CHECK(waitpid(child, &how, 0) == child && WIFEXITED(how) && WEXITSTATUS(how) != 3);

@@ -95,7 +95,7 @@ static const char *const loops[] = {
     "local n = gr.node('n') while true do n:render{file='a.png', width=8, height=8, eye={0, 0, 9}} end",
 };
 
-static const char *const ways[] = {
+static const char *const variants[] = {
     "",
     "-q",
     "-j 1",
@@ -136,11 +136,11 @@ TEST(the_picture_count_is_one_line_and_is_caught_by_nothing) {
 
 TEST(the_picture_count_holds_in_every_way_of_making_pictures) {
     char arguments[256];
-    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
-        (void)snprintf(arguments, sizeof arguments, "%s --script-time 2 --picture-count 20 scene.lua", ways[i]);
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        (void)snprintf(arguments, sizeof arguments, "%s --script-time 2 --picture-count 20 scene.lua", variants[i]);
         struct test_result result = test_gray_scene(loops[2], arguments, NULL);
         if (result.status != 1 || !strstr(result.err, "the scripts render more than 20 pictures"))
-            test_fail(__FILE__, __LINE__, "%s: status %d: %.500s", ways[i], result.status, result.err);
+            test_fail(__FILE__, __LINE__, "%s: status %d: %.500s", variants[i], result.status, result.err);
         forget(result);
         remove_pictures();
     }

@@ -40,7 +40,7 @@ static void check_ray(struct tally *tally, const struct pixel_trace_ray *ray) {
         tally->blocked += light->lit == PIXEL_TRACE_LIGHT_BLOCKED;
         tally->reached += light->lit == PIXEL_TRACE_LIGHT_REACHES;
         tally->excluded += light->lit == PIXEL_TRACE_LIGHT_NOT_OURS;
-        if (light->lit == PIXEL_TRACE_LIGHT_REACHES && !light->lamp) {
+        if (light->lit == PIXEL_TRACE_LIGHT_REACHES && !light->area_light) {
             struct vec3 own = vec3_mul(vec3_scale(light->light->colour, light->strength), light->reflected);
             own = vec3_scale(own, (double)light->arrived / (double)light->asked);
             tally->worst = fmax(tally->worst, difference(own, light->colour));
@@ -86,10 +86,10 @@ static bool check_pixel_trace(void *context, struct pixel_trace *pixel_trace, st
         check->tally.worst = fmax(check->tally.worst, difference(sample->first->brings, sample->colour));
         check_ray(&check->tally, sample->first);
     }
-    struct vec3 told = {(double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]};
+    struct vec3 reported = {(double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]};
     struct vec3 have = stage_pixel(check->stage, pixel_trace->x, pixel_trace->y);
-    check->wrong += told.x != have.x || told.y != have.y || told.z != have.z;
-    check->wrong += difference(vec3_scale(sum, 1 / count), told) > 1e-6; /* the film is single precision */
+    check->wrong += reported.x != have.x || reported.y != have.y || reported.z != have.z;
+    check->wrong += difference(vec3_scale(sum, 1 / count), reported) > 1e-6; /* the film is single precision */
     return true;
 }
 
@@ -172,7 +172,7 @@ TEST(the_story_of_fog_lamps_and_blurred_lenses_is_the_picture) {
     stage_begin(&s, 2);
     fill_stage(&s);
     s.fog = &fog;
-    s.lights[2].emits = true;
+    s.lights[2].emissive = true;
     s.settings.cutoff = 0.01;
     CHECK(print_picture(&s, 40, 30).tally.fogged > 100);
     s.settings.lens.aperture = 0.2;
@@ -196,10 +196,10 @@ TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
     stage_begin(&s, 1);
     stage_sphere(&s, s.root, stage_glass(&s, 0.5, 0.5, 1.5));
     pixel_trace_init(&pixel_trace, 0, 0);
-    struct pixel_sample place = {0, 0, 0.5, 0.5, 0, 1};
+    struct pixel_sample position = {0, 0, 0.5, 0.5, 0, 1};
     struct ray ray = {.direction = {0, 0, -1}};
     struct observed_end end = {true, vec3_all(1), vec3_all(1), vec3_all(0), vec3_all(1)};
-    observe_sample_begin(&pixel_trace.observer, &place);
+    observe_sample_begin(&pixel_trace.observer, &position);
     for (int i = 0; i < PIXEL_TRACE_RAYS + 10; i++) {
         observe_ray_sent(&pixel_trace.observer, RAY_CAMERA, vec3_all(1), RAY_FOLLOWED);
         observe_ray_begin(&pixel_trace.observer, &ray, NULL, NULL, INFINITY, 1);
@@ -207,7 +207,7 @@ TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
         CHECK_EQ_INT(pixel_trace.mute, i >= PIXEL_TRACE_RAYS);
         observe_ray_end(&pixel_trace.observer, &end);
     }
-    observe_sample_end(&pixel_trace.observer, &place, vec3_all(1));
+    observe_sample_end(&pixel_trace.observer, &position, vec3_all(1));
     CHECK_EQ_INT(pixel_trace.rays, PIXEL_TRACE_RAYS);
     CHECK_EQ_INT(pixel_trace.omitted, 10);
     CHECK(!pixel_trace.failed);
@@ -233,9 +233,9 @@ TEST(ways_to_instances_tell_every_node_and_place_on_them) {
     CHECK(node_add_child(&s.scene, other, pair, &s.error) &&
           node_add_child(&s.scene, ball, stage_cube(&s, pair, m), &s.error));
     static const double at[3][3] = {{0, 0, 0}, {5, 0, 0}, {9, 0, 0}};
-    struct placements *places = arena_alloc(&s.scene.arena, sizeof *places);
-    *places = (struct placements){.count = 3, .at = at};
-    other->placements = places;
+    struct placements *positions = arena_alloc(&s.scene.arena, sizeof *positions);
+    *positions = (struct placements){.count = 3, .at = at};
+    other->placements = positions;
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     char texts[16][200] = {{0}};
     CHECK(world_visit_paths(&s.world, s.root, note_path, texts, &s.error));
@@ -273,10 +273,10 @@ static int compare_lines(const char *scene, const char *lines, const struct test
     int compared = 0;
     for (const char *line = lines; *line && compared < count; line = strchr(line, '\n') + 1) {
         unsigned x = 0, y = 0, rgb[3] = {999, 999, 999};
-        const char *place = strstr(line, "\"x\":"), *bytes = strstr(line, "\"bytes\":["), *end = strchr(line, '\n');
+        const char *position = strstr(line, "\"x\":"), *bytes = strstr(line, "\"bytes\":["), *end = strchr(line, '\n');
         if (line[0] != '{' && end)
             continue;
-        if (!end || !place || !bytes || bytes > end || sscanf(place, "\"x\":%u,\"y\":%u", &x, &y) != 2 ||
+        if (!end || !position || !bytes || bytes > end || sscanf(position, "\"x\":%u,\"y\":%u", &x, &y) != 2 ||
             sscanf(bytes, "\"bytes\":[%u,%u,%u]", &rgb[0], &rgb[1], &rgb[2]) != 3) {
             test_fail(__FILE__, __LINE__, "%s: no story in: %.200s", scene, line);
             return compared;
@@ -312,14 +312,14 @@ static void print_scene(const char *path, uint32_t width, uint32_t height, int c
         uint32_t x = (uint32_t)test_uniform(&random, 0, width), y = (uint32_t)test_uniform(&random, 0, height);
         used += (size_t)snprintf(words + used, room - used, " --pixel %u,%u", x, y);
     }
-    struct test_result told = test_gray(NULL, words);
-    if (told.status != 0)
-        test_fail(__FILE__, __LINE__, "%s: status %d: %s", path, told.status, told.err);
+    struct test_result reported = test_gray(NULL, words);
+    if (reported.status != 0)
+        test_fail(__FILE__, __LINE__, "%s: status %d: %s", path, reported.status, reported.err);
     if (picture.rgb)
-        CHECK_EQ_INT(compare_lines(path, told.out, &picture, count), count);
+        CHECK_EQ_INT(compare_lines(path, reported.out, &picture, count), count);
     free(picture.rgb);
     free(words);
-    release(told);
+    release(reported);
 }
 
 TEST(what_a_script_prints_after_a_picture_stands_behind_its_stories) {
@@ -332,9 +332,9 @@ TEST(what_a_script_prints_after_a_picture_stands_behind_its_stories) {
     char words[8192] = "-q --json scene.lua";
     for (int i = 0; i < 200; i++)
         (void)snprintf(words + strlen(words), sizeof words - strlen(words), " --pixel %d,%d", i % 40, i / 40 * 5);
-    struct test_result told = test_gray_scene(scene, words, NULL);
-    CHECK_EQ_INT(told.status, 0);
-    const char *line = told.out;
+    struct test_result reported = test_gray_scene(scene, words, NULL);
+    CHECK_EQ_INT(reported.status, 0);
+    const char *line = reported.out;
     for (int picture = 1; picture <= 5; picture++) {
         char after[20];
         for (int i = 0; i < 200 && line; i++) {
@@ -347,7 +347,7 @@ TEST(what_a_script_prints_after_a_picture_stands_behind_its_stories) {
         line = line ? line + strlen(after) : NULL;
     }
     CHECK(line && *line == '\0');
-    release(told);
+    release(reported);
 }
 
 static int by_name(const void *a, const void *b) {

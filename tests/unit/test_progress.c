@@ -82,7 +82,7 @@ TEST(the_order_of_tiles_changes_no_byte) {
 
 /* A job with its own film, with or without a thread that polls its progress. */
 static bool run_job(struct stage *s, struct film *film, struct progress_estimate *progress_estimate,
-                    const _Atomic int *enough, struct render_statistics *statistics) {
+                    const _Atomic int *drain, struct render_statistics *statistics) {
     struct render_job job = {.world = &s->world,
                              .camera = s->camera,
                              .settings = s->settings,
@@ -91,7 +91,7 @@ static bool run_job(struct stage *s, struct film *film, struct progress_estimate
                              .ambient = vec3_all(0.3),
                              .film = film,
                              .progress_estimate = progress_estimate,
-                             .enough = enough};
+                             .drain = drain};
     return render_run(&job, s->pool, statistics, &s->error);
 }
 
@@ -155,10 +155,10 @@ static double scatter(uint32_t tile, double width) {
     return 1 + width * (2 * random_unit(random_combine(7, tile)) - 1);
 }
 
-static void look_at_halves(struct time_estimate *time_estimate, double told, double width) {
+static void sample_halves(struct time_estimate *time_estimate, double reported, double width) {
     for (uint32_t tile = 0; tile < 200; tile++)
         time_estimate_probe(time_estimate, tile, 1024,
-                            (told * cost_of(tile) + (1 - told) * 500) * 0.01 * scatter(tile, width), 0.1);
+                            (reported * cost_of(tile) + (1 - reported) * 500) * 0.01 * scatter(tile, width), 0.1);
     time_estimate_begin_tiles(time_estimate);
 }
 
@@ -194,24 +194,24 @@ TEST(time_estimate_of_a_picture_whose_left_half_costs_ten_times_the_right_one) {
         const uint32_t *orders[3] = {rows, columns, spread};
         for (int i = 0; i < 3; i++) {
             CHECK(time_estimate_create(&time_estimate, 200, 20, workers));
-            look_at_halves(&time_estimate, 1, 0);
+            sample_halves(&time_estimate, 1, 0);
             CHECK(worst_error(&time_estimate, orders[i], 10, 199) < (i == 1 ? 1 : 0.1));
             time_estimate_destroy(&time_estimate);
         }
     }
     /* Rays without information: tiles spread over the picture represent the others. */
     CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
-    look_at_halves(&time_estimate, 0, 0);
+    sample_halves(&time_estimate, 0, 0);
     CHECK(worst_error(&time_estimate, spread, 66, 180) < 0.2);
     time_estimate_destroy(&time_estimate);
     /* Half of each: the model learns the costs that the rays do not show. */
     CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
-    look_at_halves(&time_estimate, 0.5, 0);
+    sample_halves(&time_estimate, 0.5, 0);
     CHECK(worst_error(&time_estimate, spread, 66, 190) < 0.1);
     time_estimate_destroy(&time_estimate);
     /* Each tile's rays wrong by up to half. */
     CHECK(time_estimate_create(&time_estimate, 200, 20, 2));
-    look_at_halves(&time_estimate, 1, 0.5);
+    sample_halves(&time_estimate, 1, 0.5);
     CHECK(worst_error(&time_estimate, spread, 66, 180) < 0.15);
     time_estimate_destroy(&time_estimate);
 }
@@ -280,7 +280,7 @@ static void stop_soon(void *context, uint32_t tile, uint32_t done, uint32_t coun
 
 TEST(enough_tiles_end_a_render_with_whole_tiles) {
     struct stage s;
-    _Atomic int enough = 0;
+    _Atomic int drain = 0;
     struct render_statistics statistics = {0};
     stage_begin(&s, 1);
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
@@ -296,9 +296,9 @@ TEST(enough_tiles_end_a_render_with_whole_tiles) {
                              .width = 200,
                              .height = 150,
                              .film = &film,
-                             .enough = &enough,
+                             .drain = &drain,
                              .tile_done = stop_soon,
-                             .context = &enough};
+                             .context = &drain};
     CHECK(!render_run(&job, s.pool, &statistics, &s.error));
     CHECK_EQ_INT(s.error.kind, ERROR_CANCELLED);
     CHECK_EQ_INT(film_tiles_in(&film, FILM_TILE_DONE), 3);

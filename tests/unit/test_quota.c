@@ -93,7 +93,7 @@ TEST(a_quota_may_be_met_by_any_call_to_the_system) {
     long long allocations = 0, calls = 0;
     CHECK(text && sscanf(text, "%lld %lld", &allocations, &calls) == 2 && calls > 20);
     free(text);
-    int told = 0;
+    int reported = 0;
     for (long long k = 1; k <= calls; k++) {
         (void)snprintf(
             line, sizeof line,
@@ -107,11 +107,11 @@ TEST(a_quota_may_be_met_by_any_call_to_the_system) {
             "test $(wc -l <err.txt) = 1 && s=4; fi; exit $s",
             k, EDQUOT);
         int status = shell(line);
-        told += status == 4;
+        reported += status == 4;
         if (status != 0 && status != 1 && status != 3 && status != 4)
             test_fail(__FILE__, __LINE__, "call %lld: %d", k, status);
     }
-    CHECK(told >= 3); /* a write, the sync, the rename */
+    CHECK(reported >= 3); /* a write, the sync, the rename */
 }
 
 /* 77: not possible here. Root drops its privileges over files first. */

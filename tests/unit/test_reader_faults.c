@@ -165,7 +165,8 @@ static void prepare(void) {
 }
 
 /* Reads the file into a scene with everything that it names. */
-static bool read_and_place(const char *path, const struct model_options *options, struct error *error, int *triangles) {
+static bool read_into_scene(const char *path, const struct model_options *options, struct error *error,
+                            int *triangles) {
     struct model model;
     struct assets assets = {0};
     struct scene scene;
@@ -246,7 +247,7 @@ static void fail_everything(const char *name, const struct model_options *option
             int triangles;
             uint64_t before = fault_count((enum fault_kind)kind);
             fault_at((enum fault_kind)kind, k);
-            bool ok = read_and_place(path, options, &error, &triangles);
+            bool ok = read_into_scene(path, options, &error, &triangles);
             fault_at((enum fault_kind)kind, 0);
             if (!ok && kind == FAULT_OF_ALLOCATION && error.kind != ERROR_MACHINE)
                 test_fail(__FILE__, __LINE__, "%s, allocation %llu: %s", name, (unsigned long long)k, error.text);
@@ -268,7 +269,7 @@ static void check_text(const char *name, const char *text, size_t size, int tria
     (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
     prepare();
     put(name, text, size);
-    if (!read_and_place(path, &plain, &error, &found))
+    if (!read_into_scene(path, &plain, &error, &found))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     CHECK_EQ_INT(found, triangles);
     change_words(name, text, size, &plain);
@@ -307,7 +308,7 @@ TEST(any_allocation_may_fail_while_gzip_is_read) {
     int triangles = 0;
     char path[512];
     (void)snprintf(path, sizeof path, "%s/z.obj.gz", test_folder());
-    CHECK(read_and_place(path, &plain, &error, &triangles));
+    CHECK(read_into_scene(path, &plain, &error, &triangles));
     CHECK_EQ_INT(triangles, 5);
     fail_everything("z.obj.gz", &plain);
 }
@@ -338,7 +339,7 @@ TEST(any_allocation_may_fail_while_looks_are_placed) {
     put("looks.mtl", library, strlen(library));
     put("looks.obj", model, strlen(model));
     (void)snprintf(path, sizeof path, "%s/looks.obj", test_folder());
-    CHECK(read_and_place(path, &plain, &error, &triangles));
+    CHECK(read_into_scene(path, &plain, &error, &triangles));
     CHECK_EQ_INT(triangles, 7);
     fail_everything("looks.obj", &plain);
 #ifdef HAVE_JANSSON
@@ -355,7 +356,7 @@ TEST(any_allocation_may_fail_while_looks_are_placed) {
         "\"nodes\":[{\"mesh\":0},{\"mesh\":1}],\"scenes\":[{\"nodes\":[0,1]}]}";
     put("metal.gltf", metal, strlen(metal));
     (void)snprintf(path, sizeof path, "%s/metal.gltf", test_folder());
-    CHECK(read_and_place(path, &plain, &error, &triangles));
+    CHECK(read_into_scene(path, &plain, &error, &triangles));
     CHECK_EQ_INT(triangles, 1);
     fail_everything("metal.gltf", &plain);
 #endif
@@ -414,7 +415,7 @@ TEST(any_word_of_a_material_library_may_be_another) {
             int length =
                 snprintf(changed, sizeof mtl_text + 64, "%.*s%s%s", (int)at, mtl_text, words[k], mtl_text + end);
             put("t.mtl", changed, (size_t)length);
-            expect_line(path, read_and_place(path, &(struct model_options){0}, &error, &triangles), &error, words[k]);
+            expect_line(path, read_into_scene(path, &(struct model_options){0}, &error, &triangles), &error, words[k]);
         }
     }
     free(changed);

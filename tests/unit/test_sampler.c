@@ -43,7 +43,7 @@ TEST(sampler_draws_the_numbers_that_pictures_were_made_of) {
 
     uint64_t ray = random_mix(99), rough = sampler_branch(ray, SAMPLER_ROUGH), light = sampler_light(ray, 2);
     struct sample_set facets = sampler_facets(&s, ray, rough, 4),
-                      alone = sampler_facets(&(struct sampler){.side = 1}, ray, rough, 4);
+                      single = sampler_facets(&(struct sampler){.side = 1}, ray, rough, 4);
     struct sample_set shared = sampler_on_light(&s, light, 2, 4, true),
                       jittered = sampler_on_light(&s, light, 2, 4, false);
     for (uint32_t cell = 0; cell < 16; cell++) {
@@ -52,7 +52,7 @@ TEST(sampler_draws_the_numbers_that_pictures_were_made_of) {
         turn = sample_permute(4, ALL, random_combine(s.pixel_key, ray));
         own = sample_cell_part(rough, i, j, 4, turn, SIDE);
         CHECK(p.x == own.x && p.y == own.y);
-        p = sample_set_point(&alone, cell);
+        p = sample_set_point(&single, cell);
         own = sample_cell(rough, i, j, 4);
         CHECK(p.x == own.x && p.y == own.y);
         p = sample_set_point(&shared, cell);

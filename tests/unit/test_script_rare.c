@@ -164,8 +164,8 @@ TEST(an_error_that_was_caught_and_raised_again_names_one_place) {
     struct listener listener = {.renders = 0};
     struct error error;
     CHECK(!listen_to_text(&listener, "local ok, m = pcall(function()\nerror('deep') end)\nerror(m)", NULL, &error));
-    const char *place = strstr(error.text, "scene.lua:2: deep");
-    CHECK(place && !strstr(place + 1, "scene.lua:") && !strstr(error.text, "scene.lua:3"));
+    const char *position = strstr(error.text, "scene.lua:2: deep");
+    CHECK(position && !strstr(position + 1, "scene.lua:") && !strstr(error.text, "scene.lua:3"));
 }
 
 /* A __close handler has no effect while an error propagates that scripts cannot catch. */
@@ -442,8 +442,9 @@ static void fail_after_picture(const char *text, enum fault_kind kind, const str
         bool over = fault_count(kind) < listener.failing;
         fault_at(kind, 0);
         bool expected = own ? !done && strstr(error.text, own) : done;
-        bool told = !done && error.kind == (kind == FAULT_OF_ALLOCATION ? ERROR_MACHINE : error.kind) && error.text[0];
-        if (over ? !expected : !expected && !told)
+        bool reported =
+            !done && error.kind == (kind == FAULT_OF_ALLOCATION ? ERROR_MACHINE : error.kind) && error.text[0];
+        if (over ? !expected : !expected && !reported)
             test_fail(__FILE__, __LINE__, "%s: failure %llu: %s (kind %d)", text, (unsigned long long)k,
                       done ? "runs" : error.text, (int)error.kind);
         if (over || listener.failing == 0)

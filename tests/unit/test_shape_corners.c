@@ -329,9 +329,9 @@ TEST(a_torus_with_hardly_a_ring_is_a_ball) {
             if (fabs(half) < 1e-4) /* it touches the ball */
                 continue;
             CHECK(count == (half > 0 ? 2 : 0));
-            double reach = half > 0 ? sqrt(half) / vec3_length(ray.direction) : 0;
+            double extent = half > 0 ? sqrt(half) / vec3_length(ray.direction) : 0;
             for (int k = 0; k < count; k++) {
-                CHECK_NEAR(found[k].t, along + (k ? reach : -reach), 200 * torus.major + 1e-12);
+                CHECK_NEAR(found[k].t, along + (k ? extent : -extent), 200 * torus.major + 1e-12);
                 CHECK(found[k].enter == (k == 0));
                 struct surface surface;
                 torus_describe(&torus, &ray, &found[k], &surface);

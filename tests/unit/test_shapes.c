@@ -15,7 +15,7 @@ static struct shape sphere_at(struct vec3 centre, double radius) {
     return s;
 }
 
-static struct shape box_between(struct vec3 min, struct vec3 max) {
+static struct shape box_of_corners(struct vec3 min, struct vec3 max) {
     struct shape s = {.kind = SHAPE_BOX};
     s.box = (struct box){min, max};
     return s;
@@ -149,7 +149,7 @@ TEST(transformed_shapes_are_hit_on_their_surface) {
     int hits = 0;
     for (int i = 0; i < 100000; i++) {
         struct transform world_from_object = random_transform(&random);
-        struct shape shape = i % 2 ? sphere_at(vec3_all(0), 1) : box_between(vec3_all(0), vec3_all(1));
+        struct shape shape = i % 2 ? sphere_at(vec3_all(0), 1) : box_of_corners(vec3_all(0), vec3_all(1));
         struct geom_scratch scratch = {0};
         struct vec3 target = affine_point(&world_from_object.forward, random_vec3(&random, 0.5));
         struct vec3 origin = random_vec3(&random, 20);
@@ -177,7 +177,8 @@ TEST(surface_error_bounds_the_distance_from_the_surface) {
     for (int i = 0; i < 100000; i++) {
         double radius = exp(test_uniform(&random, -10, 10));
         struct vec3 centre = random_vec3(&random, exp(test_uniform(&random, -5, 12)));
-        struct shape sphere = sphere_at(centre, radius), box = box_between(centre, vec3_add(centre, vec3_all(radius)));
+        struct shape sphere = sphere_at(centre, radius),
+                     box = box_of_corners(centre, vec3_add(centre, vec3_all(radius)));
         struct vec3 origin = vec3_add(centre, random_vec3(&random, exp(test_uniform(&random, 0, 8)) * radius));
         struct ray ray = ray_from(origin, vec3_sub(vec3_add(centre, random_vec3(&random, radius)), origin));
         struct geom_scratch scratch = {0};
@@ -265,11 +266,11 @@ TEST(box_image_coordinates_follow_the_specification) {
         {{-1, 0, 0}, BOX_POSITIVE_X, 1 - z, 1 - y}, {{1, 0, 0}, BOX_NEGATIVE_X, z, 1 - y},
         {{0, -1, 0}, BOX_POSITIVE_Y, x, z},         {{0, 1, 0}, BOX_NEGATIVE_Y, x, 1 - z},
     };
-    struct shape s = box_between(vec3_make(-1, 2, 5), vec3_make(3, 4, 6));
-    struct vec3 place = {-1 + 4 * x, 2 + 2 * y, 5 + 1 * z};
+    struct shape s = box_of_corners(vec3_make(-1, 2, 5), vec3_make(3, 4, 6));
+    struct vec3 point = {-1 + 4 * x, 2 + 2 * y, 5 + 1 * z};
     struct geom_scratch scratch = {0};
     for (size_t i = 0; i < 6; i++) {
-        struct ray ray = ray_from(vec3_add_scaled(place, table[i].direction, -10), table[i].direction);
+        struct ray ray = ray_from(vec3_add_scaled(point, table[i].direction, -10), table[i].direction);
         struct crossing c;
         struct surface surface;
         CHECK(shape_nearest(&s, &ray, &scratch, &c));
@@ -326,7 +327,7 @@ TEST(nearest_is_the_first_crossing_in_the_open_interval) {
     CHECK(geom_scratch_init(&scratch, 16));
     for (int i = 0; i < 100000; i++) {
         struct shape s = i % 2 ? sphere_at(random_vec3(&random, 1), test_uniform(&random, 0.1, 2))
-                               : box_between(vec3_all(-1), vec3_make(1, 2, 0.5));
+                               : box_of_corners(vec3_all(-1), vec3_make(1, 2, 0.5));
         struct ray ray = ray_from(random_vec3(&random, 4), random_vec3(&random, 1));
         struct crossing_list list;
         CHECK(shape_crossings(&s, &ray, &scratch, &list));

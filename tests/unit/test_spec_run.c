@@ -386,8 +386,8 @@ static void make_folder(const char *name) {
 
 /* Each folder gets a mesh file with as many triangles as its rank: the count shows which file was read. */
 TEST(files_are_looked_for_beside_the_scene_then_here_then_in_assets_then_by_their_bare_name) {
-    static const char *const places[] = {"a/s/m/x.obj", "m/x.obj", "a/s/Assets/m/x.obj", "a/Assets/m/x.obj",
-                                         "a/s/x.obj"};
+    static const char *const files[] = {"a/s/m/x.obj", "m/x.obj", "a/s/Assets/m/x.obj", "a/Assets/m/x.obj",
+                                        "a/s/x.obj"};
     static const char *const folders[] = {"a",          "a/s",          "a/s/m",    "m",
                                           "a/s/Assets", "a/s/Assets/m", "a/Assets", "a/Assets/m"};
     for (size_t k = 0; k < sizeof folders / sizeof folders[0]; k++)
@@ -398,7 +398,7 @@ TEST(files_are_looked_for_beside_the_scene_then_here_then_in_assets_then_by_thei
         char text[400] = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
         for (size_t i = 0; i <= k; i++)
             strcat(text, "f 1 2 3\n");
-        write_in(places[k], text);
+        write_in(files[k], text);
     }
     for (size_t k = 0; k < 5; k++) {
         struct test_result result = test_gray(NULL, "--stats=json a/s/scene.lua");
@@ -407,7 +407,7 @@ TEST(files_are_looked_for_beside_the_scene_then_here_then_in_assets_then_by_thei
         free(result.out);
         free(result.err);
         char path[600];
-        (void)snprintf(path, sizeof path, "%s/%s", test_folder(), places[k]);
+        (void)snprintf(path, sizeof path, "%s/%s", test_folder(), files[k]);
         CHECK(unlink(path) == 0);
     }
 }

@@ -134,7 +134,7 @@ TEST(rough_reflection_spreads_as_its_distribution_says) {
                                      .direction = {0, -1, 0},
                                      .radius = radius,
                                      .colour = {1, 1, 1},
-                                     .emits = true,
+                                     .emissive = true,
                                      .visible = true};
         s.light_count = 1;
         metal->phong.ks = vec3_make(1, 0, 0);
@@ -156,12 +156,12 @@ TEST(rough_reflection_spreads_as_its_distribution_says) {
 TEST(facets_are_seen_from_the_view_and_have_the_mean_of_the_normal) {
     struct vec3 normal = vec3_normalize(vec3_make(1, 2, -3)), sum = {0, 0, 0};
     for (uint32_t i = 0; i < 64 * 64; i++) {
-        struct sample2 place = sample_cell(7, i % 64, i / 64, 64);
-        struct vec3 h = microfacet_normal(normal, normal, 0.5, place);
+        struct sample2 xi = sample_cell(7, i % 64, i / 64, 64);
+        struct vec3 h = microfacet_normal(normal, normal, 0.5, xi);
         CHECK(vec3_dot(h, normal) > 0);
         sum = vec3_add(sum, vec3_sub(h, vec3_scale(normal, vec3_dot(h, normal))));
         struct vec3 grazing = vec3_normalize(vec3_make(2, -1, 0.01));
-        h = microfacet_normal(normal, grazing, 0.5, place);
+        h = microfacet_normal(normal, grazing, 0.5, xi);
         CHECK(vec3_dot(h, normal) >= 0 && vec3_dot(h, grazing) >= -1e-12);
     }
     CHECK(vec3_length(sum) / 4096 < 1e-3);

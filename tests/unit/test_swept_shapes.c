@@ -322,9 +322,9 @@ TEST(swept_shapes_have_derivatives_that_follow_their_image_coordinates) {
                 struct vec3 moved = vec3_sub(t.point, s.point);
                 if (fabs(s.u - t.u) > 0.5 || vec3_length(moved) > 1e-4)
                     continue;
-                struct vec3 told = vec3_add(vec3_scale(s.dpdu, t.u - s.u), vec3_scale(s.dpdv, t.v - s.v));
+                struct vec3 reported = vec3_add(vec3_scale(s.dpdu, t.u - s.u), vec3_scale(s.dpdv, t.v - s.v));
                 checked++;
-                wrong += !(vec3_length(vec3_sub(moved, told)) <= 2e-3 * vec3_length(moved) + 1e-12);
+                wrong += !(vec3_length(vec3_sub(moved, reported)) <= 2e-3 * vec3_length(moved) + 1e-12);
             }
             arena_destroy(&arena);
         }

@@ -114,7 +114,7 @@ TEST(what_was_held_back_is_not_completed_later) {
 }
 
 /* The visible letters of a line, by an independent list. */
-static bool looks_like_the_program(const char *line, size_t size) {
+static bool resembles_the_program(const char *line, size_t size) {
     static const char *const unseen[] = {"\xe2\x80\x8b", "\xef\xbb\xbf", "\xcc\x81", "\xf3\xa0\x81\xa7", "\xc2\xad"};
     char seen[8] = "";
     for (size_t i = 0; i < size && strlen(seen) < 5;) {
@@ -194,7 +194,7 @@ TEST(no_random_text_in_random_pieces_looks_like_the_program) {
         line_guard_flush(&guard);
         for (const char *line = page.text; *line;) {
             size_t size = strcspn(line, "\n");
-            bool bad = looks_like_the_program(line, size);
+            bool bad = resembles_the_program(line, size);
             for (size_t i = 0; i < size; i++)
                 bad = bad || ((unsigned char)line[i] < 32 && line[i] != '\t') || line[i] == 127;
             if (bad) {

@@ -286,25 +286,25 @@ TEST(a_tree_that_doubles_with_each_level_is_refused_before_it_is_too_large) {
 
 /* --- inputs --- */
 
-static void *field_of(struct surface_inputs *look, enum material_input input, bool *is_colour) {
+static void *field_of(struct surface_inputs *inputs, enum material_input input, bool *is_colour) {
     *is_colour = input == INPUT_KD || input == INPUT_KS || input == INPUT_EMISSION;
     switch (input) {
     case INPUT_KD:
-        return &look->kd;
+        return &inputs->kd;
     case INPUT_KS:
-        return &look->ks;
+        return &inputs->ks;
     case INPUT_SHININESS:
-        return &look->shininess;
+        return &inputs->shininess;
     case INPUT_REFLECT:
-        return &look->reflect;
+        return &inputs->reflect;
     case INPUT_REFRACT:
-        return &look->refract;
+        return &inputs->refract;
     case INPUT_ROUGHNESS:
-        return &look->roughness;
+        return &inputs->roughness;
     case INPUT_EMISSION:
-        return &look->emission;
+        return &inputs->emission;
     case INPUT_OPACITY:
-        return &look->opacity;
+        return &inputs->opacity;
     }
     return NULL;
 }
@@ -333,20 +333,20 @@ TEST(a_texture_multiplies_the_number_of_every_input_and_no_other) {
     material_inputs_at(&base, &hit, &plain);
     for (int input = 0; input < INPUT_COUNT; input++) {
         struct material over;
-        struct surface_inputs look;
+        struct surface_inputs inputs;
         material_derive(&over, MATERIAL_IMAGE, &base);
         CHECK(material_multiply(&over, (enum material_input)input, half, &p.arena, &p.error));
-        material_inputs_at(&over, &hit, &look);
+        material_inputs_at(&over, &hit, &inputs);
         for (int other = 0; other < INPUT_COUNT; other++) {
             bool is_colour;
             const double *before = field_of(&plain, (enum material_input)other, &is_colour);
-            const double *after = field_of(&look, (enum material_input)other, &is_colour);
+            const double *after = field_of(&inputs, (enum material_input)other, &is_colour);
             for (int i = 0; i < (is_colour ? 3 : 1); i++)
                 CHECK(after[i] == (other == input ? 0.5 : 1) * before[i]);
         }
         base.phong.shininess += 1; /* later changes of the base's numbers count */
-        material_inputs_at(&over, &hit, &look);
-        CHECK(look.shininess == base.phong.shininess * (input == INPUT_SHININESS ? 0.5 : 1));
+        material_inputs_at(&over, &hit, &inputs);
+        CHECK(inputs.shininess == base.phong.shininess * (input == INPUT_SHININESS ? 0.5 : 1));
         material_inputs_at(&base, &hit, &plain);
     }
     palette_destroy(&p);
@@ -369,7 +369,7 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
     for (int i = 0; i < 1000; i++) {
         struct hit hit = random_hit(&random);
         struct vec3 at = hit.pattern_point, kd = base.phong.kd;
-        struct surface_inputs look;
+        struct surface_inputs inputs;
         struct rgba texel = image_lookup(p.image, (struct image_point){0.5, 0.5, 0, 0},
                                          (struct image_sampling){IMAGE_NEAREST, IMAGE_CLAMP, IMAGE_CLAMP});
         kd = vec3_add(vec3_make(texel.r, texel.g, texel.b), vec3_scale(kd, 1 - texel.a));
@@ -377,9 +377,9 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(brown, 1 - ratio));
         ratio = noise_marble(at, 2, 3, 4, 1);
         kd = vec3_add(vec3_scale(kd, ratio), vec3_scale(blue, 1 - ratio));
-        material_inputs_at(&marble, &hit, &look);
-        CHECK(same(look.kd, kd));
-        CHECK(same(look.ks, base.phong.ks) && look.shininess == 7 && look.opacity == 1);
+        material_inputs_at(&marble, &hit, &inputs);
+        CHECK(same(inputs.kd, kd));
+        CHECK(same(inputs.ks, base.phong.ks) && inputs.shininess == 7 && inputs.opacity == 1);
     }
     palette_destroy(&p);
 }
@@ -396,9 +396,9 @@ TEST(a_thousand_decorators_are_evaluated_in_order) {
         CHECK(material_mix_kd(&chain[i], texture_wood(3, 5, 1), vec3_all(i % 2), &p.arena, &p.error));
         kd = kd * ratio + (i % 2) * (1 - ratio);
     }
-    struct surface_inputs look;
-    material_inputs_at(&chain[MATERIAL_DEPTH - 1], &hit, &look);
-    CHECK(look.kd.x == kd);
+    struct surface_inputs inputs;
+    material_inputs_at(&chain[MATERIAL_DEPTH - 1], &hit, &inputs);
+    CHECK(inputs.kd.x == kd);
     CHECK_EQ_INT(chain[MATERIAL_DEPTH - 1].depth, MATERIAL_DEPTH);
     palette_destroy(&p);
 }
@@ -409,14 +409,14 @@ TEST(metalness_moves_kd_to_ks_and_loses_nothing) {
     palette_init(&p);
     for (int i = 0; i <= 10; i++) {
         struct material base = base_material(), metal;
-        struct surface_inputs look;
+        struct surface_inputs inputs;
         double m = i / 10.0;
         material_derive(&metal, MATERIAL_METAL, &base);
         CHECK(material_mix_metal(&metal, number(&p, m), &p.arena, &p.error));
-        material_inputs_at(&metal, &hit, &look);
-        CHECK_NEAR(look.kd.x, 0.1 * (1 - m), 1e-16);
-        CHECK_NEAR(look.ks.x, 0.1 * m + 0.4 * (1 - m), 1e-16);
-        CHECK(look.shininess == 7 && look.reflect == 0.8);
+        material_inputs_at(&metal, &hit, &inputs);
+        CHECK_NEAR(inputs.kd.x, 0.1 * (1 - m), 1e-16);
+        CHECK_NEAR(inputs.ks.x, 0.1 * m + 0.4 * (1 - m), 1e-16);
+        CHECK(inputs.shininess == 7 && inputs.reflect == 0.8);
     }
     palette_destroy(&p);
 }
@@ -437,8 +437,9 @@ TEST(bumps_of_any_texture_tilt_the_normal_by_the_slope_of_their_height) {
     struct palette p;
     palette_init(&p);
     struct image *image = ramp(&p.error);
-    struct texture_image look = {.image = image, .mapping = MAPPING_UV, .filter = IMAGE_BILINEAR, .wrap = IMAGE_CLAMP};
-    const struct texture *height = keep(&p, texture_image(&look, NULL));
+    struct texture_image inputs = {
+        .image = image, .mapping = MAPPING_UV, .filter = IMAGE_BILINEAR, .wrap = IMAGE_CLAMP};
+    const struct texture *height = keep(&p, texture_image(&inputs, NULL));
     for (int i = 0; i < 20; i++) {
         double size = ldexp(1, i - 10), factor = 0.1 * (i % 5);
         struct hit hit = hit_at(0.5 * size, 0.5 * size, 0);
@@ -466,13 +467,13 @@ TEST(normals_of_any_texture_point_where_its_colour_says) {
         static const struct vec3 wanted[] = {{0.6, 0, 0.8}, {0, 0.6, 0.8}, {0, 0, 1}};
         struct hit hit = hit_at(0.3, 0.7, 0.1);
         struct material base = base_material(), turned;
-        struct surface_inputs look;
+        struct surface_inputs inputs;
         struct vec3 c = vec3_scale(vec3_add(wanted[i], vec3_all(1)), 0.5);
         struct bump map = {.kind = MATERIAL_NORMAL, .height = 1, .texture.authored = colour(&p, c.x, c.y, c.z)};
         material_derive(&turned, MATERIAL_NORMAL, &base);
         CHECK(material_add_bump(&turned, &map, &p.arena, &p.error));
-        material_inputs_at(&turned, &hit, &look);
-        CHECK_NEAR(vec3_length(vec3_sub(look.normal, wanted[i])), 0, 1e-15);
+        material_inputs_at(&turned, &hit, &inputs);
+        CHECK_NEAR(vec3_length(vec3_sub(inputs.normal, wanted[i])), 0, 1e-15);
     }
     palette_destroy(&p);
 }
@@ -483,18 +484,18 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     struct hit hit = hit_at(0.3, 0.7, 0.1);
     frame_tangents(hit.pattern_normal, &hit.along_a, &hit.along_b);
     struct material base = base_material(), flat, bumped;
-    struct surface_inputs look, scaled;
+    struct surface_inputs inputs, scaled;
     struct bump even = {.kind = MATERIAL_BUMP, .height = 3, .texture.authored = number(&p, 0.7)};
     struct bump wood = {.kind = MATERIAL_BUMP, .height = 0.05, .texture.authored = keep(&p, texture_wood(3, 5, 1))};
     material_derive(&flat, MATERIAL_BUMP, &base);
     CHECK(material_add_bump(&flat, &even, &p.arena, &p.error));
-    material_inputs_at(&flat, &hit, &look);
-    CHECK(same(look.normal, hit.normal));
+    material_inputs_at(&flat, &hit, &inputs);
+    CHECK(same(inputs.normal, hit.normal));
     material_derive(&bumped, MATERIAL_BUMP, &base);
     CHECK(material_add_bump(&bumped, &wood, &p.arena, &p.error));
-    material_inputs_at(&bumped, &hit, &look);
-    CHECK(!same(look.normal, hit.normal));
-    CHECK_NEAR(vec3_length(look.normal), 1, 1e-15);
+    material_inputs_at(&bumped, &hit, &inputs);
+    CHECK(!same(inputs.normal, hit.normal));
+    CHECK_NEAR(vec3_length(inputs.normal), 1, 1e-15);
     /* The object, with its bumps, is eight times as large in the world: the normals are the same. */
     hit.along_a = vec3_scale(hit.along_a, 8);
     hit.along_b = vec3_scale(hit.along_b, 8);
@@ -502,7 +503,7 @@ TEST(bumps_of_patterns_grow_with_the_object_and_leave_flat_heights_bit_by_bit) {
     hit.dpdu = vec3_scale(hit.dpdu, 8);
     hit.dpdv = vec3_scale(hit.dpdv, 8);
     material_inputs_at(&bumped, &hit, &scaled);
-    CHECK(same(look.normal, scaled.normal));
+    CHECK(same(inputs.normal, scaled.normal));
     palette_destroy(&p);
 }
 

@@ -57,7 +57,8 @@ static const char scene[] =
 static const char roof[] =
     "mtllib roof.mtl\nv -0.8 -0.8 0\nv 0.8 -0.8 0\nv 0 0 0.8\nv 0 0.8 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
     "usemtl tiles\nf 1/1 2/2 3/3\nusemtl wood\nf 1/1 3/3 4/2\nf 2/1 4/2 3/3\n";
-static const char roof_looks[] = "newmtl tiles\nKd 0.8 0.3 0.2\nKs 0.2 0.2 0.2\nNs 9\nnewmtl wood\nKd 0.5 0.4 0.2\n";
+static const char roof_materials[] =
+    "newmtl tiles\nKd 0.8 0.3 0.2\nKs 0.2 0.2 0.2\nNs 9\nnewmtl wood\nKd 0.5 0.4 0.2\n";
 
 static void put(const char *name, const void *data, size_t size) {
     char path[600];
@@ -75,17 +76,17 @@ static void put_picture(const char *name, const float values[12]) {
 static void write_files(void) {
     static const float holes[12] = {0, 0, 0, 1, 1, 1, 0.5F, 0.5F, 0.5F, 0.25F, 0.25F, 0.25F}, black[12] = {0};
     put("roof.obj", roof, strlen(roof));
-    put("roof.mtl", roof_looks, strlen(roof_looks));
+    put("roof.mtl", roof_materials, strlen(roof_materials));
     put_picture("holes.pfm", holes);
     put_picture("black.pfm", black);
 }
 
-static void says(const char *told, const char *const *words, size_t count) {
+static void says(const char *reported, const char *const *words, size_t count) {
     for (size_t i = 0; i < count; i++)
-        if (!strstr(told, words[i]))
+        if (!strstr(reported, words[i]))
             test_fail(__FILE__, __LINE__, "nowhere it says \"%s\"", words[i]);
 }
-#define SAYS(told, words) says(told, words, sizeof(words) / sizeof((words)[0]))
+#define SAYS(reported, words) says(reported, words, sizeof(words) / sizeof((words)[0]))
 
 /* The traces of two rows of pixels; checks that each ends with the bytes of the picture. The caller frees the text. */
 static char *print_trace(const char *options) {
@@ -156,19 +157,19 @@ TEST(a_told_scene_with_one_of_everything_has_words_for_all_of_it) {
                                          "exposure 1, tone reinhard, sRGB: (",
                                          "samples, as all pixels have"};
     write_files();
-    char *told =
+    char *reported =
         print_trace("-ss 1 --cutoff 0 --caustics 3000 --tone reinhard --exposure 1 --srgb -use-tir -reflect-limit 1");
-    SAYS(told, always);
-    free(told);
+    SAYS(reported, always);
+    free(reported);
 }
 
 TEST(a_told_draft_says_what_was_not_worth_following) {
     static const char *const words[] = {"it could not change the pixel any more (--cutoff)", ", blinn (",
                                         "what it meets at distance ", "one sample: no neighbour"};
     write_files();
-    char *told = print_trace("--quick --specular blinn --cutoff 0.2");
-    SAYS(told, words);
-    free(told);
+    char *reported = print_trace("--quick --specular blinn --cutoff 0.2");
+    SAYS(reported, words);
+    free(reported);
 }
 
 TEST(a_dumped_scene_with_one_of_everything_lists_its_kinds) {

@@ -5,7 +5,7 @@
 #include "scene/traversal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "world/light_lamps_internal.h"
+#include "world/mesh_lights_internal.h"
 #include "world/path.h"
 
 #include <stdio.h>
@@ -91,10 +91,10 @@ static struct node *grow(struct forest *f, int depth) {
                              operands, 2, &s->error);
     } else {
         static const double at[2][3] = {{-0.7, 0.2, 0}, {0.6, 0, 0.3}};
-        static const struct placements places[3] = {{.count = 2, .at = at}, {.count = 1, .at = at}, {.count = 0}};
+        static const struct placements lists[3] = {{.count = 2, .at = at}, {.count = 1, .at = at}, {.count = 0}};
         node = scene_node(&s->scene, NODE_GROUP, "group", &s->error);
         if (pick(f, 0, 1) < 0.4)
-            node->placements = &places[(int)pick(f, 0, 2.3)];
+            node->placements = &lists[(int)pick(f, 0, 2.3)];
     }
     for (int i = (int)pick(f, 0, 2.99); i > 0; i--)
         CHECK(node_add_child(&s->scene, node, grow(f, depth - 1), &s->error));
@@ -264,7 +264,7 @@ TEST(paths_inside_of_solids_lead_to_the_shapes_that_flattening_made_leaves_of) {
             for (uint32_t k = 0; whole && node->kind == NODE_CSG && k < whole->leaf_count; k++) {
                 const struct csg_leaf *leaf = &whole->leaves[k];
                 uint32_t depth;
-                CHECK(world_operand_way(node, leaf->origin, steps, DEEP, &depth));
+                CHECK(world_operand_path(node, leaf->origin, steps, DEEP, &depth));
                 if (depth == 0) /* of a clip, which is no part of the node */
                     continue;
                 const struct node *last = steps[depth - 1].node;

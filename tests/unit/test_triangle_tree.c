@@ -22,7 +22,7 @@ static struct reference box_at(struct test_random *random, float spread, float s
 }
 
 /* Tiny triangles; sheets; a cluster of small ones among large ones (a statue in a stadium); all at one point. */
-enum mix { DUST, SHEETS, STATUE, ONE_PLACE, MIXES };
+enum mix { DUST, SHEETS, STATUE, ONE_POINT, MIXES };
 
 static void fill(struct reference *references, uint32_t count, enum mix mix, struct test_random *random) {
     for (uint32_t i = 0; i < count; i++) {
@@ -31,7 +31,7 @@ static void fill(struct reference *references, uint32_t count, enum mix mix, str
             references[i].max[i % 3] = references[i].min[i % 3];
         if (mix == STATUE)
             references[i] = i % 2 ? box_at(random, 0.02f, 0.001f, i) : box_at(random, 1, 0.2f, i);
-        if (mix == ONE_PLACE)
+        if (mix == ONE_POINT)
             references[i] = (struct reference){.triangle = i};
     }
 }
@@ -165,7 +165,7 @@ TEST(the_cut_into_nodes_of_eight_children_is_the_cheapest_of_all) {
     for (int round = 0; round < 60; round++) {
         uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, 79);
         struct tree tree = {0};
-        fill(references, count, (enum mix)(round % ONE_PLACE), &random);
+        fill(references, count, (enum mix)(round % ONE_POINT), &random);
         uint32_t root = tree_over(&tree, references, count);
         double cost = (double)tree_weigh(&tree, root, 0, NULL).of[0], cut = cost_as_cut(&tree, root);
         CHECK_NEAR(cost, cheapest(&tree, root), 1e-5 * cost);

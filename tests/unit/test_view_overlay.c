@@ -10,8 +10,8 @@
 
 enum { WIDTH = 80, HEIGHT = 60 };
 
-static bool way_of_second(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
-                          uint32_t depth) {
+static bool path_of_second(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
+                           uint32_t depth) {
     (void)count;
     if (first == 1)
         *(uint64_t *)context = route_hash(steps, depth);
@@ -30,15 +30,15 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-    struct view_overlay_buffers place = {.shows = shows};
+    struct view_overlay_buffers buffers = {.shows = shows};
     uint64_t route = 0;
-    CHECK(world_visit_paths(&s.world, s.root, way_of_second, &route, &s.error));
-    for (int by_way = 0; by_way < 2; by_way++) {
+    CHECK(world_visit_paths(&s.world, s.root, path_of_second, &route, &s.error));
+    for (int by_path = 0; by_path < 2; by_path++) {
         const struct view_overlay_request request = {
-            .outline = true, .serial = behind->serial, .route = by_way ? route : 0};
+            .outline = true, .serial = behind->serial, .route = by_path ? route : 0};
         struct view_overlay overlay;
         memset(shows, 7, sizeof shows);
-        CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &request, &place, &overlay,
+        CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &request, &buffers, &overlay,
                                 &s.error));
         CHECK(overlay.has_outline && !overlay.has_lines && !overlay.stopped);
         int seen = 0;
@@ -63,7 +63,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     }
     const struct view_overlay_request nobody = {.outline = true, .serial = 12345};
     struct view_overlay none;
-    CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &nobody, &place, &none, &s.error));
+    CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &nobody, &buffers, &none, &s.error));
     CHECK(none.has_outline && none.outline.x1 == 0);
     stage_end(&s);
 }
@@ -86,7 +86,7 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
     s.camera = (struct camera){{0, 0, 8}, {0, 0, -1}, {0, 1, 0}, 35};
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
-    struct view_overlay_buffers place = {.shows = shows};
+    struct view_overlay_buffers buffers = {.shows = shows};
     struct picked picked;
     struct view_overlay overlay;
     /* The middle is in the hollow; a click on its outline selects it. */
@@ -97,7 +97,7 @@ TEST(an_operand_shows_where_its_surface_is_that_of_the_solid) {
         const struct view_overlay_request request = {
             .outline = true, .serial = picked.serial, .route = picked.route, .solid = picked.solid};
         memset(shows, 0, sizeof shows);
-        CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &request, &place, &overlay,
+        CHECK(view_overlay_make(&(struct view_overlay_scene){&job, s.root, s.pool}, &request, &buffers, &overlay,
                                 &s.error));
         for (uint32_t y = 0; y < HEIGHT; y++) {
             for (uint32_t x = 0; x < WIDTH; x++) {

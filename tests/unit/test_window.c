@@ -172,7 +172,7 @@ static void build(struct table *t) {
     struct preview_reply reply = {.kind = REPLY_BUILT, .light_count = 1, .world_from_root = affine_identity()};
     reply.report.bounds = (struct box){{-1, -1, -1}, {1, 1, 1}};
     reply.lights[0] = (struct light_info){
-        .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
+        .kind = LIGHT_POINT, .has_position = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
     memcpy(reply.root_name, "root", 5);
     print_news(t, &reply);
     CHECK_EQ_INT(step(t), VIEWER_SEND_COMMAND);
@@ -576,7 +576,7 @@ static const struct picked a_ball = {
     .levels = 1,
     .material_serial = 1,
     .can_own = true,
-    .look = {[MATERIAL_PART_KD] = {0.5, 0.5, 0.5}},
+    .inputs = {[MATERIAL_PART_KD] = {0.5, 0.5, 0.5}},
     .distance = 4,
     .position = {0, 0, 1},
     .has_box = true,
@@ -615,7 +615,7 @@ static void take_change(struct table *t) {
     CHECK_EQ_INT(t->viewer.command.kind, COMMAND_CHANGE);
     struct preview_reply reply = {.kind = REPLY_CHANGED, .light_count = 1};
     reply.lights[0] = (struct light_info){
-        .kind = LIGHT_POINT, .placed = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
+        .kind = LIGHT_POINT, .has_position = true, .position = {0, 1, 0}, .colour = {1, 1, 1}, .moves = true};
     print_news(t, &reply);
 }
 
@@ -678,7 +678,7 @@ TEST(window_moves_what_is_picked_by_the_way_of_the_mouse_and_undoes_it) {
     drag(&t, 40, -20);
     take_change(&t);
     const struct change *change = &t.viewer.command.change;
-    CHECK(change->kind == CHANGE_PLACE && change->serial == 2 && t.viewer.command.present);
+    CHECK(change->kind == CHANGE_TRANSFORM && change->serial == 2 && t.viewer.command.present);
     CHECK_TEXT(change->name, "ball");
     /* The middle of the box is 5 from the eye; 560 pixels show 2 x 5 x tan 20 degrees there. */
     double pixel = 2 * 5 * tan(20 * M_PI / 180) / 560;
@@ -738,7 +738,7 @@ TEST(window_deletes_and_adds_nodes_and_lights) {
     CHECK(t.viewer.command.change.added == ADDED_SPHERE && t.viewer.command.change.serial == 0);
     print_news(&t, &(struct preview_reply){.kind = REPLY_CHANGED});
     take_change(&t); /* and its position */
-    CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.change.serial == UINT32_MAX &&
+    CHECK(t.viewer.command.change.kind == CHANGE_TRANSFORM && t.viewer.command.change.serial == UINT32_MAX &&
           !t.viewer.command.more);
     CHECK(t.viewer.edit.tool == TOOL_MOVE && t.viewer.edit.selection.picked.serial == UINT32_MAX);
     refine(&t);
@@ -933,7 +933,7 @@ TEST(window_sends_all_edits_again_when_the_scripts_run_again) {
     struct preview_reply reply = {.kind = REPLY_BUILT};
     print_news(&t, &reply);
     take_change(&t);
-    CHECK(t.viewer.command.change.kind == CHANGE_PLACE && t.viewer.command.present);
+    CHECK(t.viewer.command.change.kind == CHANGE_TRANSFORM && t.viewer.command.present);
     refine(&t);
     CHECK(t.viewer.pass.edited);
     end(&t);

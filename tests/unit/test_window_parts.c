@@ -21,9 +21,9 @@ static int inked(const struct canvas *canvas) {
 }
 
 TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
-    enum { WIDTH = 30, HEIGHT = 20, ROOM = 4 * WIDTH * HEIGHT, AROUND = 4096 };
-    static uint8_t block[AROUND + ROOM + AROUND];
-    const struct canvas canvas = {block + AROUND, WIDTH, HEIGHT, 1};
+    enum { WIDTH = 30, HEIGHT = 20, ROOM = 4 * WIDTH * HEIGHT, MARGIN = 4096 };
+    static uint8_t block[MARGIN + ROOM + MARGIN];
+    const struct canvas canvas = {block + MARGIN, WIDTH, HEIGHT, 1};
     const struct canvas_colour colour = {255, 200, 100, 255};
     struct test_random random = {4};
     memset(block, 77, sizeof block);
@@ -42,8 +42,8 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
         canvas_outline(&canvas, at[0], at[1], at[2], at[3], colour);
         canvas_text(&canvas, at[0], at[1], "Text \xC3\xA4 \x7f~!", colour);
     }
-    for (int i = 0; i < AROUND; i++)
-        CHECK(block[i] == 77 && block[AROUND + ROOM + i] == 77);
+    for (int i = 0; i < MARGIN; i++)
+        CHECK(block[i] == 77 && block[MARGIN + ROOM + i] == 77);
     /* An invalid position draws nothing, a line of length 0 draws a dot. */
     canvas_clear(&canvas);
     for (int k = 0; k < 4; k++)

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-static void random_place(struct stage *s, struct test_random *random, struct node *node, double spread) {
+static void random_transform(struct stage *s, struct test_random *random, struct node *node, double spread) {
     struct transform t =
         transform_scale(vec3_make(test_uniform(random, 0.2, 2) * (test_uniform(random, 0, 1) < 0.2 ? -1 : 1),
                                   test_uniform(random, 0.2, 2), test_uniform(random, 0.2, 2)));
@@ -25,7 +25,7 @@ static void random_place(struct stage *s, struct test_random *random, struct nod
 static struct node *shape_node(struct stage *s, struct test_random *random, const struct shape *shape) {
     struct node *node = scene_node(&s->scene, NODE_GEOMETRY, "shape", &s->error);
     node->shape = *shape;
-    random_place(s, random, node, 0.3);
+    random_transform(s, random, node, 0.3);
     return node;
 }
 
@@ -39,7 +39,7 @@ static struct node *random_solid(struct stage *s, struct shape_makers *makers, s
     struct node *first = random_solid(s, makers, random, depth - 1);
     struct node *second = random_solid(s, makers, random, depth - 1);
     struct node *node = scene_combine(&s->scene, "csg", operation, (struct node *[]){first, second}, 2, &s->error);
-    random_place(s, random, node, 0.3);
+    random_transform(s, random, node, 0.3);
     return node;
 }
 
@@ -61,10 +61,10 @@ static struct node *random_world(struct stage *s, struct shape_makers *makers, s
         if (last && test_uniform(random, 0, 1) < 0.2) {
             node = scene_node(&s->scene, NODE_GROUP, "instance", &s->error);
             CHECK(node_add_child(&s->scene, node, last, &s->error));
-            random_place(s, random, node, spread);
+            random_transform(s, random, node, spread);
         } else {
             node = random_shape(s, makers, random);
-            random_place(s, random, node, spread);
+            random_transform(s, random, node, spread);
             last = node;
         }
         if (planar) {
@@ -203,14 +203,14 @@ static struct node *random_convex_or_not(struct stage *s, struct test_random *ra
             (struct shape){.kind = SHAPE_PLANAR, .planar = planar_disc(vec3_all(0), vec3_make(0, 1, 1), 1, 0.4)};
     else
         node->shape = (struct shape){.kind = SHAPE_ELLIPSOID, .ellipsoid = {vec3_all(0.1), {1, 0.4, 0.7}}};
-    random_place(s, random, node, 0.3);
+    random_transform(s, random, node, 0.3);
     return node;
 }
 
 /* Rays that leave a surface and skip its primitive. */
 TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
     struct test_random random = {77};
-    int told = 0, met_others = 0;
+    int reported = 0, met_others = 0;
     for (int w = 0; w < 40; w++) {
         struct stage s;
         struct shape_makers makers = {0};
@@ -218,7 +218,7 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
         struct node *root = random_world(&s, &makers, &random, 12, 2, false);
         for (int i = 0; i < 12; i++) {
             struct node *node = random_convex_or_not(&s, &random);
-            random_place(&s, &random, node, 2);
+            random_transform(&s, &random, node, 2);
             CHECK(node_add_child(&s.scene, root, node, &s.error));
         }
         CHECK(stage_build(&s, root, w % 2 ? ACCEL_AUTO : ACCEL_GRID));
@@ -241,7 +241,7 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
             passing.skip_primitive = hit_skip_primitive(&hit, direction);
             if (!passing.skip_primitive)
                 continue;
-            told++;
+            reported++;
             uint32_t a = 0, b = 0;
             struct crossing x = {0}, y = {0};
             bool met = world_nearest_crossing(&s.world, &onward, &scratch, &a, &x);
@@ -262,7 +262,7 @@ TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
         stage_end(&s);
         shape_makers_destroy(&makers);
     }
-    CHECK(told > 10000 && met_others > 2000);
+    CHECK(reported > 10000 && met_others > 2000);
 }
 
 /* Camera rays of a few pixels, rays along an axis, and rays in all directions, which must be traced one by one. */
@@ -311,9 +311,9 @@ TEST(packets_of_rays_meet_in_a_world_what_single_rays_meet) {
                 struct ray ray = ray_packet_get(&packet, k);
                 uint32_t primitive;
                 struct crossing c;
-                bool alone = world_nearest_crossing(&s.world, &ray, &scratch, &primitive, &c);
-                bool same = alone == (met >> k & 1);
-                if (same && alone)
+                bool single = world_nearest_crossing(&s.world, &ray, &scratch, &primitive, &c);
+                bool same = single == (met >> k & 1);
+                if (same && single)
                     same = answers[k].primitive == primitive && answers[k].crossing.t == c.t &&
                            answers[k].crossing.part == c.part && answers[k].crossing.leaf == c.leaf &&
                            answers[k].crossing.u == c.u && answers[k].crossing.v == c.v;

@@ -49,14 +49,14 @@ static struct vec3 emission_at(const struct room *r, const struct hit *hit) {
     return r->stage.world.materials[hit->material].phong.emission;
 }
 
-static struct sample2 place_of(uint64_t seed, uint64_t index) {
+static struct sample2 xi_of(uint64_t seed, uint64_t index) {
     return (struct sample2){random_unit(random_combine(seed, 2 * index)),
                             random_unit(random_combine(seed, 2 * index + 1))};
 }
 
-static struct vec3 direction_of(struct sample2 place) {
-    double y = 1 - 2 * place.y, level = sqrt(fmax(0, 1 - y * y));
-    return vec3_make(level * cos(2 * pi * place.x), y, level * sin(2 * pi * place.x));
+static struct vec3 direction_of(struct sample2 xi) {
+    double y = 1 - 2 * xi.y, level = sqrt(fmax(0, 1 - y * y));
+    return vec3_make(level * cos(2 * pi * xi.x), y, level * sin(2 * pi * xi.x));
 }
 
 /* The light of one sample of the lights, times |cosine|; *density: that of its direction, including the choice of the
@@ -67,7 +67,7 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
     double pmf;
     uint32_t light =
         light_sampler_sample(&r->lights.sampler, at->point, at->normal, random_unit(random_combine(11, i)), &pmf);
-    if (light == LIGHT_NONE || !world_lights_sample(&r->lights, at, light, place_of(12, i), &sample))
+    if (light == LIGHT_NONE || !world_lights_sample(&r->lights, at, light, xi_of(12, i), &sample))
         return vec3_all(0);
     struct ray ray = {.origin = at->from,
                       .direction = light_target_from(&sample.target, at->from),
@@ -110,7 +110,7 @@ static int compared;
 /* Light at a point by scattered rays alone (uniform over the sphere), and by both kinds of samples with the balance
  * heuristic; green channel. Delta lights are left out: no scattered ray hits them. */
 static void compare(struct room *r, const struct light_receiver *at, uint64_t n, double tolerance) {
-    struct estimate alone = {0, 0}, both = {0, 0};
+    struct estimate single = {0, 0}, both = {0, 0};
     int hits = 0;
     for (uint64_t i = 0; i < n; i++) {
         double density = 0, of_scattered = 1 / (4 * pi), sum = 0, met = 0, weighted = 0;
@@ -118,7 +118,7 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
         struct vec3 carried = of_lights(r, at, i, &density, &is_delta);
         if (density > 0 && !is_delta)
             sum = carried.y / (density + of_scattered);
-        struct vec3 direction = direction_of(place_of(13, i));
+        struct vec3 direction = direction_of(xi_of(13, i));
         struct ray ray = {.origin = at->from, .direction = direction, .t_max = INFINITY, .time = 0.5};
         struct hit hit;
         double cosine = fabs(vec3_dot(direction, at->normal));
@@ -131,15 +131,15 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
             ray.t_max = hit.t;
         }
         struct world_lights_traversal traversal;
-        struct light_hit lamp;
+        struct light_hit area_light;
         uint32_t light;
         world_lights_met_begin(&traversal, &r->lights, &ray);
-        while (world_lights_met_next(&traversal, &light, &lamp)) {
-            if (!world_lights_reach(&r->lights, light, at->primitive))
+        while (world_lights_met_next(&traversal, &light, &area_light)) {
+            if (!world_lights_illuminate(&r->lights, light, at->primitive))
                 continue;
-            double shown = light_emitted(&r->lights.lights[light], &ray, &lamp).y * cosine;
+            double shown = light_emitted(&r->lights.lights[light], &ray, &area_light).y * cosine;
             met += shown / of_scattered;
-            weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &lamp));
+            weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &area_light));
         }
         for (uint32_t k = 0; k < r->lights.sampler.infinite_count && !found; k++) {
             struct light_hit behind = {.t = INFINITY};
@@ -149,15 +149,15 @@ static void compare(struct room *r, const struct light_receiver *at, uint64_t n,
             weighted += shown / (of_scattered + world_lights_pdf(&r->lights, at, light, direction, &behind));
         }
         hits += met > 0;
-        estimate_add(&alone, met);
+        estimate_add(&single, met);
         estimate_add(&both, sum + weighted);
     }
-    estimate_end(&alone, (double)n);
+    estimate_end(&single, (double)n);
     estimate_end(&both, (double)n);
     if (hits < 20) /* hidden, or too small to be hit by chance */
         return;
-    CHECK_NEAR(both.mean, alone.mean, 4.5 * (both.error + alone.error));
-    CHECK(both.error <= tolerance * alone.error);
+    CHECK_NEAR(both.mean, single.mean, 4.5 * (both.error + single.error));
+    CHECK(both.error <= tolerance * single.error);
     compared++;
 }
 
@@ -210,8 +210,8 @@ TEST(emitters_of_every_kind_of_shape_are_sampled_as_scattered_rays_meet_them) {
     shape_makers_destroy(&makers);
 }
 
-static struct light lamp_of_kind(enum light_kind kind, double x, double y, double z) {
-    struct light light = {.kind = kind, .colour = {1, 2, 1}, .emits = true, .position = {x, y, z}, .radius = 0.6};
+static struct light area_light_of_kind(enum light_kind kind, double x, double y, double z) {
+    struct light light = {.kind = kind, .colour = {1, 2, 1}, .emissive = true, .position = {x, y, z}, .radius = 0.6};
     light.direction = vec3_normalize(vec3_make(0.3, -1, 0.1));
     light.corner = vec3_make(x - 0.5, y, z - 0.4);
     light.edge1 = vec3_make(1, 0, 0.2);
@@ -227,9 +227,9 @@ TEST(lamps_and_skies_are_sampled_as_scattered_rays_meet_them) {
         stage_scale(&r.stage, ball, 0.4, 0.4, 0.4);
         stage_move(&r.stage, ball, -1.5, 1, 0);
         sky_make_clear(vec3_normalize(vec3_make(1, 1, -1)), 3, vec3_all(0.15), &r.stage.sky);
-        r.stage.lights[r.stage.light_count++] = lamp_of_kind(LIGHT_SPHERE, 1, 2, 0);
-        r.stage.lights[r.stage.light_count++] = lamp_of_kind(LIGHT_DISC, -0.5, 1.5, 0.4);
-        r.stage.lights[r.stage.light_count++] = lamp_of_kind(LIGHT_PARALLELOGRAM, 0.5, 1.2, -0.6);
+        r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_SPHERE, 1, 2, 0);
+        r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_DISC, -0.5, 1.5, 0.4);
+        r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_PARALLELOGRAM, 0.5, 1.2, -0.6);
         r.stage.lights[r.stage.light_count++] =
             (struct light){.kind = LIGHT_POINT, .colour = {9, 9, 9}, .position = {0, 3, 0}};
         room_build(&r, background);
@@ -253,8 +253,8 @@ TEST(lights_without_emission_give_what_the_classic_language_says) {
     for (int k = 0; k < 20; k++) {
         struct room r;
         room_begin(&r);
-        struct light light = lamp_of_kind(kinds[k % 5], 0, 2, 0);
-        light.emits = false;
+        struct light light = area_light_of_kind(kinds[k % 5], 0, 2, 0);
+        light.emissive = false;
         light.attenuation = cases[k / 5].attenuation;
         memcpy(light.falloff, cases[k / 5].falloff, sizeof light.falloff);
         light.range = 5;
@@ -268,7 +268,7 @@ TEST(lights_without_emission_give_what_the_classic_language_says) {
         at.normal = vec3_normalize(vec3_make(0.6, 0.8, 0));
         for (uint64_t i = 0; i < 16; i++) {
             struct world_light_sample sample;
-            CHECK(world_lights_sample(&r.lights, &at, 0, place_of(3, i), &sample));
+            CHECK(world_lights_sample(&r.lights, &at, 0, xi_of(3, i), &sample));
             CHECK(sample.is_delta && !sample.decided && sample.pdf == 1);
             double white = sample.radiance.y * vec3_dot(sample.direction, at.normal) / pi; /* of a white surface */
             CHECK_NEAR(white, 2 * cases[k / 5].factor * 0.8, 1e-12);
@@ -317,7 +317,7 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
         room_begin(&r);
         struct node *node = tetrahedron(&r, glowing(&r, 1, 2, 3));
         for (int k = 0; k < i; k++) { /* none, one, two; the last with emission of its own */
-            r.stage.lights[k] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}};
+            r.stage.lights[k] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
             r.stage.authored[k].node = node;
             r.stage.lights[k].has_emission = i == 3;
             r.stage.lights[k].emission = vec3_make(5, 5, 5);
@@ -348,7 +348,7 @@ TEST(holes_let_through_what_their_opacity_leaves) {
         } else if (i / 5 == 1) {
             stage_move(s, stage_cube(s, s->root, glowing(&r, 1, 2, 3)), 0, 4, 0);
         } else {
-            s->lights[s->light_count++] = lamp_of_kind(LIGHT_DISC, 0, 4, 0);
+            s->lights[s->light_count++] = area_light_of_kind(LIGHT_DISC, 0, 4, 0);
         }
         if (i % 5 < 4) {
             struct material *sheet = stage_phong(s, vec3_all(0), vec3_all(0), 1);
@@ -376,9 +376,9 @@ TEST(lists_hold_for_lights_that_are_sampled_and_met) {
     struct node *node = tetrahedron(&r, glowing(&r, 1, 2, 3)),
                 *ball = stage_sphere(&r.stage, r.stage.root, glowing(&r, 0, 0, 0));
     const struct node *list[] = {ball};
-    r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}};
+    r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
     r.stage.authored[0].node = node;
-    r.stage.lights[1] = lamp_of_kind(LIGHT_SPHERE, 0, 3, 2);
+    r.stage.lights[1] = area_light_of_kind(LIGHT_SPHERE, 0, 3, 2);
     for (int i = 0; i < 2; i++)
         r.stage.authored[i].exclude = list, r.stage.authored[i].exclude_count = 1;
     r.stage.light_count = 2;
@@ -403,7 +403,7 @@ TEST(camera_rays_see_the_nearest_lamp_that_shows_itself) {
     struct room r;
     room_begin(&r);
     for (int i = 0; i < 4; i++) {
-        r.stage.lights[i] = lamp_of_kind(i % 2 ? LIGHT_DISC : LIGHT_SPHERE, 0, 3 + 2 * i, 0);
+        r.stage.lights[i] = area_light_of_kind(i % 2 ? LIGHT_DISC : LIGHT_SPHERE, 0, 3 + 2 * i, 0);
         r.stage.lights[i].visible = i > 0;
     }
     r.stage.light_count = 4;

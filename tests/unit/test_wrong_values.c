@@ -259,11 +259,11 @@ TEST(values_that_are_wrong_together_are_told_with_their_place) {
     for (size_t i = 0; i < sizeof wrongs / sizeof wrongs[0]; i++) {
         struct error error;
         struct listener listener = {.renders = 0};
-        char place[32];
-        (void)snprintf(place, sizeof place, "scene.lua:%d: ", LINE);
+        char position[32];
+        (void)snprintf(position, sizeof position, "scene.lua:%d: ", LINE);
         if (run_after_preparation(wrongs[i].call, &listener, &error))
             test_fail(__FILE__, __LINE__, "%s is accepted", wrongs[i].call);
-        else if (error.kind != ERROR_SCENE || !strstr(error.text, place) || !strstr(error.text, wrongs[i].words))
+        else if (error.kind != ERROR_SCENE || !strstr(error.text, position) || !strstr(error.text, wrongs[i].words))
             test_fail(__FILE__, __LINE__, "%s: kind %d: %s", wrongs[i].call, (int)error.kind, error.text);
     }
 }

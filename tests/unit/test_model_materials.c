@@ -38,7 +38,7 @@ static struct hit middle(void) {
                         .dpdv = {0, 1, 0}};
 }
 
-static bool look_of_file(const char *name, const char *material, struct surface_inputs *look) {
+static bool inputs_of_file(const char *name, const char *material, struct surface_inputs *inputs) {
     struct assets assets = {0};
     struct scene scene;
     struct error error = {0};
@@ -53,7 +53,7 @@ static bool look_of_file(const char *name, const char *material, struct surface_
         if (!node->slots[i] || strcmp(node->slot_names[i], material) != 0)
             continue;
         struct hit hit = middle();
-        material_inputs_at(node->slots[i], &hit, look);
+        material_inputs_at(node->slots[i], &hit, inputs);
         found = true;
     }
     scene_destroy(&scene);
@@ -84,36 +84,36 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
                            "usemtl ke\nf 1 2 3\nusemtl ke alone\nf 1 2 3\nusemtl glow\nf 1 2 3\nusemtl holes\nf 1 2 3\n"
                            "usemtl bump\nf 1 2 3\nusemtl other bump\nf 1 2 3\nusemtl flat\nf 1 2 3\n"
                            "usemtl tilt\nf 1 2 3\n");
-    struct surface_inputs look = {0};
-    if (look_of_file("m.obj", "ks", &look)) {
-        CHECK_NEAR(look.ks.x, 0.1, 1e-12);
-        CHECK_NEAR(look.ks.y, 0.2, 1e-12);
-        CHECK_NEAR(look.ks.z, 0.5, 1e-12);
+    struct surface_inputs inputs = {0};
+    if (inputs_of_file("m.obj", "ks", &inputs)) {
+        CHECK_NEAR(inputs.ks.x, 0.1, 1e-12);
+        CHECK_NEAR(inputs.ks.y, 0.2, 1e-12);
+        CHECK_NEAR(inputs.ks.z, 0.5, 1e-12);
     }
-    if (look_of_file("m.obj", "ks alone", &look))
-        CHECK_NEAR(look.ks.y, 0.4, 1e-12);
-    if (look_of_file("m.obj", "dull", &look))
-        CHECK_NEAR(look.ks.z, 0, 0);
-    if (look_of_file("m.obj", "ke", &look)) {
-        CHECK_NEAR(look.emission.x, 0.4, 1e-12);
-        CHECK_NEAR(look.emission.z, 2, 1e-12);
+    if (inputs_of_file("m.obj", "ks alone", &inputs))
+        CHECK_NEAR(inputs.ks.y, 0.4, 1e-12);
+    if (inputs_of_file("m.obj", "dull", &inputs))
+        CHECK_NEAR(inputs.ks.z, 0, 0);
+    if (inputs_of_file("m.obj", "ke", &inputs)) {
+        CHECK_NEAR(inputs.emission.x, 0.4, 1e-12);
+        CHECK_NEAR(inputs.emission.z, 2, 1e-12);
     }
-    if (look_of_file("m.obj", "ke alone", &look))
-        CHECK_NEAR(look.emission.x, 0.2, 1e-12);
-    if (look_of_file("m.obj", "glow", &look))
-        CHECK_NEAR(look.emission.y, 3, 0);
-    if (look_of_file("m.obj", "holes", &look))
-        CHECK_NEAR(look.opacity, (0.2 + 0.4 + 1) / 3, 1e-12);
+    if (inputs_of_file("m.obj", "ke alone", &inputs))
+        CHECK_NEAR(inputs.emission.x, 0.2, 1e-12);
+    if (inputs_of_file("m.obj", "glow", &inputs))
+        CHECK_NEAR(inputs.emission.y, 3, 0);
+    if (inputs_of_file("m.obj", "holes", &inputs))
+        CHECK_NEAR(inputs.opacity, (0.2 + 0.4 + 1) / 3, 1e-12);
     double slope = 10.0 / 255 * 16 * BUMP_HEIGHT;
-    if (look_of_file("m.obj", "bump", &look))
-        CHECK_NEAR(look.normal.x / look.normal.z, -2 * slope, 1e-12);
-    if (look_of_file("m.obj", "other bump", &look))
-        CHECK_NEAR(look.normal.x / look.normal.z, -slope, 1e-12);
-    if (look_of_file("m.obj", "flat", &look))
-        CHECK_NEAR(look.normal.z, 1, 0);
-    if (look_of_file("m.obj", "tilt", &look)) {
-        CHECK_NEAR(look.normal.x / look.normal.z, (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
-        CHECK_NEAR(look.kd.y, 0.4, 1e-12);
+    if (inputs_of_file("m.obj", "bump", &inputs))
+        CHECK_NEAR(inputs.normal.x / inputs.normal.z, -2 * slope, 1e-12);
+    if (inputs_of_file("m.obj", "other bump", &inputs))
+        CHECK_NEAR(inputs.normal.x / inputs.normal.z, -slope, 1e-12);
+    if (inputs_of_file("m.obj", "flat", &inputs))
+        CHECK_NEAR(inputs.normal.z, 1, 0);
+    if (inputs_of_file("m.obj", "tilt", &inputs)) {
+        CHECK_NEAR(inputs.normal.x / inputs.normal.z, (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
+        CHECK_NEAR(inputs.kd.y, 0.4, 1e-12);
     }
 }
 
@@ -146,23 +146,23 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
         "\"emissiveTexture\":{\"index\":0},\"normalTexture\":{\"index\":1,\"scale\":0.5}},"
         "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,0.8],"
         "\"baseColorTexture\":{\"index\":0}},\"emissiveTexture\":{\"index\":0},\"alphaMode\":\"MASK\"}");
-    struct surface_inputs look = {0};
-    if (look_of_file("m.gltf", "a", &look)) {
+    struct surface_inputs inputs = {0};
+    if (inputs_of_file("m.gltf", "a", &inputs)) {
         double metal = 0.75, rough = 0.5 * 0.4, r4 = rough * rough * rough * rough;
-        CHECK_NEAR(look.kd.y, 0.5 * (1 - metal), 1e-12);
-        CHECK_NEAR(look.ks.z, 0.04 * (1 - metal) + 0.25 * metal, 1e-12);
-        CHECK_NEAR(look.shininess, fmin(2 / fmax(r4, 1e-3) - 2, 2000), 1e-9);
-        CHECK_NEAR(look.reflect, metal * (1 - rough) * (1 - rough), 1e-12);
-        CHECK_NEAR(look.emission.x, 0.2, 1e-12);
-        CHECK_NEAR(look.emission.z, 0.5, 1e-12);
-        CHECK_NEAR(look.normal.x / look.normal.z, 0.5 * (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
-        CHECK_NEAR(look.opacity, 1, 0);
+        CHECK_NEAR(inputs.kd.y, 0.5 * (1 - metal), 1e-12);
+        CHECK_NEAR(inputs.ks.z, 0.04 * (1 - metal) + 0.25 * metal, 1e-12);
+        CHECK_NEAR(inputs.shininess, fmin(2 / fmax(r4, 1e-3) - 2, 2000), 1e-9);
+        CHECK_NEAR(inputs.reflect, metal * (1 - rough) * (1 - rough), 1e-12);
+        CHECK_NEAR(inputs.emission.x, 0.2, 1e-12);
+        CHECK_NEAR(inputs.emission.z, 0.5, 1e-12);
+        CHECK_NEAR(inputs.normal.x / inputs.normal.z, 0.5 * (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
+        CHECK_NEAR(inputs.opacity, 1, 0);
     }
-    if (look_of_file("m.gltf", "b", &look)) {
-        CHECK_NEAR(look.emission.x, 0, 0); /* the factor is black */
-        CHECK_NEAR(look.opacity, 1, 0);    /* alpha 0.8 is not cut at 0.5 */
-        CHECK_NEAR(look.kd.x, 0, 0);       /* metal */
-        CHECK_NEAR(look.ks.y, 0.5 * 0.4, 1e-12);
+    if (inputs_of_file("m.gltf", "b", &inputs)) {
+        CHECK_NEAR(inputs.emission.x, 0, 0); /* the factor is black */
+        CHECK_NEAR(inputs.opacity, 1, 0);    /* alpha 0.8 is not cut at 0.5 */
+        CHECK_NEAR(inputs.kd.x, 0, 0);       /* metal */
+        CHECK_NEAR(inputs.ks.y, 0.5 * 0.4, 1e-12);
     }
 }
 
@@ -173,7 +173,7 @@ TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
     struct arena arena = {0};
     struct error error = {0};
     struct material base, metal;
-    struct surface_inputs look;
+    struct surface_inputs inputs;
     struct hit hit = middle();
     material_derive(&base, MATERIAL_PHONG, NULL);
     base.phong = (struct phong){.kd = {0.8, 0.4, 0.2}, .ks = {0.9, 0.7, 0.5}, .shininess = 9, .reflect = 0.75};
@@ -181,13 +181,13 @@ TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
         base.phong.refract = created;
         material_derive(&metal, MATERIAL_METAL, &base);
         CHECK(material_split_metal(&metal, NULL, (struct metal_numbers){0.5, 0.5, 0.04}, &arena, &error));
-        for (int passes = 0; passes < 2; passes++) {
-            base.phong.refract = 0.25 * passes;
-            material_inputs_at(&metal, &hit, &look);
-            CHECK_NEAR(look.kd.y, 0.2, 1e-15);
-            CHECK_NEAR(look.ks.x, passes ? 0.9 : 0.42, 1e-15);
-            CHECK_NEAR(look.shininess, passes ? 9 : 30, 1e-12);
-            CHECK_NEAR(look.reflect, passes ? 0.75 : 0.125, 1e-15);
+        for (int transmits = 0; transmits < 2; transmits++) {
+            base.phong.refract = 0.25 * transmits;
+            material_inputs_at(&metal, &hit, &inputs);
+            CHECK_NEAR(inputs.kd.y, 0.2, 1e-15);
+            CHECK_NEAR(inputs.ks.x, transmits ? 0.9 : 0.42, 1e-15);
+            CHECK_NEAR(inputs.shininess, transmits ? 9 : 30, 1e-12);
+            CHECK_NEAR(inputs.reflect, transmits ? 0.75 : 0.125, 1e-15);
         }
     }
     arena_destroy(&arena);
@@ -204,18 +204,18 @@ TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
         struct material base = {.kind = MATERIAL_PHONG}, cut, over;
         struct texture_image picture = {.image = image, .mapping = MAPPING_UV, .alpha = ALPHA_ONLY};
         struct arena arena = {0};
-        struct surface_inputs look;
+        struct surface_inputs inputs;
         struct hit hit = middle();
         material_derive(&cut, MATERIAL_IMAGE, &base);
         CHECK(material_cut(&cut, &picture, cutoffs[i], &arena, &error));
-        material_inputs_at(&cut, &hit, &look);
-        CHECK_NEAR(look.opacity, wanted[i], 1e-12);
+        material_inputs_at(&cut, &hit, &inputs);
+        CHECK_NEAR(inputs.opacity, wanted[i], 1e-12);
         picture.alpha = ALPHA_IGNORED;
         material_derive(&over, MATERIAL_IMAGE, &cut);
         CHECK(material_cover(&over, INPUT_KD, &picture, &arena, &error));
-        material_inputs_at(&over, &hit, &look);
-        CHECK_NEAR(look.opacity, wanted[i], 1e-12);
-        CHECK_NEAR(look.kd.y, 20 / 255.0, 1e-12);
+        material_inputs_at(&over, &hit, &inputs);
+        CHECK_NEAR(inputs.opacity, wanted[i], 1e-12);
+        CHECK_NEAR(inputs.kd.y, 20 / 255.0, 1e-12);
         arena_destroy(&arena);
     }
     image_release(image);

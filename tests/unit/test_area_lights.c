@@ -28,7 +28,7 @@ static struct light rectangle(struct vec3 corner, struct vec3 edge1, struct vec3
                           .edge1 = edge1,
                           .edge2 = edge2,
                           .colour = {1, 1, 1},
-                          .emits = true,
+                          .emissive = true,
                           .samples = 32};
 }
 
@@ -57,8 +57,8 @@ TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
         enum { N = 200 };
         int inside = 0;
         for (int k = 0; k < N * N; k++) {
-            struct sample2 place = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
-            struct vec3 p = vec3_sub(spherical_rectangle_point(&seen, place), corner);
+            struct sample2 xi = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
+            struct vec3 p = vec3_sub(spherical_rectangle_point(&seen, xi), corner);
             CHECK(p.x >= -1e-12 && p.x <= 2 + 1e-12 && p.z >= -1e-12 && p.z <= 1 + 1e-12);
             CHECK_NEAR(p.y, 0, 1e-12);
             inside += p.x < 0.2 && p.z < 0.3;
@@ -176,8 +176,8 @@ static const struct material *glowing(struct stage *s, double radiance) {
 }
 
 /* As the first light of the stage. */
-static void mesh_lamp(struct stage *s, const struct node *node, int samples) {
-    s->lights[0] = (struct light){.kind = LIGHT_MESH, .emits = true, .colour = {1, 1, 1}, .samples = samples};
+static void mesh_area_light(struct stage *s, const struct node *node, int samples) {
+    s->lights[0] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}, .samples = samples};
     s->authored[0].node = node;
 }
 
@@ -203,7 +203,7 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
         struct node *holder = stage_group(&s, s.root), *node = square_node(&s, glowing(&s, shown ? 2 : 0));
         stage_scale(&s, node, a, 1, b);
         stage_move(&s, node, 0, h, 0);
-        mesh_lamp(&s, shown ? holder : node, 48);
+        mesh_area_light(&s, shown ? holder : node, 48);
         if (shown)
             CHECK(node_add_child(&s.scene, holder, node, &s.error));
         s.lights[0].has_emission = !shown;
@@ -217,8 +217,8 @@ TEST(a_rectangle_of_two_triangles_gives_its_view_factor) {
 /* A mesh that is not part of the scene lights it equally: with the emission of the light, with that of its material, as
  * a group of two halves with separate materials, one of them at a deeper level. */
 TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
-    enum { BY_LIGHT, BY_MATERIAL, BY_SLOTS, BY_GROUP, WAYS };
-    for (int route = 0; route < WAYS; route++) {
+    enum { BY_LIGHT, BY_MATERIAL, BY_SLOTS, BY_GROUP, VARIANTS };
+    for (int route = 0; route < VARIANTS; route++) {
         struct stage s;
         stage_floor(&s);
         double a = 2, b = 1.5, h = 1.25;
@@ -228,7 +228,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
             node->slots = slots;
             node->slot_count = 2; /* faces without slots have the first one */
         }
-        mesh_lamp(&s, node, 48);
+        mesh_area_light(&s, node, 48);
         if (route == BY_GROUP) {
             struct node *group = scene_node(&s.scene, NODE_GROUP, "group", &s.error);
             struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
@@ -238,7 +238,7 @@ TEST(a_mesh_that_is_not_shown_lights_as_if_it_were) {
             stage_move(&s, inner, 0.25, 0, 0);
             CHECK(node_add_child(&s.scene, group, left, &s.error) && node_add_child(&s.scene, group, inner, &s.error) &&
                   node_add_child(&s.scene, inner, right, &s.error));
-            mesh_lamp(&s, node = group, 48);
+            mesh_area_light(&s, node = group, 48);
         }
         stage_scale(&s, node, a, 1, b);
         stage_move(&s, node, 0, h, 0);
@@ -260,7 +260,7 @@ TEST(a_mesh_that_is_not_shown_is_not_seen_in_mirrors) {
         stage_move(&s, node, 0, 2, 0);
         if (shown)
             CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-        mesh_lamp(&s, node, 4);
+        mesh_area_light(&s, node, 4);
         s.light_count = 1;
         CHECK(stage_build(&s, s.root, ACCEL_AUTO));
         CHECK(light_is_seen(&s.world.lights[0]) == (shown != 0));
@@ -282,7 +282,7 @@ TEST(a_ball_of_triangles_gives_the_view_factor_of_a_ball) {
         stage_scale(&s, node, i == 1 ? -r : r, r, r); /* one is mirrored */
         stage_move(&s, node, x, h, 0);
         CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-        mesh_lamp(&s, node, 48);
+        mesh_area_light(&s, node, 48);
         double factor = r * r / (distance * distance) * h / distance, mean = 0;
         for (s.settings.seed = 0; s.settings.seed < 12; s.settings.seed++)
             mean += patch_at(&s, 0, 0) / factor / 12;
@@ -306,7 +306,7 @@ TEST(a_surface_below_its_own_lamp_is_not_shaded_by_it) {
     struct node *node = mesh_node(&s, &maker, white);
     maker_free(&maker);
     CHECK(node_add_child(&s.scene, s.root, node, &s.error));
-    mesh_lamp(&s, node, 64);
+    mesh_area_light(&s, node, 64);
     s.light_count = 1;
     s.settings.full = true;
     s.settings.samples = 1;
@@ -324,7 +324,7 @@ TEST(a_mesh_light_needs_a_mesh_and_warns_without_light) {
         struct node *group = scene_node(&s.scene, NODE_GROUP, "ceiling", &s.error);
         if (shown)
             CHECK(node_add_child(&s.scene, s.root, group, &s.error));
-        mesh_lamp(&s, group, 4);
+        mesh_area_light(&s, group, 4);
         s.light_count = 1;
         CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
         CHECK(strstr(s.error.text, "node 'ceiling' is a mesh light, but there is no mesh there or below it") != NULL);
@@ -344,7 +344,7 @@ TEST(a_group_that_is_not_shown_and_holds_itself_is_no_mesh_light) {
     struct node *inner = scene_node(&s.scene, NODE_GROUP, "inner", &s.error);
     CHECK(node_add_child(&s.scene, outer, square_node(&s, NULL), &s.error));
     CHECK(node_add_child(&s.scene, outer, inner, &s.error) && node_add_child(&s.scene, inner, outer, &s.error));
-    mesh_lamp(&s, outer, 4);
+    mesh_area_light(&s, outer, 4);
     s.light_count = 1;
     CHECK(!stage_build(&s, s.root, ACCEL_AUTO));
     CHECK(strstr(s.error.text, "cycle: 'outer' > 'inner' > 'outer'") != NULL);
@@ -353,8 +353,8 @@ TEST(a_group_that_is_not_shown_and_holds_itself_is_no_mesh_light) {
 
 /* --- skies --- */
 
-static struct light sky_lamp(const struct sky *sky, int samples) {
-    return (struct light){.kind = LIGHT_SKY, .emits = true, .colour = {1, 1, 1}, .sky = sky, .samples = samples};
+static struct light sky_area_light(const struct sky *sky, int samples) {
+    return (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = sky, .samples = samples};
 }
 
 /* A surface under a sky of radiance (1 + y) / 2 shows 1/2 + n.y / 3. */
@@ -366,7 +366,7 @@ TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
         struct stage s;
         stage_begin(&s, 1);
         stage_sphere(&s, s.root, stage_phong(&s, vec3_all(1), vec3_all(0), 1));
-        s.lights[0] = sky_lamp(&sky, 64);
+        s.lights[0] = sky_area_light(&sky, 64);
         s.light_count = 1;
         s.settings.full = true;
         s.settings.samples = 1;
@@ -394,7 +394,7 @@ TEST(white_rough_and_polished_things_vanish_in_uniform_light) {
     s.settings.reflect_limit = s.settings.refract_limit = 40;
     s.settings.cutoff = 1e-5;
     s.sky = sky;
-    s.lights[0] = sky_lamp(&sky, 16);
+    s.lights[0] = sky_area_light(&sky, 16);
     s.light_count = 1;
     s.settings.samples = 1;
     s.settings.full = true;
@@ -439,8 +439,8 @@ static void check_density(const struct sky *sky, const struct sky_table *table) 
         }
     }
     for (uint64_t k = 0; k < N; k++) {
-        struct sample2 place = {random_unit(random_combine(8, k)), random_unit(random_combine(9, k))};
-        struct sky_sample sample = sky_table_sample(sky, table, place);
+        struct sample2 xi = {random_unit(random_combine(8, k)), random_unit(random_combine(9, k))};
+        struct sky_sample sample = sky_table_sample(sky, table, xi);
         struct vec3 d = sample.direction;
         double turn = atan2(d.z, d.x) / (2 * pi);
         int row = (int)fmin(ROWS - 1, (1 - d.y) / 2 * ROWS), column = (int)((turn < 0 ? turn + 1 : turn) * COLUMNS);
@@ -486,8 +486,8 @@ TEST(samples_of_every_sky_have_the_density_of_its_table_and_the_mean_of_its_inte
         struct vec3 normal = vec3_normalize(vec3_make(0.3, 1, -0.2));
         double sum = 0, max = 0;
         for (int k = 0; k < N * N; k++) {
-            struct sample2 place = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
-            struct sky_sample sample = sky_table_sample(&skies[i], table, place);
+            struct sample2 xi = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
+            struct sky_sample sample = sky_table_sample(&skies[i], table, xi);
             struct vec3 d = sample.direction, light = sample.intensity;
             CHECK_NEAR(vec3_length(d), 1, 1e-12);
             double cosine = vec3_dot(d, normal);
@@ -524,7 +524,7 @@ TEST(more_samples_go_where_a_sky_is_bright) {
     double expected = irradiance(&sky, vec3_make(0, 1, 0), 700), squares = 0;
     struct stage s;
     stage_floor(&s);
-    s.lights[0] = sky_lamp(&sky, 8);
+    s.lights[0] = sky_area_light(&sky, 8);
     for (uint64_t seed = 0; seed < 20; seed++) {
         s.settings.seed = seed;
         double off = patch_at(&s, 0, 0) / expected - 1;
@@ -548,19 +548,19 @@ TEST(lamps_that_are_meshes_and_skies_give_the_same_bits_everywhere) {
     for (int i = 0; i < 6; i++) {
         struct stage s;
         stage_begin(&s, runs[i].threads);
-        struct node *top = stage_group(&s, s.root), *lamp = square_node(&s, glowing(&s, 5));
+        struct node *top = stage_group(&s, s.root), *area_light = square_node(&s, glowing(&s, 5));
         struct material *white = stage_phong(&s, vec3_make(0.8, 0.7, 0.6), vec3_all(0.2), 20);
         struct node *floor = stage_cube(&s, top, white);
         stage_scale(&s, floor, 20, 1, 20);
         stage_move(&s, floor, -10, -2, -10);
         for (int k = 0; k < 3; k++)
             stage_move(&s, stage_sphere(&s, top, white), 3 * k - 3, 0, k % 2);
-        stage_rotate(&s, lamp, 0, 30);
-        stage_move(&s, lamp, 0, 2.2, 0.5);
-        CHECK(node_add_child(&s.scene, top, lamp, &s.error));
+        stage_rotate(&s, area_light, 0, 30);
+        stage_move(&s, area_light, 0, 2.2, 0.5);
+        CHECK(node_add_child(&s.scene, top, area_light, &s.error));
         stage_scale(&s, top, runs[i].unit, runs[i].unit, runs[i].unit);
-        mesh_lamp(&s, lamp, 2);
-        s.lights[1] = sky_lamp(&sky, 2);
+        mesh_area_light(&s, area_light, 2);
+        s.lights[1] = sky_area_light(&sky, 2);
         s.light_count = 2;
         s.camera = (struct camera){vec3_scale(vec3_make(0, 4, 12), runs[i].unit), {0, -0.25, -1}, {0, 1, 0}, 50};
         s.settings.samples = 2;

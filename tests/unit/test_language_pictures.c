@@ -35,13 +35,13 @@ static const uint8_t *pixel(const struct test_picture *p, uint32_t x, uint32_t y
 struct v {
     double x, y, z;
 };
-struct look {
+struct sphere_material {
     struct v kd, ks;
     double shininess, reflect, refract, ior;
     bool fresnel;
 };
 struct ball {
-    int look;
+    int sphere_material;
     struct v centre;
     double radius;
 };
@@ -53,12 +53,12 @@ struct stack {
     int count;
     struct medium entries[32];
 };
-struct lamp {
+struct area_light {
     struct v position, colour;
     double falloff[3];
 };
 
-static const struct look looks[] = {
+static const struct sphere_material sphere_materials[] = {
     {{.8, .3, .2}, {.5, .4, .3}, 12, 0, 0, 1, false},        {{.1, .1, .1}, {.9, .8, .7}, 40, .8, 0, 1, false},
     {{.02, .05, .1}, {.9, .95, 1}, 90, .15, .8, 1.5, false}, {{0, .02, .05}, {1, 1, .9}, 50, .1, .85, 1.33, false},
     {{.01, 0, 0}, {1, .9, 1}, 120, .3, .3, 1.7, true},       {{0, 0, 0}, {1, 1, 1}, 10, 0, 1, 1, false},
@@ -69,12 +69,12 @@ static const struct ball balls[] = {
     {4, {1.1, -1.2, 1}, .6},  {5, {.2, .1, .1}, .5},     {4, {0, -.7, .1}, .25},  {0, {0, -31.8, 0}, 30},
     {0, {-.4, .4, .2}, .2},   {2, {-1.1, 1.4, .7}, .3},  {3, {2.2, -.9, .4}, .5}, {2, {2.5, -.9, .3}, .45},
 };
-static const struct lamp lamps[] = {
+static const struct area_light area_lights[] = {
     {{4, 6, 5}, {.9, .8, .7}, {1, .05, .002}},
     {{-6, 3, 2}, {.4, .4, .5}, {0, 0, 0}},
 };
 static const struct v ambient = {.25, .2, .3};
-enum { BALLS = sizeof balls / sizeof balls[0], LAMPS = 2 };
+enum { BALLS = sizeof balls / sizeof balls[0], AREA_LIGHTS = 2 };
 
 struct limits {
     int reflect, refract;
@@ -119,21 +119,22 @@ static double current(const struct stack *stack) {
     return stack->count ? stack->entries[stack->count - 1].ior : 1;
 }
 
-static struct v own_light(const struct look *m, struct v p, struct v n, struct v v, bool front, double refract) {
+static struct v own_light(const struct sphere_material *m, struct v p, struct v n, struct v v, bool front,
+                          double refract) {
     struct v sum = times(ambient, m->kd);
-    for (int k = 0; k < LAMPS && front; k++) {
-        struct v to = add(lamps[k].position, p, -1);
+    for (int k = 0; k < AREA_LIGHTS && front; k++) {
+        struct v to = add(area_lights[k].position, p, -1);
         double d = sqrt(dot(to, to)), blocked;
         struct v l = unit(to);
         double n_l = dot(n, l);
         if (n_l <= 0 || nearest(p, l, d, &blocked) >= 0)
             continue;
-        const double *c = lamps[k].falloff;
+        const double *c = area_lights[k].falloff;
         double attenuation = c[0] == 0 && c[1] == 0 && c[2] == 0 ? 1 : c[0] + c[1] * d + c[2] * d * d;
         struct v r = add((struct v){-l.x, -l.y, -l.z}, n, 2 * n_l);
         double r_v = dot(r, v), h = r_v > 0 ? pow(r_v, m->shininess) : 0;
         struct v lobes = add((struct v){n_l * m->kd.x, n_l * m->kd.y, n_l * m->kd.z}, m->ks, (1 - refract) * h);
-        sum = add(sum, times(lamps[k].colour, lobes), 1 / attenuation);
+        sum = add(sum, times(area_lights[k].colour, lobes), 1 / attenuation);
     }
     return sum;
 }
@@ -144,7 +145,7 @@ static struct v trace(struct v o, struct v d, int reflections, int refractions, 
     int hit = nearest(o, d, 1e30, &t);
     if (hit < 0)
         return (struct v){0, 0, (1 + d.y) / 2};
-    const struct look *m = &looks[balls[hit].look];
+    const struct sphere_material *m = &sphere_materials[balls[hit].sphere_material];
     struct v p = add(o, d, t), n = unit(add(p, balls[hit].centre, -1)), v = {-d.x, -d.y, -d.z};
     bool front = dot(n, v) > 0;
     struct v side = front ? n : (struct v){-n.x, -n.y, -n.z};
@@ -185,8 +186,8 @@ enum { TEXT = 8192 };
 
 static const char *spheres_scene(char text[TEXT]) {
     int used = snprintf(text, TEXT, "local r, m = gr.node('r'), {}\n");
-    for (size_t k = 0; k < sizeof looks / sizeof looks[0]; k++) {
-        const struct look *m = &looks[k];
+    for (size_t k = 0; k < sizeof sphere_materials / sizeof sphere_materials[0]; k++) {
+        const struct sphere_material *m = &sphere_materials[k];
         used += snprintf(text + used, (size_t)(TEXT - used),
                          "m[%zu] = gr.rr_material({%g,%g,%g}, {%g,%g,%g}, %g, %g, %g, %g)\n", k, m->kd.x, m->kd.y,
                          m->kd.z, m->ks.x, m->ks.y, m->ks.z, m->shininess, m->reflect, m->refract, m->ior);
@@ -195,7 +196,8 @@ static const char *spheres_scene(char text[TEXT]) {
     }
     for (int k = 0; k < BALLS; k++)
         used += snprintf(text + used, (size_t)(TEXT - used), "r:add_child(gr.nh_sphere(m[%d], {%g,%g,%g}, %g))\n",
-                         balls[k].look, balls[k].centre.x, balls[k].centre.y, balls[k].centre.z, balls[k].radius);
+                         balls[k].sphere_material, balls[k].centre.x, balls[k].centre.y, balls[k].centre.z,
+                         balls[k].radius);
     (void)snprintf(text + used, (size_t)(TEXT - used),
                    "local l = {gr.light({4,6,5}, {.9,.8,.7}, {1,.05,.002}), gr.light({-6,3,2}, {.4,.4,.5}, {0,0,0})}\n"
                    "gr.render(r, 'out.png', 80, 60, {.3,.2,7}, {-.05,-.03,-2}, {.1,1,.2}, 38, {.25,.2,.3}, l)\n"

@@ -1,7 +1,7 @@
 /* What lamps need to know about the scene: the triangles of a lamp that is a mesh are gathered from every place where
  * the scene shows one of its meshes. What the scene does not show is flattened by itself, into a world that lasts as
  * long as its triangles are gathered. */
-#include "world/light_lamps_internal.h"
+#include "world/mesh_lights_internal.h"
 
 #include "light/light_mesh.h"
 #include "light/sky.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-struct gathering {
+struct mesh_light_collection {
     const struct world *world; /* the one that shows the meshes */
     const struct light *light;
     const struct node *node; /* of a light of the scene */
@@ -18,8 +18,8 @@ struct gathering {
     struct light_mesh_builder mesh;
 };
 
-static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t number, const struct transform *map,
-                         double sign, const struct prototype *prototype) {
+static void add_triangle(struct mesh_light_collection *g, const struct mesh *mesh, uint32_t number,
+                         const struct transform *map, double sign, const struct prototype *prototype) {
     struct vec3 corners[3], emission = g->light->emission;
     uint32_t slot;
     mesh_triangle(mesh, number, corners, &slot);
@@ -35,7 +35,7 @@ static void add_triangle(struct gathering *g, const struct mesh *mesh, uint32_t 
     light_mesh_add(&g->mesh, corners, sign, size, emission);
 }
 
-static void add_mesh(struct gathering *g, uint32_t index) {
+static void add_mesh(struct mesh_light_collection *g, uint32_t index) {
     const struct prototype *prototype = primitive_prototype(g->world, index);
     const struct mesh *mesh = prototype->geometry.shape.mesh;
     struct transform map =
@@ -50,31 +50,31 @@ static void add_mesh(struct gathering *g, uint32_t index) {
     }
 }
 
-static bool is_lamp(const struct gathering *g, uint32_t index) {
+static bool is_source(const struct mesh_light_collection *g, uint32_t index) {
     return (!g->marked || g->marked[index]) && geometry_mesh(primitive_geometry(g->world, index));
 }
 
-static uint64_t count_triangles(const struct gathering *g) {
+static uint64_t count_triangles(const struct mesh_light_collection *g) {
     uint64_t total = 0;
     for (uint32_t i = 0; i < g->world->primitive_count; i++)
-        total += is_lamp(g, i) ? mesh_triangle_count(primitive_geometry(g->world, i)->shape.mesh) : 0;
+        total += is_source(g, i) ? mesh_triangle_count(primitive_geometry(g->world, i)->shape.mesh) : 0;
     return total;
 }
 
-static bool gather(struct gathering *g, uint64_t total, struct arena *arena, struct error *error) {
+static bool gather(struct mesh_light_collection *g, uint64_t total, struct arena *arena, struct error *error) {
     if (total > UINT32_MAX / 2)
         return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", g->node->name);
     if (!light_mesh_begin(&g->mesh, total, arena))
         return error_no_memory(error, "a mesh light");
     for (uint32_t i = 0; i < g->world->primitive_count; i++)
-        if (is_lamp(g, i))
+        if (is_source(g, i))
             add_mesh(g, i);
     return true;
 }
 
-bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
+bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error) {
-    struct gathering g = {.world = world, .light = light};
+    struct mesh_light_collection g = {.world = world, .light = light};
     struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
     if (!mesh ||
         !light_mesh_begin(&g.mesh, mesh_triangle_count(primitive_geometry(world, primitive)->shape.mesh), arena))
@@ -87,7 +87,7 @@ bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct
 }
 
 /* Of a node that the scene does not show. */
-static bool gather_unseen(struct gathering *g, struct flattening *f, struct error *error) {
+static bool gather_unseen(struct mesh_light_collection *g, struct flattening *f, struct error *error) {
     const struct node *node = g->node;
     struct world own = {.mesh_accel = f->world->mesh_accel, .shutter = f->world->shutter};
     struct flattening flattening = {
@@ -110,7 +110,7 @@ static bool resolve_mesh(struct flattening *f, const struct node *node, struct l
     uint8_t *marked = arena_alloc_array(f->arena, (size_t)world->primitive_count + 1, 1);
     if (!mesh || !marked || !light_lists_mark(world, &node, 1, marked, 1, root))
         return error_no_memory(f->error, "a mesh light");
-    struct gathering g = {.world = world, .light = light, .node = node, .marked = marked};
+    struct mesh_light_collection g = {.world = world, .light = light, .node = node, .marked = marked};
     uint64_t total = count_triangles(&g);
     if (!(total > 0 ? gather(&g, total, f->arena, f->error) : gather_unseen(&g, f, f->error)))
         return false;
@@ -140,7 +140,7 @@ static bool turn_sky(struct world *world, const struct sky *behind, const struct
     return true;
 }
 
-bool light_lamps_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
+bool mesh_lights_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
                          const struct node *root) {
     const struct sky behind = f->world->sky;
     for (uint32_t i = 0; i < f->world->light_count; i++) {

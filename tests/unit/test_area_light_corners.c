@@ -32,21 +32,22 @@ TEST(a_lamp_that_is_a_ball_is_met_where_the_ray_goes_in_else_where_it_comes_out)
 TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
     struct light disc = {.kind = LIGHT_DISC, .position = {0, 4, 0}, .direction = {0, -1, 0}, .radius = 1};
     struct light writer = {.kind = LIGHT_PARALLELOGRAM, .corner = {-1, 4, -1}, .edge1 = {2, 0, 0}, .edge2 = {1, 0, 2}};
-    struct light *const lamps[] = {&disc, &writer};
+    struct light *const area_lights[] = {&disc, &writer};
     struct light_hit met;
     for (int k = 0; k < 2; k++) {
         struct ray below = part_of(vec3_make(0.2, 0, 0.2), vec3_make(0, 2, 0), 0, INFINITY);
         struct ray above = part_of(vec3_make(0.2, 9, 0.2), vec3_make(0, -1, 0), 0, INFINITY);
-        CHECK(light_meets_ray(lamps[k], &below, &met) && met.t == 2);
-        CHECK(light_meets_ray(lamps[k], &above, &met) && met.t == 5);
-        lamps[k]->one_sided = true; /* they shine downwards: the normal of the disc, edge1 x edge2 of the rectangle */
-        CHECK(light_meets_ray(lamps[k], &below, &met) && !light_meets_ray(lamps[k], &above, &met));
+        CHECK(light_meets_ray(area_lights[k], &below, &met) && met.t == 2);
+        CHECK(light_meets_ray(area_lights[k], &above, &met) && met.t == 5);
+        area_lights[k]->one_sided =
+            true; /* they shine downwards: the normal of the disc, edge1 x edge2 of the rectangle */
+        CHECK(light_meets_ray(area_lights[k], &below, &met) && !light_meets_ray(area_lights[k], &above, &met));
         below.t_max = 1.5;
-        CHECK(!light_meets_ray(lamps[k], &below, &met));
+        CHECK(!light_meets_ray(area_lights[k], &below, &met));
         below.t_min = 2.5, below.t_max = INFINITY;
-        CHECK(!light_meets_ray(lamps[k], &below, &met));
+        CHECK(!light_meets_ray(area_lights[k], &below, &met));
         struct ray level = part_of(vec3_make(-9, 4, 0), vec3_make(1, 0, 0), 0, INFINITY);
-        CHECK(!light_meets_ray(lamps[k], &level, &met));
+        CHECK(!light_meets_ray(area_lights[k], &level, &met));
     }
     /* Inside or outside the outline, at random. */
     struct test_random random = {9};
@@ -63,7 +64,7 @@ TEST(flat_lamps_are_met_in_their_outline_from_the_side_that_shines) {
 
 /* Every target is on the ball, seen from outside on its near side. From a point on the ball there is none. */
 TEST(a_ball_is_aimed_at_from_any_distance_and_from_inside) {
-    struct light ball = {.kind = LIGHT_SPHERE, .position = {0, 0, 0}, .radius = 1, .emits = true};
+    struct light ball = {.kind = LIGHT_SPHERE, .position = {0, 0, 0}, .radius = 1, .emissive = true};
     struct light_context context;
     for (int i = 0; i < 25 && light_context_make(&ball, vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 0), &context); i++) {
         struct light_sample sample = light_sample(&ball, &context, (struct sample2){i % 5 / 4.0, (i - i % 5) / 20.0});
@@ -71,9 +72,9 @@ TEST(a_ball_is_aimed_at_from_any_distance_and_from_inside) {
         CHECK_NEAR(sample.pdf, 1 / (4 * 3.14159265358979323846), 1e-15);
     }
     CHECK(context.weight > 0 && !context.single);
-    ball.emits = false; /* shaded as from its centre */
+    ball.emissive = false; /* shaded as from its centre */
     CHECK(light_context_make(&ball, vec3_make(0.5, 0, 0), vec3_make(0.5, 0, 0), &context) && context.single);
-    ball.emits = true;
+    ball.emissive = true;
     CHECK(!light_context_make(&ball, vec3_make(1, 0, 0), vec3_make(1, 0, 0), &context));
     for (double distance = 1 + 1e-9; distance < 1e12; distance = 1 + 10 * (distance - 1)) {
         struct vec3 from = {0, 0, distance};
@@ -97,34 +98,34 @@ TEST(a_lamp_gives_nothing_to_points_in_its_own_plane) {
                            .edge1 = {1, 0, 0},
                            .edge2 = {0.5, 1, 0}, /* not at right angles: sampled by area */
                            .colour = {1, 1, 1},
-                           .emits = true};
+                           .emissive = true};
     struct light_triangle triangle = {.corner = {0, 0, 0}, .edge1 = {1, 0, 0}, .edge2 = {0, 1, 0}, .normal = {0, 0, 1}};
     triangle.intensity = vec3_all(1);
     const double until[] = {1};
     struct light_mesh mesh = {.count = 1, .triangles = &triangle, .until = until, .one_sided = true};
-    struct light lamp = {.kind = LIGHT_MESH, .mesh = &mesh, .colour = {1, 1, 1}, .emits = true};
+    struct light area_light = {.kind = LIGHT_MESH, .mesh = &mesh, .colour = {1, 1, 1}, .emissive = true};
     struct light_context context;
-    const struct vec3 places[] = {{0.75, 0.5, 0}, {5, 0, 0}, {0, 0, 0}};
-    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
+    const struct vec3 points[] = {{0.75, 0.5, 0}, {5, 0, 0}, {0, 0, 0}};
+    for (size_t i = 0; i < sizeof points / sizeof points[0]; i++)
         for (int k = 0; k < 9; k++) {
-            struct sample2 place = {k / 8.0, (8 - k) / 8.0};
-            (void)light_context_make(&writer, places[i], places[i], &context);
-            struct light_sample sample = light_sample(&writer, &context, place);
+            struct sample2 xi = {k / 8.0, (8 - k) / 8.0};
+            (void)light_context_make(&writer, points[i], points[i], &context);
+            struct light_sample sample = light_sample(&writer, &context, xi);
             CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
-            (void)light_context_make(&lamp, places[i], places[i], &context);
-            sample = light_sample(&lamp, &context, place);
+            (void)light_context_make(&area_light, points[i], points[i], &context);
+            sample = light_sample(&area_light, &context, xi);
             CHECK(sample.intensity.x == 0 && vec3_finite(sample.target.at));
         }
     /* Behind and in front of a lamp that shines to one side. */
     struct light_sample sample;
     struct vec3 behind = {0.2, 0.2, -1}, before = {0.2, 0.2, 1};
-    (void)light_context_make(&lamp, behind, behind, &context);
-    sample = light_sample(&lamp, &context, (struct sample2){0.3, 0.3});
+    (void)light_context_make(&area_light, behind, behind, &context);
+    sample = light_sample(&area_light, &context, (struct sample2){0.3, 0.3});
     CHECK(sample.intensity.x == 0);
     mesh.one_sided = false;
-    sample = light_sample(&lamp, &context, (struct sample2){0.3, 0.3});
+    sample = light_sample(&area_light, &context, (struct sample2){0.3, 0.3});
     CHECK(sample.intensity.x > 0);
-    (void)light_context_make(&lamp, before, before, &context);
-    sample = light_sample(&lamp, &context, (struct sample2){0.3, 0.3});
+    (void)light_context_make(&area_light, before, before, &context);
+    sample = light_sample(&area_light, &context, (struct sample2){0.3, 0.3});
     CHECK(sample.intensity.x > 0);
 }

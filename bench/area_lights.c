@@ -11,7 +11,7 @@ enum {
 };
 enum pattern { PATTERN_RANDOM, PATTERN_CELLS, PATTERN_MULTI, PATTERN_COUNT };
 
-static struct sample2 place(enum pattern pattern, uint64_t key, uint32_t i, uint32_t j, uint32_t n) {
+static struct sample2 sample_position(enum pattern pattern, uint64_t key, uint32_t i, uint32_t j, uint32_t n) {
     if (pattern == PATTERN_RANDOM)
         return sample_cell(random_combine(key, (uint64_t)j * n + i), 0, 0, 1);
     return pattern == PATTERN_CELLS ? sample_cell(key, i, j, n)
@@ -37,7 +37,7 @@ static double estimate(const struct light *light, enum pattern pattern, int bloc
     if (!light_context_make(light, from, from, &context))
         return 0;
     for (uint32_t c = 0; c < n * n; c++) {
-        struct light_sample s = light_sample(light, &context, place(pattern, key, c % n, c / n, n));
+        struct light_sample s = light_sample(light, &context, sample_position(pattern, key, c % n, c / n, n));
         if (!hidden(blocker, from, s.target.at))
             sum += s.intensity.x * fmax(s.direction.y, 0);
     }
@@ -55,8 +55,8 @@ static double error_of(const struct light *light, enum pattern pattern, int bloc
     return 100 * sqrt(squares);
 }
 
-static struct light lamp(int kind, double height) {
-    struct light light = {.emits = true, .colour = {1, 1, 1}, .position = {0.2, height, 0.1}, .radius = 0.5};
+static struct light area_light(int kind, double height) {
+    struct light light = {.emissive = true, .colour = {1, 1, 1}, .position = {0.2, height, 0.1}, .radius = 0.5};
     light.direction = (struct vec3){0, -1, 0};
     /* Kind 3 is a slightly skewed rectangle, which is sampled by area. */
     light.kind = kind == 1 ? LIGHT_DISC : kind == 2 ? LIGHT_SPHERE : LIGHT_PARALLELOGRAM;
@@ -69,13 +69,13 @@ static struct light lamp(int kind, double height) {
 int main(void) {
     static const char *const names[] = {"rectangle, solid angle", "disc, area", "sphere, solid angle",
                                         "rectangle, area"};
-    static const char *const ways[] = {"nothing", "an edge", "a ball"};
+    static const char *const variants[] = {"nothing", "an edge", "a ball"};
     printf("| lamp | in the way | rays | independent | in cells | rows and columns too |\n| --- | --- | --- | --- | "
            "--- | --- |\n");
     for (int kind = 0; kind < 4; kind++)
         for (int blocker = 0; blocker < 3; blocker++) {
-            struct light light = lamp(kind, 1);
-            printf("| %s | %s | 16 |", names[kind], ways[blocker]);
+            struct light light = area_light(kind, 1);
+            printf("| %s | %s | 16 |", names[kind], variants[blocker]);
             for (int p = 0; p < PATTERN_COUNT; p++)
                 printf(" %.1f %% |", error_of(&light, (enum pattern)p, blocker, 4));
             printf("\n");
@@ -84,7 +84,8 @@ int main(void) {
            "--- | --- | --- |\n");
     static const double heights[] = {0.02, 0.1, 0.3, 1, 3};
     for (int i = 0; i < 5; i++) {
-        struct light area = lamp(3, heights[i]), angle = lamp(0, heights[i]), disc = lamp(1, heights[i]);
+        struct light area = area_light(3, heights[i]), angle = area_light(0, heights[i]),
+                     disc = area_light(1, heights[i]);
         printf("| %g | %.1f %% | %.1f %% | %.1f %% |\n", heights[i], error_of(&area, PATTERN_CELLS, 0, 4),
                error_of(&angle, PATTERN_CELLS, 0, 4), error_of(&disc, PATTERN_CELLS, 0, 4));
     }

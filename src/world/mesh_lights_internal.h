@@ -1,6 +1,6 @@
 /* What lamps need to know about the scene: the triangles of meshes, the tables of skies. */
-#ifndef GRAY_WORLD_LIGHT_LAMPS_INTERNAL_H
-#define GRAY_WORLD_LIGHT_LAMPS_INTERNAL_H
+#ifndef GRAY_WORLD_MESH_LIGHTS_INTERNAL_H
+#define GRAY_WORLD_MESH_LIGHTS_INTERNAL_H
 
 #include "world/flatten_internal.h"
 #include "world/world.h"
@@ -10,10 +10,10 @@
  * node and of the nodes between it and them. Errors: no memory; a node without a mesh; those of flatten_scene for a
  * node that is not in the scene. Warnings: a mesh lamp without light. A sky that is to be turned is, and behind
  * everything, too, if it is seen there. */
-bool light_lamps_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
+bool mesh_lights_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
                          const struct node *root);
 /* Sets `mesh` of a light that is one placed mesh alone, with the emission of its materials. Errors: no memory. */
-bool light_lamps_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
+bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error);
 
 /* Which primitives each light reaches, from its lists of nodes. */
