@@ -118,15 +118,15 @@ static bool sample_part(const struct path_tracer *tracer, struct renderer *rende
 /* --- noise --- */
 
 /* Tiles are looked at after 16, 24, 32, 48, 64 ... samples; the next of these after `samples`. */
-static uint32_t next_look(uint32_t samples) {
+static uint32_t next_check(uint32_t samples) {
     uint32_t power = 16;
     while (power <= samples / 2)
         power *= 2;
     return samples < power ? power : samples < power + power / 2 ? power + power / 2 : 2 * power;
 }
 
-static bool is_look(uint32_t samples) {
-    return samples >= 16 && next_look(samples - 1) == samples;
+static bool is_check(uint32_t samples) {
+    return samples >= 16 && next_check(samples - 1) == samples;
 }
 
 static bool is_quiet(const struct path_tracer *tracer, const struct film *film, const struct rectangle *part) {
@@ -148,12 +148,12 @@ static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer
     uint32_t done = renderer->pass.begin, end = renderer->pass.end;
     if (done > 0 && path_film_load(film, pixel_index(film, part->x0, part->y0)).samples < done)
         return true;
-    while (!(is_look(done) && is_quiet(tracer, film, part))) {
+    while (!(is_check(done) && is_quiet(tracer, film, part))) {
         if (done == end) {
             atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
             return true;
         }
-        uint32_t look = next_look(done), next = look < end ? look : end;
+        uint32_t check = next_check(done), next = check < end ? check : end;
         if (!sample_part(tracer, renderer, worker, part, done, next))
             return false;
         done = next;
