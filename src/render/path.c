@@ -117,7 +117,7 @@ static bool sample_part(const struct path_tracer *tracer, struct renderer *rende
 
 /* --- noise --- */
 
-/* Tiles are looked at after 16, 24, 32, 48, 64 ... samples; the next of these after `samples`. */
+/* The noise of a tile is checked after 16, 24, 32, 48, 64 ... samples; returns the next of these after `samples`. */
 static uint32_t next_check(uint32_t samples) {
     uint32_t power = 16;
     while (power <= samples / 2)
@@ -181,7 +181,7 @@ void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *rende
 
 /* --- what the scene language says and paths take otherwise --- */
 
-/* Of the first node that has the material; of the operands of CSG it is not looked for. */
+/* The first node with this material; operands of CSG are not searched. */
 static const char *user_of(const struct world *world, uint32_t material) {
     for (uint32_t i = 0; i < world->prototype_count; i++) {
         const struct prototype *prototype = &world->prototypes[i];
