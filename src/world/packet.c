@@ -322,14 +322,17 @@ static bool goes_with(const struct ray *first, const struct ray *ray) {
            first->time == ray->time && ray->skip_primitive == 0;
 }
 
-/* How many rays from the first on can go as one packet. */
+/* Fewer do not pay for a packet. */
+enum { PACKET_MIN = 4 };
+
+/* How many rays from the first on can go as one packet; 0: too few. Bounces mostly fail the first line. */
 static uint32_t packet_length(const struct ray *rays, uint32_t count) {
+    if (count < PACKET_MIN || rays->origin.x != rays[PACKET_MIN - 1].origin.x || rays->skip_primitive != 0)
+        return 0;
     uint32_t length = 1;
-    if (rays->skip_primitive != 0)
-        return 1;
     while (length < count && length < PACKET_RAYS && goes_with(rays, &rays[length]))
         length++;
-    return length;
+    return length < PACKET_MIN ? 0 : length;
 }
 
 static void nearest_packet(const struct world *world, const struct ray *rays, uint32_t count,
@@ -357,16 +360,16 @@ static void nearest_packet(const struct world *world, const struct ray *rays, ui
 
 void world_nearest_batch(const struct world *world, const struct ray *rays, uint32_t count,
                          struct world_scratch *scratch, struct hit *hits) {
-    enum { FEWEST = 4 }; /* fewer do not pay for a packet */
-    for (uint32_t i = 0, length; i < count; i += length) {
-        length = packet_length(rays + i, count - i);
-        if (length >= FEWEST) {
+    for (uint32_t i = 0; i < count;) {
+        uint32_t length = packet_length(rays + i, count - i);
+        if (length > 0) {
             nearest_packet(world, rays + i, length, scratch, hits + i);
+            i += length;
             continue;
         }
-        length = 1;
         if (!world_nearest(world, &rays[i], scratch, &hits[i]))
             hits[i].primitive = WORLD_NOTHING;
+        i++;
     }
 }
 
