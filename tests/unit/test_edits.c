@@ -422,7 +422,8 @@ TEST(picking_names_the_parts_of_a_material_that_change_nothing) {
             material->phong.refract = 0.25 * passes;
             if (is_metal) {
                 material = scene_material(&s.scene, MATERIAL_METAL, material, &s.error);
-                CHECK(material_split_metal(material, NULL, 0.5, 0.5, 0.04, &s.scene.arena, &s.error));
+                CHECK(material_split_metal(material, NULL, (struct metal_numbers){0.5, 0.5, 0.04}, &s.scene.arena,
+                                           &s.error));
             }
             stage_sphere(&s, s.root, material);
             CHECK(stage_build(&s, s.root, ACCEL_AUTO));
