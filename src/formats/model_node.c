@@ -6,7 +6,7 @@
  * times a fiftieth of the picture's size on the surface; norm and glTF's normalTexture are normal maps. */
 #include "formats/model_node.h"
 
-#include "material/bump_internal.h"
+#include "material/bump.h"
 #include "material/material_inputs.h"
 
 #include <stdio.h>

@@ -10,7 +10,7 @@
  * Normal maps: red, green and blue are the new normal along the picture's right, its top and the old normal, as glTF
  * 2.0 (section 3.9.3) has them, made orthogonal to the normal. The colour that says "no slope" is 128 of 255, as
  * programs write it. */
-#include "material/bump_internal.h"
+#include "material/bump.h"
 
 #include "material/texture_mapping.h"
 #include "math/frame.h"

@@ -3,7 +3,7 @@
  * made the surface, so they stick to the object. */
 #include "material/material.h"
 
-#include "material/bump_internal.h"
+#include "material/bump.h"
 #include "material/material_eval.h"
 #include "material/microfacet_internal.h"
 

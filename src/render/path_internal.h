@@ -8,7 +8,7 @@
 #define GRAY_RENDER_PATH_INTERNAL_H
 
 #include "base/arena.h"
-#include "render/filter.h"
+#include "render/filter_internal.h"
 #include "render/render_internal.h"
 #include "world/world_lights.h"
 

@@ -97,7 +97,7 @@ void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
 void renderer_report_estimate(struct renderer *renderer);
 void renderer_report_end(struct renderer *renderer); /* all tiles are done */
 
-/* Makes the tiles pass by pass (passes.c), until they have all samples, little enough noise, or the time is over.
+/* Makes the tiles pass by pass (render.c), until they have all samples, little enough noise, or the time is over.
  * False: stopped. */
 bool renderer_makes_passes(const struct renderer *renderer);
 bool renderer_make_passes(struct renderer *renderer);

@@ -64,7 +64,7 @@ struct pixel_sample {
     int64_t x, y;
     double dx, dy;   /* within the pixel */
     uint64_t number; /* 0: the first sample, which is alone; 1 + k: cell k of N x N */
-    double weight;   /* of the reconstruction filter (render/filter.h): 1 or -1 */
+    double weight;   /* of the reconstruction filter (render/filter_internal.h): 1 or -1 */
 };
 
 /* How the samples of a pixel are spread. STRATA: as parts of cells, of N x N samples. SOBOL: as points of sequences

@@ -75,7 +75,7 @@ enum {
     X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
     X(OVERLAY_OF_GRID, "grid")
 enum overlay { OVERLAYS(LIST_MEMBER) };
-/* Reconstruction filters (render/filter.h). */
+/* Reconstruction filters (render/filter_internal.h). */
 #define FILTERS(X)                                                                                                     \
     X(FILTER_BOX, "box")                                                                                               \
     X(FILTER_TENT, "tent")                                                                                             \

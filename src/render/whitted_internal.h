@@ -4,7 +4,7 @@
 #ifndef GRAY_RENDER_WHITTED_INTERNAL_H
 #define GRAY_RENDER_WHITTED_INTERNAL_H
 
-#include "render/filter.h"
+#include "render/filter_internal.h"
 #include "render/render.h"
 #include "render/render_internal.h"
 

@@ -3,7 +3,7 @@
 #include "script/context_internal.h"
 
 #include "base/file.h"
-#include "material/bump_internal.h"
+#include "material/bump.h"
 #include "material/material_inputs.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 /* Reconstruction filters: the density of their samples, and what they make of a picture. */
 #include "base/list.h"
 #include "math/elementary.h"
-#include "render/filter.h"
+#include "render/filter_internal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -1,6 +1,6 @@
 /* Relief without geometry: normals turned by textures. */
-#ifndef GRAY_MATERIAL_BUMP_INTERNAL_H
-#define GRAY_MATERIAL_BUMP_INTERNAL_H
+#ifndef GRAY_MATERIAL_BUMP_H
+#define GRAY_MATERIAL_BUMP_H
 
 #include "material/material.h"
 

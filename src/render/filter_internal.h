@@ -2,8 +2,8 @@
  * the absolute value of the filter, and count 1 or, where it is negative, -1 (M. Ernst, M. Stamminger and G. Greiner,
  * "Filter Importance Sampling", IEEE Symposium on Interactive Ray Tracing 2006). So a pixel depends on its own samples
  * only, whatever the width of the filter, and tiles stay self-contained. */
-#ifndef GRAY_RENDER_FILTER_H
-#define GRAY_RENDER_FILTER_H
+#ifndef GRAY_RENDER_FILTER_INTERNAL_H
+#define GRAY_RENDER_FILTER_INTERNAL_H
 
 #include "math/sampling.h"
 #include "render/settings.h"
