@@ -74,10 +74,16 @@ static struct path_pixel begin_pixel(const struct film *film, int64_t x, int64_t
     return begin > 0 ? path_film_load(film, pixel_index(film, x, y)) : (struct path_pixel){0};
 }
 
-/* Adds the samples from number `begin` on to that before `end` to the pixels of a row, pixel by pixel, batch by batch:
+/* Numbers of samples, from `begin` on to that before `end`. */
+struct sample_range {
+    uint32_t begin, end;
+};
+
+/* Adds these samples to the pixels of a row, pixel by pixel, batch by batch:
  * a batch may hold samples of several pixels. */
-static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t y,
-                       const struct rectangle *part, uint32_t begin, uint32_t end) {
+static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                       const struct rectangle *part, int64_t y, struct sample_range range) {
+    uint32_t begin = range.begin, end = range.end;
     struct batch *batch = &worker->batch;
     struct film *film = renderer->job->film;
     uint32_t each = end - begin;
@@ -106,7 +112,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
 static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part, uint32_t begin, uint32_t end) {
     for (int64_t y = part->y0; y < part->y1; y++) {
-        if (!sample_row(tracer, renderer, worker, y, part, begin, end))
+        if (!sample_row(tracer, renderer, worker, part, y, (struct sample_range){begin, end}))
             return false;
         double done =
             (double)(end - begin) / tracer->samples * (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0);
