@@ -1037,6 +1037,71 @@ function gr.bump_material(material, image, height) end
 ---@overload fun(fields: gr.glyphs.fields): table
 function gr.glyphs(font, text) end
 
+---@class gr.openpbr_material.fields
+---@field base_weight? number|gr.texture base_weight (a number or a texture, 0 to 1; default 1): Factor of base_color.
+---@field base_color? gr.triple|gr.texture base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@field base_diffuse_roughness? number|gr.texture base_diffuse_roughness (a number or a texture, 0 to 1; default 0): Roughness of the diffuse base; 0 is Lambert's.
+---@field base_metalness? number|gr.texture base_metalness (a number or a texture, 0 to 1; default 0): Share of the base that is metal.
+---@field specular_weight? number|gr.texture specular_weight (a number or a texture, >= 0; default 1): Factor of the reflectance head on (by the index), and of metal's reflection.
+---@field specular_color? gr.triple|gr.texture specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the gloss; of metals the tint at 82 degrees.
+---@field specular_roughness? number|gr.texture specular_roughness (a number or a texture, 0 to 1; default 0.3): Roughness of gloss, metal and glass; 0 is polished.
+---@field specular_roughness_anisotropy? number|gr.texture specular_roughness_anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
+---@field specular_ior? number|gr.texture specular_ior (a number or a texture, > 0; default 1.5): Index of refraction of the base.
+---@field transmission_weight? number|gr.texture transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that light passes.
+---@field transmission_color? gr.triple|gr.texture transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the surface, or transmission_depth.
+---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Length of the way inside after which white light has transmission_color; 0: any.
+---@field transmission_scatter? gr.triple transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside: not there yet, but for black.
+---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Without effect while transmission_scatter is black.
+---@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0): Not there yet.
+---@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, >= 0; default 20): Not there yet.
+---@field subsurface_weight? number subsurface_weight (a number, >= 0; default 0): Not there yet.
+---@field subsurface_color? gr.triple subsurface_color (a colour {r, g, b}, >= 0; default {0.8, 0.8, 0.8}): Not there yet.
+---@field subsurface_radius? number subsurface_radius (a number, >= 0; default 1): Not there yet.
+---@field subsurface_radius_scale? gr.triple subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Not there yet.
+---@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Not there yet.
+---@field coat_weight? number|gr.texture coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
+---@field coat_color? gr.triple|gr.texture coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
+---@field coat_roughness? number|gr.texture coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
+---@field coat_roughness_anisotropy? number|gr.texture coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): Likewise for the coat.
+---@field coat_ior? number|gr.texture coat_ior (a number or a texture, > 0; default 1.6): Index of refraction of the coat.
+---@field coat_darkening? number|gr.texture coat_darkening (a number or a texture, 0 to 1; default 1): How much the coat darkens the base by reflections inside.
+---@field fuzz_weight? number|gr.texture fuzz_weight (a number or a texture, 0 to 1; default 0): Share of the surface with fuzz.
+---@field fuzz_color? gr.triple|gr.texture fuzz_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the fuzz.
+---@field fuzz_roughness? number|gr.texture fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz: how far it shows from the rim inwards.
+---@field emission_luminance? number|gr.texture emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 is the radiance 1.
+---@field emission_color? gr.triple|gr.texture emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
+---@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not there yet.
+---@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not there yet.
+---@field thin_film_ior? number thin_film_ior (a number, >= 0; default 1.4): Not there yet.
+---@field geometry_opacity? number|gr.texture geometry_opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
+---@field geometry_thin_walled? boolean geometry_thin_walled (true or false; default false): Whether the surface is a wall without thickness: nothing is inside.
+---@field geometry_normal? string|gr.texture geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
+---@field geometry_tangent? gr.triple geometry_tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
+---@field geometry_coat_normal? string|gr.texture geometry_coat_normal (the name of a picture file or a texture; default none): Not there yet.
+---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
+
+---Layers of metal, glass, gloss over a diffuse base, clear coat and fuzz: OpenPBR Surface 1.1.
+---@param base_color? gr.triple|gr.texture base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@return gr.material
+---@overload fun(fields: gr.openpbr_material.fields): gr.material
+function gr.openpbr_material(base_color) end
+
+---@class gr.metal_material.fields
+---@field metal 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'): Its name.
+---@field roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@field anisotropy? number|gr.texture anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
+---@field tangent? gr.triple tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
+---@field normal? string|gr.texture normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
+---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
+
+---A metal with its measured reflectance.
+---@param metal 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'): Its name.
+---@param roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@return gr.material
+---@overload fun(fields: gr.metal_material.fields): gr.material
+function gr.metal_material(metal, roughness) end
+
 ---@class gr.light.fields
 ---@field colour gr.triple colour (a colour {r, g, b}): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
@@ -1241,12 +1306,12 @@ function gr.change_material(serial, colour) end
 
 ---@class gr.change_look.fields
 ---@field serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
----@field part 'kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption' part ('kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption'): Argument of gr.material to change in its base material.
+---@field part 'kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption' part ('kd', 'ks', 'shininess', 'reflect', 'roughness', 'refract', 'ior', 'emission', 'absorption'): Argument of gr.material to change in its base material.
 ---@field value number|number[] value (a number or a table of numbers): New value: three numbers for a colour, else one.
 
 ---Changes an input of a base material in all later pictures.
 ---@param serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
----@param part 'kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption' part ('kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption'): Argument of gr.material to change in its base material.
+---@param part 'kd'|'ks'|'shininess'|'reflect'|'roughness'|'refract'|'ior'|'emission'|'absorption' part ('kd', 'ks', 'shininess', 'reflect', 'roughness', 'refract', 'ior', 'emission', 'absorption'): Argument of gr.material to change in its base material.
 ---@param value number|number[] value (a number or a table of numbers): New value: three numbers for a colour, else one.
 ---@overload fun(fields: gr.change_look.fields)
 function gr.change_look(serial, part, value) end

@@ -10,6 +10,7 @@
 
 #include "material/classic.h"
 #include "material/microfacet_internal.h"
+#include "material/rough_lobes.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 
@@ -71,10 +72,21 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
         case LOBE_BLINN:
             factor = blinn_formula(lobe, bsdf->lit, wo, wi);
             break;
+        case LOBE_OREN_NAYAR:
+        case LOBE_OREN_NAYAR_MULTIPLE:
+        case LOBE_FUZZ:
+        case LOBE_GLOSS:
+        case LOBE_METAL:
+        case LOBE_FACETS_MULTIPLE:
+            sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi), PI * rough_lobe_eval(bsdf, lobe, wo, wi));
+            continue;
         case LOBE_MIRROR:
         case LOBE_REFRACTION:
         case LOBE_GGX_REFLECTION:
         case LOBE_GGX_TRANSMISSION:
+        case LOBE_GLASS:
+        case LOBE_PANE:
+        case LOBE_FACETS_THROUGH:
             continue;
         }
         sum = vec3_add_scaled(sum, lobe->weight, factor);
@@ -220,6 +232,16 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi).pdf;
+    case LOBE_OREN_NAYAR:
+    case LOBE_OREN_NAYAR_MULTIPLE:
+    case LOBE_FUZZ:
+    case LOBE_GLOSS:
+    case LOBE_METAL:
+    case LOBE_GLASS:
+    case LOBE_PANE:
+    case LOBE_FACETS_MULTIPLE:
+    case LOBE_FACETS_THROUGH:
+        return rough_lobe_pdf(bsdf, lobe, wo, wi);
     }
     return 0;
 }
@@ -242,6 +264,16 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
         struct facet_path path = rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi);
         return path.pdf * path.share;
     }
+    case LOBE_OREN_NAYAR:
+    case LOBE_OREN_NAYAR_MULTIPLE:
+    case LOBE_FUZZ:
+    case LOBE_GLOSS:
+    case LOBE_METAL:
+    case LOBE_GLASS:
+    case LOBE_PANE:
+    case LOBE_FACETS_MULTIPLE:
+    case LOBE_FACETS_THROUGH:
+        return rough_lobe_eval(bsdf, lobe, wo, wi);
     }
     return 0;
 }
@@ -253,8 +285,8 @@ struct lobe_direction {
     bool delta, transmits;
 };
 
-struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
-    return microfacet_normal(bsdf->side, wo, bsdf->alpha, u);
+struct bsdf_place bsdf_place(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
+    return (struct bsdf_place){u, bsdf->alpha > 0 ? microfacet_normal(bsdf->side, wo, bsdf->alpha, u) : bsdf->side};
 }
 
 static bool rough_direction(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 facet,
@@ -311,7 +343,17 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
         return traced_direction(bsdf, lobe, wo, bsdf->side, out);
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
-        return traced_direction(bsdf, lobe, wo, bsdf_facet(bsdf, wo, u), out);
+        return traced_direction(bsdf, lobe, wo, microfacet_normal(bsdf->side, wo, bsdf->alpha, u), out);
+    case LOBE_OREN_NAYAR:
+    case LOBE_OREN_NAYAR_MULTIPLE:
+    case LOBE_FUZZ:
+    case LOBE_GLOSS:
+    case LOBE_METAL:
+    case LOBE_GLASS:
+    case LOBE_PANE:
+    case LOBE_FACETS_MULTIPLE:
+    case LOBE_FACETS_THROUGH:
+        return rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits);
     }
     return false;
 }
@@ -325,6 +367,8 @@ static double radiance_factor(const struct bsdf *bsdf, enum bsdf_mode mode, bool
 /* How much of what it weighs a lobe may be expected to give, never nothing: facets take Fresnel's share of it. */
 static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
     unsigned flags = lobe_flags(lobe->kind);
+    if (lobe->share > 0)
+        return lobe->share;
     if (!bsdf->fresnel_of_facets || !(flags & BSDF_TRACED) || (flags & BSDF_DELTA))
         return 1;
     double reflected = fmin(fmax(bsdf->fresnel, 1.0 / 16), 15.0 / 16);
@@ -353,7 +397,9 @@ struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mo
             continue;
         bool transmits = (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && vec3_dot(wi, bsdf->geometric_side) < 0;
         double factor = radiance_factor(bsdf, mode, transmits);
-        sum = vec3_add_scaled(sum, lobe->weight, factor * lobe_eval(bsdf, lobe, wo, wi));
+        bool tinted = lobe_flags(lobe->kind) & BSDF_TINTED;
+        struct vec3 weight = tinted ? rough_lobe_weight(bsdf, lobe, wo, wi) : lobe->weight;
+        sum = vec3_add_scaled(sum, weight, factor * lobe_eval(bsdf, lobe, wo, wi));
     }
     return sum;
 }
@@ -433,15 +479,31 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
     return kept;
 }
 
-bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
-                        struct bsdf_branch_direction *out) {
+/* Of a rough lobe of a layered material. */
+static bool rough_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo,
+                                struct sample2 u, struct bsdf_branch_direction *out) {
+    const struct lobe *lobe = &bsdf->lobes[branch->lobe];
+    if (!rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits))
+        return false;
+    double pdf = rough_lobe_pdf(bsdf, lobe, wo, out->direction);
+    if (!(pdf > 0))
+        return false;
+    out->weight = vec3_scale(rough_lobe_weight(bsdf, lobe, wo, out->direction),
+                             rough_lobe_eval(bsdf, lobe, wo, out->direction) / pdf);
+    return true;
+}
+
+bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo,
+                        const struct bsdf_place *place, struct bsdf_branch_direction *out) {
     const struct lobe *lobe = &bsdf->lobes[branch->lobe];
     if (!branch->rough && lobe_transmits(bsdf, lobe)) {
         *out = (struct bsdf_branch_direction){bsdf->through, branch->weight, true};
         return true;
     }
+    if (lobe_flags(lobe->kind) & BSDF_ROUGH)
+        return rough_branch_sample(bsdf, branch, wo, place->u, out);
     struct lobe_direction sampled;
-    if (!traced_direction(bsdf, lobe, wo, facet, &sampled))
+    if (!traced_direction(bsdf, lobe, wo, place->facet, &sampled))
         return false;
     out->direction = sampled.direction;
     out->weight = sampled.share == 1 ? branch->weight : vec3_scale(branch->weight, sampled.share);

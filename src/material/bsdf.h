@@ -10,6 +10,7 @@
 
 #include "base/list.h"
 #include "material/medium.h"
+#include "material/microfacet_internal.h"
 #include "math/sampling.h"
 #include "math/vec3.h"
 
@@ -24,6 +25,8 @@ enum bsdf_flags {
     BSDF_DELTA = 16,    /* one direction only: f and pdf are 0 everywhere else */
     BSDF_LAMBERT = 32,  /* f is the same for all directions */
     BSDF_EXPONENT = 64, /* it has one */
+    BSDF_ROUGH = 128,   /* of layered materials, in rough_lobes.c */
+    BSDF_TINTED = 256,  /* f has a colour beside the weight, that of Fresnel's reflection by metals */
 };
 
 /* Kind, name in pixel traces, flags. f is weight times: */
@@ -34,18 +37,46 @@ enum bsdf_flags {
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
     X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
-    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets that reflect totally turn it back */
+    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets that reflect totally turn it back */   \
+    /* Of layered materials; rough_lobes.c has the formulas. */                                                        \
+    X(LOBE_OREN_NAYAR, "rough diffuse", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                     \
+    X(LOBE_OREN_NAYAR_MULTIPLE, "rough diffuse, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                  \
+    X(LOBE_FUZZ, "fuzz", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                                    \
+    X(LOBE_GLOSS, "gloss", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS)                                    \
+    X(LOBE_METAL, "metal", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS | BSDF_TINTED)                      \
+    X(LOBE_GLASS, "glass", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                  \
+    X(LOBE_PANE, "pane", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                    \
+    X(LOBE_FACETS_MULTIPLE, "facets, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                             \
+    X(LOBE_FACETS_THROUGH, "facets through, multiple", BSDF_ROUGH | BSDF_TRANSMITS)
 
 enum lobe_kind { LOBES(LIST_MEMBER) };
 enum { LOBE_KINDS = LIST_COUNT(LOBES) };
 
 struct lobe {
     enum lobe_kind kind;
+    int facets; /* of rough lobes of layered materials: which of the BSDF's */
     struct vec3 weight;
-    double exponent;
+    double exponent; /* of OREN_NAYAR and FUZZ: the roughness, in [0, 1] */
+    double share;    /* about what it gives of its weight, to choose it by; 0: not stated */
 };
 
-enum { BSDF_LOBES = 4, BSDF_ALL = (1 << BSDF_LOBES) - 1 };
+/* What the facets of a rough surface do with light. BOUNDARY: that between two dielectrics. METAL: Fresnel's shares by
+ * F82 (N. Hoffman, "Fresnel Equations Considered Harmful", 2019; OpenPBR Surface 1.1): F0 + (1 - F0) (1 - c)^5 - edge c
+ * (1 - c)^6. PANE: the two sides of a thin wall together, with all reflections between them. */
+enum facet_kind { FACETS_BOUNDARY, FACETS_METAL, FACETS_PANE };
+
+struct bsdf_facets {
+    enum facet_kind kind;
+    struct facet_distribution distribution;
+    double eta; /* index on the ray's side over that behind; 1 for metals */
+    struct vec3 f0, edge;
+    /* Light that meets more than one facet (rough_lobes.h). */
+    double roughness;         /* of a surface that is as wide in all directions */
+    double lack, lack_behind; /* 1 - mean albedo, on the ray's side and behind */
+    double through;           /* the share of that light that goes through */
+};
+
+enum { BSDF_LOBES = 12, BSDF_FACETS = 4, BSDF_ALL = (1 << BSDF_LOBES) - 1 };
 
 struct bsdf {
     int count;
@@ -70,6 +101,7 @@ struct bsdf {
     struct vec3 through; /* where it passes: its direction for the view of the hit */
     bool turns_back;     /* where it does not, its share is reflected; else lost */
     struct medium_boundary boundary;
+    struct bsdf_facets facets[BSDF_FACETS]; /* those that lobes refer to */
 };
 
 /* What travels in the direction that is sampled. RADIANCE: light comes from there, and refraction changes it by the
@@ -81,7 +113,7 @@ enum bsdf_mode { BSDF_RADIANCE, BSDF_IMPORTANCE };
 const char *lobe_name(enum lobe_kind kind);
 static inline unsigned lobe_flags(enum lobe_kind kind) {
 #define LOBE_FLAGS(kind, name, flags) [kind] = (flags),
-    static const uint8_t flags_of[] = {LOBES(LOBE_FLAGS)};
+    static const uint16_t flags_of[] = {LOBES(LOBE_FLAGS)};
 #undef LOBE_FLAGS
     return flags_of[kind];
 }
@@ -123,12 +155,16 @@ struct bsdf_branch_direction {
     struct vec3 direction, weight; /* mode IMPORTANCE */
     bool transmits;
 };
-/* The normal of one facet of a rough surface, for all its branches. */
-struct vec3 bsdf_facet(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u);
-/* A direction of a branch. wo: the view of the hit; facet: of rough branches, else ignored. False: none, which counts
+/* A place in the unit square for all rough branches of one ray, and the normal of the facet that is there. */
+struct bsdf_place {
+    struct sample2 u;
+    struct vec3 facet;
+};
+struct bsdf_place bsdf_place(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u);
+/* A direction of a branch. wo: the view of the hit; place: of rough branches, else ignored. False: none, which counts
  * as black. */
-bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo, struct vec3 facet,
-                        struct bsdf_branch_direction *out);
+bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo,
+                        const struct bsdf_place *place, struct bsdf_branch_direction *out);
 
 /* The refracted direction of the smooth surface. False: total reflection. */
 bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out);

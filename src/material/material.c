@@ -6,6 +6,7 @@
 #include "material/bump.h"
 #include "material/material_eval.h"
 #include "material/microfacet_internal.h"
+#include "material/openpbr.h"
 
 const struct material *material_origin(const struct material *material) {
     return material->origin ? material->origin : material;
@@ -88,8 +89,13 @@ void material_inputs_observe(const struct material *material, const struct hit *
         material_inputs_at(material, hit, out);
 }
 
+/* Anisotropy asks for the tangents, too. */
 bool material_has_bump(const struct material *material) {
-    return bump_at(material->bumps, material->bump) != NULL;
+    const struct openpbr *openpbr = material->openpbr;
+    bool turned = openpbr && (openpbr->specular_anisotropy > 0 || openpbr->coat_anisotropy > 0 ||
+                              material_texture(material, INPUT_SPECULAR_ANISOTROPY) ||
+                              material_texture(material, INPUT_COAT_ANISOTROPY));
+    return turned || bump_at(material->bumps, material->bump) != NULL;
 }
 
 bool material_has_holes(const struct material *material) {
@@ -138,9 +144,11 @@ struct vec3 material_emission_bound(const struct material *material) {
     return emission_of(material, TEXTURE_LARGEST);
 }
 
-/* What is unlit shows its colour as emission, too (material_eval). */
+/* What is unlit shows its colour as emission, too (material_eval); coats and fuzz dim it by the direction. */
 bool material_emission_varies(const struct material *material) {
-    return material_texture(material, INPUT_EMISSION) || numbers_of(material)->unlit;
+    const struct openpbr *openpbr = material->openpbr;
+    return material_texture(material, INPUT_EMISSION) || numbers_of(material)->unlit ||
+           (openpbr && (openpbr->coat_weight > 0 || openpbr->fuzz_weight > 0));
 }
 
 bool material_has_ior(const struct material *material) {
@@ -165,6 +173,8 @@ double material_albedo_bound(const struct material *material) {
     double specular = material_specular(material), exponent = numbers->shininess > 0 ? numbers->shininess : 0;
     if (numbers->unlit)
         return 0;
+    if (material->openpbr)
+        return fmax(diffuse, vec3_max_abs(numbers->ks));
     return diffuse + (specular > 0 ? specular : vec3_max_abs(numbers->ks) * 2 / (exponent + 1));
 }
 
@@ -176,6 +186,7 @@ static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight,
     lobe->kind = kind;
     lobe->weight = weight;
     lobe->exponent = exponent;
+    lobe->share = 0;
 }
 
 static void set_frame(const struct hit *hit, const struct surface_inputs *inputs, struct bsdf *bsdf) {
@@ -202,6 +213,7 @@ static void set_boundary(const struct hit *hit, const struct medium_stack *media
     bsdf->boundary.medium.ior = inputs->has_ior ? inputs->ior : 1;
     bsdf->boundary.medium.absorption = inputs->absorption;
     bsdf->boundary.entering = hit->front;
+    bsdf->boundary.thin = false;
     bsdf->eta = medium_stack_eta(media ? media : &air, &bsdf->boundary);
     bsdf->transmits = bsdf_refract(bsdf, hit->view, &bsdf->through);
     if (inputs->fresnel) {
@@ -252,6 +264,11 @@ void material_eval(const struct material *material, const struct hit *hit, const
     set_frame(hit, &inputs, out);
     if (!(inputs.opacity > 0))
         return;
+    if (material->openpbr) {
+        openpbr_eval(material, hit, media, &inputs, out);
+        out->ambient = context->ambient_plain ? vec3_all(1) : inputs.kd;
+        return;
+    }
     set_boundary(hit, media, &inputs, out);
     set_lobes(&inputs, context, out);
 }

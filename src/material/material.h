@@ -15,9 +15,10 @@
 
 enum { MATERIAL_DEPTH = 1000 };
 
-/* What a material was made of its base by, with its name in descriptions of the chain. PHONG: by nothing, it is a base.
- * IMAGE: over `changed`. BUMP: turns the normal as if the texture's heights stood on the surface. NORMAL: turns the
- * normal to where the image's colours point. METAL (glTF): splits the colour below by metalness and roughness. */
+/* What a material was made of its base by, with its name in descriptions of the chain. PHONG, OPENPBR: by nothing, it
+ * is a base. IMAGE: over `changed`. BUMP: turns the normal as if the texture's heights stood on the surface. NORMAL:
+ * turns the normal to where the image's colours point. METAL (glTF): splits the colour below by metalness and
+ * roughness. */
 #define MATERIAL_KINDS(X)                                                                                              \
     X(MATERIAL_PHONG, "phong")                                                                                         \
     X(MATERIAL_MARBLE, "marble")                                                                                       \
@@ -26,7 +27,8 @@ enum { MATERIAL_DEPTH = 1000 };
     X(MATERIAL_BUMP, "bump")                                                                                           \
     X(MATERIAL_NORMAL, "normal map")                                                                                   \
     X(MATERIAL_METAL, "metal")                                                                                         \
-    X(MATERIAL_FRESNEL, "fresnel")
+    X(MATERIAL_FRESNEL, "fresnel")                                                                                     \
+    X(MATERIAL_OPENPBR, "openpbr")
 enum material_kind { MATERIAL_KINDS(LIST_MEMBER) };
 enum { MATERIAL_KIND_COUNT = LIST_COUNT(MATERIAL_KINDS) };
 
@@ -84,6 +86,8 @@ struct material {
     enum material_input changed; /* of MATERIAL_IMAGE */
     bool is_metal, fresnel;
     struct phong phong; /* of a base */
+    /* The layers of OpenPBR Surface, which take the place of the classic lobes; NULL: none (openpbr.h). */
+    const struct openpbr *openpbr;
 };
 
 /* The inputs at a hit; material_eval turns them into a BSDF. */

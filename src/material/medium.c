@@ -178,6 +178,8 @@ void medium_stack_leave(struct medium_stack *stack, uint32_t primitive) {
 }
 
 void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary *boundary) {
+    if (boundary->thin)
+        return;
     if (boundary->entering)
         medium_stack_enter(stack, &boundary->medium);
     else

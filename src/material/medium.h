@@ -34,6 +34,7 @@ struct medium_stack {
 struct medium_boundary {
     struct medium medium; /* on the inner side of the surface */
     bool entering;        /* the ray comes from the outer side */
+    bool thin;              /* a wall with the same medium on both sides: nothing is entered or left */
 };
 
 static inline double medium_stack_ior(const struct medium_stack *stack) {

@@ -144,6 +144,22 @@ static struct vec3 parameter_colour(enum material_input input, const struct phon
     case INPUT_EMISSION:
         return numbers->emission;
     case INPUT_OPACITY:
+    case INPUT_BASE_WEIGHT:
+    case INPUT_DIFFUSE_ROUGHNESS:
+    case INPUT_METALNESS:
+    case INPUT_SPECULAR_WEIGHT:
+    case INPUT_SPECULAR_ANISOTROPY:
+    case INPUT_SPECULAR_IOR:
+    case INPUT_TRANSMISSION_COLOUR:
+    case INPUT_COAT_WEIGHT:
+    case INPUT_COAT_COLOUR:
+    case INPUT_COAT_ROUGHNESS:
+    case INPUT_COAT_ANISOTROPY:
+    case INPUT_COAT_IOR:
+    case INPUT_COAT_DARKENING:
+    case INPUT_FUZZ_WEIGHT:
+    case INPUT_FUZZ_COLOUR:
+    case INPUT_FUZZ_ROUGHNESS:
         break;
     }
     return vec3_all(1);

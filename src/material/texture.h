@@ -112,7 +112,24 @@ struct phong {
     X(INPUT_REFRACT, "refract")                                                                                        \
     X(INPUT_ROUGHNESS, "roughness")                                                                                    \
     X(INPUT_EMISSION, "emission")                                                                                      \
-    X(INPUT_OPACITY, "opacity")
+    X(INPUT_OPACITY, "opacity")                                                                                        \
+    /* Of gr.openpbr_material alone; their numbers are in struct openpbr. */                                           \
+    X(INPUT_BASE_WEIGHT, "base_weight")                                                                                \
+    X(INPUT_DIFFUSE_ROUGHNESS, "base_diffuse_roughness")                                                               \
+    X(INPUT_METALNESS, "base_metalness")                                                                               \
+    X(INPUT_SPECULAR_WEIGHT, "specular_weight")                                                                        \
+    X(INPUT_SPECULAR_ANISOTROPY, "specular_roughness_anisotropy")                                                      \
+    X(INPUT_SPECULAR_IOR, "specular_ior")                                                                              \
+    X(INPUT_TRANSMISSION_COLOUR, "transmission_color")                                                                 \
+    X(INPUT_COAT_WEIGHT, "coat_weight")                                                                                \
+    X(INPUT_COAT_COLOUR, "coat_color")                                                                                 \
+    X(INPUT_COAT_ROUGHNESS, "coat_roughness")                                                                          \
+    X(INPUT_COAT_ANISOTROPY, "coat_roughness_anisotropy")                                                              \
+    X(INPUT_COAT_IOR, "coat_ior")                                                                                      \
+    X(INPUT_COAT_DARKENING, "coat_darkening")                                                                          \
+    X(INPUT_FUZZ_WEIGHT, "fuzz_weight")                                                                                \
+    X(INPUT_FUZZ_COLOUR, "fuzz_color")                                                                                 \
+    X(INPUT_FUZZ_ROUGHNESS, "fuzz_roughness")
 enum material_input { MATERIAL_INPUTS(LIST_MEMBER) };
 enum { INPUT_COUNT = LIST_COUNT(MATERIAL_INPUTS) };
 

@@ -124,7 +124,8 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
 /* What a surface shows of a light that rays see: a surface that mirrors shows its image, and a highlight would be the
  * same light again. */
 static uint32_t without_highlight(const struct bsdf *bsdf) {
-    return bsdf_lobes_with(bsdf, BSDF_TRACED) ? bsdf_lobes_with(bsdf, BSDF_LAMBERT) : BSDF_ALL;
+    uint32_t traced = bsdf_lobes_with(bsdf, BSDF_TRACED);
+    return traced ? BSDF_ALL & ~(traced | bsdf_lobes_with(bsdf, BSDF_EXPONENT)) : BSDF_ALL;
 }
 
 /* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.

@@ -82,13 +82,13 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
     while (chosen + 1 < branching->count && !(until < to[chosen]))
         until -= to[chosen++];
     const struct bsdf_branch *branch = &branching->branches[chosen];
-    struct vec3 facet = bsdf->side;
+    struct bsdf_place position = {.facet = bsdf->side};
     if (branch->rough) {
         double u = draw(path), v = draw(path);
-        facet = bsdf_facet(bsdf, hit->view, (struct sample2){u, v});
+        position = bsdf_place(bsdf, hit->view, (struct sample2){u, v});
     }
     struct bsdf_branch_direction sampled;
-    if (!bsdf_branch_sample(bsdf, branch, hit->view, facet, &sampled))
+    if (!bsdf_branch_sample(bsdf, branch, hit->view, &position, &sampled))
         return false;
     path->left = vec3_scale(vec3_mul(path->left, sampled.weight), all / (to[chosen] * survival));
     if (sampled.transmits)

@@ -68,10 +68,11 @@ struct surface_point {
 /* The radiance of one branch, times its weight. What cannot change the pixel by the cut-off is not
  * followed. */
 static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branch, struct vec3 facet, const struct path *from) {
+                                 const struct bsdf_branch *branch, const struct bsdf_place *position,
+                                 const struct path *from) {
     const struct settings *settings = &state->job->settings;
     struct bsdf_branch_direction sampled;
-    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, facet, &sampled))
+    if (!bsdf_branch_sample(at->bsdf, branch, at->hit->view, position, &sampled))
         return vec3_all(0);
     struct vec3 filter = sampled.weight;
     bool transmits = sampled.transmits;
@@ -123,13 +124,13 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
     struct vec3 sum = {0, 0, 0};
     observe_split(state->observer, 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
-        struct vec3 facet = bsdf_facet(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
+        struct bsdf_place position = bsdf_place(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
         struct path branch = path_on(path, 1);
         branch.key = sampler_facet(key, cell);
         branch.rough = true;
         for (int i = 0; i < count; i++) {
             if (branches[i].rough)
-                sum = vec3_add(sum, follow_branch(state, at, &branches[i], facet, &branch));
+                sum = vec3_add(sum, follow_branch(state, at, &branches[i], &position, &branch));
         }
     }
     return vec3_scale(sum, 1 / ((double)n * (double)n));
@@ -142,13 +143,14 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
     struct vec3 colour = direct_light(state, at->hit, at->bsdf, path->key);
     colour = vec3_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
+    const struct bsdf_place smooth = {.facet = at->bsdf->side};
     int count = bsdf_branches(at->bsdf, branches);
     bool rough = false;
     for (int i = 0; i < count; i++) {
         if (branches[i].rough)
             rough = true;
         else
-            colour = vec3_add(colour, follow_branch(state, at, &branches[i], at->bsdf->side, path));
+            colour = vec3_add(colour, follow_branch(state, at, &branches[i], &smooth, path));
     }
     return rough ? vec3_add(colour, follow_rough(state, at, branches, count, path)) : colour;
 }

@@ -162,6 +162,7 @@ static const char *read_file_name(struct script_context *c, int index, const str
 }
 
 /* Index of the word among the choices, letters compared as they are (axes: in either case). */
+enum { LONG_LIST = 8 };
 static int read_choice(struct script_context *c, int index, const struct argument_path *argument_path) {
     const struct script_parameter *p = argument_path->parameter;
     const char *text = read_text(c, index, argument_path), *word = p->choices;
@@ -174,15 +175,26 @@ static int read_choice(struct script_context *c, int index, const struct argumen
             return k;
         word += length + (word[length] == ' ');
     }
-    char list[256];
+    char list[512], candidates[32][41];
     size_t used = 0;
+    int count = 0;
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, text);
     for (word = p->choices; *word;) {
         int length = (int)strcspn(word, " ");
         const char *next = word + length + (word[length] == ' ');
+        if (count < 32) {
+            (void)snprintf(candidates[count], sizeof candidates[count], "%.*s", length, word);
+            suggest_offer(&suggestion, candidates[count++]);
+        }
         const char *separator = used == 0 ? "" : *next ? ", " : " or ";
         used += (size_t)snprintf(list + used, sizeof list - used, "%s'%.*s'", separator, length, word);
         word = next;
     }
+    /* Where the list is short, the word that is meant is seen at once. */
+    if (count > LONG_LIST && suggestion.best)
+        context_raise(c, "%s must be %s, not '%.100s'; did you mean '%s'?", argument_path_text(argument_path, words),
+                      list, text, suggestion.best);
     context_raise(c, "%s must be %s, not '%.100s'", argument_path_text(argument_path, words), list, text);
 }
 

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { COLUMNS = 100, LINE_SIZE = 1024 };
+enum { COLUMNS = 100, LINE_SIZE = 1024, CHOICES_SIZE = 256 };
 
 /* Text that grows by doubling; abandoned blocks stay in the arena, at most as much again. */
 struct document {
@@ -82,22 +82,22 @@ static void range_words(const struct script_parameter *p, char *out, size_t size
         snprintf(out, size, "%s %.15g", p->flags & LOW_OPEN ? ">" : ">=", p->low);
 }
 
-static void choices_words(const struct script_parameter *p, char separator, char *out, size_t size) {
+static void choices_words(const struct script_parameter *p, const char *separator, char *out, size_t size) {
     size_t used = 0;
     out[0] = '\0';
     for (const char *word = p->choices; word && *word;) {
         int length = (int)strcspn(word, " ");
-        used += (size_t)snprintf(out + used, size - used, "%s'%.*s'", used == 0 ? "" : (char[2]){separator, '\0'},
-                                 length, word);
+        used += (size_t)snprintf(out + used, size - used, "%s'%.*s'", used == 0 ? "" : separator, length, word);
         word += length + (word[length] == ' ');
     }
 }
 
 /* "radius (a number, > 0; default 1): Radius." */
 static void describe_parameter(const struct script_parameter *p, char out[LINE_SIZE]) {
-    char range[96], choices[200];
+    char range[96], choices[CHOICES_SIZE];
+    bool is_long = p->choices && strlen(p->choices) > 60; /* more than a line holds */
     range_words(p, range, sizeof range);
-    choices_words(p, '|', choices, sizeof choices);
+    choices_words(p, is_long ? ", " : "|", choices, sizeof choices);
     bool or_texture = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE;
     size_t used =
         (size_t)snprintf(out, LINE_SIZE, "%s (%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
@@ -159,7 +159,7 @@ const char *script_manual(struct arena *arena) {
     return document.failed ? NULL : document.text;
 }
 
-static const char *annotation_kind(const struct script_parameter *p, char out[200]) {
+static const char *annotation_kind(const struct script_parameter *p, char out[CHOICES_SIZE]) {
     switch (p->kind) {
     case KIND_NUMBER:
         return "number";
@@ -173,7 +173,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[20
         return "string";
     case KIND_CHOICE:
     case KIND_AXIS:
-        choices_words(p, '|', out, 200);
+        choices_words(p, "|", out, CHOICES_SIZE);
         return out;
     case KIND_POINT:
     case KIND_DIRECTION:
@@ -226,7 +226,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[20
     UNREACHABLE("a parameter of no kind");
 }
 
-static const char *annotation_type(const struct script_parameter *p, char out[200]) {
+static const char *annotation_type(const struct script_parameter *p, char out[CHOICES_SIZE]) {
     const char *type = annotation_kind(p, out);
     if (!(p->flags & OR_TEXTURE) || p->kind == KIND_IMAGE)
         return type;
@@ -265,7 +265,7 @@ static void annotate_fields(struct document *document, const struct script_funct
     add(document, "---@class gr.%s.fields\n", function->name);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
-        char type[200], line[LINE_SIZE];
+        char type[CHOICES_SIZE], line[LINE_SIZE];
         describe_parameter(p, line);
         add(document, "---@field %s%s %s %s\n", p->name, p->flags & OPTIONAL ? "?" : "", annotation_type(p, type),
             line);
@@ -290,7 +290,7 @@ static void annotate_overload(struct document *document, const struct script_fun
         separator = ", ";
     }
     while (form_next(function, &form, &index, &optional)) {
-        char type[200];
+        char type[CHOICES_SIZE];
         const struct script_parameter *p = &function->parameters[index];
         add(document, "%s%s%s: %s", separator, p->name, optional ? "?" : "", annotation_type(p, type));
         separator = ", ";
@@ -307,7 +307,7 @@ static void annotate_function(struct document *document, const struct script_fun
     char names[LINE_SIZE] = "";
     add(document, "---%s\n", function->help);
     while (form_next(function, &form, &index, &optional)) {
-        char type[200], line[LINE_SIZE];
+        char type[CHOICES_SIZE], line[LINE_SIZE];
         const struct script_parameter *p = &function->parameters[index];
         describe_parameter(p, line);
         add(document, "---@param %s%s %s %s\n", p->name, optional ? "?" : "", annotation_type(p, type), line);

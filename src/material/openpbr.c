@@ -1,0 +1,325 @@
+/* Layers, from the top: fuzz, coat, then metal beside dielectric, which is glossy over diffuse or lets light through.
+ * What a layer does not reflect of light from the view goes to those below it ("albedo scaling"), so the sum is not
+ * reciprocal, but nothing is lost: white layers send back or on all light. Albedos are those of albedo.h, those of
+ * smooth layers Fresnel's formula.
+ *
+ * Where the specification leaves a choice: the colour of the coat multiplies what comes from below; darkening acts on
+ * metal and on diffuse light, each by its own albedo, with the mean reflectance of the coat from inside for diffuse
+ * light and that of the view for smooth metal, which is exact for both; specular_weight changes the index for Fresnel
+ * and for refraction alike; transmission_color without a depth tints each passage through the surface; a solid seen
+ * from inside has neither coat nor fuzz; compensation with two widths is that of one in between. */
+#include "material/openpbr.h"
+
+#include "material/albedo.h"
+#include "material/microfacet_internal.h"
+#include "material/rough_lobes.h"
+
+#include <stddef.h>
+
+/* Less than this is smooth. */
+static const double smooth_roughness = 0x1p-10;
+
+struct openpbr openpbr_defaults(void) {
+    return (struct openpbr){.base_weight = 1,
+                            .specular_weight = 1,
+                            .specular_ior = 1.5,
+                            .transmission_colour = {1, 1, 1},
+                            .coat_colour = {1, 1, 1},
+                            .coat_ior = 1.6,
+                            .coat_darkening = 1,
+                            .fuzz_colour = {1, 1, 1},
+                            .fuzz_roughness = 0.5};
+}
+
+double openpbr_ior(double ior, double specular_weight) {
+    double root = (ior - 1) / (ior + 1), scaled = sqrt(specular_weight) * root;
+    scaled = scaled > 0.99 ? 0.99 : scaled < -0.99 ? -0.99 : scaled;
+    return specular_weight == 1 ? ior : (1 + scaled) / (1 - scaled);
+}
+
+/* --- inputs --- */
+
+static void read_textures(const struct material *material, const struct hit *hit, struct openpbr *values) {
+    static const struct {
+        enum material_input input;
+        bool is_colour;
+        size_t field;
+    } rows[] = {
+        {INPUT_BASE_WEIGHT, false, offsetof(struct openpbr, base_weight)},
+        {INPUT_DIFFUSE_ROUGHNESS, false, offsetof(struct openpbr, base_diffuse_roughness)},
+        {INPUT_METALNESS, false, offsetof(struct openpbr, base_metalness)},
+        {INPUT_SPECULAR_WEIGHT, false, offsetof(struct openpbr, specular_weight)},
+        {INPUT_SPECULAR_ANISOTROPY, false, offsetof(struct openpbr, specular_anisotropy)},
+        {INPUT_SPECULAR_IOR, false, offsetof(struct openpbr, specular_ior)},
+        {INPUT_TRANSMISSION_COLOUR, true, offsetof(struct openpbr, transmission_colour)},
+        {INPUT_COAT_WEIGHT, false, offsetof(struct openpbr, coat_weight)},
+        {INPUT_COAT_COLOUR, true, offsetof(struct openpbr, coat_colour)},
+        {INPUT_COAT_ROUGHNESS, false, offsetof(struct openpbr, coat_roughness)},
+        {INPUT_COAT_ANISOTROPY, false, offsetof(struct openpbr, coat_anisotropy)},
+        {INPUT_COAT_IOR, false, offsetof(struct openpbr, coat_ior)},
+        {INPUT_COAT_DARKENING, false, offsetof(struct openpbr, coat_darkening)},
+        {INPUT_FUZZ_WEIGHT, false, offsetof(struct openpbr, fuzz_weight)},
+        {INPUT_FUZZ_COLOUR, true, offsetof(struct openpbr, fuzz_colour)},
+        {INPUT_FUZZ_ROUGHNESS, false, offsetof(struct openpbr, fuzz_roughness)},
+    };
+    struct texture_reader reader;
+    texture_reader_init(&reader, hit, material->textures, NULL);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const struct texture *texture = material_texture(material, rows[i].input);
+        char *field = (char *)values + rows[i].field;
+        if (!texture)
+            continue;
+        if (rows[i].is_colour)
+            *(struct vec3 *)(void *)field = texture_read_colour(texture, &reader);
+        else
+            *(double *)(void *)field = texture_read_scalar(texture, &reader);
+    }
+}
+
+/* --- layers --- */
+
+/* What goes down, layer by layer. */
+struct layering {
+    const struct openpbr *values;
+    const struct surface_inputs *inputs;
+    struct bsdf *bsdf;
+    struct vec3 left;   /* the share of light that arrives at the layer */
+    struct vec3 mirror; /* of all smooth layers together */
+    struct vec3 dpdu;
+    double cosine;  /* of the view to the normal */
+    double outside; /* index of the medium around */
+    bool inside;    /* of a solid that light passes */
+    int facets;     /* used of bsdf->facets */
+    /* What the coat does to light from below: its share, its reflectance of the view, and from inside on average. */
+    double coated, coat_sees, coat_inside;
+};
+
+static bool is_black(struct vec3 c) {
+    return c.x == 0 && c.y == 0 && c.z == 0;
+}
+
+static void add(struct layering *l, enum lobe_kind kind, struct vec3 weight, double share) {
+    if (is_black(weight) || !(share > 0))
+        return;
+    struct lobe *lobe = &l->bsdf->lobes[l->bsdf->count++];
+    lobe->kind = kind;
+    lobe->facets = l->facets - 1;
+    lobe->weight = weight;
+    lobe->exponent = 0;
+    lobe->share = share;
+}
+
+static void add_matt(struct layering *l, enum lobe_kind kind, struct vec3 weight, double roughness) {
+    int count = l->bsdf->count;
+    add(l, kind, weight, 1);
+    if (l->bsdf->count > count)
+        l->bsdf->lobes[count].exponent = roughness;
+}
+
+static struct bsdf_facets *add_facets(struct layering *l, struct vec3 tangent, double roughness, double anisotropy) {
+    struct bsdf_facets *facets = &l->bsdf->facets[l->facets++];
+    bsdf_facets_shape(facets, l->bsdf->side, is_black(tangent) ? l->dpdu : tangent, roughness, anisotropy);
+    return facets;
+}
+
+static void add_fuzz(struct layering *l) {
+    const struct openpbr *v = l->values;
+    if (!(v->fuzz_weight > 0) || l->inside)
+        return;
+    double albedo = albedo_fuzz(l->cosine, v->fuzz_roughness);
+    add_matt(l, LOBE_FUZZ, vec3_scale(vec3_mul(l->left, v->fuzz_colour), v->fuzz_weight), v->fuzz_roughness);
+    l->left = vec3_scale(l->left, 1 - v->fuzz_weight * albedo);
+}
+
+static void add_coat(struct layering *l) {
+    const struct openpbr *v = l->values;
+    double eta = l->outside / v->coat_ior;
+    l->coated = 0;
+    if (!(v->coat_weight > 0) || l->inside)
+        return;
+    double reflected = dielectric_fresnel(l->cosine, eta);
+    l->coated = v->coat_weight;
+    l->coat_sees = reflected;
+    l->coat_inside = dielectric_fresnel_average(1 / eta);
+    if (v->coat_roughness < smooth_roughness) {
+        l->mirror = vec3_add_scaled(l->mirror, l->left, v->coat_weight * reflected);
+    } else if (eta != 1) {
+        struct bsdf_facets *facets = add_facets(l, v->coat_tangent, v->coat_roughness, v->coat_anisotropy);
+        bsdf_facets_boundary(facets, eta);
+        reflected = albedo_reflection(l->cosine, facets->roughness, eta);
+        add(l, LOBE_GLOSS, vec3_scale(l->left, v->coat_weight), reflected);
+    }
+    struct vec3 transmits = vec3_scale(v->coat_colour, 1 - reflected);
+    transmits = vec3_add(vec3_scale(transmits, v->coat_weight), vec3_all(1 - v->coat_weight));
+    l->left = vec3_mul(l->left, transmits);
+}
+
+/* Light from below that the coat sends down again, of a layer with this albedo, which is met by the share k of it. */
+static double darkened(const struct layering *l, double albedo, double k) {
+    double factor = (1 - k) / (1 - (albedo < 1 ? albedo : 1) * k), amount = l->coated * l->values->coat_darkening;
+    return 1 + amount * (factor - 1);
+}
+static struct vec3 darken(const struct layering *l, struct vec3 colour, struct vec3 albedo, double k) {
+    if (!(l->coated > 0))
+        return colour;
+    return vec3_mul(colour, vec3_make(darkened(l, albedo.x, k), darkened(l, albedo.y, k), darkened(l, albedo.z, k)));
+}
+
+/* A rough coat spreads what comes from below. */
+static double roughness_below(const struct layering *l) {
+    double own = l->inputs->roughness, coat = l->values->coat_roughness;
+    own = own > 0 ? own < 1 ? own : 1 : 0;
+    if (!(l->coated > 0) || !(coat > 0))
+        return own;
+    double both = own * own * own * own + 2 * coat * coat * coat * coat;
+    both = both < 1 ? sqrt(sqrt(both)) : 1;
+    return own + l->coated * (both - own);
+}
+
+static void add_metal(struct layering *l, double roughness) {
+    const struct openpbr *v = l->values;
+    if (!(v->base_metalness > 0))
+        return;
+    struct vec3 weight = vec3_scale(l->left, v->base_metalness * (v->specular_weight < 1 ? v->specular_weight : 1));
+    struct bsdf_facets *facets = add_facets(l, v->tangent, fmax(roughness, smooth_roughness), v->specular_anisotropy);
+    bsdf_facets_metal(facets, vec3_scale(l->inputs->kd, v->base_weight), l->inputs->ks);
+    struct vec3 mean = bsdf_metal_fresnel_average(facets);
+    weight = darken(l, weight, mean, l->coat_sees + roughness * (l->coat_inside - l->coat_sees));
+    if (roughness < smooth_roughness) {
+        l->mirror = vec3_add(l->mirror, vec3_mul(weight, bsdf_metal_fresnel(facets, l->cosine)));
+        return;
+    }
+    double once = albedo_mirror(l->cosine, facets->roughness), average = 1 - facets->lack;
+    add(l, LOBE_METAL, weight, vec3_max_abs(mean) * once);
+    struct vec3 multiple = {mean.x * mean.x * average / (1 - mean.x * facets->lack),
+                            mean.y * mean.y * average / (1 - mean.y * facets->lack),
+                            mean.z * mean.z * average / (1 - mean.z * facets->lack)};
+    add(l, LOBE_FACETS_MULTIPLE, vec3_mul(weight, multiple), 1 - once);
+}
+
+static void add_diffuse(struct layering *l, struct vec3 left) {
+    const struct openpbr *v = l->values;
+    struct vec3 colour = vec3_scale(l->inputs->kd, v->base_weight);
+    left = darken(l, left, colour, l->coat_inside);
+    if (!(v->base_diffuse_roughness > 0)) {
+        add_matt(l, LOBE_DIFFUSE, vec3_mul(left, colour), 0);
+        return;
+    }
+    struct vec3 multiple = bsdf_oren_nayar_multiple(colour, v->base_diffuse_roughness);
+    add_matt(l, LOBE_OREN_NAYAR, vec3_mul(left, colour), v->base_diffuse_roughness);
+    add_matt(l, LOBE_OREN_NAYAR_MULTIPLE, vec3_mul(left, multiple), v->base_diffuse_roughness);
+}
+
+/* Light through a smooth surface: `transmits` is what it does not reflect. */
+static void add_smooth_passage(struct layering *l, const struct hit *hit, struct vec3 left) {
+    struct bsdf *bsdf = l->bsdf;
+    bsdf->transmits = l->values->thin_walled || bsdf_refract(bsdf, hit->view, &bsdf->through);
+    if (l->values->thin_walled)
+        bsdf->through = vec3_negate(hit->view);
+    if (bsdf->transmits)
+        add(l, LOBE_REFRACTION, left, 1);
+}
+
+/* A wall without thickness: both of its sides together. */
+static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left, double eta, double roughness) {
+    struct vec3 tint = vec3_mul(left, l->values->transmission_colour);
+    struct vec3 reflects = vec3_mul(left, l->inputs->ks);
+    double share = bsdf_pane_reflectance(dielectric_fresnel(l->cosine, eta));
+    if (roughness < smooth_roughness || eta == 1) {
+        l->mirror = vec3_add_scaled(l->mirror, reflects, share);
+        add_smooth_passage(l, hit, vec3_scale(tint, 1 - share));
+        return;
+    }
+    struct bsdf_facets *facets = add_facets(l, l->values->tangent, roughness, l->values->specular_anisotropy);
+    bsdf_facets_pane(facets, eta);
+    double lack = 1 - albedo_mirror(l->cosine, facets->roughness);
+    add(l, LOBE_GLOSS, reflects, share);
+    add(l, LOBE_PANE, tint, 1 - share);
+    add(l, LOBE_FACETS_MULTIPLE, left, lack * (1 - facets->through));
+    add(l, LOBE_FACETS_THROUGH, tint, lack * facets->through);
+}
+
+/* The share of the surface that light passes, and the rest, which is diffuse below the gloss. */
+static void add_dielectric(struct layering *l, const struct hit *hit, double eta, double roughness) {
+    const struct openpbr *v = l->values;
+    struct vec3 all = vec3_scale(l->left, 1 - v->base_metalness);
+    double clear = l->inputs->refract;
+    struct vec3 through = vec3_scale(all, clear);
+    bool deep = v->deep && !v->thin_walled;
+    struct vec3 tinted = deep ? through : vec3_mul(through, v->transmission_colour);
+    if (is_black(all))
+        return;
+    if (v->thin_walled && clear > 0) {
+        add_pane(l, hit, through, eta, roughness);
+        all = vec3_scale(all, 1 - clear);
+        clear = 0;
+    }
+    double reflected = dielectric_fresnel(l->cosine, eta);
+    if (roughness < smooth_roughness || eta == 1) {
+        l->mirror = vec3_add_scaled(l->mirror, vec3_mul(all, l->inputs->ks), reflected);
+        if (clear > 0)
+            add_smooth_passage(l, hit, vec3_scale(tinted, 1 - reflected));
+    } else {
+        struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
+        bsdf_facets_boundary(facets, eta);
+        reflected = albedo_reflection(l->cosine, facets->roughness, eta);
+        add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
+        if (clear > 0) {
+            double lack = 1 - albedo_boundary(l->cosine, facets->roughness, eta);
+            add(l, LOBE_GLASS, tinted, 1 - reflected - lack);
+            add(l, LOBE_FACETS_MULTIPLE, through, lack * (1 - facets->through));
+            add(l, LOBE_FACETS_THROUGH, tinted, lack * facets->through);
+        }
+    }
+    double opaque = v->thin_walled ? 1 : 1 - clear;
+    if (opaque > 0)
+        add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
+}
+
+/* Of a base that light does not enter: to the medium around, or to the coat. A coat that is denser than the base would
+ * reflect totally; as the specification has it, it counts as if it were the other way. */
+static double relative_index(const struct layering *l) {
+    double base = l->values->specular_ior, around = base / l->outside, below = base / l->values->coat_ior;
+    below = below < 1 ? 1 / below : below;
+    return around + l->coated * (below - around);
+}
+
+void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+                  const struct surface_inputs *inputs, struct bsdf *bsdf) {
+    static const struct medium_stack air = {.count = 0};
+    struct openpbr values = *material->openpbr;
+    read_textures(material, hit, &values);
+    media = media ? media : &air;
+    values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */
+    values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;
+    bool is_solid = inputs->refract > 0 && !values.thin_walled;
+    struct layering l = {.values = &values, .inputs = inputs, .bsdf = bsdf, .dpdu = hit->dpdu};
+    l.left = vec3_all(1);
+    l.mirror = vec3_all(0);
+    l.cosine = vec3_dot(bsdf->side, hit->view);
+    l.cosine = l.cosine < 1 ? l.cosine : 1;
+    l.inside = is_solid && !hit->front;
+    l.outside = medium_stack_ior(media);
+    bsdf->lit = bsdf->side;
+    bsdf->dark = false;
+    bsdf->alpha = 0;
+    bsdf->eta = 1;
+    bsdf->fresnel = -1;
+    bsdf->fresnel_of_facets = false;
+    bsdf->transmits = false;
+    bsdf->glossy_samples = inputs->glossy_samples;
+    double ior = openpbr_ior(values.specular_ior, values.specular_weight);
+    bsdf->boundary.medium = (struct medium){hit->primitive, ior, inputs->absorption};
+    bsdf->boundary.entering = hit->front;
+    bsdf->boundary.thin = !is_solid;
+    if (is_solid)
+        bsdf->eta = medium_stack_eta(media, &bsdf->boundary);
+    add_fuzz(&l);
+    add_coat(&l);
+    bsdf->emission = vec3_mul(inputs->emission, l.left);
+    double eta = is_solid ? bsdf->eta : 1 / openpbr_ior(relative_index(&l), values.specular_weight);
+    double roughness = roughness_below(&l);
+    add_metal(&l, roughness);
+    add_dielectric(&l, hit, eta, roughness);
+    add(&l, LOBE_MIRROR, l.mirror, 1);
+}

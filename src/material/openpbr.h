@@ -1,0 +1,36 @@
+/* The parameters of OpenPBR Surface 1.1 (Academy Software Foundation, 2024,
+ * https://academysoftwarefoundation.github.io/ OpenPBR) beside those that all materials have, and how they become
+ * lobes. The inputs of a material hold base_color (kd), specular_color (ks), specular_roughness (roughness),
+ * transmission_weight (refract), emission (luminance times colour) and opacity; bumps hold geometry_normal.
+ * docs/language.md says what each parameter does. */
+#ifndef GRAY_MATERIAL_OPENPBR_H
+#define GRAY_MATERIAL_OPENPBR_H
+
+#include "material/bsdf.h"
+#include "material/material.h"
+
+/* Numbers; inputs of the material with textures take their place at a hit. Immutable, in the arena of the script. */
+struct openpbr {
+    double base_weight, base_diffuse_roughness, base_metalness;
+    double specular_weight, specular_anisotropy, specular_ior;
+    struct vec3 transmission_colour;
+    double coat_weight, coat_roughness, coat_anisotropy, coat_ior, coat_darkening;
+    struct vec3 coat_colour;
+    double fuzz_weight, fuzz_roughness;
+    struct vec3 fuzz_colour;
+    bool deep; /* transmission_depth is above 0: the colour is that of the inside */
+    bool thin_walled;
+    struct vec3 tangent, coat_tangent; /* in the world; 0: along u */
+};
+
+/* The values of the specification where scripts state none. */
+struct openpbr openpbr_defaults(void);
+
+/* The index that Fresnel's formulas see: specular_weight scales the reflectance head on. */
+double openpbr_ior(double ior, double specular_weight);
+
+/* Fills the lobes, the emission and the boundary of a BSDF whose frame is set. media: of the ray. */
+void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
+                  const struct surface_inputs *inputs, struct bsdf *bsdf);
+
+#endif

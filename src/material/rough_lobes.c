@@ -1,0 +1,365 @@
+/* See rough_lobes.h.
+ *
+ * Rough diffuse surfaces: the energy-preserving model of Oren and Nayar by J. Portsmouth, P. Kutz and S. Hill, "EON: A
+ * Practical Energy-Preserving Rough Diffuse BRDF", 2024, as two lobes, since their colours differ: the formula of M.
+ * Fujii, and what that loses, spread out.
+ *
+ * Fuzz: the distribution of A. Estevez and C. Kulla, "Production Friendly Microfacet Sheen BRDF", SIGGRAPH 2017 courses
+ * ("Charlie"), with the visibility of D. Neubelt and M. Pettineo, "Crafting a Next-Gen Material Pipeline for The Order:
+ * 1886", 2013. Its width is 0.25 + 0.75 roughness: below, it would reflect more than arrives at grazing angles.
+ *
+ * Facets: as in bsdf.c, with two widths (Heitz 2014). Light that meets more than one of them comes out as C. Kulla and
+ * A. Conty have it, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017 courses: with E(c) the share
+ * that leaves after one facet, (1 - E(cos wo)) (1 - E(cos wi)) / (pi (1 - mean E)). Of boundaries the share `through`
+ * goes to the other side, (1 - E(cos wo)) (1 - E'(cos wi)) / (pi (1 - mean E')) with E' for directions behind. It is (1
+ * - mean Fresnel) min(1 - mean E, 1 - mean E') / (1 - mean E), so that there is as much either way, by the square of
+ * the index: (1 - mean Fresnel) n^2 is the same on both sides. */
+#include "material/rough_lobes.h"
+
+#include "material/albedo.h"
+#include "material/microfacet_internal.h"
+#include "math/elementary.h"
+#include "math/frame.h"
+
+/* --- making facets --- */
+
+void bsdf_facets_shape(struct bsdf_facets *facets, struct vec3 normal, struct vec3 along, double roughness,
+                       double anisotropy) {
+    struct facet_distribution *out = &facets->distribution;
+    out->normal = normal;
+    struct vec3 tangent = vec3_add_scaled(along, normal, -vec3_dot(normal, along));
+    double length = vec3_length(tangent);
+    if (length > 0x1p-20 * vec3_max_abs(along)) {
+        out->along = vec3_scale(tangent, 1 / length);
+        out->across = vec3_cross(normal, out->along);
+    } else {
+        frame_tangents(normal, &out->along, &out->across);
+    }
+    double other = 1 - anisotropy, alpha = roughness * roughness * sqrt(2 / (1 + other * other));
+    out->alpha_along = alpha < 1 ? alpha : 1;
+    out->alpha_across = fmax(alpha * other, 1e-6);
+    facets->roughness = anisotropy > 0 ? sqrt(sqrt(out->alpha_along * out->alpha_across)) : roughness;
+}
+
+void bsdf_facets_boundary(struct bsdf_facets *facets, double eta) {
+    facets->kind = FACETS_BOUNDARY;
+    facets->eta = eta;
+    facets->lack = 1 - albedo_boundary_average(facets->roughness, eta);
+    facets->lack_behind = 1 - albedo_boundary_average(facets->roughness, 1 / eta);
+    double min = facets->lack < facets->lack_behind ? facets->lack : facets->lack_behind;
+    facets->through = facets->lack > 0 ? (1 - dielectric_fresnel_average(eta)) * min / facets->lack : 0;
+}
+
+void bsdf_facets_pane(struct bsdf_facets *facets, double eta) {
+    facets->kind = FACETS_PANE;
+    facets->eta = eta;
+    facets->lack = facets->lack_behind = 1 - albedo_mirror_average(facets->roughness);
+    facets->through = 1 - bsdf_pane_reflectance(dielectric_fresnel_average(eta));
+}
+
+void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint) {
+    const double c = 1.0 / 7, rest = 6.0 / 7, fifth = rest * rest * rest * rest * rest;
+    facets->kind = FACETS_METAL;
+    facets->eta = 1;
+    facets->f0 = f0;
+    struct vec3 schlick = vec3_add_scaled(f0, vec3_sub(vec3_all(1), f0), fifth);
+    facets->edge = vec3_scale(vec3_mul(schlick, vec3_sub(vec3_all(1), tint)), 1 / (c * fifth * rest));
+    facets->lack = facets->lack_behind = 1 - albedo_mirror_average(facets->roughness);
+    facets->through = 0;
+}
+
+static struct vec3 not_negative(struct vec3 c) {
+    return vec3_make(c.x > 0 ? c.x : 0, c.y > 0 ? c.y : 0, c.z > 0 ? c.z : 0);
+}
+
+struct vec3 bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine) {
+    double rest = cosine < 1 ? 1 - cosine : 0, fifth = rest * rest * rest * rest * rest;
+    struct vec3 schlick = vec3_add_scaled(facets->f0, vec3_sub(vec3_all(1), facets->f0), fifth);
+    return not_negative(vec3_add_scaled(schlick, facets->edge, -cosine * fifth * rest));
+}
+
+/* 2 c (1 - c)^5 is 1/21 in the mean, 2 c^2 (1 - c)^6 is 1/126. */
+struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets) {
+    struct vec3 schlick = vec3_add_scaled(facets->f0, vec3_sub(vec3_all(1), facets->f0), 1.0 / 21);
+    return not_negative(vec3_add_scaled(schlick, facets->edge, -1.0 / 126));
+}
+
+/* --- directions of a hemisphere --- */
+
+/* On the side of the view, of the shading normal as well as of the surface; else on the other side of both. */
+static double cosine_on(const struct bsdf *bsdf, bool behind, struct vec3 wi) {
+    double n_l = vec3_dot(bsdf->side, wi), height = vec3_dot(bsdf->geometric_side, wi);
+    if (behind)
+        return n_l < 0 && height < 0 ? -n_l : 0;
+    return n_l > 0 && height > 0 ? n_l : 0;
+}
+
+static struct vec3 cosine_sample(struct vec3 normal, struct sample2 u) {
+    struct sample2 disc = sample_disc(u);
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    double height = 1 - disc.x * disc.x - disc.y * disc.y;
+    struct vec3 out = vec3_scale(normal, height > 0 ? sqrt(height) : 0);
+    return vec3_add_scaled(vec3_add_scaled(out, a, disc.x), b, disc.y);
+}
+
+static struct vec3 uniform_sample(struct vec3 normal, struct sample2 u) {
+    struct vec3 a, b;
+    frame_tangents(normal, &a, &b);
+    double height = u.x, across = sqrt(1 - height * height), angle = 2 * PI * u.y;
+    struct vec3 out = vec3_scale(normal, height);
+    return vec3_add_scaled(vec3_add_scaled(out, a, across * el_cos(angle)), b, across * el_sin(angle));
+}
+
+/* --- rough diffuse surfaces --- */
+
+static double clamp_share(double x) {
+    return x > 0 ? x < 1 ? x : 1 : 0;
+}
+
+static double fujii_a(double roughness) {
+    return 1 / (1 + (0.5 - 2 / (3 * PI)) * roughness);
+}
+
+/* Portsmouth et al. 2024, equation 5: pi f over the colour. */
+static double fujii(double roughness, double n_o, double n_i, double o_i) {
+    double a = fujii_a(roughness), s = o_i - n_o * n_i, t = s > 0 ? fmax(n_o, n_i) : 1;
+    return a * (1 + roughness * s / t);
+}
+
+/* Its albedo, equation 18, and the mean of that. */
+static double fujii_albedo(double cosine, double roughness) {
+    double a = fujii_a(roughness), c = cosine < 1 ? cosine : 1, sine = sqrt(1 - c * c);
+    double g = sine * (el_acos(c) - sine * c) + 2.0 / 3 * (sine / c * (1 - sine * sine * sine) - sine);
+    return a * (1 + roughness * g / PI);
+}
+static double fujii_average(double roughness) {
+    return fujii_a(roughness) * (1 + (2.0 / 3 - 28 / (15 * PI)) * roughness);
+}
+
+struct vec3 bsdf_oren_nayar_multiple(struct vec3 colour, double roughness) {
+    double once = fujii_average(roughness), lack = 1 - once;
+    return vec3_make(colour.x * colour.x * once / (1 - colour.x * lack),
+                     colour.y * colour.y * once / (1 - colour.y * lack),
+                     colour.z * colour.z * once / (1 - colour.z * lack));
+}
+
+static double oren_nayar_multiple(double roughness, double n_o, double n_i) {
+    double lack = 1 - fujii_average(roughness);
+    return lack > 0 ? (1 - fujii_albedo(n_o, roughness)) * (1 - fujii_albedo(n_i, roughness)) / lack : 0;
+}
+
+/* --- fuzz --- */
+
+static double fuzz(double roughness, double n_o, double n_i, struct vec3 normal, struct vec3 wo, struct vec3 wi) {
+    double exponent = 1 / (0.25 + 0.75 * roughness);
+    double n_h = vec3_dot(normal, vec3_normalize(vec3_add(wo, wi))), sine2 = n_h * n_h < 1 ? 1 - n_h * n_h : 0;
+    double facets = (2 + exponent) * el_pow(sine2, exponent / 2) / (2 * PI);
+    return facets / (4 * (n_i + n_o - n_i * n_o)) * n_i;
+}
+
+/* --- facets --- */
+
+/* As it would be mirrored to the other side of the surface. */
+static struct vec3 across_surface(const struct bsdf *bsdf, struct vec3 w) {
+    return vec3_add_scaled(w, bsdf->side, -2 * vec3_dot(bsdf->side, w));
+}
+
+/* The share of light that facets with this cosine to the view reflect; metals have a colour instead. */
+static double reflected_share(const struct bsdf_facets *facets, double towards) {
+    switch (facets->kind) {
+    case FACETS_BOUNDARY:
+        return dielectric_fresnel(towards, facets->eta);
+    case FACETS_PANE:
+        return bsdf_pane_reflectance(dielectric_fresnel(towards, facets->eta));
+    case FACETS_METAL:
+        break;
+    }
+    return 1;
+}
+
+/* The density of a direction by way of its facet, and what Fresnel and masking leave of it. */
+struct facet_path {
+    double pdf, share;
+};
+
+static struct facet_path path_by(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi, struct vec3 half,
+                                 double jacobian, double share) {
+    share *= facet_distribution_escape(&facets->distribution, wo, wi);
+    if (!(share > 0))
+        return (struct facet_path){0, 0};
+    return (struct facet_path){facet_distribution_pdf(&facets->distribution, wo, half) * jacobian, share};
+}
+
+static struct facet_path mirrored(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi) {
+    struct vec3 half = vec3_normalize(vec3_add(wo, wi));
+    double v_h = vec3_dot(wo, half);
+    if (!(v_h > 0))
+        return (struct facet_path){0, 0};
+    return path_by(facets, wo, wi, half, 1 / (4 * v_h), reflected_share(facets, v_h));
+}
+
+/* Light that leaves a thin wall leaves as if it were mirrored, on the other side. */
+static struct facet_path through_pane(const struct bsdf *bsdf, const struct bsdf_facets *facets, struct vec3 wo,
+                                      struct vec3 wi) {
+    struct vec3 above = across_surface(bsdf, wi), half = vec3_normalize(vec3_add(wo, above));
+    double v_h = vec3_dot(wo, half);
+    if (!(v_h > 0))
+        return (struct facet_path){0, 0};
+    return path_by(facets, wo, above, half, 1 / (4 * v_h), 1 - reflected_share(facets, v_h));
+}
+
+/* Walter et al. 2007, sections 5.2 and 5.3. */
+static struct facet_path refracted(const struct bsdf_facets *facets, struct vec3 wo, struct vec3 wi) {
+    if (facets->eta == 1)
+        return (struct facet_path){0, 0};
+    struct vec3 half = vec3_normalize(vec3_add_scaled(wi, wo, facets->eta));
+    if (!(vec3_dot(half, facets->distribution.normal) > 0))
+        half = vec3_negate(half);
+    double v_h = vec3_dot(wo, half), l_h = vec3_dot(wi, half), sum = facets->eta * v_h + l_h;
+    if (!(v_h > 0 && l_h < 0 && sum != 0))
+        return (struct facet_path){0, 0};
+    return path_by(facets, wo, wi, half, -l_h / (sum * sum), 1 - reflected_share(facets, v_h));
+}
+
+static struct facet_path path_of(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
+    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    bool behind = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    if (!(cosine_on(bsdf, behind, wi) > 0))
+        return (struct facet_path){0, 0};
+    if (!behind)
+        return mirrored(facets, wo, wi);
+    return lobe->kind == LOBE_PANE ? through_pane(bsdf, facets, wo, wi) : refracted(facets, wo, wi);
+}
+
+static bool facet_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
+                         struct vec3 *direction, bool *transmits) {
+    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    struct vec3 facet = facet_distribution_sample(&facets->distribution, wo, u);
+    *transmits = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    if (lobe->kind == LOBE_GLASS) {
+        if (facets->eta == 1 || !dielectric_refract(facet, wo, facets->eta, direction))
+            return false;
+    } else {
+        *direction = dielectric_mirror(facet, wo);
+        if (lobe->kind == LOBE_PANE)
+            *direction = across_surface(bsdf, *direction);
+    }
+    return cosine_on(bsdf, *transmits, *direction) > 0;
+}
+
+/* What facets do not send on at once, of light from one direction. */
+static double facets_lack(const struct bsdf_facets *facets, double cosine, bool behind) {
+    double eta = behind ? 1 / facets->eta : facets->eta;
+    return 1 - (facets->kind == FACETS_BOUNDARY ? albedo_boundary(cosine, facets->roughness, eta)
+                                                : albedo_mirror(cosine, facets->roughness));
+}
+
+static double facets_multiple(const struct bsdf *bsdf, const struct lobe *lobe, double n_o, double n_i) {
+    const struct bsdf_facets *facets = &bsdf->facets[lobe->facets];
+    bool behind = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    double mean = behind ? facets->lack_behind : facets->lack;
+    double share = behind ? facets->through : 1 - facets->through;
+    return mean > 0 ? share * facets_lack(facets, n_o, false) * facets_lack(facets, n_i, behind) / mean : 0;
+}
+
+/* --- the four questions --- */
+
+double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
+    double n_i = cosine_on(bsdf, lobe_flags(lobe->kind) & BSDF_TRANSMITS, wi), n_o = vec3_dot(bsdf->side, wo);
+    if (!(n_i > 0))
+        return 0;
+    switch (lobe->kind) {
+    case LOBE_OREN_NAYAR:
+        return fujii(clamp_share(lobe->exponent), n_o, n_i, vec3_dot(wo, wi)) * n_i / PI;
+    case LOBE_OREN_NAYAR_MULTIPLE:
+        return oren_nayar_multiple(clamp_share(lobe->exponent), n_o, n_i) * n_i / PI;
+    case LOBE_FUZZ:
+        return fuzz(clamp_share(lobe->exponent), n_o, n_i, bsdf->side, wo, wi);
+    case LOBE_GLOSS:
+    case LOBE_METAL:
+    case LOBE_GLASS:
+    case LOBE_PANE: {
+        struct facet_path path = path_of(bsdf, lobe, wo, wi);
+        return path.pdf * path.share;
+    }
+    case LOBE_FACETS_MULTIPLE:
+    case LOBE_FACETS_THROUGH:
+        return facets_multiple(bsdf, lobe, n_o, n_i) * n_i / PI;
+    case LOBE_DIFFUSE:
+    case LOBE_PHONG:
+    case LOBE_BLINN:
+    case LOBE_MIRROR:
+    case LOBE_REFRACTION:
+    case LOBE_GGX_REFLECTION:
+    case LOBE_GGX_TRANSMISSION:
+        break;
+    }
+    return 0;
+}
+
+struct vec3 rough_lobe_weight(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
+    if (!(lobe_flags(lobe->kind) & BSDF_TINTED))
+        return lobe->weight;
+    double towards = vec3_dot(wo, vec3_normalize(vec3_add(wo, wi)));
+    return vec3_mul(lobe->weight, bsdf_metal_fresnel(&bsdf->facets[lobe->facets], towards));
+}
+
+double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
+    double n_i = cosine_on(bsdf, lobe_flags(lobe->kind) & BSDF_TRANSMITS, wi);
+    if (!(n_i > 0))
+        return 0;
+    switch (lobe->kind) {
+    case LOBE_FUZZ:
+        return 1 / (2 * PI);
+    case LOBE_OREN_NAYAR:
+    case LOBE_OREN_NAYAR_MULTIPLE:
+    case LOBE_FACETS_MULTIPLE:
+    case LOBE_FACETS_THROUGH:
+        return n_i / PI;
+    case LOBE_GLOSS:
+    case LOBE_METAL:
+    case LOBE_GLASS:
+    case LOBE_PANE:
+        return path_of(bsdf, lobe, wo, wi).pdf;
+    case LOBE_DIFFUSE:
+    case LOBE_PHONG:
+    case LOBE_BLINN:
+    case LOBE_MIRROR:
+    case LOBE_REFRACTION:
+    case LOBE_GGX_REFLECTION:
+    case LOBE_GGX_TRANSMISSION:
+        break;
+    }
+    return 0;
+}
+
+bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
+                       struct vec3 *direction, bool *transmits) {
+    *transmits = lobe_flags(lobe->kind) & BSDF_TRANSMITS;
+    switch (lobe->kind) {
+    case LOBE_FUZZ:
+        *direction = uniform_sample(bsdf->side, u);
+        break;
+    case LOBE_OREN_NAYAR:
+    case LOBE_OREN_NAYAR_MULTIPLE:
+    case LOBE_FACETS_MULTIPLE:
+    case LOBE_FACETS_THROUGH:
+        *direction = cosine_sample(*transmits ? vec3_negate(bsdf->side) : bsdf->side, u);
+        break;
+    case LOBE_GLOSS:
+    case LOBE_METAL:
+    case LOBE_GLASS:
+    case LOBE_PANE:
+        return facet_sample(bsdf, lobe, wo, u, direction, transmits);
+    case LOBE_DIFFUSE:
+    case LOBE_PHONG:
+    case LOBE_BLINN:
+    case LOBE_MIRROR:
+    case LOBE_REFRACTION:
+    case LOBE_GGX_REFLECTION:
+    case LOBE_GGX_TRANSMISSION:
+        return false;
+    }
+    return cosine_on(bsdf, *transmits, *direction) > 0;
+}

@@ -1,0 +1,348 @@
+/* Layered materials: gr.openpbr_material with the parameters of OpenPBR Surface 1.1, under their names, and
+ * gr.metal_material, whose reflectances are measured. Both are one kind of material (material/openpbr.h). */
+#include "script/bindings_internal.h"
+#include "script/context_internal.h"
+#include "script/table_rows_internal.h"
+
+#include "material/material_inputs.h"
+#include "material/metals.h"
+#include "material/openpbr.h"
+#include "math/elementary.h"
+
+enum {
+    BASE_WEIGHT,
+    BASE_COLOUR,
+    BASE_DIFFUSE_ROUGHNESS,
+    BASE_METALNESS,
+    SPECULAR_WEIGHT,
+    SPECULAR_COLOUR,
+    SPECULAR_ROUGHNESS,
+    SPECULAR_ANISOTROPY,
+    SPECULAR_IOR,
+    TRANSMISSION_WEIGHT,
+    TRANSMISSION_COLOUR,
+    TRANSMISSION_DEPTH,
+    TRANSMISSION_SCATTER,
+    TRANSMISSION_SCATTER_ANISOTROPY,
+    TRANSMISSION_DISPERSION_SCALE,
+    TRANSMISSION_DISPERSION_ABBE,
+    SUBSURFACE_WEIGHT,
+    SUBSURFACE_COLOUR,
+    SUBSURFACE_RADIUS,
+    SUBSURFACE_RADIUS_SCALE,
+    SUBSURFACE_SCATTER_ANISOTROPY,
+    COAT_WEIGHT,
+    COAT_COLOUR,
+    COAT_ROUGHNESS,
+    COAT_ANISOTROPY,
+    COAT_IOR,
+    COAT_DARKENING,
+    FUZZ_WEIGHT,
+    FUZZ_COLOUR,
+    FUZZ_ROUGHNESS,
+    EMISSION_LUMINANCE,
+    EMISSION_COLOUR,
+    THIN_FILM_WEIGHT,
+    THIN_FILM_THICKNESS,
+    THIN_FILM_IOR,
+    GEOMETRY_OPACITY,
+    GEOMETRY_THIN_WALLED,
+    GEOMETRY_NORMAL,
+    GEOMETRY_TANGENT,
+    GEOMETRY_COAT_NORMAL,
+    GEOMETRY_COAT_TANGENT,
+    OPENPBR_GLOSSY_SAMPLES,
+};
+
+/* A number between 0 and 1, a colour, an index: each may be a texture. */
+#define SHARE(name, otherwise, help)                                                                                   \
+    { name, KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, otherwise, help }
+#define TINT(name, otherwise, help)                                                                                    \
+    { name, KIND_COLOUR, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, otherwise, help }
+#define INDEX(name, otherwise, help)                                                                                   \
+    { name, KIND_NUMBER, OPTIONAL | OR_TEXTURE | LOW_OPEN, ABOVE(0), NULL, otherwise, help }
+#define LATER(name, kind, otherwise)                                                                                   \
+    { name, kind, OPTIONAL, ABOVE(0), NULL, otherwise, "Not there yet." }
+#define SAMPLES                                                                                                        \
+    {                                                                                                                  \
+        "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
+            "N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray."         \
+    }
+#define NORMAL_HELP "A normal map or bump map: a result of gr.bump, or the file of a normal map."
+#define TANGENT_HELP "Direction along which the facets of an anisotropic surface are smooth, in the world."
+
+static const struct script_parameter openpbr_parameters[] = {
+    [BASE_WEIGHT] = SHARE("base_weight", "1", "Factor of base_color."),
+    [BASE_COLOUR] = TINT("base_color", "{0.8, 0.8, 0.8}", "Diffuse colour; of metals the reflectance head on."),
+    [BASE_DIFFUSE_ROUGHNESS] = SHARE("base_diffuse_roughness", "0", "Roughness of the diffuse base; 0 is Lambert's."),
+    [BASE_METALNESS] = SHARE("base_metalness", "0", "Share of the base that is metal."),
+    [SPECULAR_WEIGHT] = {"specular_weight", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1",
+                         "Factor of the reflectance head on (by the index), and of metal's reflection."},
+    [SPECULAR_COLOUR] = TINT("specular_color", "{1, 1, 1}", "Colour of the gloss; of metals the tint at 82 degrees."),
+    [SPECULAR_ROUGHNESS] = SHARE("specular_roughness", "0.3", "Roughness of gloss, metal and glass; 0 is polished."),
+    [SPECULAR_ANISOTROPY] =
+        SHARE("specular_roughness_anisotropy", "0", "How much smoother it is along the tangent than across."),
+    [SPECULAR_IOR] = INDEX("specular_ior", "1.5", "Index of refraction of the base."),
+    [TRANSMISSION_WEIGHT] = SHARE("transmission_weight", "0", "Share of the dielectric base that light passes."),
+    [TRANSMISSION_COLOUR] =
+        TINT("transmission_color", "{1, 1, 1}", "Colour of light that passed the surface, or transmission_depth."),
+    [TRANSMISSION_DEPTH] = {"transmission_depth", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
+                            "Length of the way inside after which white light has transmission_color; 0: any."},
+    [TRANSMISSION_SCATTER] = {"transmission_scatter", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
+                              "Scattering inside: not there yet, but for black."},
+    [TRANSMISSION_SCATTER_ANISOTROPY] = {"transmission_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1),
+                                         NULL, "0", "Without effect while transmission_scatter is black."},
+    [TRANSMISSION_DISPERSION_SCALE] = LATER("transmission_dispersion_scale", KIND_NUMBER, "0"),
+    [TRANSMISSION_DISPERSION_ABBE] = LATER("transmission_dispersion_abbe_number", KIND_NUMBER, "20"),
+    [SUBSURFACE_WEIGHT] = LATER("subsurface_weight", KIND_NUMBER, "0"),
+    [SUBSURFACE_COLOUR] = LATER("subsurface_color", KIND_COLOUR, "{0.8, 0.8, 0.8}"),
+    [SUBSURFACE_RADIUS] = LATER("subsurface_radius", KIND_NUMBER, "1"),
+    [SUBSURFACE_RADIUS_SCALE] = LATER("subsurface_radius_scale", KIND_COLOUR, "{1, 0.5, 0.25}"),
+    [SUBSURFACE_SCATTER_ANISOTROPY] = {"subsurface_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1), NULL,
+                                       "0", "Not there yet."},
+    [COAT_WEIGHT] = SHARE("coat_weight", "0", "Share of the surface with a clear coat."),
+    [COAT_COLOUR] = TINT("coat_color", "{1, 1, 1}", "Colour of light that passed the coat twice."),
+    [COAT_ROUGHNESS] = SHARE("coat_roughness", "0", "Roughness of the coat; 0 is polished."),
+    [COAT_ANISOTROPY] = SHARE("coat_roughness_anisotropy", "0", "Likewise for the coat."),
+    [COAT_IOR] = INDEX("coat_ior", "1.6", "Index of refraction of the coat."),
+    [COAT_DARKENING] = SHARE("coat_darkening", "1", "How much the coat darkens the base by reflections inside."),
+    [FUZZ_WEIGHT] = SHARE("fuzz_weight", "0", "Share of the surface with fuzz."),
+    [FUZZ_COLOUR] = TINT("fuzz_color", "{1, 1, 1}", "Colour of the fuzz."),
+    [FUZZ_ROUGHNESS] = SHARE("fuzz_roughness", "0.5", "Roughness of the fuzz: how far it shows from the rim inwards."),
+    [EMISSION_LUMINANCE] = {"emission_luminance", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0",
+                            "Emitted light, below coat and fuzz; 1 is the radiance 1."},
+    [EMISSION_COLOUR] = TINT("emission_color", "{1, 1, 1}", "Its colour."),
+    [THIN_FILM_WEIGHT] = LATER("thin_film_weight", KIND_NUMBER, "0"),
+    [THIN_FILM_THICKNESS] = LATER("thin_film_thickness", KIND_NUMBER, "0.5"),
+    [THIN_FILM_IOR] = LATER("thin_film_ior", KIND_NUMBER, "1.4"),
+    [GEOMETRY_OPACITY] = SHARE("geometry_opacity", "1", "Opacity of the surface; below 1 it has holes."),
+    [GEOMETRY_THIN_WALLED] = {"geometry_thin_walled", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                              "Whether the surface is a wall without thickness: nothing is inside."},
+    [GEOMETRY_NORMAL] = {"geometry_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none", NORMAL_HELP},
+    [GEOMETRY_TANGENT] = {"geometry_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u", TANGENT_HELP},
+    [GEOMETRY_COAT_NORMAL] = {"geometry_coat_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none",
+                              "Not there yet."},
+    [GEOMETRY_COAT_TANGENT] = {"geometry_coat_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u",
+                               "The same for the coat."},
+    [OPENPBR_GLOSSY_SAMPLES] = SAMPLES,
+};
+
+static double number_or(const struct script_value *value, double otherwise) {
+    return value->given ? value->number : otherwise;
+}
+
+static struct vec3 colour_or(const struct script_value *value, struct vec3 otherwise) {
+    return value->given ? value->vector : otherwise;
+}
+
+/* What the specification has and gray has not. */
+static bool is_there(const struct script_value *args, struct error *error) {
+    static const struct {
+        int parameter;
+        bool colour;
+    } later[] = {{THIN_FILM_WEIGHT, false},
+                 {SUBSURFACE_WEIGHT, false},
+                 {TRANSMISSION_DISPERSION_SCALE, false},
+                 {TRANSMISSION_SCATTER, true},
+                 {GEOMETRY_COAT_NORMAL, false}};
+    for (size_t i = 0; i < sizeof later / sizeof *later; i++) {
+        const struct script_value *value = &args[later[i].parameter];
+        bool used = later[i].colour ? vec3_max_abs(value->vector) > 0 : value->number != 0;
+        if (value->given && (used || later[i].parameter == GEOMETRY_COAT_NORMAL))
+            return error_set(error, ERROR_SCENE, "%s is not there yet", openpbr_parameters[later[i].parameter].name);
+    }
+    return true;
+}
+
+/* A material whose numbers are those of the specification. */
+static struct material *layered(struct script_context *context, struct openpbr **out, struct error *error) {
+    struct material *m = scene_material(&context->scene, MATERIAL_OPENPBR, NULL, error);
+    *out = m ? arena_alloc(&context->scene.arena, sizeof **out) : NULL;
+    if (!m || !*out) {
+        if (m)
+            error_no_memory(error, "a material");
+        return NULL;
+    }
+    **out = openpbr_defaults();
+    m->openpbr = *out;
+    m->phong.kd = vec3_all(0.8);
+    m->phong.ks = vec3_all(1);
+    m->phong.shininess = 1;
+    m->phong.ior = 1;
+    m->phong.two_sided = true;
+    m->phong.roughness = 0.3;
+    return m;
+}
+
+/* The textures of inputs, which multiply numbers of 1. */
+static bool with_texture(struct script_context *context, struct material *m, enum material_input input, bool is_share,
+                         const struct script_value *value, struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    struct script_value own = *value;
+    if (!value->texture)
+        return true;
+    own.vector = vec3_all(1);
+    const struct texture *texture = gr_texture_of(context, &own, error);
+    if (texture && is_share)
+        texture = texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error);
+    return texture && material_multiply(m, input, texture, arena, error);
+}
+
+static bool with_textures(struct script_context *context, struct material *m, const struct script_value *args,
+                          struct error *error) {
+    static const struct {
+        int parameter;
+        enum material_input input;
+        bool is_share;
+    } rows[] = {{BASE_WEIGHT, INPUT_BASE_WEIGHT, true},
+                {BASE_COLOUR, INPUT_KD, false},
+                {BASE_DIFFUSE_ROUGHNESS, INPUT_DIFFUSE_ROUGHNESS, true},
+                {BASE_METALNESS, INPUT_METALNESS, true},
+                {SPECULAR_WEIGHT, INPUT_SPECULAR_WEIGHT, false},
+                {SPECULAR_COLOUR, INPUT_KS, false},
+                {SPECULAR_ROUGHNESS, INPUT_ROUGHNESS, true},
+                {SPECULAR_ANISOTROPY, INPUT_SPECULAR_ANISOTROPY, true},
+                {SPECULAR_IOR, INPUT_SPECULAR_IOR, false},
+                {TRANSMISSION_WEIGHT, INPUT_REFRACT, true},
+                {TRANSMISSION_COLOUR, INPUT_TRANSMISSION_COLOUR, false},
+                {COAT_WEIGHT, INPUT_COAT_WEIGHT, true},
+                {COAT_COLOUR, INPUT_COAT_COLOUR, false},
+                {COAT_ROUGHNESS, INPUT_COAT_ROUGHNESS, true},
+                {COAT_ANISOTROPY, INPUT_COAT_ANISOTROPY, true},
+                {COAT_IOR, INPUT_COAT_IOR, false},
+                {COAT_DARKENING, INPUT_COAT_DARKENING, true},
+                {FUZZ_WEIGHT, INPUT_FUZZ_WEIGHT, true},
+                {FUZZ_COLOUR, INPUT_FUZZ_COLOUR, false},
+                {FUZZ_ROUGHNESS, INPUT_FUZZ_ROUGHNESS, true},
+                {EMISSION_LUMINANCE, INPUT_EMISSION, false},
+                {EMISSION_COLOUR, INPUT_EMISSION, false},
+                {GEOMETRY_OPACITY, INPUT_OPACITY, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (!with_texture(context, m, rows[i].input, rows[i].is_share, &args[rows[i].parameter], error))
+            return false;
+    const struct script_value *opacity = &args[GEOMETRY_OPACITY];
+    if (opacity->texture || !(number_or(opacity, 1) < 1))
+        return true;
+    const struct texture *cover = texture_keep(&context->scene.arena, texture_number(opacity->number), error);
+    return cover && material_multiply(m, INPUT_OPACITY, cover, &context->scene.arena, error);
+}
+
+/* A picture alone is a normal map. */
+static bool with_normal(struct script_context *context, struct material *m, const struct script_value *value,
+                        struct error *error) {
+    if (!value->given)
+        return true;
+    const struct bump *given = read_bump_values(context, value, error);
+    if (!given)
+        return false;
+    struct bump bump = *given;
+    if (!value->texture || value->texture->kind == MATERIAL_IMAGE) {
+        bump.kind = MATERIAL_NORMAL;
+        bump.height = 1;
+        bump.relative = false;
+    }
+    return material_add_bump(m, &bump, &context->scene.arena, error);
+}
+
+/* Beer's law: after the depth white light has the colour. Black is all but black. */
+static double absorption(double colour, double depth) {
+    return colour < 1 ? -el_log(colour > 1e-6 ? colour : 1e-6) / depth : 0;
+}
+
+static void set_numbers(const struct script_value *args, struct openpbr *out, struct phong *phong) {
+    out->base_weight = number_or(&args[BASE_WEIGHT], out->base_weight);
+    out->base_diffuse_roughness = args[BASE_DIFFUSE_ROUGHNESS].number;
+    out->base_metalness = args[BASE_METALNESS].number;
+    out->specular_weight = number_or(&args[SPECULAR_WEIGHT], out->specular_weight);
+    out->specular_anisotropy = args[SPECULAR_ANISOTROPY].number;
+    out->specular_ior = number_or(&args[SPECULAR_IOR], out->specular_ior);
+    out->transmission_colour = colour_or(&args[TRANSMISSION_COLOUR], out->transmission_colour);
+    out->coat_weight = args[COAT_WEIGHT].number;
+    out->coat_colour = colour_or(&args[COAT_COLOUR], out->coat_colour);
+    out->coat_roughness = args[COAT_ROUGHNESS].number;
+    out->coat_anisotropy = args[COAT_ANISOTROPY].number;
+    out->coat_ior = number_or(&args[COAT_IOR], out->coat_ior);
+    out->coat_darkening = number_or(&args[COAT_DARKENING], out->coat_darkening);
+    out->fuzz_weight = args[FUZZ_WEIGHT].number;
+    out->fuzz_colour = colour_or(&args[FUZZ_COLOUR], out->fuzz_colour);
+    out->fuzz_roughness = number_or(&args[FUZZ_ROUGHNESS], out->fuzz_roughness);
+    out->thin_walled = args[GEOMETRY_THIN_WALLED].boolean;
+    out->tangent = args[GEOMETRY_TANGENT].vector;
+    out->coat_tangent = args[GEOMETRY_COAT_TANGENT].vector;
+    phong->kd = colour_or(&args[BASE_COLOUR], phong->kd);
+    phong->ks = colour_or(&args[SPECULAR_COLOUR], phong->ks);
+    phong->roughness = number_or(&args[SPECULAR_ROUGHNESS], phong->roughness);
+    phong->refract = args[TRANSMISSION_WEIGHT].number;
+    phong->reflect = out->base_metalness;
+    phong->emission = vec3_scale(colour_or(&args[EMISSION_COLOUR], vec3_all(1)), args[EMISSION_LUMINANCE].number);
+    phong->glossy_samples = (int)args[OPENPBR_GLOSSY_SAMPLES].number;
+    phong->has_ior = phong->refract > 0 && !out->thin_walled;
+    phong->ior = phong->has_ior ? openpbr_ior(out->specular_ior, out->specular_weight) : 1;
+    double depth = args[TRANSMISSION_DEPTH].number;
+    struct vec3 colour = out->transmission_colour;
+    if (!(depth > 0) || !phong->has_ior)
+        return;
+    out->deep = true;
+    phong->absorption =
+        vec3_make(absorption(colour.x, depth), absorption(colour.y, depth), absorption(colour.z, depth));
+}
+
+static bool openpbr(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
+    struct openpbr *numbers;
+    if (args[TRANSMISSION_DEPTH].number > 0 && args[TRANSMISSION_COLOUR].texture)
+        return error_set(error, ERROR_SCENE, "transmission_color must be a colour where transmission_depth is above 0");
+    struct material *m = is_there(args, error) ? layered(context, &numbers, error) : NULL;
+    if (!m)
+        return false;
+    set_numbers(args, numbers, &m->phong);
+    result->pointer = m;
+    return with_textures(context, m, args, error) && with_normal(context, m, &args[GEOMETRY_NORMAL], error);
+}
+
+#define METAL_WORD(name, ...) " " name
+enum { METAL_NAME, METAL_ROUGHNESS, METAL_ANISOTROPY, METAL_TANGENT, METAL_NORMAL, METAL_GLOSSY_SAMPLES };
+static const struct script_parameter metal_parameters[] = {
+    [METAL_NAME] = {"metal", KIND_CHOICE, 0, 0, 0, &(METALS(METAL_WORD))[1], NULL, NULL, "Its name."},
+    [METAL_ROUGHNESS] = SHARE("roughness", "0", "Roughness; 0 is polished."),
+    [METAL_ANISOTROPY] = SHARE("anisotropy", "0", "How much smoother it is along the tangent than across."),
+    [METAL_TANGENT] = {"tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u", TANGENT_HELP},
+    [METAL_NORMAL] = {"normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none", NORMAL_HELP},
+    [METAL_GLOSSY_SAMPLES] = SAMPLES,
+};
+
+struct metal {
+    struct vec3 f0, tint;
+};
+#define METAL(name, r, g, b, tint_r, tint_g, tint_b) {{r, g, b}, {tint_r, tint_g, tint_b}},
+static const struct metal metals[] = {METALS(METAL)};
+
+static bool metal(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
+    struct openpbr *numbers;
+    const struct metal *known = &metals[args[METAL_NAME].choice];
+    struct material *m = layered(context, &numbers, error);
+    if (!m)
+        return false;
+    numbers->base_metalness = 1;
+    numbers->specular_anisotropy = args[METAL_ANISOTROPY].number;
+    numbers->tangent = args[METAL_TANGENT].vector;
+    m->phong.kd = known->f0;
+    m->phong.ks = known->tint;
+    m->phong.reflect = 1;
+    m->phong.roughness = args[METAL_ROUGHNESS].number;
+    m->phong.glossy_samples = (int)args[METAL_GLOSSY_SAMPLES].number;
+    result->pointer = m;
+    return with_texture(context, m, INPUT_ROUGHNESS, true, &args[METAL_ROUGHNESS], error) &&
+           with_texture(context, m, INPUT_SPECULAR_ANISOTROPY, true, &args[METAL_ANISOTROPY], error) &&
+           with_normal(context, m, &args[METAL_NORMAL], error);
+}
+
+static const struct script_function rows[] = {
+    GR("openpbr_material", openpbr_parameters, RESULT_MATERIAL, openpbr,
+       "Layers of metal, glass, gloss over a diffuse base, clear coat and fuzz: OpenPBR Surface 1.1.", "base_color?"),
+    GR("metal_material", metal_parameters, RESULT_MATERIAL, metal, "A metal with its measured reflectance.",
+       "metal roughness?"),
+};
+
+const struct function_rows layered_functions = {rows, COUNT(rows)};

@@ -1,0 +1,413 @@
+/* Layered materials: the layers by closed forms, the tables of albedos by sums over facets, and white materials in
+ * uniform light, from which all of it has to come back. */
+#include "tests/harness.h"
+
+#include "material/albedo.h"
+#include "material/material_eval.h"
+#include "material/material_inputs.h"
+#include "material/metals.h"
+#include "material/microfacet_internal.h"
+#include "material/openpbr.h"
+#include "material/rough_lobes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A material with numbers of its own, white, polished and without any layer but the base. */
+struct layers {
+    struct openpbr numbers;
+    struct material material;
+};
+
+static void layers_init(struct layers *layers) {
+    *layers = (struct layers){.numbers = openpbr_defaults(), .material = {.kind = MATERIAL_OPENPBR, .depth = 1}};
+    layers->material.openpbr = &layers->numbers;
+    layers->material.phong.kd = layers->material.phong.ks = vec3_all(1);
+    layers->material.phong.two_sided = true;
+}
+
+/* The surface z = 0, seen at a cosine from outside or from inside. */
+static struct bsdf seen(const struct layers *layers, double cosine, bool front) {
+    struct hit hit = {.view = {sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine}, .front = front, .primitive = 4};
+    struct medium_stack inside = {.count = 0};
+    struct bsdf bsdf;
+    hit.normal = hit.normal_geometric = vec3_make(0, 0, 1);
+    medium_stack_enter(&inside, &(struct medium){.primitive = 4, .ior = layers->numbers.specular_ior});
+    const struct material_context context = {.total_reflection = true};
+    material_eval(&layers->material, &hit, front ? NULL : &inside, &context, &bsdf);
+    return bsdf;
+}
+
+static struct vec3 view_of(double cosine, bool front) {
+    return vec3_make(sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine);
+}
+
+/* The share of light that comes back or goes on, with its standard error. */
+struct estimate {
+    double mean, error;
+};
+
+static struct estimate albedo_of(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, uint64_t key, uint32_t n) {
+    double sum = 0, sum2 = 0;
+    for (uint32_t i = 0; i < n * n; i++) {
+        struct bsdf_sample sample;
+        struct sample2 u = sample_cell(key, i % n, i / n, n);
+        double x = bsdf_sample(bsdf, lobes, BSDF_IMPORTANCE, wo, u, &sample) ? sample.weight.y : 0;
+        sum += x;
+        sum2 += x * x;
+    }
+    double count = (double)n * n, mean = sum / count;
+    return (struct estimate){mean, sqrt(fmax(sum2 / count - mean * mean, 0) / count)};
+}
+
+/* --- albedos --- */
+
+/* One lobe alone, with the weight 1. */
+static struct bsdf one_lobe(const struct layers *layers, enum lobe_kind kind, double cosine, bool front) {
+    struct bsdf bsdf = seen(layers, cosine, front);
+    for (int i = 0; i < bsdf.count; i++) {
+        if (bsdf.lobes[i].kind != kind)
+            continue;
+        bsdf.lobes[0] = bsdf.lobes[i];
+        bsdf.lobes[0].weight = vec3_all(1);
+        bsdf.count = 1;
+        return bsdf;
+    }
+    bsdf.count = 0;
+    return bsdf;
+}
+
+TEST(tables_of_albedos_are_sums_over_facets) {
+    struct test_random random = {3};
+    for (int k = 0; k < 60; k++) {
+        struct layers glass, metal;
+        double cosine = test_uniform(&random, 0.1, 1), roughness = test_uniform(&random, 0.1, 1);
+        double ior = test_uniform(&random, 1.1, 2.6);
+        bool front = k & 1;
+        layers_init(&glass);
+        layers_init(&metal);
+        glass.material.phong.roughness = metal.material.phong.roughness = roughness;
+        glass.material.phong.refract = metal.numbers.base_metalness = 1;
+        glass.numbers.specular_ior = ior;
+        double eta = front ? 1 / ior : ior, mirrored, reflected, through;
+        struct vec3 wo = view_of(cosine, front);
+        struct bsdf bsdf = one_lobe(&metal, LOBE_METAL, cosine, front);
+        mirrored = albedo_of(&bsdf, BSDF_ALL, wo, 7, 200).mean;
+        CHECK_NEAR(albedo_mirror(cosine, roughness), mirrored, 2e-3);
+        bsdf = one_lobe(&glass, LOBE_GLOSS, cosine, front);
+        reflected = albedo_of(&bsdf, BSDF_ALL, wo, 8, 200).mean;
+        bsdf = one_lobe(&glass, LOBE_GLASS, cosine, front);
+        through = albedo_of(&bsdf, BSDF_ALL, wo, 9, 200).mean;
+        CHECK_NEAR(albedo_boundary(cosine, roughness, eta), reflected + through, front ? 3e-3 : 1.5e-2);
+        if (front)
+            CHECK_NEAR(albedo_reflection(cosine, roughness, eta), reflected, 3e-3);
+    }
+}
+
+TEST(averages_of_albedos_are_integrals_of_their_tables) {
+    enum { N = 400 };
+    for (double roughness = 0.1; roughness <= 1; roughness += 0.1) {
+        double mirror = 0, outside = 0, inside = 0;
+        for (int i = 0; i < N; i++) {
+            double c = (i + 0.5) / N;
+            mirror += 2 * c / N * albedo_mirror(c, roughness);
+            outside += 2 * c / N * albedo_boundary(c, roughness, 1 / 1.5);
+            inside += 2 * c / N * albedo_boundary(c, roughness, 1.5);
+        }
+        CHECK_NEAR(albedo_mirror_average(roughness), mirror, 1e-3);
+        CHECK_NEAR(albedo_boundary_average(roughness, 1 / 1.5), outside, 1e-3);
+        CHECK_NEAR(albedo_boundary_average(roughness, 1.5), inside, 3e-3);
+    }
+}
+
+/* Facets of the width 1, seen head on, send 1 - ln 2 on where they reflect all. */
+TEST(the_widest_facets_send_on_one_minus_the_logarithm_of_two) {
+    struct layers metal;
+    layers_init(&metal);
+    metal.numbers.base_metalness = metal.material.phong.roughness = 1;
+    struct bsdf bsdf = one_lobe(&metal, LOBE_METAL, 1, true);
+    CHECK_EQ_INT(bsdf.count, 1);
+    CHECK_NEAR(albedo_of(&bsdf, BSDF_ALL, view_of(1, true), 5, 1000).mean, 1 - log(2), 5e-4);
+    CHECK_NEAR(albedo_mirror(1, 1), 1 - log(2), 5e-4);
+}
+
+TEST(the_mean_of_fresnel_s_formula_is_its_integral) {
+    enum { N = 20000 };
+    for (double n = 1.01; n < 4; n *= 1.3) {
+        double outside = 0, inside = 0;
+        for (int i = 0; i < N; i++) {
+            double c = (i + 0.5) / N;
+            outside += 2 * c / N * dielectric_fresnel(c, 1 / n);
+            inside += 2 * c / N * dielectric_fresnel(c, n);
+        }
+        CHECK_NEAR(dielectric_fresnel_average(1 / n), outside, 1e-6);
+        CHECK_NEAR(dielectric_fresnel_average(n), inside, 1e-5);
+    }
+}
+
+TEST(fuzz_reflects_what_its_table_says_and_never_more_than_arrives) {
+    for (double roughness = 0; roughness <= 1; roughness += 0.125) {
+        for (double cosine = 0.05; cosine <= 1; cosine += 0.19) {
+            struct layers fuzz;
+            layers_init(&fuzz);
+            fuzz.numbers.fuzz_weight = 1;
+            fuzz.numbers.fuzz_roughness = roughness;
+            struct bsdf bsdf = one_lobe(&fuzz, LOBE_FUZZ, cosine, true);
+            double albedo = albedo_of(&bsdf, BSDF_ALL, view_of(cosine, true), 4, 150).mean;
+            CHECK_NEAR(albedo, albedo_fuzz(cosine, roughness), 3e-3);
+            CHECK(albedo < 1);
+        }
+    }
+}
+
+/* --- metals --- */
+
+TEST(metals_reflect_what_they_were_measured_to_reflect_head_on_and_at_82_degrees) {
+    struct bsdf_facets facets;
+    struct vec3 f0 = {0.9, 0.5, 0.1}, tint = {0.9, 1, 0.7};
+    bsdf_facets_shape(&facets, vec3_make(0, 0, 1), vec3_all(0), 0.5, 0);
+    bsdf_facets_metal(&facets, f0, tint);
+    struct vec3 head_on = bsdf_metal_fresnel(&facets, 1), at_82 = bsdf_metal_fresnel(&facets, 1.0 / 7);
+    CHECK_NEAR(head_on.x, 0.9, 1e-15);
+    CHECK_NEAR(head_on.z, 0.1, 1e-15);
+    double fifth = pow(6.0 / 7, 5);
+    CHECK_NEAR(at_82.x, 0.9 * (0.9 + 0.1 * fifth), 1e-14);
+    CHECK_NEAR(at_82.z, 0.7 * (0.1 + 0.9 * fifth), 1e-14);
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < 10000; i++)
+        sum = vec3_add_scaled(sum, bsdf_metal_fresnel(&facets, (i + 0.5) / 10000), 2 * (i + 0.5) / 1e8);
+    struct vec3 average = bsdf_metal_fresnel_average(&facets);
+    CHECK_NEAR(average.x, sum.x, 1e-7);
+    CHECK_NEAR(average.y, sum.y, 1e-7);
+    CHECK_NEAR(average.z, sum.z, 1e-7);
+}
+
+/* Silver at 549 nm has n = 0.06 + 3.586 i (Johnson and Christy 1972); gold and copper lack blue, in this order. */
+TEST(the_table_of_metals_has_the_colours_of_metals) {
+    struct metal {
+        const char *name;
+        double colour[3], tint[3];
+    };
+#define ROW(name, r, g, b, tint_r, tint_g, tint_b) {name, {r, g, b}, {tint_r, tint_g, tint_b}},
+    static const struct metal metals[] = {METALS(ROW)};
+#undef ROW
+    int known = 0;
+    for (size_t i = 0; i < sizeof metals / sizeof *metals; i++) {
+        const double *c = metals[i].colour, *t = metals[i].tint;
+        for (int k = 0; k < 3; k++)
+            CHECK(c[k] > 0.3 && c[k] <= 1 && t[k] > 0.6 && t[k] * (c[k] + (1 - c[k]) * pow(6.0 / 7, 5)) < 1);
+        if (strcmp(metals[i].name, "silver") == 0)
+            CHECK_NEAR(c[1], (pow(0.06 - 1, 2) + 3.586 * 3.586) / (pow(0.06 + 1, 2) + 3.586 * 3.586), 0.005);
+        if (strcmp(metals[i].name, "gold") == 0)
+            CHECK(c[0] > 0.98 && c[1] > 0.7 && c[1] < 0.8 && c[2] < 0.4);
+        known++;
+    }
+    CHECK(known >= 10);
+}
+
+/* --- closed forms of layers --- */
+
+static struct vec3 weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < bsdf->count; i++)
+        if (bsdf->lobes[i].kind == kind)
+            sum = vec3_add(sum, bsdf->lobes[i].weight);
+    return sum;
+}
+
+/* Fresnel outside R = 0.0918 on average and inside 1 - (1 - R) / n^2: R + (1 - R) (1 - S) a / (1 - S a). */
+TEST(a_clear_coat_over_a_matt_base_reflects_what_reflections_between_them_add_up_to) {
+    struct layers lacquer;
+    layers_init(&lacquer);
+    lacquer.numbers.coat_weight = 1;
+    lacquer.numbers.coat_ior = 1.5;
+    lacquer.numbers.specular_weight = 0;
+    lacquer.material.phong.kd = vec3_all(0.8);
+    enum { N = 2000 };
+    double sum = 0;
+    for (int i = 0; i < N; i++) {
+        double c = (i + 0.5) / N;
+        struct bsdf bsdf = seen(&lacquer, c, true);
+        sum += 2 * c / N * (weight_of(&bsdf, LOBE_MIRROR).x + weight_of(&bsdf, LOBE_DIFFUSE).x);
+    }
+    CHECK_NEAR(sum, 0.65264, 2e-5);
+}
+
+/* F (metal) below f (coat), both smooth: f + (1 - f)^2 F / (1 - f F). */
+TEST(a_clear_coat_over_polished_metal_reflects_the_sum_of_a_series) {
+    struct layers coated;
+    layers_init(&coated);
+    coated.numbers.coat_weight = coated.numbers.base_metalness = 1;
+    coated.material.phong.kd = vec3_all(0.6);
+    for (double c = 0.1; c < 1; c += 0.2) {
+        struct bsdf bsdf = seen(&coated, c, true);
+        double f = dielectric_fresnel(c, 1 / 1.6), metal = 0.6 + 0.4 * pow(1 - c, 5), series = f,
+               passes = (1 - f) * (1 - f);
+        struct bsdf_facets facets;
+        bsdf_facets_shape(&facets, vec3_make(0, 0, 1), vec3_all(0), 0.5, 0);
+        bsdf_facets_metal(&facets, vec3_all(0.6), vec3_all(1));
+        double mean = bsdf_metal_fresnel_average(&facets).x;
+        /* The specification takes the mean of the metal for the reflections between them. */
+        series += passes * metal / (1 - f * mean);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_MIRROR).x, series, 1e-12);
+    }
+}
+
+TEST(a_pane_reflects_and_passes_light_with_all_reflections_between_its_sides) {
+    struct layers pane;
+    layers_init(&pane);
+    pane.numbers.thin_walled = true;
+    pane.material.phong.refract = 1;
+    struct bsdf bsdf = seen(&pane, 1, true);
+    CHECK_NEAR(weight_of(&bsdf, LOBE_MIRROR).x, 1.0 / 13, 1e-14);
+    CHECK_NEAR(weight_of(&bsdf, LOBE_REFRACTION).x, 12.0 / 13, 1e-14);
+    bsdf = seen(&pane, 0.3, true);
+    struct bsdf_sample sample;
+    uint32_t through = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
+    CHECK(bsdf_sample(&bsdf, through, BSDF_RADIANCE, view_of(0.3, true), (struct sample2){0.5, 0.5}, &sample));
+    CHECK_NEAR(sample.direction.x, -sqrt(1 - 0.09), 1e-15);
+    CHECK_NEAR(sample.weight.x, weight_of(&bsdf, LOBE_REFRACTION).x, 1e-15);
+    struct medium_stack stack = {.count = 0};
+    medium_stack_cross(&stack, &bsdf.boundary);
+    CHECK_EQ_INT((int)stack.count, 0);
+}
+
+TEST(rough_glass_of_the_index_of_air_is_invisible) {
+    for (int thin = 0; thin < 2; thin++) {
+        struct layers glass;
+        layers_init(&glass);
+        glass.numbers.specular_ior = 1;
+        glass.numbers.thin_walled = thin;
+        glass.material.phong.refract = 1;
+        glass.material.phong.roughness = 0.5;
+        for (double c = 0.1; c <= 1; c += 0.3) {
+            struct bsdf bsdf = seen(&glass, c, true);
+            struct bsdf_sample sample;
+            CHECK(bsdf_sample(&bsdf, BSDF_ALL, BSDF_RADIANCE, view_of(c, true), (struct sample2){0.3, 0.3}, &sample));
+            CHECK_NEAR(vec3_length(vec3_add(sample.direction, view_of(c, true))), 0, 1e-15);
+            CHECK_NEAR(sample.weight.x, 1, 1e-15);
+            CHECK(sample.flags & BSDF_DELTA);
+        }
+    }
+}
+
+/* --- the furnace --- */
+
+struct furnace {
+    const char *name;
+    void (*make)(struct layers *layers);
+    bool solid; /* light gets inside */
+};
+
+static void make_lambert(struct layers *l) {
+    l->numbers.specular_weight = 0;
+}
+static void make_oren_nayar(struct layers *l) {
+    l->numbers.specular_weight = 0;
+    l->numbers.base_diffuse_roughness = 0.8;
+}
+static void make_metal(struct layers *l) {
+    l->numbers.base_metalness = 1;
+}
+static void make_plastic(struct layers *l) {
+    (void)l;
+}
+static void make_glass(struct layers *l) {
+    l->material.phong.refract = 1;
+}
+static void make_half_glass(struct layers *l) {
+    l->material.phong.refract = 0.5;
+}
+static void make_coat(struct layers *l) {
+    l->numbers.coat_weight = 1;
+    l->numbers.coat_roughness = l->material.phong.roughness;
+}
+static void make_fuzz(struct layers *l) {
+    l->numbers.fuzz_weight = 1;
+    l->numbers.fuzz_roughness = l->material.phong.roughness;
+}
+static void make_wall(struct layers *l) {
+    l->numbers.thin_walled = true;
+    l->material.phong.refract = 1;
+}
+static void make_all(struct layers *l) {
+    l->numbers.coat_weight = l->numbers.fuzz_weight = 0.5;
+    l->numbers.base_metalness = 0.4;
+    l->numbers.base_diffuse_roughness = 0.3;
+    l->numbers.coat_roughness = 0.2;
+    l->material.phong.refract = 0.5;
+}
+static const struct furnace furnaces[] = {
+    {"Lambert", make_lambert, false}, {"rough diffuse", make_oren_nayar, false},
+    {"metal", make_metal, false},     {"plastic", make_plastic, false},
+    {"glass", make_glass, true},      {"half of it glass", make_half_glass, true},
+    {"coat", make_coat, false},       {"fuzz", make_fuzz, false},
+    {"thin wall", make_wall, false},  {"all together", make_all, true},
+};
+
+/* In light that is 1 from everywhere a white surface sends 1 everywhere: a loss below half a percent, an excess below
+ * four standard errors, in the mean over views. */
+static void check_furnace(const struct furnace *furnace, double roughness, uint32_t views, uint32_t n) {
+    for (int front = 1; front >= (furnace->solid ? 0 : 1); front--) {
+        double sum = 0, variance = 0;
+        for (uint32_t i = 0; i < views; i++) {
+            struct layers layers;
+            double cosine = sqrt((i + 0.5) / views);
+            layers_init(&layers);
+            layers.material.phong.roughness = roughness;
+            furnace->make(&layers);
+            struct bsdf bsdf = seen(&layers, cosine, front);
+            struct estimate e = albedo_of(&bsdf, BSDF_ALL, view_of(cosine, front), i + 11, n);
+            sum += e.mean / views;
+            variance += e.error * e.error / ((double)views * views);
+        }
+        if (!(sum > 0.995 && sum < 1 + 4 * sqrt(variance) + 1e-12))
+            test_fail(__FILE__, __LINE__, "%s of roughness %g, from %s: %.5f +- %.5f", furnace->name, roughness,
+                      front ? "outside" : "inside", sum, sqrt(variance));
+    }
+}
+
+TEST(white_layered_surfaces_send_all_light_back_or_on) {
+    for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++)
+        for (double roughness = 0; roughness <= 1; roughness += 0.25)
+            check_furnace(&furnaces[i], roughness, 24, 40);
+}
+
+TEST_LONG(white_layered_surfaces_send_all_light_back_or_on_at_every_roughness) {
+    for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++)
+        for (double roughness = 0; roughness <= 1; roughness += 0.0625)
+            check_furnace(&furnaces[i], roughness, 200, 100);
+}
+
+/* --- inputs --- */
+
+TEST(a_texture_takes_the_place_of_every_number_of_a_layered_material) {
+    static const enum material_input inputs[] = {
+        INPUT_BASE_WEIGHT,         INPUT_DIFFUSE_ROUGHNESS, INPUT_METALNESS,           INPUT_SPECULAR_WEIGHT,
+        INPUT_SPECULAR_ANISOTROPY, INPUT_SPECULAR_IOR,      INPUT_TRANSMISSION_COLOUR, INPUT_COAT_WEIGHT,
+        INPUT_COAT_COLOUR,         INPUT_COAT_ROUGHNESS,    INPUT_COAT_ANISOTROPY,     INPUT_COAT_IOR,
+        INPUT_COAT_DARKENING,      INPUT_FUZZ_WEIGHT,       INPUT_FUZZ_COLOUR,         INPUT_FUZZ_ROUGHNESS};
+    struct texture value = texture_number(0.7);
+    for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++) {
+        struct layers with, without;
+        layers_init(&without);
+        make_all(&without);
+        without.material.phong.kd = vec3_make(0.5, 0.6, 0.7);
+        without.material.phong.roughness = 0.4;
+        without.numbers.specular_anisotropy = without.numbers.coat_anisotropy = 0.2;
+        with = without;
+        with.material.openpbr = &with.numbers;
+        with.material.inputs[inputs[i]].authored = &value;
+        struct bsdf a = seen(&with, 0.6, true), b = seen(&without, 0.6, true);
+        double change = 0;
+        for (int k = 0; k < 50; k++) {
+            struct vec3 wi = vec3_normalize(vec3_make(sin(k), cos(3 * k), 0.3 + (k % 5) * (k & 1 ? -1 : 1)));
+            struct vec3 wo = view_of(0.6, true);
+            change += vec3_length(vec3_sub(bsdf_eval(&a, BSDF_ALL, BSDF_RADIANCE, wo, wi),
+                                           bsdf_eval(&b, BSDF_ALL, BSDF_RADIANCE, wo, wi)));
+        }
+        if (!(change > 1e-6))
+            test_fail(__FILE__, __LINE__, "input %d has no effect", (int)inputs[i]);
+    }
+}
