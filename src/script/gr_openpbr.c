@@ -236,7 +236,7 @@ static bool with_normal(struct script_context *context, struct material *m, cons
     if (!given)
         return false;
     struct bump bump = *given;
-    if (!value->texture || value->texture->kind == MATERIAL_IMAGE) {
+    if (!value->texture || !value->texture->is_bump) {
         bump.kind = MATERIAL_NORMAL;
         bump.height = 1;
         bump.relative = false;
