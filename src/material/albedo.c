@@ -15,9 +15,9 @@ struct taps {
 
 /* x: 0 at the first node, 1 at the last one. */
 static struct taps taps_at(double x, int count) {
-    double place = (x > 0 ? x < 1 ? x : 1 : 0) * (count - 1);
-    int i = place < count - 1 ? (int)place : count - 2;
-    double t = place - i;
+    double position = (x > 0 ? x < 1 ? x : 1 : 0) * (count - 1);
+    int i = position < count - 1 ? (int)position : count - 2;
+    double t = position - i;
     double before = t * (-1 + t * (2 - t)) / 2, here = 1 + t * t * (3 * t - 5) / 2,
            next = t * (1 + t * (4 - 3 * t)) / 2, after = t * t * (t - 1) / 2;
     if (i == 0)

@@ -285,8 +285,8 @@ struct lobe_direction {
     bool delta, transmits;
 };
 
-struct bsdf_place bsdf_place(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
-    return (struct bsdf_place){u, bsdf->alpha > 0 ? microfacet_normal(bsdf->side, wo, bsdf->alpha, u) : bsdf->side};
+struct bsdf_draw bsdf_draw(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u) {
+    return (struct bsdf_draw){u, bsdf->alpha > 0 ? microfacet_normal(bsdf->side, wo, bsdf->alpha, u) : bsdf->side};
 }
 
 static bool rough_direction(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 facet,
@@ -494,16 +494,16 @@ static bool rough_branch_sample(const struct bsdf *bsdf, const struct bsdf_branc
 }
 
 bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo,
-                        const struct bsdf_place *place, struct bsdf_branch_direction *out) {
+                        const struct bsdf_draw *draw, struct bsdf_branch_direction *out) {
     const struct lobe *lobe = &bsdf->lobes[branch->lobe];
     if (!branch->rough && lobe_transmits(bsdf, lobe)) {
         *out = (struct bsdf_branch_direction){bsdf->through, branch->weight, true};
         return true;
     }
     if (lobe_flags(lobe->kind) & BSDF_ROUGH)
-        return rough_branch_sample(bsdf, branch, wo, place->u, out);
+        return rough_branch_sample(bsdf, branch, wo, draw->u, out);
     struct lobe_direction sampled;
-    if (!traced_direction(bsdf, lobe, wo, place->facet, &sampled))
+    if (!traced_direction(bsdf, lobe, wo, draw->facet, &sampled))
         return false;
     out->direction = sampled.direction;
     out->weight = sampled.share == 1 ? branch->weight : vec3_scale(branch->weight, sampled.share);

@@ -155,16 +155,16 @@ struct bsdf_branch_direction {
     struct vec3 direction, weight; /* mode IMPORTANCE */
     bool transmits;
 };
-/* A place in the unit square for all rough branches of one ray, and the normal of the facet that is there. */
-struct bsdf_place {
+/* A point in the unit square for all rough branches of one ray, and the normal of the facet that is there. */
+struct bsdf_draw {
     struct sample2 u;
     struct vec3 facet;
 };
-struct bsdf_place bsdf_place(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u);
-/* A direction of a branch. wo: the view of the hit; place: of rough branches, else ignored. False: none, which counts
+struct bsdf_draw bsdf_draw(const struct bsdf *bsdf, struct vec3 wo, struct sample2 u);
+/* A direction of a branch. wo: the view of the hit; draw: of rough branches, else ignored. False: none, which counts
  * as black. */
 bool bsdf_branch_sample(const struct bsdf *bsdf, const struct bsdf_branch *branch, struct vec3 wo,
-                        const struct bsdf_place *place, struct bsdf_branch_direction *out);
+                        const struct bsdf_draw *draw, struct bsdf_branch_direction *out);
 
 /* The refracted direction of the smooth surface. False: total reflection. */
 bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out);

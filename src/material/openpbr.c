@@ -279,9 +279,9 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
 /* Of a base that light does not enter: to the medium around, or to the coat. A coat that is denser than the base would
  * reflect totally; as the specification has it, it counts as if it were the other way. */
 static double relative_index(const struct layering *l) {
-    double base = l->values->specular_ior, around = base / l->outside, below = base / l->values->coat_ior;
+    double base = l->values->specular_ior, bare = base / l->outside, below = base / l->values->coat_ior;
     below = below < 1 ? 1 / below : below;
-    return around + l->coated * (below - around);
+    return bare + l->coated * (below - bare);
 }
 
 void openpbr_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,

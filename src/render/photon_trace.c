@@ -82,10 +82,10 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
     while (chosen + 1 < branching->count && !(until < to[chosen]))
         until -= to[chosen++];
     const struct bsdf_branch *branch = &branching->branches[chosen];
-    struct bsdf_place position = {.facet = bsdf->side};
+    struct bsdf_draw position = {.facet = bsdf->side};
     if (branch->rough) {
         double u = draw(path), v = draw(path);
-        position = bsdf_place(bsdf, hit->view, (struct sample2){u, v});
+        position = bsdf_draw(bsdf, hit->view, (struct sample2){u, v});
     }
     struct bsdf_branch_direction sampled;
     if (!bsdf_branch_sample(bsdf, branch, hit->view, &position, &sampled))

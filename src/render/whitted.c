@@ -68,7 +68,7 @@ struct surface_point {
 /* The radiance of one branch, times its weight. What cannot change the pixel by the cut-off is not
  * followed. */
 static struct vec3 follow_branch(struct integrator_state *state, const struct surface_point *at,
-                                 const struct bsdf_branch *branch, const struct bsdf_place *position,
+                                 const struct bsdf_branch *branch, const struct bsdf_draw *position,
                                  const struct path *from) {
     const struct settings *settings = &state->job->settings;
     struct bsdf_branch_direction sampled;
@@ -124,7 +124,7 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
     struct vec3 sum = {0, 0, 0};
     observe_split(state->observer, 1 / ((double)n * (double)n));
     for (uint32_t cell = 0; cell < n * n; cell++) {
-        struct bsdf_place position = bsdf_place(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
+        struct bsdf_draw position = bsdf_draw(at->bsdf, at->hit->view, sample_set_point(&facets, cell));
         struct path branch = path_on(path, 1);
         branch.key = sampler_facet(key, cell);
         branch.rough = true;
@@ -143,7 +143,7 @@ static struct vec3 shade(struct integrator_state *state, const struct surface_po
     struct vec3 colour = direct_light(state, at->hit, at->bsdf, path->key);
     colour = vec3_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
-    const struct bsdf_place smooth = {.facet = at->bsdf->side};
+    const struct bsdf_draw smooth = {.facet = at->bsdf->side};
     int count = bsdf_branches(at->bsdf, branches);
     bool rough = false;
     for (int i = 0; i < count; i++) {

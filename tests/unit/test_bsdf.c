@@ -364,7 +364,7 @@ TEST(grazing_light_meets_facets_that_do_not_graze) {
         enum { N = 1000 };
         for (int i = 0; i < N * N; i++) {
             struct sample2 u = {(i % N + 0.5) / N, (i / N + 0.5) / N};
-            struct bsdf_place position = bsdf_place(&view.bsdf, view.wo, u);
+            struct bsdf_draw position = bsdf_draw(&view.bsdf, view.wo, u);
             struct vec3 h = position.facet;
             double fresnel = dielectric_fresnel(vec3_dot(view.wo, h), 1 / 1.5);
             reflected += fresnel / ((double)N * N);
