@@ -306,8 +306,11 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
     return true;
 }
 
+/* Unless it is black. */
 static bool take_background(struct building *b, struct pool *pool) {
     struct light *light = &b->lights[b->out->count];
+    if (!(sky_brightest(&b->out->world->sky) > 0))
+        return true;
     for (uint32_t i = 0; i < b->out->count; i++)
         if (light_properties(&b->lights[i]) & LIGHT_IS_ENVIRONMENT)
             return true;

@@ -51,9 +51,10 @@ struct world_lights {
     bool holes; /* something in the world has holes */
 };
 
+/* background: scattered rays meet the sky of the world, which is then one more light unless it is black; where the scene
+ * has a sky light they meet that instead. */
 struct world_lights_options {
-    bool background; /* scattered rays meet the sky of the world, which is then one more light, or the scene's sky light
-                      */
+    bool background;
     enum light_choice choice;
 };
 /* Errors: no memory, cancelled; nothing is left to destroy then. */

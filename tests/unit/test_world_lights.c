@@ -424,3 +424,16 @@ TEST(camera_rays_see_the_nearest_lamp_that_shows_itself) {
     CHECK(!world_lights_seen(&r.lights, &up, &light, &hit));
     room_end(&r);
 }
+
+TEST(a_black_background_is_no_light) {
+    struct room r;
+    room_begin(&r);
+    room_build(&r, true);
+    CHECK_EQ_INT(r.lights.count, 0);
+    room_end(&r);
+    room_begin(&r);
+    r.stage.sky = (struct sky){.kind = SKY_CONSTANT, .colour = {0, 0.5, 0}};
+    room_build(&r, true);
+    CHECK_EQ_INT(r.lights.count, 1);
+    room_end(&r);
+}
