@@ -46,7 +46,7 @@ bool integrator_create(struct renderer *renderer, int workers, struct render_sta
     case INTEGRATOR_WHITTED:
         return whitted_create(&integrator->whitted, renderer, workers, statistics, error);
     case INTEGRATOR_PATH:
-        return path_tracer_create(&integrator->path, renderer, error);
+        return path_tracer_create(&integrator->path, renderer, statistics, error);
     }
     UNREACHABLE(no_kind);
 }

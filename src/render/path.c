@@ -24,7 +24,19 @@ static uint32_t samples_of(const struct settings *settings) {
                                       : PATH_SAMPLES_DEFAULT;
 }
 
-bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct error *error) {
+/* Which lights photons come from. */
+static bool find_photon_lights(struct path_tracer *tracer, const struct world *world) {
+    bool *lights = arena_alloc_array(&tracer->arena, (size_t)tracer->lights.count + 1, sizeof *lights);
+    for (uint32_t i = 0; lights && i < world->light_count; i++) {
+        struct light_emitter emitter;
+        lights[i] = light_emitter_make(&world->lights[i], 0, 0, 1, &emitter);
+    }
+    tracer->photon_lights = lights;
+    return lights != NULL;
+}
+
+bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
+                        struct error *error) {
     const struct settings *settings = &renderer->job->settings;
     tracer->samples = samples_of(settings);
     renderer->pass = (struct sample_pass){.end = tracer->samples};
@@ -36,16 +48,19 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
-    bool background = renderer->job->background_lights && sky_brightest(&world->sky) > 0;
-    tracer->built =
-        world_lights_build(&tracer->lights, world, (struct world_lights_options){background, LIGHT_CHOICE_TREE},
-                           &tracer->arena, renderer->pool, error);
-    return tracer->built;
+    struct world_lights_options options = {renderer->job->background_lights, LIGHT_CHOICE_TREE};
+    tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
+    if (!tracer->built || settings->caustics.photons == 0)
+        return tracer->built;
+    if (!find_photon_lights(tracer, world))
+        return error_no_memory(error, "the lights of the scene");
+    return photons_send(&tracer->caustics, renderer->job, renderer->pool, statistics, error);
 }
 
 void path_tracer_destroy(struct path_tracer *tracer) {
     if (tracer->built)
         world_lights_destroy(&tracer->lights);
+    photon_map_destroy(&tracer->caustics);
     arena_destroy(&tracer->arena);
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/arena.h"
 #include "render/filter_internal.h"
+#include "render/photon_trace_internal.h"
 #include "render/render_internal.h"
 #include "world/world_lights.h"
 
@@ -21,13 +22,18 @@ struct path_tracer {
     double noise; /* a tile with that is done; 0: all samples */
     double clamp; /* largest component of a sample; 0: any */
     bool built;   /* the lights are there */
+    /* With --caustics: photons bring the light of these lights (by number) that traced lobes throw onto classic ones,
+     * and paths leave it out. NULL: paths bring it. */
+    const bool *photon_lights;
+    struct photon_map caustics;
     struct arena arena;
     struct world_lights lights; /* immutable while the render runs */
 };
 
 /* See render/integrator_internal.h. `tracer` is zero. */
 struct film_record path_tracer_record(void);
-bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct error *error);
+bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
+                        struct error *error);
 void path_tracer_destroy(struct path_tracer *tracer);
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part);
@@ -53,13 +59,15 @@ struct path_vertex {
     struct light_receiver receiver;
     uint32_t lobes;      /* that scatter */
     uint32_t substitute; /* highlights that stand for the mirror image of lights which no mirror shows */
+    struct vec3 thrown;  /* share of the path's weight that photons bring, if traced lobes scatter here */
 };
 
 /* A ray that was scattered at a receiver. */
 struct path_segment {
     const struct ray *ray;
     const struct light_receiver *receiver;
-    double pdf; /* of its direction by solid angle; 0: it had no other one */
+    double pdf;         /* of its direction by solid angle; 0: it had no other one */
+    struct vec3 thrown; /* share of the path's weight that photons bring, where they bring the light that it meets */
 };
 
 /* Light that comes straight from one light of the scene: `choice` chooses it, `xi` lies on it. */

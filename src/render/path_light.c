@@ -19,6 +19,15 @@ static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
+/* What is left of light that meets a path, of whose weight that share is left to photons where these bring the light of
+ * its source. */
+static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t light, struct vec3 thrown,
+                                  struct vec3 radiance) {
+    if (!tracer->photon_lights || light == LIGHT_NONE || !tracer->photon_lights[light])
+        return radiance;
+    return vec3_mul(radiance, vec3_sub(vec3_all(1), thrown));
+}
+
 /* --- sampling a light --- */
 
 /* f |cos| of a set of lobes. Classic lobes answer no light from behind the geometric surface. */
@@ -82,6 +91,11 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
     if (number == LIGHT_NONE || !world_lights_sample(lights, receiver, number, xi, &sample))
         return none;
     struct vec3 f = scattered(vertex, vertex->lobes, sample.direction);
+    uint32_t traced = tracer->photon_lights ? vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED) : 0;
+    if (traced && !is_black(vertex->thrown)) {
+        struct vec3 part = scattered(vertex, traced, sample.direction);
+        f = vec3_sub(f, vec3_sub(part, without_thrown(tracer, number, vertex->thrown, part)));
+    }
     double pdf = pmf * sample.pdf;
     const struct light *light = &lights->lights[number];
     bool shown = !light_is_delta(light) && (number >= state->job->world->light_count || light_is_seen(light));
@@ -107,6 +121,7 @@ struct vec3 path_emission(const struct path_tracer *tracer, const struct path_se
                           struct vec3 emission) {
     const struct world_lights *lights = &tracer->lights;
     struct vec3 radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
+    radiance = without_thrown(tracer, lights->of_primitive[hit->primitive], segment->thrown, radiance);
     if (is_black(radiance) || segment->pdf == 0)
         return radiance;
     double pdf = world_lights_pdf_of_hit(lights, segment->receiver, vec3_negate(hit->view), hit);
@@ -130,6 +145,7 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
             continue;
         (void)medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
         struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);
+        radiance = without_thrown(tracer, number, segment->thrown, radiance);
         double pdf = world_lights_pdf(lights, segment->receiver, number, vec3_normalize(ray.direction), &hit);
         sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
@@ -146,7 +162,9 @@ struct vec3 path_environment(const struct path_tracer *tracer, const struct path
         if (light_is_delta(light) || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
         double pdf = world_lights_pdf(lights, segment->receiver, number, direction, &hit);
-        sum = vec3_add_scaled(sum, light_emitted(light, segment->ray, &hit), met_weight(tracer, segment, pdf));
+        struct vec3 radiance =
+            without_thrown(tracer, number, segment->thrown, light_emitted(light, segment->ray, &hit));
+        sum = vec3_add_scaled(sum, radiance, met_weight(tracer, segment, pdf));
     }
     return sum;
 }

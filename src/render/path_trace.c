@@ -19,6 +19,9 @@ struct path {
     double
         radiance_scale; /* what refraction has done to the weight so far: products of eta^2, which roulette ignores */
     double pdf;         /* of the ray's direction, by solid angle; 0: it had no other one */
+    /* Shares of the weight, with photons: the last scattering was that of a lobe that photons light; after such a one
+     * the path was scattered by traced lobes only. */
+    struct vec3 received, thrown;
     bool sight;
     int depth, holes;              /* scattering events, holes so far */
     uint32_t dimension;            /* of the sampler: the first one of the next vertex */
@@ -39,7 +42,8 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
     if (path->sight)
         seen = path_area_light_seen(tracer, &path->ray, end, &end, &radiance);
     else
-        add_light(path, path_area_lights(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}, end));
+        add_light(path, path_area_lights(
+                            tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown}, end));
     double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     struct medium_effect effect;
     const struct fog *fog = path->sight ? state->job->fog : NULL;
@@ -57,7 +61,8 @@ static void leave_scene(const struct path_tracer *tracer, const struct integrato
     if (path->sight)
         add_light(path, sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread));
     else
-        add_light(path, path_environment(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}));
+        add_light(path, path_environment(tracer,
+                                         &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown}));
 }
 
 /* Which lobes scatter. A highlight stands for the mirror image of lights: where smooth traced lobes show that image, it
@@ -91,9 +96,58 @@ static bool survives(struct path *path, double u) {
     return true;
 }
 
+/* --- photons --- */
+
+/* Lobes that photons light; none where no photon lands (photon_trace.c). */
+static uint32_t receiving_lobes(const struct bsdf *bsdf) {
+    double diffuse = 0;
+    for (int i = 0; i < bsdf->count; i++)
+        if (lobe_flags(bsdf->lobes[i].kind) & BSDF_LAMBERT)
+            diffuse = fmax(diffuse, vec3_max_abs(bsdf->lobes[i].weight));
+    return diffuse > 0 && !bsdf->dark ? bsdf_lobes_with(bsdf, BSDF_CLASSIC) : 0;
+}
+
+/* The light that photons have brought to the vertex. */
+static void add_photons(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
+                        const struct path_vertex *vertex) {
+    struct bsdf bsdf = *vertex->bsdf;
+    uint32_t lobes = vertex->lobes & receiving_lobes(&bsdf);
+    if (lobes == 0 || path->depth + 2 > tracer->max_depth)
+        return;
+    for (int i = 0; i < bsdf.count; i++)
+        if (!(lobes & UINT32_C(1) << i))
+            bsdf.lobes[i].weight = vec3_all(0);
+    add_light(path, photon_map_light(&tracer->caustics, state->job->world, vertex->hit, &bsdf));
+}
+
+static double share_of(double part, double all) {
+    return all != 0 ? part / all : 0;
+}
+
+/* The share of light from wi that these lobes of the vertex scatter. */
+static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
+    const struct bsdf *bsdf = vertex->bsdf;
+    if (lobes == 0 || lobes == vertex->lobes)
+        return vec3_all(lobes ? 1 : 0);
+    struct vec3 part = bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi),
+                all = bsdf_eval(bsdf, vertex->lobes, BSDF_RADIANCE, vertex->hit->view, wi);
+    return vec3_make(share_of(part.x, all.x), share_of(part.y, all.y), share_of(part.z, all.z));
+}
+
+/* Photons bring light from a light by traced lobes to a lobe that receives them: what a path finds behind such a lobe
+ * and traced ones is the same light. */
+static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
+    uint32_t traced = vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED);
+    uint32_t receiving = vertex->lobes & receiving_lobes(vertex->bsdf);
+    bool delta = (sample->flags & BSDF_DELTA) != 0;
+    struct vec3 by_traced = delta ? vec3_all(1) : share_of_lobes(vertex, traced, sample->direction);
+    path->thrown = vec3_mul(vec3_add(path->received, path->thrown), by_traced);
+    path->received = delta ? vec3_all(0) : share_of_lobes(vertex, receiving, sample->direction);
+}
+
 /* Goes on in a direction of the BSDF. */
-static bool scatter(struct integrator_state *state, struct path *path, const struct path_vertex *vertex,
-                    struct sample2 u, double u_roulette) {
+static bool scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                    const struct path_vertex *vertex, struct sample2 u, double u_roulette) {
     const struct hit *hit = vertex->hit;
     const struct bsdf *bsdf = vertex->bsdf;
     struct bsdf_sample sample;
@@ -102,6 +156,8 @@ static bool scatter(struct integrator_state *state, struct path *path, const str
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
     if (!transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
         return false;
+    if (tracer->photon_lights)
+        count_shares(path, vertex, &sample);
     path->weight = vec3_mul(path->weight, sample.weight);
     path->depth++;
     if (transmits)
@@ -139,8 +195,9 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     if (path->sight)
         add_light(path, bsdf.emission);
     else
-        add_light(path, path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf}, hit,
-                                      bsdf.emission));
+        add_light(path,
+                  path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown},
+                                hit, bsdf.emission));
     if (path->depth >= tracer->max_depth)
         return false;
     struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .bsdf = &bsdf};
@@ -148,9 +205,13 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     vertex.receiver = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
                                               bsdf.side, hit->primitive};
     choose_lobes(&vertex);
+    if (tracer->photon_lights) {
+        add_photons(tracer, state, path, &vertex);
+        vertex.thrown = vec3_add(path->received, path->thrown);
+    }
     struct sample2 choice = sampler_point(sampler, dimension);
     add_light(path, path_direct(tracer, state, &vertex, choice.x, sampler_point(sampler, dimension + 1)));
-    return scatter(state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
+    return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
 }
 
 /* --clamp: with its colour kept. This takes light away from the picture wherever samples differ much. */
@@ -192,6 +253,7 @@ static void begin(struct path *path, struct sampler *sampler, const struct integ
     path->light = vec3_all(0);
     path->radiance_scale = 1;
     path->pdf = 0;
+    path->received = path->thrown = vec3_all(0);
     path->sight = true;
     path->depth = path->holes = 0;
     path->dimension = SAMPLER_FIRST_VERTEX;

@@ -237,3 +237,18 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
         photon_map_destroy(map);
     return ok;
 }
+
+bool photons_send(struct photon_map *map, const struct render_job *job, struct pool *pool,
+                  struct render_statistics *statistics, struct error *error) {
+    struct photon_statistics photons = {0};
+    *map = (struct photon_map){0};
+    if (job->settings.caustics.photons == 0)
+        return true;
+    bool ok = photons_make(map, job, pool, &photons, error);
+    statistics->photons += photons.sent;
+    statistics->photons_landed += photons.landed;
+    statistics->photon_rays += photons.rays;
+    statistics->photon_seconds += photons.seconds;
+    statistics->photon_map_seconds += photons.map_seconds;
+    return ok;
+}

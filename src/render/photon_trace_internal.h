@@ -18,5 +18,9 @@ struct photon_statistics {
  * threads. Errors: no memory, cancelled. */
 bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
                   struct photon_statistics *statistics, struct error *error);
+/* The same for an integrator before its first tile: counts in the statistics of the render. With settings of no photons
+ * the map is empty. */
+bool photons_send(struct photon_map *map, const struct render_job *job, struct pool *pool,
+                  struct render_statistics *statistics, struct error *error);
 
 #endif

@@ -52,15 +52,9 @@ static double cutoff_weight(const struct render_job *job) {
 /* Before the first tile; without photons there is no map. */
 static bool send_photons(struct whitted *whitted, struct renderer *renderer, int workers, struct render_statistics *out,
                          struct error *error) {
-    struct photon_statistics photons = {0};
     if (renderer->job->settings.caustics.photons == 0)
         return true;
-    bool ok = photons_make(&whitted->caustics, renderer->job, renderer->pool, &photons, error);
-    out->photons += photons.sent;
-    out->photons_landed += photons.landed;
-    out->photon_rays += photons.rays;
-    out->photon_seconds += photons.seconds;
-    out->photon_map_seconds += photons.map_seconds;
+    bool ok = photons_send(&whitted->caustics, renderer->job, renderer->pool, out, error);
     for (int i = 0; i < workers; i++)
         renderer->workers[i].state.caustics = &whitted->caustics;
     return ok;

@@ -617,3 +617,74 @@ TEST(without_anything_specular_no_photon_is_sent) {
     photon_map_destroy(&map);
     stage_end(&s);
 }
+
+/* --- paths --- */
+
+/* The mean picture of a white floor under a ball of glass under a lamp; walls send light on to both. alpha: roughness
+ * of the ball, of which a part scatters diffusely. */
+static struct vec3 light_under_lens(int photons, int samples, double alpha, uint64_t seed) {
+    struct stage s;
+    stage_begin(&s, 2);
+    s.settings.integrator = INTEGRATOR_PATH;
+    s.settings.path_samples = samples;
+    s.settings.max_depth = 60;
+    s.settings.seed = seed;
+    s.camera = (struct camera){{0, 0.4, 0}, {0, -1, 0}, {0, 0, -1}, 50};
+    s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+    s.settings.lens.view_height = 3;
+    struct material *grey = white(&s);
+    grey->phong.kd = vec3_make(0.5, 0.4, 0.3);
+    box(&s, vec3_make(-3, -1, -3), vec3_make(3, 0, 3), grey);
+    box(&s, vec3_make(-3.2, 0, -3), vec3_make(-3, 5, 3), grey);
+    struct material *glass = stage_glass(&s, 0, 0.9, 1.5);
+    if (alpha > 0) {
+        glass->phong.kd = vec3_all(0.2);
+        glass->phong.reflect = 0.1;
+        glass->phong.refract = 0.7;
+        glass->phong.roughness = alpha;
+    }
+    ball(&s, vec3_make(0, 1.6, 0), 1, glass);
+    add_light(&s, (struct light){.kind = LIGHT_DISC,
+                                 .position = {0, 4.5, 0},
+                                 .direction = {0, -1, 0},
+                                 .radius = 1.2,
+                                 .colour = {3, 4, 5},
+                                 .emissive = true,
+                                 .one_sided = true});
+    struct vec3 mean = floor_light(&s, photons);
+    stage_end(&s);
+    return mean;
+}
+
+static void check_energy(double alpha, int samples) {
+    struct vec3 paths = light_under_lens(0, samples, alpha, 1), both = light_under_lens(300000, samples / 4, alpha, 2);
+    CHECK_NEAR(both.x, paths.x, 0.01 * paths.x);
+    CHECK_NEAR(both.y, paths.y, 0.01 * paths.y);
+    CHECK_NEAR(both.z, paths.z, 0.01 * paths.z);
+}
+
+TEST(paths_with_photons_show_the_caustic_of_a_lamp_through_a_lens_once) {
+    check_energy(0, 1024);
+}
+
+TEST(paths_with_photons_show_the_light_of_rough_glass_over_diffuse_once) {
+    check_energy(0.3, 1024);
+}
+
+TEST(photons_bring_paths_the_caustic_of_a_light_without_body) {
+    for (int photons = 0; photons <= 100000; photons += 100000) {
+        struct stage s;
+        stage_begin(&s, 2);
+        s.settings.integrator = INTEGRATOR_PATH;
+        s.settings.path_samples = 64;
+        s.camera = (struct camera){{0, 0.3, 0}, {0, -1, 0}, {0, 0, -1}, 50};
+        s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+        s.settings.lens.view_height = 0.5;
+        box(&s, vec3_make(-3, -1, -3), vec3_make(3, 0, 3), white(&s));
+        ball(&s, vec3_make(0, 1.6, 0), 1, stage_glass(&s, 0, 1, 1.5));
+        inverse_square(&s, vec3_make(0, 5, 0), 25);
+        double light = floor_light(&s, photons).x;
+        CHECK(photons == 0 ? light == 0 : light > 1);
+        stage_end(&s);
+    }
+}
