@@ -170,9 +170,10 @@ void display_begin(struct display *display, const char *name, const struct film 
 static bool next_packet(struct display *display) {
     const struct film *film = display->film;
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        if (display->sent[tile] || atomic_load_explicit(&film->tiles[tile], memory_order_acquire) != FILM_TILE_DONE)
+        uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
+        if (display->sent[tile] == state || !film_tile_shows(state))
             continue;
-        display->sent[tile] = 1;
+        display->sent[tile] = state;
         display->size = display_update_packet(display->packet, display->name, film, tile);
         display->begun = 0;
         return true;
@@ -202,9 +203,16 @@ static bool send_tiles(struct display *display, int wait, struct error *error) {
     return true;
 }
 
+static bool shows_something(const struct film *film) {
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++)
+        if (film_tile_shows(atomic_load_explicit(&film->tiles[tile], memory_order_acquire)))
+            return true;
+    return false;
+}
+
 bool display_draws(const struct display *display, double now) {
     return display->on && display->name && display->choice.kind == DISPLAY_TERMINAL && display->terminal.moves &&
-           now - display->shown >= 1 && film_tiles_in(display->film, FILM_TILE_DONE) > 0;
+           now - display->shown >= 1 && shows_something(display->film);
 }
 
 bool display_step(struct display *display, double now, struct error *error) {

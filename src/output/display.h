@@ -22,7 +22,7 @@ struct display {
     const char *name; /* of the picture; NULL while there is none */
     const struct film *film;
     struct tone tone;
-    uint8_t *sent; /* a byte for each tile */
+    uint8_t *sent; /* of each tile the state in which it was sent, or 0 */
     uint8_t packet[DISPLAY_PACKET];
     size_t size, begun; /* of the packet, and how much of it is gone */
     struct terminal terminal;

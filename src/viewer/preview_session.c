@@ -32,6 +32,11 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->settings.show_refined = true;
     job->settings.order = ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
+    job->settings.passes = view->divide <= 1 && !view->plain;
+    if (!job->settings.passes) {
+        job->settings.path_samples = 1;
+        job->settings.noise = job->settings.time_limit = 0;
+    }
     if (view->divide > 1) { /* the film says which part it is */
         job->settings.cropped = false;
         job->settings.keep_first = false;

@@ -129,7 +129,7 @@ struct viewer_overlay {
 struct viewer_display {
     uint8_t *image; /* 3 bytes a pixel of the whole part; owned */
     float *light;   /* the same before exposure and tone; owned */
-    uint8_t *drawn; /* by tile: already on the image; owned */
+    uint8_t *drawn; /* by tile: the state in which it is on the image, or 0; owned */
     size_t tiles;   /* room in drawn */
     struct window_layout layout;
     struct panel panel; /* its canvas is owned */

@@ -97,24 +97,25 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     }
 }
 
-/* Tiles that are finished, and in those under way the pixels that are being sampled again, in red. */
+/* Tiles that are finished or, after a pass over the picture, have more samples than before, and in those under way the pixels that are being sampled again, in red. */
 void viewer_draw_tiles(struct viewer *viewer) {
     const struct film *film = &viewer->pass.film;
     struct tone tone = tone_of(viewer);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
-        bool done = state == FILM_TILE_DONE, in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
-        if (viewer->display.drawn[tile] || (!done && !in_progress))
+        bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
+        if (shows ? viewer->display.drawn[tile] == state : !in_progress || !film->marked)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
             for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++) {
                 bool red = film->marked && film->marked[(size_t)y * film->width + x] == FILM_MARK_WAITS;
-                if (done || red)
-                    draw_pixel(viewer, &tone, x, y, red && !done);
+                if (shows || red)
+                    draw_pixel(viewer, &tone, x, y, red && !shows);
             }
         }
-        viewer->display.drawn[tile] = done;
+        if (shows)
+            viewer->display.drawn[tile] = state;
         viewer->display.dirty = true;
     }
 }
