@@ -1,8 +1,8 @@
 /* The switches over the kinds of lights. Sampling: a disc is the square mapped concentrically (Shirley and Chiu, "A Low
- * Distortion Map Between Disk and Square", JGT 1997). A lamp that is a sphere is sampled by solid angle within its cone
+ * Distortion Map Between Disk and Square", JGT 1997). A sphere is sampled by solid angle within its cone
  * (Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", TOG 1996), so every sample
- * counts the same and the emitter's cosine is in it already; so is a rectangle (sampling.c), and a disc seen
- * large by way of its square. Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2)
+ * counts the same and the emitter's cosine is in it already; so is a rectangle (sampling.c), and a disc that appears
+ * large, through its square. Other discs and parallelograms and meshes are sampled by area with weight cos / (pi d^2)
  * each, triangles of a mesh in proportion to the light they send. */
 #include "light/light.h"
 
@@ -14,8 +14,8 @@
 #include "math/frame.h"
 #include "math/range.h"
 
-/* A disc whose square fills more than this solid angle is sampled by that of the square, though a fifth of the square
- * is not of the disc: bench/area_lights.c. */
+/* A disc whose square fills more than this solid angle is sampled by that of the square, although a fifth of the square
+ * is outside the disc: bench/area_lights.c. */
 static const double disc_by_angle = 1.5;
 
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error) {
@@ -97,7 +97,7 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM: {
         struct vec3 normal = vec3_cross(light->edge1, light->edge2);
-        out->shares_cells = light->emissive; /* old pictures keep the places of docs/language.md 7.1 */
+        out->shares_cells = light->emissive; /* existing pictures keep the positions of docs/language.md 7.1 */
         out->corner = light->corner;
         out->edge1 = light->edge1;
         out->edge2 = light->edge2;
@@ -119,7 +119,7 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     case LIGHT_SPHERE:
         if (light_sphere_context(light, out))
             return true;
-        out->single = !light->emissive; /* from inside its middle is asked for */
+        out->single = !light->emissive; /* from inside, the target is its centre */
         return out->single;
     case LIGHT_MESH:
         light_mesh_context(light->mesh, out);
@@ -257,7 +257,7 @@ double light_pdf(const struct light *light, const struct light_context *context,
     return 0;
 }
 
-/* --- what a ray sees --- */
+/* --- radiance along rays --- */
 
 static bool surface_meets_ray(const struct light *light, const struct ray *ray, double *t) {
     switch (light->kind) {
@@ -358,13 +358,13 @@ bool light_surface_box(const struct light *light, struct box *out) {
     return false;
 }
 
-/* --- from afar --- */
+/* --- bounds --- */
 
 enum light_extent light_bounds_of(const struct light *light, struct light_bounds *out) {
     struct vec3 across;
     *out = (struct light_bounds){.box = {light->position, light->position}, .range = INFINITY};
     (void)light_surface_box(light, &out->box);
-    out->axis = vec3_make(0, 1, 0); /* into all directions alike */
+    out->axis = vec3_make(0, 1, 0); /* uniform in all directions */
     out->cos_theta_o = -1;
     out->cos_theta_e = 1;
     switch (light->kind) {
@@ -554,7 +554,7 @@ static struct vec3 round_position(const struct light_emitter *emitter, struct ve
     return vec3_add_scaled(vec3_add_scaled(emitter->centre, right, radius * round.x), up, radius * round.y);
 }
 
-/* A place on a light that is not a mesh; the photon starts there. */
+/* A point of a light that is not a mesh; the photon starts there. */
 static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec3 direction, struct sample2 xi) {
     const struct light *light = emitter->light;
     struct sample2 part = {emitter->low[0] + emitter->side * xi.x, emitter->low[1] + emitter->side * xi.y};
@@ -565,7 +565,7 @@ static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec
         return vec3_add_scaled(vec3_add_scaled(light->corner, light->edge1, part.x), light->edge2, part.y);
     case LIGHT_DISC:
         return round_position(emitter, emitter->right, emitter->up, part, &height);
-    case LIGHT_SPHERE: /* as it is seen along the direction */
+    case LIGHT_SPHERE: /* its projection along the direction */
         frame_tangents(direction, &right, &up);
         at = round_position(emitter, right, up, part, &height);
         return light->emissive && height > 0 ? vec3_add_scaled(at, direction, light->radius * height) : at;

@@ -1,6 +1,6 @@
 /* Bounds of lights, for light_sampler.c: their union and their importance. The formulas for cones are
- * those of Pharr, Jakob and Humphreys, sections 3.8.4 and 12.6.3. All decisions err towards giving a light a chance:
- * importance is 0 only where nothing arrives. */
+ * those of Pharr, Jakob and Humphreys, sections 3.8.4 and 12.6.3. All bounds are conservative: the importance is 0 only
+ * if no light arrives. */
 #include "light/light_internal.h"
 #include "math/elementary.h"
 #include "math/range.h"
@@ -46,7 +46,7 @@ static struct vec3 turned(struct vec3 v, struct vec3 to, double angle) {
     return vec3_normalize(vec3_add_scaled(vec3_scale(v, cosine), to, sine));
 }
 
-/* The axis of the smallest cone that holds both, and the cosine of its half angle. */
+/* The axis of the smallest cone that contains both, and the cosine of its half angle. */
 static struct vec3 join_cones(struct vec3 axis_a, double cos_a, struct vec3 axis_b, double cos_b, double *cos_half) {
     double a = angle_of(cos_a), b = angle_of(cos_b), apart = angle_of(vec3_dot(axis_a, axis_b));
     *cos_half = cos_a;
@@ -94,7 +94,7 @@ static double min_distance(const struct box *box, struct vec3 point) {
     return vec3_length(vec3_sub(point, inside));
 }
 
-/* What arrives at a distance, its direction aside. */
+/* The light at a distance, without the dependence on direction. */
 static double strength_at(const struct light_bounds *b, struct vec3 point, double distance) {
     double steady = b->steady;
     if (b->range < INFINITY) {
@@ -116,7 +116,7 @@ double light_bounds_importance(const struct light_bounds *b, struct vec3 point, 
     if (!(distance > radius))
         return strength;
     double inverse = 1 / distance;
-    /* Half the angle that the ball fills. */
+    /* Half the angle of the ball. */
     double sin_b = radius * inverse, cos_b = sqrt((1 - sin_b) * (1 + sin_b));
     double cos_w = vec3_dot(b->axis, away) * inverse, cos_o = b->cos_theta_o, sin_o = b->sin_theta_o;
     if (b->two_sided)
@@ -131,14 +131,14 @@ double light_bounds_importance(const struct light_bounds *b, struct vec3 point, 
     }
     if (normal.x == 0 && normal.y == 0 && normal.z == 0)
         return strength;
-    /* Highlights of classic materials know no cosine: light that grazes the surface keeps a chance. */
+    /* Highlights of classic materials have no cosine: light at grazing angles must keep a chance. */
     double cos_i = fabs(vec3_dot(away, normal)) * inverse;
     return cos_i > cos_b ? strength : strength * larger(min_cosine, cos_i * cos_b + sine_of(cos_i) * sin_b);
 }
 
-/* How lights without a body fade: by distance, and a spot by its cone (docs/light.md). */
+/* The attenuation of delta lights: by distance, and for a spot by its cone (docs/light.md). */
 
-/* Where a falloff passes through zero, or a light is touched. A colour times it is finite. */
+/* For a denominator of zero or a point at the light. A colour times it is finite. */
 static const double strongest = 1e200;
 
 double light_attenuation(const struct light *light, double distance) {

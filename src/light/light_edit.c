@@ -1,6 +1,6 @@
-/* What a light has, for listings and editors. Changes go by that (light_properties), whatever the kind: plain
- * arithmetic on the numbers that scripts give, so that a change of the window and the same change by a script are the
- * same bits. */
+/* Properties of lights, for listings and editors. Changes depend only on the properties (light_properties), not on the
+ * kind: simple arithmetic on the numbers of scripts, so that a change in the window and the same change by a script
+ * give the same bits. */
 #include "light/light_edit.h"
 
 #include "light/light_mesh.h"

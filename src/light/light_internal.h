@@ -26,47 +26,47 @@ static inline void light_context_square(struct light_context *out, struct vec3 c
     out->corner = vec3_add_scaled(vec3_add_scaled(centre, out->right, -half), out->up, -half);
 }
 
-/* light_bounds.c: the share of a delta light that is left at a distance. */
+/* light_bounds.c: the attenuation of a delta light at a distance. */
 double light_attenuation(const struct light *light, double distance);
 /* Share of a spot's light in the unit direction from the light: 1 inside the inner cone, 0 outside the outer, between
  * them the cubic 3 s^2 - 2 s^3 of the cosine. */
 double light_cone(const struct light *light, struct vec3 from_light);
 
-/* light_shapes.c: parallelograms and discs. False: a lamp that shines to one side is seen from the other. */
+/* light_shapes.c: parallelograms and discs. False: a one-sided light is seen from its dark side. */
 bool light_planar_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
 struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 xi);
 bool light_is_beside_disc(const struct light *light, struct vec3 point);
 bool light_parallelogram_meets_ray(const struct light *light, const struct ray *ray, double *t);
 bool light_disc_meets_ray(const struct light *light, const struct ray *ray, double *t);
-/* Sets the ball that holds the places of a part. */
+/* Sets the ball that contains the points of a part. */
 void light_parallelogram_emitter(struct light_emitter *out);
-/* The cosine at a flat lamp, of the side that shines. */
+/* The cosine at a planar light, on the emitting side. */
 double light_planar_shine(const struct light *light, struct vec3 normal, struct vec3 direction);
 struct box light_parallelogram_box(const struct light *light);
 struct box light_disc_box(const struct light *light);
 
-/* Parts of light_bounds_of. How bright a colour is for a choice; negative light counts as much. */
+/* Parts of light_bounds_of. The brightness of a colour for light selection; negative light counts by its magnitude. */
 static inline double light_magnitude(struct vec3 c) {
     return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
 }
 static inline struct box light_box_centred(struct vec3 centre, struct vec3 half) {
     return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
 }
-/* A delta light: as its attenuation says (light_bounds.c). */
+/* A delta light: from its attenuation (light_bounds.c). */
 void light_bounds_fade(const struct light *light, struct light_bounds *out);
 /* A light of that classic intensity at distance 1, which falls with the square of the distance. */
 static inline void light_bounds_emit(double intensity, struct light_bounds *out) {
     out->attenuation = intensity;
     out->falloff[2] = 1;
 }
-/* A flat lamp of an area over pi, by the cosine (light_shapes.c). */
+/* A planar light with area / pi, by the cosine (light_shapes.c). */
 void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out);
-/* Works out the rest of what stands in the bounds; false: nothing is sent (light_bounds.c). */
+/* Computes the other fields of the bounds; false: no emission (light_bounds.c). */
 bool light_bounds_finish(struct light_bounds *bounds);
 
 /* The mathematics of LIGHT_SPHERE, for light.c. */
 
-/* False: the point is on the sphere, or so near that the cone is a half-space, or inside and the light no lamp. */
+/* False: the point is on the sphere, or so near that the cone is a half-space, or inside a delta light. */
 bool light_sphere_context(const struct light *light, struct light_context *out);
 /* Equal areas of the unit square are equal solid angles. */
 struct vec3 light_sphere_target(const struct light *light, const struct light_context *context, struct sample2 xi);

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* Below it a reciprocal is not finite. */
+/* Its reciprocal is the largest finite one. */
 static const double dark = 1e-300;
 
 bool light_mesh_begin(struct light_mesh_builder *builder, uint64_t count, struct arena *arena) {
@@ -73,7 +73,7 @@ uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint
     return low < mesh->count && t->primitive == primitive && t->part == part ? low : LIGHT_NONE;
 }
 
-/* The place's x, spread over the unit interval again within the share of its triangle. */
+/* xi.x, rescaled to the unit interval within the share of its triangle. */
 struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi) {
     uint32_t low = 0, high = mesh->count - 1;
     while (low < high) {
@@ -94,7 +94,7 @@ struct vec3 light_triangle_radiance(const struct light_triangle *triangle) {
     return vec3_scale(triangle->intensity, radiance_of(triangle->density));
 }
 
-/* A square behind all of the mesh, across the cone that its ball fills; none for a point in the ball. */
+/* A square behind the mesh, perpendicular to the cone of its ball; none for a point in the ball. */
 void light_mesh_context(const struct light_mesh *mesh, struct light_context *out) {
     struct vec3 to_centre = vec3_sub(mesh->centre, out->from);
     double distance = vec3_length(to_centre), sine = mesh->radius / distance;
@@ -148,8 +148,9 @@ struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3
                                  vec3_scale(t->intensity, shines)};
 }
 
-/* The cone about the mean normal that holds all normals. What is seen of the triangles is their projection: as much as
- * the sum of their vectors, and a quarter of their area (Cauchy), a half where both sides shine, on average. */
+/* The cone about the mean normal that contains all normals. The visible area is the projection of the triangles: at
+ * least that of the sum of their area vectors; on average a quarter of their area (Cauchy), a half if both sides emit.
+ */
 void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out) {
     struct vec3 sum = {0, 0, 0};
     double all = 0, min = 1;

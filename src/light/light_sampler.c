@@ -1,10 +1,10 @@
 /* Building: from the root down, each set of lights is split where the cost of the two halves is smallest, by the
  * surface area orientation heuristic of Conty Estevez and Kulla (section 4.4) over bins along each axis: power times
- * the area of the box times the solid angle that the cone of directions fills, larger for boxes that are thin across
- * the split. Sets whose centres agree, and those deeper than DEPTH_LIMIT, are halved in the order of the lights.
+ * the area of the box times the solid angle of the cone of directions, larger for boxes that are thin along the split
+ * axis. Sets whose centres agree, and those deeper than DEPTH_LIMIT, are halved in the order of the lights.
  *
- * Sampling: one number is used up on the way down; each choice leaves it uniform again. The probability of a light is
- * the product over the way from its leaf up. */
+ * Sampling: one random number serves the whole descent; after each choice it is rescaled to be uniform. The probability
+ * of a light is the product from its leaf up. */
 #include "light/light_sampler.h"
 
 #include "base/error.h"
@@ -64,7 +64,7 @@ static uint32_t bin_of(double x, double low, double high) {
     return bin > 0 ? (bin < BINS ? (uint32_t)bin : BINS - 1) : 0;
 }
 
-/* The costs of parting before bin k, k = 1 to BINS - 1, of what lies on one side. */
+/* The costs of a split before bin k, k = 1 to BINS - 1, of what lies on one side. */
 static void sweep_costs(const struct bin bins[BINS], bool from_below, double costs[BINS], uint32_t counts[BINS]) {
     struct bin all = {.count = 0};
     for (int i = 0; i + 1 < BINS; i++) {
@@ -145,7 +145,7 @@ static uint32_t build_node(struct building *b, struct item *spare, uint32_t firs
     return index;
 }
 
-/* The items of the lights that have a place; the others that send something are listed. */
+/* The items of the lights with a position; other lights that emit are listed. */
 static uint32_t collect(const struct light *lights, uint32_t count, struct item *items, uint32_t *infinite,
                         uint32_t *infinite_count) {
     uint32_t bounded = 0;
@@ -246,7 +246,7 @@ static double importance_at(const struct light_sampler *s, uint32_t node, struct
     return light_bounds_importance(&s->nodes[node].bounds, point, normal);
 }
 
-/* The share of the tree beside the infinite lights; none where all of it is dark. */
+/* The probability of the tree relative to the infinite lights; 0 if all of it is dark. */
 static double tree_share(const struct light_sampler *s, struct vec3 point, struct vec3 normal) {
     if (s->infinite_count == 0)
         return s->node_count > 0;
@@ -314,7 +314,7 @@ uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, 
         return sample_shares(s, u, pmf);
     }
     double tree = tree_share(s, point, normal);
-    if (tree == 0 && s->infinite_count == 0) /* nothing can be chosen */
+    if (tree == 0 && s->infinite_count == 0) /* no light can be chosen */
         return LIGHT_NONE;
     if (u < tree) {
         *pmf = tree;

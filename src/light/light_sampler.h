@@ -1,12 +1,10 @@
-/* Chooses one light of many, in proportion to about what each of them brings to a point: a hierarchy over the lights
+/* Chooses one light of many, approximately in proportion to their contributions at a point: a hierarchy over the lights
  * with their power, their bounds and the cone of directions in which they shine (A. Conty Estevez and C. Kulla,
  * "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; the vocabulary is that of M. Pharr, W.
- * Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, section 12.6.3). The way down is random, at every
- * node in proportion to the importance of its two children. Lights without a place (skies, directional lights) stand
- * beside the tree; each of them is chosen as often as the whole tree.
- *
- * Choosing never looks at visibility. A light with probability 0 brings nothing to the point. The same lights in the
- * same order make the same sampler. */
+ * Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, section 12.6.3). The descent is random, at every node
+ * in proportion to the importance of its two children. Lights without a position (skies, directional lights) are
+ * separate from the tree; each of them is chosen as often as the whole tree. * The choice ignores visibility. A light
+ * with probability 0 contributes nothing at the point. Equal lights in equal order give equal samplers. */
 #ifndef GRAY_LIGHT_LIGHT_SAMPLER_H
 #define GRAY_LIGHT_LIGHT_SAMPLER_H
 
@@ -14,24 +12,25 @@
 #include "base/list.h"
 #include "light/light.h"
 
-/* What is known of a light, or of several together, from afar. */
+/* Bounds of a light, or of several together. */
 struct light_bounds {
-    struct box box; /* of the places that send light */
+    struct box box; /* of the emitting points */
     /* The light leaves from normals within theta_o of the axis (unit), in directions within theta_e of these. */
     struct vec3 axis;
     double cos_theta_o, cos_theta_e;
     bool two_sided; /* ... and likewise about the opposite of the axis */
-    /* What a white surface facing it shows at distance d, on average over colours and visible sides:
+    /* The radiance of a white surface that faces it at distance d, averaged over colours and visible sides:
      * steady + fading / (falloff[0] + falloff[1] d + falloff[2] d^2), nothing beyond `range`. */
     double steady, attenuation, falloff[3], range;
-    struct vec3 centre; /* from here on worked out of what stands above: a ball around the box */
+    struct vec3 centre; /* the rest is computed from the fields above: a ball around the box */
     double radius, sin_theta_o;
 };
 /* NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
 enum light_extent { LIGHT_EXTENT_NONE, LIGHT_EXTENT_BOUNDED, LIGHT_EXTENT_INFINITE };
 enum light_extent light_bounds_of(const struct light *light, struct light_bounds *out);
 struct light_bounds light_bounds_join(const struct light_bounds *a, const struct light_bounds *b);
-/* About what it brings to a surface with that normal (either side; {0,0,0}: to a point in the open). 0: nothing. */
+/* An estimate of its contribution at a surface with that normal (both sides; {0,0,0}: at a point without a surface). 0:
+ * none. */
 double light_bounds_importance(const struct light_bounds *bounds, struct vec3 point, struct vec3 normal);
 
 /* How a light is chosen. UNIFORM and POWER are there to be compared with. */
@@ -50,7 +49,7 @@ struct light_tree_node {
 
 struct light_sampler {
     enum light_choice choice;
-    uint32_t count; /* of lights that can be chosen: all, but those that send nothing */
+    uint32_t count; /* of lights that can be chosen: all that emit */
     const uint32_t *infinite;
     uint32_t infinite_count;
     const struct light_tree_node *nodes; /* node 0 is the root */
@@ -61,12 +60,12 @@ struct light_sampler {
     const double *share;        /* of POWER and UNIFORM, by light */
 };
 
-/* Of the lights, which are prepared (light_prepare) and stay as they are. Everything is in the arena. False: no memory.
+/* For lights that are prepared (light_prepare) and do not change. Everything is in the arena. False: no memory.
  */
 bool light_sampler_build(struct light_sampler *out, enum light_choice choice, const struct light *lights,
                          uint32_t light_count, struct arena *arena, struct error *error);
 /* A light for a point whose surface has that normal ({0,0,0}: none), by a number u of [0, 1), and its probability.
- * LIGHT_NONE: nothing brings light there, as far as that is seen on the way. */
+ * LIGHT_NONE: the importance became 0 during the descent. */
 uint32_t light_sampler_sample(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal, double u,
                               double *pmf);
 /* The probability with which it chooses that light. */

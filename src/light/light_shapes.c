@@ -1,4 +1,4 @@
-/* Parallelograms and discs: where rays meet them, where samples and photons lie, what holds them. */
+/* Parallelograms and discs: hits of rays, samples, photons, bounds. */
 #include "light/light_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
@@ -21,7 +21,7 @@ bool light_is_beside_disc(const struct light *light, struct vec3 point) {
 
 /* --- rays --- */
 
-/* The plane through a point, from the side that shines; p: from that point. */
+/* The plane through a point, from the emitting side; p: relative to that point. */
 static bool plane_meets_ray(const struct light *light, struct vec3 normal, struct vec3 on_plane, const struct ray *ray,
                             double *t, struct vec3 *p) {
     double across = vec3_dot(normal, ray->direction);
@@ -52,7 +52,7 @@ bool light_disc_meets_ray(const struct light *light, const struct ray *ray, doub
 
 /* --- photons --- */
 
-/* The ball that holds the places of a part. */
+/* The ball that contains the points of a part. */
 void light_parallelogram_emitter(struct light_emitter *out) {
     const struct light *light = out->light;
     double u = out->low[0] + out->side / 2, v = out->low[1] + out->side / 2;
@@ -62,7 +62,7 @@ void light_parallelogram_emitter(struct light_emitter *out) {
     out->radius = (one > other ? one : other) * out->side;
 }
 
-/* The cosine at a flat lamp, of the side that shines. */
+/* The cosine at a planar light, on the emitting side. */
 double light_planar_shine(const struct light *light, struct vec3 normal, struct vec3 direction) {
     double cosine = vec3_dot(normal, direction);
     return cosine > 0 ? cosine : light->one_sided ? 0 : -cosine;
@@ -91,7 +91,7 @@ void light_bounds_shine(const struct light *light, struct vec3 normal, double ar
     out->two_sided = !light->one_sided;
 }
 
-/* A lamp that is a sphere, sampled by solid angle within its cone: Shirley, Wang, Zimmerman, "Monte Carlo Techniques
+/* A sphere, sampled by solid angle within its cone: Shirley, Wang, Zimmerman, "Monte Carlo Techniques
  * for Direct Lighting Calculations", TOG 1996. */
 
 /* 1 - cos of the cone, without cancellation. */
@@ -99,7 +99,7 @@ static double cone_drop(const struct light_context *context) {
     return context->weight / 2;
 }
 
-/* From inside every direction meets the lamp: the solid angle 4 pi. */
+/* From inside every direction hits the sphere: the solid angle is 4 pi. */
 static bool inside_context(const struct light *light, double distance, struct light_context *out) {
     out->distance = distance;
     out->bounded = false;
@@ -126,7 +126,7 @@ bool light_sphere_context(const struct light *light, struct light_context *out) 
     return true;
 }
 
-/* Uniform over all directions; where the ray comes out. */
+/* Uniform over all directions; the exit point of the ray. */
 static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 xi) {
     double y = 1 - 2 * xi.y, level = 2 * sqrt(xi.y * (1 - xi.y)), sine, cosine;
     el_sincos(2 * PI * xi.x, &sine, &cosine);

@@ -1,9 +1,9 @@
 /* The sky: a constant, the gradient {0, 0, (1 + y)/2}, or six faces cut from a 4 x 3 cross (docs/language.md 8).
  * The viewer is in the centre of a cube whose faces are printed on the inside. Looking along f with the picture's
- * upward direction u, the picture's right is r = f x u (right-handed). The sides L F R K are upright (u = +y); going
- * to the right from F = +z one meets r = z x y = -x, so R = -x, K = -z, L = +x. T joins F's upper edge: its lower side
- * points to +z, u = -z; B joins F's lower edge: u = +z. That is the table below, and everything follows from it, the
- * neighbours across each edge too.
+ * upward direction u, the picture's right is r = f x u (right-handed). The sides L F R K are upright (u = +y); to the
+ * right of F = +z is r = z x y = -x, so R = -x, K = -z, L = +x. T joins F's upper edge: its lower side points to +z, u
+ * = -z; B joins F's lower edge: u = +z. This is the table below; everything follows from it, including the neighbours
+ * across each edge.
  *
  * Filtering has no seams: a texel beyond the edge of a face is fetched from the face that lies there, and at a corner
  * of the cube, where three texels meet and the fourth is missing, their mean replaces it. Both faces at an edge then
@@ -23,7 +23,7 @@
  * Luminance in kcd/m^2 is divided by 20, so that a bright blue sky comes out near 1. */
 
 static double perez(const double c[5], double cos_zenith, double cos_sun) {
-    double cosine = cos_zenith > 1e-3 ? cos_zenith : 1e-3; /* the function falls apart at the horizon itself */
+    double cosine = cos_zenith > 1e-3 ? cos_zenith : 1e-3; /* the function is singular at the horizon */
     cos_sun = cos_sun > 1 ? 1 : cos_sun < -1 ? -1 : cos_sun;
     return (1 + c[0] * el_exp(c[1] / cosine)) * (1 + c[2] * el_exp(c[3] * el_acos(cos_sun)) + c[4] * cos_sun * cos_sun);
 }
@@ -93,7 +93,7 @@ struct vec3 sky_sun(double day, double hour, double latitude, double longitude, 
 
 /* An image of the whole sphere, longitude along its rows and latitude down its columns. A texel left of the first is
  * the last of its row; a row above the first is the first again, turned by 180 degrees: it lies on the other side of
- * the pole. So a path over the pole or around the back meets no seam. The mip level follows the rows, whose width on
+ * the pole. So there is no seam at the poles or at the back. The mip level follows the rows, whose width on
  * the sphere is the same everywhere. */
 
 /* One row at x texels from the left, linear between its texels. */
@@ -149,7 +149,7 @@ static const struct face faces[6] = {
     {1, 1, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}},  /* F: +z */
 };
 
-/* The face that a direction meets: twice its axis, plus one on the positive side. */
+/* The face that a direction hits: twice its axis, plus one on the positive side. */
 static int face_of(struct vec3 d) {
     double x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
     if (x >= y && x >= z)

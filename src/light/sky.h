@@ -1,4 +1,4 @@
-/* What a ray sees that meets nothing: a function of its unit direction alone (docs/language.md 8). */
+/* The radiance of rays that hit nothing: a function of the unit direction (docs/language.md 8). */
 #ifndef GRAY_LIGHT_SKY_H
 #define GRAY_LIGHT_SKY_H
 
@@ -25,7 +25,7 @@ struct sky {
     struct image *image; /* of SKY_CROSS: a 4 x 3 cross `#T##` / `LFRK` / `#B##`, seen from inside */
     bool mirror;
     struct image *faces[6]; /* of SKY_FACES: -x, +x, -y, +y, -z, +z as seen from the centre */
-    /* Of SKY_STOPS: {y of the unit direction, r, g, b}, y never falling; linear between, constant beyond. */
+    /* Of SKY_STOPS: {y of the unit direction, r, g, b}, y never decreasing; linear between, constant beyond. */
     const double (*stops)[4];
     uint32_t stop_count;
     struct clear_sky {
@@ -33,7 +33,7 @@ struct sky {
         double perez[3][5];      /* for Y, x, y */
         double scale[3];         /* zenith over Perez' function there */
     } clear;
-    /* The whole sky turned about the y axis and made brighter; looked at only when `adjusted`. */
+    /* A rotation of the whole sky about the y axis and a factor; used only if `adjusted`. */
     bool adjusted;
     double turn_sine, turn_cosine, intensity;
 };
@@ -47,11 +47,11 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
 /* The unit direction to the sun: y up, -z north, +x east. day: 1..365; hour: of the clock; degrees, east and north
  * positive; zone: hours that the clock is ahead of Greenwich. */
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
-/* Turned further about the y axis: what came from +x then comes from (cosine, 0, -sine). */
+/* Rotates it further about the y axis: light from +x then comes from (cosine, 0, -sine). */
 void sky_turn(struct sky *sky, double sine, double cosine);
-/* They are the same function, made of the same images and stops. */
+/* Whether they are the same function, of the same images and stops. */
 bool sky_same(const struct sky *a, const struct sky *b);
-/* At least the largest component of its colours. */
+/* A bound of the largest component of its colours. */
 double sky_brightest(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread);

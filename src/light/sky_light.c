@@ -2,17 +2,17 @@
  * solid angle (Archimedes), each drawn in proportion to the sky's mean luminance in it; a row first, then a cell of the
  * row (Pharr, Jakob, Humphreys, "Physically Based Rendering", the chapter on infinite area lights). Inside of a cell
  * directions are uniform. Equal cells make the poles no special case: rows are thin in angle near the horizon and wide
- * at the poles, where skies change little. A part of all samples goes everywhere alike, so that what the table has
- * missed is found and no sample counts for very much. */
+ * at the poles, where skies change little. A part of all samples is uniform, so that features that the table misses are
+ * found and no sample has a very large weight. */
 #include "light/sky_light_internal.h"
 
 #include "light/light_internal.h"
 #include "math/elementary.h"
 
 enum { MIN_COLUMNS = 128, MAX_COLUMNS = 512, PROBES = 2 };
-static const double everywhere = 1.0 / 16; /* the part that goes everywhere */
+static const double everywhere = 1.0 / 16; /* the uniform part */
 
-/* Texels of a picture of the sky all around. */
+/* The width in texels of the whole sky. */
 static uint32_t texels_across(const struct sky *sky) {
     switch (sky->kind) {
     case SKY_MAP:
@@ -34,7 +34,7 @@ static uint32_t columns_for(const struct sky *sky) {
     return columns < MIN_COLUMNS ? MIN_COLUMNS : columns > MAX_COLUMNS ? MAX_COLUMNS : columns;
 }
 
-/* Row 0 is at the top; a place's y and x run from 0 to 1 down and round. */
+/* Row 0 is at the top; y and x of a point run from 0 to 1 downwards and around. */
 static struct vec3 direction_at(double x, double y) {
     double height = 1 - 2 * y, sine, cosine, level = sqrt(4 * y * (1 - y));
     el_sincos(2 * PI * x, &sine, &cosine);
@@ -53,7 +53,7 @@ static double cell_luminance(const struct sky *sky, uint32_t column, uint32_t ro
     return sum / (PROBES * PROBES);
 }
 
-/* From weights to running shares; all equal when all are 0. Returns the sum. */
+/* Converts weights to cumulative shares; all equal if all are 0. Returns the sum. */
 static double running_shares(double *weights, uint32_t count) {
     double sum = 0, so_far = 0;
     for (uint32_t i = 0; i < count; i++)
@@ -86,7 +86,7 @@ const struct sky_table *sky_table_build(const struct sky *sky, struct arena *are
     if (!table || !row_until || !until)
         return NULL;
     struct sky_rows filling = {sky, until, rows, columns};
-    (void)pool_run(pool, rows, fill_row, &filling); /* cancelled: whoever renders next sees it */
+    (void)pool_run(pool, rows, fill_row, &filling); /* cancelled: the next stage of the render checks it */
     double total = 0;
     for (size_t i = 0; i < (size_t)rows * columns; i++)
         total += until[i];
@@ -102,7 +102,7 @@ const struct sky_table *sky_table_build(const struct sky *sky, struct arena *are
     return table;
 }
 
-/* The entry that the share falls on; *within: how far into it. */
+/* The entry selected by a number; *within: its position inside the entry. */
 static uint32_t find_share(const double *until, uint32_t count, double share, double *within, double *width) {
     uint32_t low = 0, high = count - 1;
     while (low < high) {

@@ -1,4 +1,4 @@
-/* A sky as a light: directions in proportion to what comes from them. */
+/* A sky as a light: directions in proportion to their radiance. */
 #ifndef GRAY_LIGHT_SKY_LIGHT_INTERNAL_H
 #define GRAY_LIGHT_SKY_LIGHT_INTERNAL_H
 
@@ -20,7 +20,7 @@ struct sky_sample {
     struct vec3 direction; /* unit */
     struct vec3 radiance;
     double pdf;            /* of the direction, by solid angle */
-    struct vec3 intensity; /* radiance over pdf as classic light: its mean times (n.l) is what a white surface shows */
+    struct vec3 intensity; /* radiance / pdf as classic light: the colour of a white surface is its mean times (n.l) */
 };
 /* The sample for a place of the unit square. */
 struct sky_sample sky_table_sample(const struct sky *sky, const struct sky_table *table, struct sample2 xi);

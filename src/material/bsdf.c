@@ -3,8 +3,8 @@
  * A classic lobe is its formula of docs/language.md 5.2 over pi as f |cos|. The GGX lobes are those of Walter,
  * Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, with the masking of
  * both directions together (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 2014,
- * equation 99). Facets are drawn as they are seen from wo, so a sample weighs what the other direction leaves of it.
- * Fresnel's shares and total reflection are those of the facet. Light that meets a second facet is lost.
+ * equation 99). Facets are sampled by their visibility from wo, so the weight of a sample is the masking of the other
+ * direction. Fresnel reflectance and total reflection are those of the facet. Light that meets a second facet is lost.
  */
 #include "material/bsdf.h"
 
@@ -46,7 +46,7 @@ static double blinn_formula(const struct lobe *lobe, struct vec3 normal, struct 
     return n_h > 0 ? lobe_power(n_h, lobe->exponent) : 0;
 }
 
-/* The cosine by which classic lobes see wi; 0 for light from behind the surface, however its shading normal leans. */
+/* The cosine of wi for classic lobes; 0 for light from behind the surface, for any shading normal. */
 static double classic_cosine(const struct bsdf *bsdf, struct vec3 wi) {
     double n_l = vec3_dot(bsdf->lit, wi);
     return n_l > 0 && vec3_dot(bsdf->geometric_side, wi) > 0 ? n_l : 0;
@@ -132,13 +132,13 @@ static double blinn_pdf(const struct lobe *lobe, struct vec3 normal, struct vec3
 
 /* --- smooth boundaries --- */
 
-/* A reflection about an interpolated normal may point into the surface: the geometric normal then takes its place. */
+/* A reflection about an interpolated normal may point into the surface: then the geometric normal is used. */
 static struct vec3 mirror_direction(const struct bsdf *bsdf, struct vec3 wo) {
     struct vec3 direction = dielectric_mirror(bsdf->side, wo);
     return vec3_dot(direction, bsdf->geometric_side) > 0 ? direction : dielectric_mirror(bsdf->geometric_side, wo);
 }
 
-/* About an interpolated normal the ray may not leave its side of the surface: the geometric one takes over. */
+/* With an interpolated normal the ray may not cross the surface: then the geometric one is used. */
 bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out) {
     bool transmits = dielectric_refract(bsdf->side, wo, bsdf->eta, out);
     if (transmits && vec3_dot(*out, bsdf->geometric_side) >= 0)
@@ -148,7 +148,7 @@ bool bsdf_refract(const struct bsdf *bsdf, struct vec3 wo, struct vec3 *out) {
 
 /* --- rough boundaries --- */
 
-/* The share of light that a GGX lobe takes of what meets a facet; `towards` is the cosine of wo to it. */
+/* The fraction of light at a facet that goes into a GGX lobe; `towards` is the cosine of wo to the facet. */
 static double facet_share(const struct bsdf *bsdf, bool transmits, double towards) {
     if (!bsdf->fresnel_of_facets)
         return 1;
@@ -156,8 +156,7 @@ static double facet_share(const struct bsdf *bsdf, bool transmits, double toward
     return transmits ? 1 - reflected : reflected;
 }
 
-/* What masking leaves of light that a visible facet sends to wi; 0 on the wrong side, of the shading normal or the
- * surface. */
+/* The masking of light from a visible facet towards wi; 0 on the wrong side of the shading normal or of the surface. */
 static double facet_escape(const struct bsdf *bsdf, bool transmits, struct vec3 wo, struct vec3 wi) {
     double n_l = vec3_dot(bsdf->side, wi), height = vec3_dot(bsdf->geometric_side, wi);
     if (transmits ? !(n_l < 0 && height < 0) : !(n_l > 0 && height > 0))
@@ -165,12 +164,12 @@ static double facet_escape(const struct bsdf *bsdf, bool transmits, struct vec3 
     return microfacet_escape(vec3_dot(bsdf->side, wo), fabs(n_l), bsdf->alpha);
 }
 
-/* A direction of a GGX lobe: its facet, its density before shares and masking, and what these leave. */
+/* A direction of a GGX lobe: its facet, its density without Fresnel and masking, and the product of these. */
 struct facet_path {
     double pdf, share;
 };
 
-/* By way of a facet that mirrors. A lobe that refracts reaches wi so where the facet reflects totally. */
+/* Through reflection by a facet. A refracting lobe has such directions where the facet reflects totally. */
 static struct facet_path by_mirror(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add(wo, wi)), through;
     double v_h = vec3_dot(wo, half);
@@ -180,7 +179,7 @@ static struct facet_path by_mirror(const struct bsdf *bsdf, bool refracts, struc
                                facet_share(bsdf, refracts, v_h) * facet_escape(bsdf, false, wo, wi)};
 }
 
-/* By way of a facet that refracts: Walter et al. 2007, sections 5.2 and 5.3. */
+/* Through refraction by a facet: Walter et al. 2007, sections 5.2 and 5.3. */
 static struct facet_path by_refraction(const struct bsdf *bsdf, struct vec3 wo, struct vec3 wi) {
     struct vec3 half = vec3_normalize(vec3_add_scaled(wi, wo, bsdf->eta));
     if (vec3_dot(wo, half) < 0)
@@ -192,7 +191,7 @@ static struct facet_path by_refraction(const struct bsdf *bsdf, struct vec3 wo, 
                                facet_share(bsdf, true, v_h) * facet_escape(bsdf, true, wo, wi)};
 }
 
-/* Samples that nothing is left of are lost and have no density. */
+/* Samples with weight 0 are dropped and have no density. */
 static struct facet_path rough_path(const struct bsdf *bsdf, bool refracts, struct vec3 wo, struct vec3 wi) {
     struct facet_path path = {0, 0};
     if (vec3_dot(wi, bsdf->geometric_side) > 0)
@@ -204,12 +203,12 @@ static struct facet_path rough_path(const struct bsdf *bsdf, bool refracts, stru
 
 /* --- one lobe --- */
 
-/* A smooth lobe that refracts reflects where the surface reflects totally; of a rough one each facet decides. */
+/* A smooth refracting lobe reflects at total reflection; for a rough one each facet decides. */
 static bool lobe_transmits(const struct bsdf *bsdf, const struct lobe *lobe) {
     return (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && (bsdf->transmits || !(lobe_flags(lobe->kind) & BSDF_DELTA));
 }
 
-/* Whether it gives light at all. */
+/* Whether its contribution is not zero. */
 static bool lobe_counts(const struct bsdf *bsdf, const struct lobe *lobe) {
     unsigned flags = lobe_flags(lobe->kind);
     if (flags & BSDF_CLASSIC)
@@ -306,7 +305,7 @@ static bool rough_direction(const struct bsdf *bsdf, bool refracts, struct vec3 
     return out->share > 0;
 }
 
-/* Of a traced lobe; facet: of a rough one. False: lost, below the surface or in it. */
+/* The direction of a traced lobe; facet: of a rough one. False: invalid, below the surface or in its plane. */
 static bool traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 facet,
                              struct lobe_direction *out) {
     out->transmits = lobe_transmits(bsdf, lobe);
@@ -321,7 +320,7 @@ static bool traced_direction(const struct bsdf *bsdf, const struct lobe *lobe, s
     return true;
 }
 
-/* False: lost, below the surface or in it. */
+/* False: invalid, below the surface or in its plane. */
 static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct sample2 u,
                         struct lobe_direction *out) {
     struct vec3 facet;
@@ -364,7 +363,8 @@ static double radiance_factor(const struct bsdf *bsdf, enum bsdf_mode mode, bool
     return transmits && mode == BSDF_RADIANCE ? bsdf->eta * bsdf->eta : 1;
 }
 
-/* How much of what it weighs a lobe may be expected to give, never nothing: facets take Fresnel's share of it. */
+/* The expected fraction of its weight that a lobe contributes, always above 0: facets multiply it by Fresnel's share.
+ */
 static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
     unsigned flags = lobe_flags(lobe->kind);
     if (lobe->share > 0)
@@ -375,7 +375,7 @@ static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
     return flags & BSDF_TRANSMITS ? 1 - reflected : reflected;
 }
 
-/* In proportion to it a lobe is drawn. Where there is no boundary no facet reflects. */
+/* Lobes are chosen in proportion to it. Without a boundary no facet reflects. */
 static double lobe_chance(const struct bsdf *bsdf, uint32_t lobes, int i) {
     const struct lobe *lobe = &bsdf->lobes[i];
     if (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1)
@@ -416,7 +416,7 @@ double bsdf_pdf(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct 
 
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out) {
-    /* Choose a lobe; what is left of u.x is used again. */
+    /* Choose a lobe; the rest of u.x is reused. */
     double all = all_chances(bsdf, lobes), from = 0;
     int chosen = -1;
     for (int i = 0; i < bsdf->count; i++) {
@@ -461,7 +461,7 @@ int bsdf_branches(const struct bsdf *bsdf, struct bsdf_branch out[BSDF_LOBES]) {
         unsigned flags = lobe_flags(lobe->kind);
         if (!(flags & BSDF_TRACED) || !lobe_counts(bsdf, lobe))
             continue;
-        /* Reflected totally, it goes where the mirror goes. */
+        /* At total reflection it has the mirror direction. */
         if ((flags & BSDF_TRANSMITS) && !lobe_transmits(bsdf, lobe) && count > 0) {
             out[count - 1].weight = vec3_add(out[count - 1].weight, lobe->weight);
             continue;

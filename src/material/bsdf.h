@@ -1,10 +1,10 @@
-/* BSDF: what a surface does with light at one hit, as a short list of lobes. material_eval fills it, integrators read
- * nothing else of a surface. Directions are unit vectors in world space that point away from the surface. wo is where a
- * path comes from, on the side of `geometric_side`; wi is where it goes on.
+/* BSDF: the scattering of light by a surface at one hit, as a short list of lobes. material_eval fills it; integrators
+ * read nothing else of a surface. Directions are unit vectors in world space that point away from the surface. wo is
+ * the direction from which a path comes, on the side of `geometric_side`; wi is the direction in which it continues.
  *
- * Lobes are of two sorts. Classic lobes (docs/language.md 5.2) answer the lights of the scene by a formula,
- * bsdf_classic; traced lobes show what a ray in their direction meets, and lights are nothing to them. docs/light.md
- * says what f is for both. */
+ * There are two kinds of lobes. Classic lobes (docs/language.md 5.2) reflect the lights of the scene by a formula,
+ * bsdf_classic; traced lobes show the hit of a ray in their direction and do not reflect lights. docs/light.md defines
+ * f for both. */
 #ifndef GRAY_MATERIAL_BSDF_H
 #define GRAY_MATERIAL_BSDF_H
 
@@ -85,11 +85,11 @@ struct bsdf {
     struct vec3 normal;               /* on the outer side of the surface */
     struct vec3 lit;                  /* the same, turned to the viewer where the surface has two sides */
     struct vec3 side, geometric_side; /* on the ray's side; `side` has an angle below 90 degrees to the view */
-    bool dark;                        /* seen from behind: classic lobes answer no light */
+    bool dark;                        /* seen from behind: classic lobes reflect no light */
     struct vec3 albedo;               /* kd, whatever the lobes are */
     struct vec3 ambient;              /* multiplied with the scene's ambient colour */
     struct vec3 emission;             /* added as it is */
-    double opacity;                   /* the rest is a hole, through which the ray goes on as it was */
+    double opacity;                   /* the rest is a hole, through which the ray continues unchanged */
     /* Traced lobes. */
     double alpha;       /* width of the facets' slopes; 0: smooth */
     int glossy_samples; /* N x N rays where it is rough; 0: the default */
@@ -97,17 +97,17 @@ struct bsdf {
     double fresnel;     /* the share that a smooth surface reflects, or negative */
     /* The GGX lobes have Fresnel's share of each facet beside their weights. */
     bool fresnel_of_facets;
-    bool transmits;      /* refracted light gets through the smooth surface; `boundary` holds if anything refracts */
-    struct vec3 through; /* where it passes: its direction for the view of the hit */
-    bool turns_back;     /* where it does not, its share is reflected; else lost */
+    bool transmits;      /* the smooth surface transmits refracted light; `boundary` is set if any lobe refracts */
+    struct vec3 through; /* if it transmits: the refracted direction for the view of the hit */
+    bool turns_back;     /* at total reflection its share is reflected; else lost */
     struct medium_boundary boundary;
     struct bsdf_facets facets[BSDF_FACETS]; /* those that lobes refer to */
 };
 
-/* What travels in the direction that is sampled. RADIANCE: light comes from there, and refraction changes it by the
+/* The transported quantity of the sampled direction. RADIANCE: light comes from there, and refraction scales it by the
  * square of eta (Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2). IMPORTANCE:
- * the power of a photon goes there, which refraction leaves alone; so it does with radiance over n^2, which is what
- * Whitted's colours are. */
+ * the power of a photon goes there; refraction does not change it, nor radiance divided by n^2, which Whitted's colours
+ * are. */
 enum bsdf_mode { BSDF_RADIANCE, BSDF_IMPORTANCE };
 
 const char *lobe_name(enum lobe_kind kind);
@@ -118,11 +118,11 @@ static inline unsigned lobe_flags(enum lobe_kind kind) {
     return flags_of[kind];
 }
 
-/* Sets of lobes: bit i is lobes[i]. Here those that have one of the flags. */
+/* Sets of lobes: bit i is lobes[i]. This one has the lobes with one of the flags. */
 uint32_t bsdf_lobes_with(const struct bsdf *bsdf, unsigned flags);
 
-/* What the classic lobes among `lobes` send to wo of unit light from wi, as docs/language.md 5.2 has it: pi f |cos|.
- * Nothing of light from the far side of `geometric_side`. */
+/* The sum of the classic lobes in `lobes` for unit light from wi towards wo, by docs/language.md 5.2: pi f |cos|. 0 for
+ * light from the other side than `geometric_side`. */
 struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi);
 
 /* f |cos wi| of the lobes that are not delta. */
@@ -136,15 +136,17 @@ struct bsdf_sample {
     double pdf;         /* with BSDF_DELTA: the probability of the lobe */
     unsigned flags;     /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
 };
-/* A direction for a place in the unit square, of one of the lobes, drawn in proportion to about what they give. False:
- * no direction, which counts as black (a sample below the surface, a lobe that gives nothing). */
+/* A direction for a point of the unit square, of one of the lobes, chosen approximately in proportion to their
+ * contributions. False: no direction, which counts as black (a sample below the surface, a lobe without contribution).
+ */
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out);
 
-/* For integrators that follow traced lobes one by one. A smooth lobe that refracts and cannot joins the mirror. */
+/* For integrators that follow traced lobes one by one. At total reflection a smooth refracting lobe joins the mirror.
+ */
 struct bsdf_branch {
     struct vec3 weight; /* not black */
-    double expected;    /* about the mean of a sample's weight over this one, above 0: a chance to choose it by */
+    double expected;    /* approximately the mean weight of samples, above 0: for the choice of a branch */
     int lobe;
     bool rough;
 };

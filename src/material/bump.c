@@ -30,7 +30,7 @@ static double height_at(const struct texture_image *image, struct texcoord at, d
     return (texel.r + texel.g + texel.b) / 3;
 }
 
-/* How far the two looks at the picture are apart. */
+/* The distance of the two lookups of the image. */
 static double step_of(double width, uint32_t texels) {
     double texel = 1 / (double)texels;
     return width > texel ? fmin(width, 1) : texel;
@@ -62,8 +62,8 @@ static void turn_by_heights(const struct bump *bump, const struct texture_image 
         *normal = vec3_normalize(turned);
 }
 
-/* The hit moved in its tangent plane, by s along a and t along b in the space of patterns; coordinates on images go
- * along as far as the shape supplies their tangents. */
+/* The hit moved in its tangent plane, by s along a and t along b in the space of patterns; image coordinates change too
+ * if the shape supplies their tangents. */
 static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, double s, double t) {
     struct hit out = *hit;
     struct vec3 step = vec3_add(vec3_scale(hit->along_a, s), vec3_scale(hit->along_b, t));

@@ -1,4 +1,4 @@
-/* Relief without geometry: normals turned by textures. */
+/* Bump maps and normal maps: normals changed by textures. */
 #ifndef GRAY_MATERIAL_BUMP_H
 #define GRAY_MATERIAL_BUMP_H
 
@@ -8,9 +8,9 @@
  * as the colours have them; heights of BUMP_HEIGHT, of the size on the surface where the texture is an image alone. */
 struct bump bump_make(enum material_kind kind, const struct texture *texture);
 
-/* Turns *normal, a unit vector, by the bumps of the material, from the lowest on; leaves it bit by bit where there are
- * none or their textures are flat. Needs hit->raise and the tangents of the mapping (material_has_bump); does nothing
- * where a shape has none. */
+/* Changes *normal, a unit vector, by the bumps of the material, from the lowest to the highest; keeps its bits if there
+ * are none or their textures are constant. Needs hit->raise and the tangents of the mapping (material_has_bump); does
+ * nothing if a shape has none. */
 void bump_turn_normal(const struct material *material, const struct hit *hit, struct vec3 *normal);
 
 #endif

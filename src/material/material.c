@@ -1,6 +1,6 @@
-/* Evaluating the inputs of a material. One without textures is a copy of its numbers, field by field: clearing the
- * result as a whole would take longer than all the rest. Textures use the point in the object space of the operand that
- * made the surface, so they stick to the object. */
+/* Evaluating the inputs of a material. Without textures the result is a copy of the material's numbers, field by field:
+ * clearing the whole struct would take longer than all the rest. Textures use the point in the object space of the
+ * operand that made the surface, so they stick to the object. */
 #include "material/material.h"
 
 #include "material/bump.h"
@@ -155,7 +155,7 @@ bool material_has_ior(const struct material *material) {
     return numbers_of(material)->has_ior;
 }
 
-/* What textures make of the highlight's colour is not known here; it may be white. */
+/* The highlight's colour from textures is not known here; it may be white. */
 double material_specular(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
     bool filtered = material_texture(material, INPUT_KS) && !material->is_metal;
@@ -164,7 +164,7 @@ double material_specular(const struct material *material) {
     return own > material->metal ? own : material->metal;
 }
 
-/* A highlight that is seen head on sends back 2 ks / (e + 1) of uniform light; beside a mirror it is left out. */
+/* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */
 double material_albedo_bound(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
     const struct texture *texture = material_texture(material, INPUT_KD);
@@ -178,8 +178,8 @@ double material_albedo_bound(const struct material *material) {
     return diffuse + (specular > 0 ? specular : vec3_max_abs(numbers->ks) * 2 / (exponent + 1));
 }
 
-/* See material_eval.h. Interpolated and turned normals follow the geometric one: where they lean so far that the ray
- * would be behind the surface, the geometric one takes their place. */
+/* See material_eval.h. If an interpolated or bumped normal is tilted so far that the ray would be behind the surface,
+ * the geometric one is used. */
 
 static void add_lobe(struct bsdf *bsdf, enum lobe_kind kind, struct vec3 weight, double exponent) {
     struct lobe *lobe = &bsdf->lobes[bsdf->count++];
@@ -199,7 +199,7 @@ static void set_frame(const struct hit *hit, const struct surface_inputs *inputs
         bsdf->side = bsdf->geometric_side;
 }
 
-/* The relative index, whether light passes, and Fresnel's share of both amounts. */
+/* The relative index, whether light is transmitted, and Fresnel's share of both amounts. */
 static void set_boundary(const struct hit *hit, const struct medium_stack *media, struct surface_inputs *inputs,
                          struct bsdf *bsdf) {
     static const struct medium_stack air = {.count = 0};

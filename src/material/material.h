@@ -1,6 +1,6 @@
-/* Materials: a flat set of inputs, each a number or a texture, and flags. A material is made as a base or derived from
- * another one, its base: derived, it reads the numbers of the base at the end of that chain and has the same textures
- * but for the input that was replaced or mixed (material_inputs.h). Evaluated once per hit into a struct
+/* Materials: a flat set of inputs, each a number or a texture, and flags. A material is a base or is derived from
+ * another one: a derived material reads the numbers of the base at the end of that chain and has the same textures
+ * except for the input that was replaced or mixed (material_inputs.h). Evaluated once per hit into a struct
  * surface_inputs. Immutable, in the arena of the script; images are shared assets. A chain is at most MATERIAL_DEPTH
  * long. */
 #ifndef GRAY_MATERIAL_MATERIAL_H
@@ -62,7 +62,7 @@ struct bump {
     union bump_ref below;
 };
 
-/* The bump that is meant, or NULL. bumps: the table that holds it; NULL: it is authored. */
+/* The referenced bump, or NULL. bumps: the table that holds it; NULL: it is authored. */
 static inline const struct bump *bump_at(const struct bump *bumps, union bump_ref ref) {
     if (!bumps)
         return ref.authored;
@@ -74,7 +74,7 @@ struct material {
     const struct material *base;           /* what it was derived from; NULL for a base */
     const struct material *origin;         /* the base at the end of that chain; NULL for itself */
     int depth;                             /* 1 for a base */
-    uint32_t serial;                       /* order of creation in a scene, from 1; 0: of no scene */
+    uint32_t serial;                       /* order of creation in a scene, from 1; 0: not in a scene */
     struct material *older;                /* the one created before it, or NULL */
     const char *name;                      /* for messages; may be NULL */
     union texture_ref inputs[INPUT_COUNT]; /* none: the number of the origin */
@@ -82,7 +82,7 @@ struct material {
     /* The tables that `inputs` and `bump` are indices of, those of a world; NULL: the material is authored. */
     const struct texture *textures;
     const struct bump *bumps;
-    double metal;                /* of MATERIAL_METAL: what it mirrors at most */
+    double metal;                /* of MATERIAL_METAL: its largest reflectance */
     enum material_input changed; /* of MATERIAL_IMAGE */
     bool is_metal, fresnel;
     struct phong phong; /* of a base */
@@ -95,19 +95,19 @@ struct surface_inputs {
     struct vec3 kd, ks;
     double shininess, reflect, refract, ior;
     bool has_ior, two_sided;
-    bool unlit;         /* kd is shown as it is, whatever light there is */
-    struct vec3 normal; /* unit, world, on the outward side: the hit's, or as relief has turned it */
-    double opacity;     /* of a surface with holes; what lies behind shows by 1 - opacity */
+    bool unlit;         /* kd is shown unchanged, without light */
+    struct vec3 normal; /* unit, world, on the outward side: the hit's, or changed by bumps */
+    double opacity;     /* of a surface with holes; objects behind it have the weight 1 - opacity */
     enum material_highlight highlight;
-    struct vec3 emission;   /* added to what is reflected */
-    struct vec3 absorption; /* inside: the logarithm of light falls by this per unit */
+    struct vec3 emission;   /* added to reflected light */
+    struct vec3 absorption; /* inside: the logarithm of light decreases by this per unit */
     double roughness;       /* of reflection and refraction; 0: a mirror */
     int glossy_samples;     /* N x N rays where it is rough; 0: the default */
     bool fresnel;           /* material_eval, which knows the media, replaces reflect and refract by F and 1 - F */
 };
 
-/* A copy that refers to no other material: the numbers of the base at the end of its chain are its own. Tables of
- * worlds hold such copies, with indices in the place of pointers (flatten_textures). */
+/* A copy that refers to no other material: it has its own copy of the numbers of the base at the end of its chain.
+ * Tables of worlds have such copies, with indices instead of pointers (flatten_textures). */
 struct material material_flatten(const struct material *material);
 /* The texture of an input, NULL where it is a number. */
 static inline const struct texture *material_texture(const struct material *material, enum material_input input) {
@@ -118,27 +118,26 @@ void material_inputs_at(const struct material *material, const struct hit *hit, 
 typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);
 void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
                              material_observer *observer, void *context);
-/* The base at the end of its chain, as it was made: what the world has copied of it (material_mapping.h) has the
- * numbers of that. */
+/* The original base at the end of its chain: the world's copies (material_mapping.h) have the numbers of that. */
 const struct material *material_origin(const struct material *material);
 /* What a material of a chain does, in a word for descriptions: "wood", "image on ks". */
 const char *material_step_name(const struct material *link);
-/* What hits must know for it: the footprint in pattern space; where bumps rise (hit->raise). */
+/* What hits must compute for it: the footprint in pattern space; the direction of bumps (hit->raise). */
 bool material_has_image(const struct material *material);
 bool material_has_bump(const struct material *material);
 bool material_has_holes(const struct material *material); /* its opacity may be below 1 */
 /* Whether light passes into the solid (refract may be above 0, or Fresnel), and its index. */
 bool material_is_transparent(const struct material *material, double *ior);
-/* Of the base: how the inside absorbs light, per unit of length. */
+/* Of the base: absorption inside, per unit of length. */
 struct vec3 material_absorption(const struct material *material);
-/* Of the base: its own light on average, and at most (texture_estimate). */
+/* Of the base: its average emission, and a bound (texture_estimate). */
 struct vec3 material_emission(const struct material *material);
 struct vec3 material_emission_bound(const struct material *material);
-/* Whether it may be another one at every hit. */
+/* Whether it may differ between hits. */
 bool material_emission_varies(const struct material *material);
-/* The share of light that its mirror and its refraction give back together, at most; 0: neither. */
+/* The largest share of light that it mirrors and refracts together; 0: neither. */
 double material_specular(const struct material *material);
-/* About the share of light that it sends back, at most. */
+/* Approximately the largest share of light that it reflects. */
 double material_albedo_bound(const struct material *material);
 bool material_has_ior(const struct material *material);
 

@@ -1,22 +1,22 @@
 /* From a hit to its surface: the inputs of the material (material_inputs_at), the side it is seen from, the boundary
- * between two media with Fresnel's shares, and the lobes of all this. */
+ * between two media with Fresnel's shares, and the resulting lobes. */
 #ifndef GRAY_MATERIAL_MATERIAL_EVAL_H
 #define GRAY_MATERIAL_MATERIAL_EVAL_H
 
 #include "material/bsdf.h"
 #include "material/material.h"
 
-/* What the picture says about all surfaces, and who listens. All zero: the defaults. */
+/* Settings of the picture for all surfaces, and the observer. All zero: the defaults. */
 struct material_context {
     enum specular_kind specular;
     bool ambient_plain;          /* the ambient colour is not multiplied by kd */
-    bool total_reflection;       /* what cannot be refracted is reflected; else it is lost */
-    material_observer *observer; /* hears of every link of `authored`, or NULL */
+    bool total_reflection;       /* at total reflection, refracted light is reflected; else it is lost */
+    material_observer *observer; /* called for every link of `authored`, or NULL */
     void *observer_context;
     const struct material *authored; /* of the material, where told is set: the one that the scene has */
 };
 
-/* media: those that the ray is in; NULL: none. A surface that is all hole (opacity 0) has no lobes. */
+/* media: those that contain the ray; NULL: none. A surface with opacity 0 has no lobes. */
 void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
                    const struct material_context *context, struct bsdf *out);
 

@@ -1,6 +1,6 @@
-/* A decorator of the language is one function in here: it puts a texture in the place of an input, with the texture
- * that was there inside of it. So a chain of decorators becomes one tree for each input, and only what has textures
- * costs anything at a hit. */
+/* A decorator of the language is one function here: it replaces an input by a texture that contains the previous
+ * texture. So a chain of decorators becomes one tree for each input, and only inputs with textures take time at a hit.
+ */
 #include "material/material_inputs.h"
 
 #include <float.h>
@@ -54,7 +54,7 @@ bool material_cut(struct material *material, const struct texture_image *image, 
     struct texture_image own = *image;
     own.alpha = image->alpha == ALPHA_ONLY ? ALPHA_ONLY : ALPHA_DARKENS;
     material->changed = INPUT_OPACITY;
-    /* Whole where the surface has no coordinates for the image. */
+    /* Opaque if the surface has no coordinates for the image. */
     const struct texture *whole = texture_keep(arena, texture_number(1), error);
     const struct texture *picture = whole ? texture_keep(arena, texture_image(&own, whole), error) : NULL;
     if (!picture)
@@ -130,7 +130,7 @@ bool material_split_metal(struct material *material, const struct texture_image 
         return false;
     material->is_metal = true;
     material->metal = image ? 1 : numbers.metalness * (1 - numbers.roughness);
-    /* What shines through has the filter in ks; refract may change after this. */
+    /* Transmitted light has its filter in ks; refract may change after this. */
     const struct texture *refract = material_input(material, INPUT_REFRACT);
     const struct texture *transmits = texture_keep(arena, texture_map(refract, FUNCTION_STEP, DBL_TRUE_MIN), error);
     const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);

@@ -1,4 +1,4 @@
-/* Deriving materials: a new one that has everything of its base, then one input replaced or mixed. What is made lies in
+/* Deriving materials: a new one with everything of its base, except one input that is replaced or mixed. Results are in
  * the arena. False and error: no memory, or the tree of textures has become too large (texture.h). */
 #ifndef GRAY_MATERIAL_MATERIAL_INPUTS_H
 #define GRAY_MATERIAL_MATERIAL_INPUTS_H
@@ -14,7 +14,7 @@ const struct texture *material_input(const struct material *material, enum mater
 /* The input times the texture. */
 bool material_multiply(struct material *material, enum material_input input, const struct texture *by,
                        struct arena *arena, struct error *error);
-/* kd * pattern + mix * (1 - pattern): what marble and wood are. */
+/* kd * pattern + mix * (1 - pattern): marble and wood. */
 bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
                      struct error *error);
 /* The image over the input. Not for INPUT_OPACITY. */
@@ -23,17 +23,17 @@ bool material_cover(struct material *material, enum material_input input, const 
 /* Holes where the image is black, or by its alpha (ALPHA_ONLY); cutoff > 0: all or nothing, from there on. */
 bool material_cut(struct material *material, const struct texture_image *image, double cutoff, struct arena *arena,
                   struct error *error);
-/* `bump` over what turns the normal already; its `below` is set. */
+/* `bump` over the existing bumps; its `below` is set. */
 bool material_add_bump(struct material *material, const struct bump *bump, struct arena *arena, struct error *error);
-/* The share `metalness` of kd colours the highlight and the mirror instead, in the place of that share of ks. */
+/* The share `metalness` of kd becomes the colour of highlight and mirror and replaces that share of ks. */
 bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
                         struct error *error);
 struct metal_numbers {
     double metalness, roughness;
-    double f0; /* the reflectance of what is no metal */
+    double f0; /* the reflectance of the non-metal part */
 };
-/* kd is split into metal and the rest after glTF 2.0. The image (or NULL) holds metalness in blue and roughness in
- * green, the numbers are multiplied by it. */
+/* kd is split into metal and the rest after glTF 2.0. The image (or NULL) has metalness in blue and roughness in green,
+ * the numbers are multiplied by it. */
 bool material_split_metal(struct material *material, const struct texture_image *image, struct metal_numbers numbers,
                           struct arena *arena, struct error *error);
 

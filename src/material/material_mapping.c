@@ -1,6 +1,6 @@
 /* Copies of trees of textures, of bumps and of chains of materials, wherever an image below has another mapping. Trees
- * share parts, and chains share most of their trees: whatever was asked about once is found again by its address, so
- * the work is that of the distinct parts. Addresses decide the position of an entry and nothing else. */
+ * share parts, and chains share most of their trees: results are cached by address, so the work is that of the distinct
+ * parts. Addresses only decide the position of an entry. */
 #include "material/material_mapping.h"
 
 #include "base/random.h"
@@ -9,7 +9,7 @@
 struct material_mapping_entry {
     const void *of; /* a texture, a relief or a material; NULL: free */
     enum surface_layout layout;
-    const void *on; /* what stands for it; may be the same */
+    const void *on; /* its replacement; may be the same */
 };
 
 static struct material_mapping_entry *find(const struct material_mapping *mapping, const void *of,
@@ -39,7 +39,7 @@ static bool grow(struct material_mapping *mapping) {
     return true;
 }
 
-/* `on`, which is known from now on; NULL: no memory. */
+/* `on`, which is now in the cache; NULL: no memory. */
 static const void *remember(struct material_mapping *mapping, const void *of, enum surface_layout layout,
                             const void *on) {
     if (!on || (mapping->count * 2 >= mapping->capacity && !grow(mapping)))

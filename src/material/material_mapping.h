@@ -1,6 +1,6 @@
-/* Materials on shapes. What a script asks of an image ("as the shape has it", "round the sphere") depends on the shape:
- * on balls and boxes it becomes another mapping (texture_mapping_on). The world finds out once, for each material
- * and each layout of the shapes that show it, so that a hit says nothing of the shape that it came from. */
+/* Materials on shapes. The mapping that a script requests for an image ("by the shape", "spherical") depends on the
+ * shape: on spheres and boxes it becomes another mapping (texture_mapping_on). The world resolves this once, for each
+ * material and each layout of its shapes, so that a hit needs no information about its shape. */
 #ifndef GRAY_MATERIAL_MATERIAL_MAPPING_H
 #define GRAY_MATERIAL_MATERIAL_MAPPING_H
 
@@ -9,7 +9,7 @@
 
 struct material_mapping_entry;
 
-/* What is known already; zero but for the arena, in which everything made lies. */
+/* The cache; zero except for the arena, which owns all results. */
 struct material_mapping {
     struct arena *arena;
     struct material_mapping_entry *entries;

@@ -30,10 +30,10 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
     return true;
 }
 
-/* Beer's law along a straight way with densities that can be integrated exactly: no steps, no noise. The grid is walked
- * cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm", Eurographics 1987). */
+/* Beer's law along a straight line with densities that can be integrated exactly: no steps, no noise. The grid is
+ * walked cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm", Eurographics 1987). */
 
-/* exp(-depth); what is not a number came from infinite times nothing in fog without bounds: all of it is hidden. */
+/* exp(-depth); NaN comes from infinity times 0 in unbounded fog: the transmittance is 0. */
 static double faded(double depth) {
     return depth <= 0 ? 1 : depth < 1e4 ? el_exp(-depth) : 0;
 }
@@ -72,7 +72,7 @@ static double profile_at(const struct fog *fog, double y) {
 
 static double profile_depth(const struct fog *fog, double y, double climb, double distance) {
     double end = y + climb * distance, rise = end - y;
-    /* Nearly level: the difference of two sums would be noise, the density in the middle is right. */
+    /* Nearly horizontal: the difference of two sums would be noise; the density in the middle is accurate. */
     if (climb == 0 || (isfinite(end) && fabs(rise) <= 0x1p-26 * (fabs(y) + fabs(end)))) {
         double density = profile_at(fog, climb == 0 ? y : y + 0.5 * rise);
         return density > 0 ? density * distance : 0;
@@ -80,7 +80,7 @@ static double profile_depth(const struct fog *fog, double y, double climb, doubl
     return (profile_sum(fog, end) - profile_sum(fog, y)) / climb;
 }
 
-/* The part of the way that lies in the box; false: none. */
+/* The part of the line inside the box; false: none. */
 static bool clip(const struct fog *fog, struct vec3 o, struct vec3 d, double *from, double *to) {
     for (int axis = 0; axis < 3; axis++) {
         double start = vec3_get(o, axis), step = vec3_get(d, axis), low = vec3_get(fog->corner, axis);
@@ -161,7 +161,7 @@ void medium_stack_enter(struct medium_stack *stack, const struct medium *medium)
     stack->entries[stack->count++] = *medium;
 }
 
-/* One more than the place of the solid's latest entry; 0: it has none. */
+/* One more than the index of the solid's latest entry; 0: it has none. */
 static uint32_t latest(const struct medium_stack *stack, uint32_t primitive) {
     uint32_t i = stack->count;
     while (i > 0 && stack->entries[i - 1].primitive != primitive)

@@ -1,8 +1,7 @@
-/* What the media along a ray do to its light: absorption inside transparent solids (the current medium of the ray's
- * stack) and fog in the open air. Integrators ask here and nowhere else.
- *
- * Rays are of kinds, and each medium states which of them it affects. Shadow rays are of none: transparent solids throw
- * full shadows, and the classic fogs dim what is seen, not the light of lamps. */
+/* The effect of media on the light along a ray: absorption inside transparent solids (the current medium of the ray's
+ * stack) and fog outside. This is the only query for integrators. * Rays have kinds, and each medium states which of
+ * them it affects. Shadow rays are never affected: transparent solids cast full shadows, and the classic fogs attenuate
+ * lines of sight, not the light of lamps. */
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 
@@ -12,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The stack of media a ray is inside of. Leaving a solid removes that solid wherever it is in the stack; the current
+/* The stack of media that contain a ray. Leaving a solid removes that solid wherever it is in the stack; the current
  * medium is the one entered last; outside of everything the index is 1. By value: a branch of the path copies and
  * changes it. */
 
@@ -22,7 +21,7 @@ enum { MEDIUM_STACK_LIMIT = 32 }; /* deeper nestings forget the outermost (docs/
 struct medium {
     uint32_t primitive; /* the solid: number of its primitive */
     double ior;
-    struct vec3 absorption; /* the logarithm of light falls by this per unit */
+    struct vec3 absorption; /* the logarithm of light decreases by this per unit */
 };
 
 struct medium_stack {
@@ -44,7 +43,7 @@ static inline double medium_stack_ior(const struct medium_stack *stack) {
 /* Only the entries in use. */
 void medium_stack_copy(struct medium_stack *to, const struct medium_stack *from);
 void medium_stack_enter(struct medium_stack *stack, const struct medium *medium);
-/* The latest entry of the solid goes; nothing happens when it is not there (an open surface, a camera on it). */
+/* Removes the latest entry of the solid; does nothing if there is none (an open surface, a camera on it). */
 void medium_stack_leave(struct medium_stack *stack, uint32_t primitive);
 
 /* The stack behind the surface. */
@@ -52,8 +51,8 @@ void medium_stack_cross(struct medium_stack *stack, const struct medium_boundary
 /* The index of refraction on the ray's side over the index behind the surface. */
 double medium_stack_eta(const struct medium_stack *stack, const struct medium_boundary *boundary);
 
-/* Fog: what a ray sees is attenuated along the ray, and the colour of the fog is added. It fills the open air, not the
- * inside of transparent solids, and dims sight only, not the light of lamps. */
+/* Fog: attenuates light along lines of sight and adds its colour. It is outside of transparent solids only, and does
+ * not attenuate the light of lamps. */
 
 enum fog_kind {
     FOG_EXPONENTIAL, /* exp(-density d) */
@@ -71,19 +70,19 @@ struct fog {
     double density;
     double near, far;
     double base, scale;
-    uint32_t count; /* of the profile: heights never fall */
+    uint32_t count; /* of the profile: heights never decrease */
     const double *heights, *densities;
     const double *sums; /* of the profile: integral of the density from heights[0] to heights[i] */
     struct vec3 corner, size;
     uint32_t cells[3]; /* densities[x + cells[0] (y + cells[1] z)] */
-    bool clear_sky;    /* the sky is seen without fog */
+    bool clear_sky;    /* fog does not affect the sky */
 };
 
-/* The share of what is `distance` away (INFINITY too) along the unit direction that is still seen; 0..1. */
+/* The transmittance over `distance` (may be INFINITY) along the unit direction; 0..1. */
 double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
 
 enum medium_ray {
-    MEDIUM_RAY_SIGHT = 1,  /* from the camera, with all that is reflected, refracted and seen through holes after it */
+    MEDIUM_RAY_SIGHT = 1,  /* camera rays and the reflected, refracted and hole rays that follow them */
     MEDIUM_RAY_PHOTON = 2, /* of a photon */
 };
 
@@ -96,11 +95,11 @@ enum {
 /* Light that was `x` is transmittance * x + source * (1 - transmittance) after it. */
 struct medium_effect {
     struct vec3 transmittance; /* 0..1 */
-    struct vec3 source;        /* what a stretch without end shows of the medium itself */
+    struct vec3 source;        /* the colour of the medium over an infinite distance */
 };
 
-/* From the ray's origin over a distance in world units (infinite: nothing was met). fog: of the scene, or NULL. False:
- * the ray is not affected; the effect is that of nothing. */
+/* From the ray's origin over a distance in world units (infinite: no hit). fog: of the scene, or NULL. False: the ray
+ * is not affected, and transmittance is 1. */
 bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const struct ray *ray, double distance,
                           struct medium_effect *out);
 

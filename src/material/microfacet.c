@@ -1,5 +1,5 @@
 /* The distribution of Trowbridge and Reitz ("GGX"; Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction
- * through Rough Surfaces", EGSR 2007), sampled by the normals that are seen (Heitz, "Sampling the GGX Distribution of
+ * through Rough Surfaces", EGSR 2007), sampled by visible normals (Heitz, "Sampling the GGX Distribution of
  * Visible Normals", JCGT 2018): no sample is wasted on facets that face away. Seen head on, the share of facets steeper
  * than theta is alpha^2 / (alpha^2 + tan^2 theta). */
 #include "material/microfacet_internal.h"
@@ -79,7 +79,7 @@ double microfacet_pdf(struct vec3 normal, struct vec3 view, double alpha, struct
     return masking * facets * v_h;
 }
 
-/* Heitz 2014, equation 72: the mean of what masks a direction with this cosine to the normal. */
+/* Heitz 2014, equation 72: the masking function Lambda of a direction with this cosine to the normal. */
 static double lambda(double cosine, double alpha) {
     double c2 = cosine * cosine, slope2 = c2 < 1 ? alpha * alpha * (1 - c2) / c2 : 0;
     return (sqrt(1 + slope2) - 1) / 2;

@@ -1,5 +1,5 @@
-/* Evaluating trees of textures. The order of operations is part of the pictures: what lies below is read first, then
- * changed, as if each texture were painted over the ones below it. */
+/* Evaluating trees of textures. The order of operations is part of the pictures: textures below are read first, then
+ * changed, as if each texture were painted over those below. */
 #include "material/texture.h"
 
 #include "material/texture_mapping.h"
@@ -29,7 +29,7 @@ struct texture texture_wood(double f, double density, int interpolation) {
     return (struct texture){.kind = TEXTURE_WOOD, .size = 1, .wood = {f, density, interpolation}};
 }
 
-/* Of a tree whose root is above these, each or NULL; more than TEXTURE_SIZE counts as that and one. */
+/* The size of a tree whose root has these parts (or NULL); sizes above TEXTURE_SIZE count as TEXTURE_SIZE + 1. */
 static struct texture over(enum texture_kind kind, const struct texture *a, const struct texture *b,
                            const struct texture *c) {
     const struct texture *const below[] = {a, b, c};
@@ -234,7 +234,7 @@ static double function_of(enum texture_function function, double amount, double 
     return x;
 }
 
-/* Whether the function takes one component of a colour; that. */
+/* Whether the function selects one component of a colour; which. */
 static bool takes_component(enum texture_function function, struct vec3 colour, double *out) {
     *out = function == FUNCTION_RED ? colour.x : function == FUNCTION_GREEN ? colour.y : colour.z;
     return function == FUNCTION_RED || function == FUNCTION_GREEN || function == FUNCTION_BLUE;
@@ -334,7 +334,7 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
     return 0;
 }
 
-/* What is known of a shared texture, or -1. */
+/* The cached value of a shared texture, or -1. */
 static int known(const struct texture_reader *reader, const struct texture *texture, bool is_number) {
     for (int i = 0; i < reader->count; i++)
         if (reader->known[i].of == texture && reader->known[i].is_number == is_number)

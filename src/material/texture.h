@@ -1,6 +1,6 @@
 /* Textures: a colour or a number as a function of the hit. A texture is a value: a constant, a picture with its
  * mapping, filter and wrap, a pattern, or an operation on other textures, which never change. So marble over wood over
- * a picture is one tree. Authored trees hold pointers; a world holds its textures in one table, where the parts of a
+ * a picture is one tree. Authored trees have pointers; a world has its textures in one table, where the parts of a
  * texture are indices into that table (union texture_ref). Source of the word and of the split into mappings and
  * textures: M. Pharr, W. Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, chapter 10.
  *
@@ -39,34 +39,34 @@ enum { TEXTURE_SIZE = 16384 };
 enum texture_kind { TEXTURE_KINDS(LIST_MEMBER) };
 enum { TEXTURE_KIND_COUNT = LIST_COUNT(TEXTURE_KINDS) };
 
-/* How a hit becomes a point of an image; the formulas are in texture_mapping.c. What scripts and files ask for depends
- * on the shape where that is a ball or a box: texture_mapping_on says what becomes of it when the world is built. */
+/* How a hit becomes a point of an image; the formulas are in texture_mapping.c. The mapping that scripts and files
+ * request depends on the shape for spheres and boxes: texture_mapping_on resolves it when the world is built. */
 enum texture_mapping {
-    MAPPING_SPHERE,   /* as seen from the origin: td_sphere_material */
-    MAPPING_CUBE,     /* by the side that the normal looks to: td_cube_material */
+    MAPPING_SPHERE,   /* spherical, from the origin: td_sphere_material */
+    MAPPING_CUBE,     /* by the side that the normal faces: td_cube_material */
     MAPPING_UV,       /* the coordinates that the shape supplies; those of balls are BALL_CLASSIC */
     MAPPING_BY_SHAPE, /* the same; those of balls are BALL */
     MAPPING_FACES,    /* the coordinates of the faces of a box */
-    MAPPING_BALL,     /* SPHERE as seen from the centre of a ball */
+    MAPPING_BALL,     /* SPHERE, from the centre of a sphere */
     MAPPING_BALL_CLASSIC,
 };
 
 /* What the alpha of an image means. */
 enum texture_alpha {
-    ALPHA_COVERS,   /* what is below shows by 1 - alpha */
-    ALPHA_IGNORED,  /* the image covers everything where alpha is not 0 */
-    ALPHA_DARKENS,  /* the colour counts alpha times; nothing is below */
-    ALPHA_STRAIGHT, /* the colour as it was before it was multiplied by alpha; nothing is below */
-    ALPHA_ONLY      /* alpha is what is read */
+    ALPHA_COVERS,   /* the texture below has the weight 1 - alpha */
+    ALPHA_IGNORED,  /* the image is opaque where alpha is not 0 */
+    ALPHA_DARKENS,  /* the colour is multiplied by alpha; no texture below */
+    ALPHA_STRAIGHT, /* the colour without alpha; no texture below */
+    ALPHA_ONLY      /* the value is alpha */
 };
 
-/* Where an image lies and how it is looked up; zero: MAPPING_SPHERE, the nearest texel. */
+/* The mapping and lookup of an image; zero: MAPPING_SPHERE, the nearest texel. */
 struct texture_image {
     struct image *image;
     enum texture_mapping mapping;
     enum image_filter filter;
     enum image_wrap wrap;   /* of coordinates that a shape supplies */
-    enum image_wrap wrap_v; /* where `apart` says so, else wrap is for both */
+    enum image_wrap wrap_v; /* if `apart` is set, else wrap is for both */
     bool flip_u;
     /* The point is scale * uv + offset (v from below), the colour is multiplied by tint. */
     bool apart;
@@ -88,7 +88,7 @@ struct texture_image {
 enum texture_function { TEXTURE_FUNCTIONS(LIST_MEMBER) };
 enum { FUNCTION_COUNT = LIST_COUNT(TEXTURE_FUNCTIONS) };
 
-/* AS_SET: what the settings of the picture say. */
+/* AS_SET: by the settings of the picture. */
 enum material_highlight { HIGHLIGHT_AS_SET, HIGHLIGHT_PHONG, HIGHLIGHT_BLINN };
 
 /* The numbers of a material without textures, whose inputs textures replace or change. */
@@ -102,7 +102,7 @@ struct phong {
     int glossy_samples;
 };
 
-/* What textures are for, by the names that scripts use. Opacity is that of a surface with holes: 1 without a texture.
+/* Inputs of materials, with the names that scripts use. Opacity is that of a surface with holes: 1 without a texture.
  */
 #define MATERIAL_INPUTS(X)                                                                                             \
     X(INPUT_KD, "kd")                                                                                                  \
@@ -143,8 +143,8 @@ union texture_ref {
 
 struct texture {
     enum texture_kind kind;
-    bool shared;    /* several inputs of a material read it: once per hit is enough */
-    bool has_image; /* of the whole tree: it asks for the ray's footprint */
+    bool shared;    /* several inputs of a material read it: evaluated once per hit */
+    bool has_image; /* of the whole tree: it needs the ray's footprint */
     uint32_t size;  /* of the tree */
     union {
         struct {
@@ -154,7 +154,7 @@ struct texture {
         enum material_input parameter;
         struct {
             struct texture_image lookup;
-            union texture_ref below; /* also where the surface has no coordinates; none: black */
+            union texture_ref below; /* also used if the surface has no coordinates; none: black */
         } image;
         struct {
             double f, multiplier, vein_frequency;
@@ -178,7 +178,7 @@ struct texture {
     };
 };
 
-/* The texture that is meant, or NULL. textures: the table that holds it; NULL: it is authored. */
+/* The referenced texture, or NULL. textures: the table of it; NULL: it is authored. */
 static inline const struct texture *texture_at(const struct texture *textures, union texture_ref ref) {
     if (!textures)
         return ref.authored;
@@ -195,9 +195,9 @@ struct texture texture_image(const struct texture_image *image, const struct tex
 struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio);
 struct texture texture_multiply(const struct texture *a, const struct texture *b);
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
-/* The number of that input of whatever material is evaluated. */
+/* The number of that input of the evaluated material. */
 const struct texture *texture_parameter(enum material_input input);
-/* The image, where the texture is that over nothing and no more; else NULL. */
+/* The image if the texture is only an image; else NULL. */
 static inline const struct texture_image *texture_as_image(const struct texture *texture) {
     return texture->kind == TEXTURE_IMAGE && texture->size == 1 ? &texture->image.lookup : NULL;
 }
@@ -205,14 +205,14 @@ static inline const struct texture_image *texture_as_image(const struct texture 
 /* A copy in the arena. NULL and error: no memory, or the tree is larger than TEXTURE_SIZE. */
 const struct texture *texture_keep(struct arena *arena, struct texture value, struct error *error);
 
-/* Where a texture holds the references to those below it; returns how many. That of an image may be to none. */
+/* The references of a texture to its parts; returns their number. That of an image may be empty. */
 enum { TEXTURE_PARTS = 3 };
 int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PARTS]);
 
-/* What is known of a texture without a hit, of a material with these numbers. textures: as in texture_at. */
+/* Estimates of a texture without a hit, for a material with these numbers. textures: as in texture_at. */
 enum texture_estimate {
     TEXTURE_AVERAGE, /* of images: of all texels; of patterns: one half */
-    TEXTURE_LARGEST  /* a bound of each component as long as none is negative and no texel above 1 */
+    TEXTURE_LARGEST  /* a bound of each component if none is negative and no texel above 1 */
 };
 struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
                              enum texture_estimate which);
@@ -221,7 +221,7 @@ struct vec3 texture_estimate(const struct texture *texture, const struct texture
 struct vec3 texture_colour(const struct texture *texture, const struct hit *hit);
 double texture_scalar(const struct texture *texture, const struct hit *hit);
 
-/* Reads several textures at one hit; what is `shared` is evaluated once. */
+/* Reads several textures at one hit; `shared` ones are evaluated once. */
 enum { TEXTURE_SHARED = 4 };
 struct texture_reader {
     const struct hit *hit;

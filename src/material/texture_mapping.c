@@ -1,5 +1,5 @@
 /* The mappings of the language (docs/language.md 6.2) and those by the coordinates that a shape supplies. Lookups are
- * as wide as the ray's cone: the footprint over the speed at which the point of the image moves. */
+ * as wide as the ray's cone: the footprint divided by the derivative of the position with respect to u and v. */
 #include "material/texture_mapping.h"
 
 #include "math/elementary.h"
@@ -87,7 +87,7 @@ static void by_uv(const struct hit *hit, const struct texture_image *image, stru
                             .dpdv = vec3_negate(hit->dpdv)};
 }
 
-/* Several pictures side by side, or a part of one. */
+/* Repetitions of an image, or a part of it. */
 static void stretch(const struct texture_image *image, struct texcoord *at) {
     const double *scale = image->scale, *offset = image->offset;
     at->u = scale[0] * at->u + offset[0];

@@ -1,4 +1,4 @@
-/* The store of assets: what is the same is there once, however often scripts ask for it. Keys are content (tables) or
+/* The store of assets: equal assets are stored once, however often scripts request them. Keys are content (tables) or
  * canonical path (files); a list is enough, since a look-up costs far less than making the asset. */
 #include "base/mem.h"
 #include "image/image.h"

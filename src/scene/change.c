@@ -1,4 +1,4 @@
-/* Every change notes what it found before it; taking off goes backwards. Nodes are found by one traversal of the
+/* Every change records the previous state; removal goes backwards. Nodes are found by one traversal of the
  * distinct nodes under the root. */
 #include "scene/change.h"
 
@@ -89,7 +89,7 @@ static bool named(const struct node *node, const char *name) {
     return name[0] == '\0' || strncmp(node->name, name, CHANGE_NAME - 1) == 0;
 }
 
-/* The node of the last event as one that may be changed: what the node above it refers to. */
+/* The node of the last event as a mutable one: the reference of its parent. */
 static struct node *found_node(const struct scene_traversal *t, struct node *root) {
     if (t->depth == 1)
         return root;
@@ -103,7 +103,7 @@ static struct node *found_node(const struct scene_traversal *t, struct node *roo
     return child->node;
 }
 
-/* The node of that number and name; where there is none, the only one of the name; else NULL. False: no memory. */
+/* The node with that number and name; if there is none, the only one with the name; else NULL. False: no memory. */
 static bool find_node(const struct scene *scene, struct node *root, uint32_t serial, const char *name,
                       struct node **out) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
@@ -171,7 +171,7 @@ static struct node *node_of(struct change_application *l, uint32_t serial, const
 
 enum { COMMON_PART = offsetof(struct node, joint_x) };
 
-/* Notes the node as it is. */
+/* Records the state of the node. */
 static struct node *begin_node(struct change_application *l) {
     struct node *node = node_of(l, l->change->serial, l->change->name);
     if (!node) {
@@ -193,7 +193,7 @@ static void transform_node(struct change_application *l) {
     struct node *node = begin_node(l);
     if (!node || !transform_from_affine(&matrix, &map))
         return;
-    if (node->moves_to && node->moves_to != node) { /* where it goes to is moved alike */
+    if (node->moves_to && node->moves_to != node) { /* the target of its motion is moved likewise */
         struct node *end = &l->out->nodes[l->out->node_count - 1].moved_end;
         struct transform from = node_parent_from_node(node->moves_to);
         *end = (struct node){.name = node->moves_to->name, .kind = NODE_GROUP};
@@ -251,7 +251,7 @@ static bool make_node(struct change_application *l, struct node *source, struct 
     return true;
 }
 
-/* One that was made before is used again: a user who drags an object applies changes many times a second. */
+/* An existing one is reused: dragging an object applies changes many times per second. */
 static struct node *new_node(struct change_application *l, struct node *source) {
     const struct change *change = l->change;
     struct added_node *made = l->scene->added;
@@ -309,7 +309,7 @@ static void change_material(struct change_application *l) {
 
 /* Own materials. */
 
-/* What is shown of a shape without a material (world/flatten_material.c). */
+/* The material of a shape without one (world/flatten_material.c). */
 static const struct material plain = {
     .kind = MATERIAL_PHONG, .depth = 1, .phong = {.kd = {0.5, 0.5, 0.5}, .shininess = 1, .ior = 1}};
 
@@ -332,7 +332,7 @@ static bool copy_links(struct change_application *l, const struct material *like
     return own->links != NULL;
 }
 
-/* As `like` is now, link by link. The copy that was made before is used again. */
+/* A copy of the current `like`, link by link. An existing copy is reused. */
 static const struct material *own_material(struct change_application *l, const struct material *like) {
     struct own_material *own = l->scene->own;
     uint32_t serial = OWN_SERIAL - l->change->number;
@@ -402,7 +402,7 @@ static void change_light(struct change_application *l) {
     light->colour = vec3_mul(light->colour, three(numbers + 3));
 }
 
-/* A copy of a light that is not there any more is black: those after it keep their numbers. */
+/* A copy of a light that no longer exists is black, so that those after it keep their numbers. */
 static void add_light(struct change_application *l) {
     struct vec3 first = three(l->change->numbers), second = three(l->change->numbers + 3);
     uint32_t number = l->out->light_count++, like = l->change->source;

@@ -1,7 +1,7 @@
 /* Edits of a scene in addition to its script: in the window, and again by a file that the window wrote.
- * They are laid over the scene as the script left it when a picture is made, and taken off again afterwards; the same
- * changes in the same order give the same bits. Nodes and materials are known by their order of creation, nodes by
- * their name, too, lights by their number in the list of the picture. */
+ * They are applied to the scene when a picture is made, and removed afterwards; the same changes in the same order give
+ * the same bits. Nodes and materials are identified by their order of creation, nodes also by name, lights by their
+ * index in the list of the picture. */
 #ifndef GRAY_SCENE_CHANGE_H
 #define GRAY_SCENE_CHANGE_H
 
@@ -10,16 +10,16 @@
 #include "scene/change_material.h"
 #include "scene/node.h"
 
-/* In the order in which they are made: what is added is there before it is changed. */
+/* In the order of application: an added object exists before it is changed. */
 enum change_kind {
     CHANGE_ADD,       /* a new node under another */
     CHANGE_TRANSFORM, /* of a node: a map after its own, in its parent's space */
     CHANGE_GONE,      /* a node is not drawn */
-    CHANGE_OWN,       /* a shape gets a material of its own */
+    CHANGE_OWN,       /* a shape gets its own material */
     CHANGE_MATERIAL,  /* a part of a material's base */
     CHANGE_ADD_LIGHT, /* a point light, or a copy of a light, at the end of the list */
     CHANGE_LIGHT,     /* a light is moved, rotated, scaled, its colour multiplied or replaced */
-    CHANGE_DARK,      /* a light is taken away */
+    CHANGE_DARK,      /* a light is removed */
     CHANGE_KINDS
 };
 enum { TURN_AT = 6, COLOUR_AT = 15 };
@@ -34,7 +34,7 @@ enum { TURN_AT = 6, COLOUR_AT = 15 };
 enum added_kind { ADDED(LIST_MEMBER) };
 enum { ADDED_KINDS = LIST_COUNT(ADDED) };
 const char *added_kind_name(enum added_kind kind);
-/* What new shapes are made of; its serial is 0. */
+/* The material of new shapes; its serial is 0. */
 struct material added_material(struct vec3 colour);
 
 enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096, CHANGE_NUMBERS = 18 };
@@ -45,36 +45,36 @@ struct change {
     uint32_t serial;
     char name[CHANGE_NAME]; /* of that node, cut; "" fits all */
     enum added_kind added;
-    /* Of what is added, from 0; a node's serial is UINT32_MAX - number. Of OWN, counted apart: the material's serial is
-     * OWN_SERIAL - number. */
+    /* Of added objects, from 0; a node's serial is UINT32_MAX - number. Of OWN, counted separately: the material's
+     * serial is OWN_SERIAL - number. */
     uint32_t number;
-    /* ADDED_COPY: the serial of the node that is shown once more. OWN: that of the base which the new one is like where
-     * the shape has none itself; 0: plain gray. ADD_LIGHT: the number of the light that it is like; 0: none. */
+    /* ADDED_COPY: the serial of the node to copy. OWN: that of the base to copy if the shape has no material; 0: plain
+     * gray. ADD_LIGHT: the number of the light to copy; 0: none. */
     uint32_t source;
     enum material_part part; /* of MATERIAL */
     bool turns, colours;     /* of LIGHT: it has a turn; a colour */
-    /* PLACE: 3 rows of 4. ADD: a colour. MATERIAL: as many as the part has. LIGHT: a way, three factors, and from
-     * TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that takes the place of its own. ADD_LIGHT: a place, a
-     * colour; of a copy a way, three factors. */
+    /* PLACE: 3 rows of 4. ADD: a colour. MATERIAL: as many as the part has. LIGHT: a translation, three factors, and
+     * from TURN_AT on 3 rows of 3, from COLOUR_AT on a colour that replaces its own. ADD_LIGHT: a position, a colour;
+     * for a copy a translation, three factors. */
     double numbers[CHANGE_NUMBERS];
 };
 
-/* Zero value: none. Owner: the caller; change_list_destroy gives it back. */
+/* Zero value: none. Owner: the caller; change_list_destroy frees it. */
 struct change_list {
     struct change *items;
     uint32_t count, room;
 };
 /* Two changes of the same thing: the later one replaces the earlier one. */
 bool change_same_target(const struct change *a, const struct change *b);
-/* The change is in the list (in the place of one of the same target, else in order of kind and number: the list does
- * not depend on what was changed first), or, with `present` false, no such one is. False: no memory, or too many. */
+/* Puts the change into the list (replacing one of the same target, else in order of kind and number: the list does not
+ * depend on the order of changes), or, with `present` false, removes it. False: no memory, or too many. */
 bool change_list_set(struct change_list *list, const struct change *change, bool present);
 const struct change *change_list_find(const struct change_list *list, const struct change *like);
 void change_list_destroy(struct change_list *list);
-/* One of the changes takes effect without building the world again. */
+/* Whether a change takes effect without building the world again. */
 bool change_keeps_world(const struct change *change);
 
-/* The name of what was skipped is reported: a node or a material that the script does not make any more. */
+/* The report of a skipped change: the name of a node or a material that the script no longer makes. */
 typedef void change_warning(void *context, const char *text);
 
 struct changed_node {
@@ -88,7 +88,7 @@ struct changed_material {
     struct material *material;
     struct material before;
 };
-/* What is laid over a scene. Owner: the caller; changes_take_off gives everything back. */
+/* The changes applied to a scene. Owner: the caller; changes_take_off removes and frees all of them. */
 struct changed_scene {
     struct scene_light *lights; /* the list of the picture */
     uint32_t light_count;
@@ -112,7 +112,7 @@ struct change_target {
 bool changes_lay_over(struct change_range changes, const struct change_target *target, change_warning *warn,
                       void *context, struct changed_scene *out, struct error *error);
 void changes_take_off(struct changed_scene *changed);
-/* A base as it was before all that is laid over the scene; NULL: it was not changed. */
+/* A base before all changes; NULL: it was not changed. */
 const struct material *changes_before(const struct changed_scene *changed, uint32_t serial);
 
 #endif

@@ -1,5 +1,5 @@
-/* Everything here is plain arithmetic on the numbers that scripts give, so that a change of the window and the same
- * change by a script are the same bits. */
+/* Everything here is simple arithmetic on the numbers of scripts, so that a change in the window and the same change by
+ * a script give the same bits. */
 #include "scene/change_material.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* What can be changed of the base of a material, and how. */
+/* Changes of the base of a material. */
 #ifndef GRAY_SCENE_CHANGE_MATERIAL_H
 #define GRAY_SCENE_CHANGE_MATERIAL_H
 
@@ -25,7 +25,7 @@ int material_part_count(enum material_part part);
 void material_part_range(enum material_part part, double *low, double *high);
 void material_part_get(const struct material *base, enum material_part part, double numbers[3]);
 void material_part_set(struct material *base, enum material_part part, const double numbers[3]);
-/* The world that was built does not depend on it. */
+/* Whether the built world does not depend on it. */
 bool material_part_keeps_world(enum material_part part);
 
 #endif

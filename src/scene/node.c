@@ -90,7 +90,7 @@ static bool compose_separately(struct scene *scene, struct node *node, enum node
             return false;
         for (int i = 0; i < NODE_STEPS; i++)
             node->separate[i] = transform_identity();
-        /* What was composed before the order was chosen stays the innermost part. */
+        /* Transforms composed before the order was chosen stay innermost. */
         node->separate[NODE_SCALE] = node->parent_from_node;
     }
     node->separate[step] = transform_compose(by, &node->separate[step]);
@@ -156,12 +156,12 @@ struct material *scene_material(struct scene *scene, enum material_kind kind, co
     return material;
 }
 
-/* Placements are turned into maps one by one while the scene is flattened, and only then. */
+/* Placements are converted to maps one by one, only while the scene is flattened. */
 
 struct transform placement_transform(const struct placements *p, uint32_t i) {
     struct transform out = transform_identity();
     if (p->matrices) {
-        (void)transform_from_affine(&p->matrices[i], &out); /* it was checked where it came in */
+        (void)transform_from_affine(&p->matrices[i], &out); /* it was checked on input */
         return out;
     }
     if (p->size)

@@ -1,6 +1,6 @@
-/* The authoring tree: nodes with transforms, shapes, materials; a DAG, since a node may hang under several parents (an
- * instance, not a copy). Everything lives in the arena of the scene; nothing is freed singly. Adding 100,000 children
- * is linear. Cycles can be built here and are found by world_build, which names the nodes. */
+/* The authoring tree: nodes with transforms, shapes, materials; a DAG, since a node may have several parents (an
+ * instance, not a copy). Everything is in the arena of the scene; nothing is freed individually. Adding 100,000
+ * children is linear. Cycles can be built here and are found by world_build, which names the nodes. */
 #ifndef GRAY_SCENE_NODE_H
 #define GRAY_SCENE_NODE_H
 
@@ -15,15 +15,15 @@
 
 #include <stdint.h>
 
-/* The many placements of the children of one node: what a node for each would say in ten times the memory. */
+/* Many placements of the children of one node, in a tenth of the memory of separate nodes. */
 
-/* Placement i scales by size, turns about the axis, then moves to its place; or it is matrix i. Everything lives in the
- * arena of the scene. */
+/* Placement i scales by size, rotates about the axis, then translates to its position; or it is matrix i. Everything
+ * lives in the arena of the scene. */
 struct placements {
     uint32_t count;
     const double (*at)[3];         /* count places; NULL with matrices */
     const double *turn, *size;     /* degrees; factors, not 0; NULL: none */
-    bool one_turn, one_size;       /* the first is everybody's */
+    bool one_turn, one_size;       /* only the first is used */
     int axis;                      /* of turn */
     const struct affine *matrices; /* count maps that have an inverse, or NULL */
 };
@@ -31,17 +31,18 @@ struct placements {
 struct transform placement_transform(const struct placements *placements, uint32_t i);
 
 enum node_kind { NODE_GROUP, NODE_JOINT, NODE_GEOMETRY, NODE_CSG };
-/* Which faces of a mesh no ray sees, by the order of their corners. Operands of CSG are always whole. */
+/* The faces of a mesh that rays ignore, by the order of their corners. Operands of CSG always have all faces. */
 #define NODE_CULLS(X)                                                                                                  \
     X(CULL_NONE, "none")                                                                                               \
     X(CULL_BACK, "back")                                                                                               \
     X(CULL_FRONT, "front")
 enum node_cull { NODE_CULLS(LIST_MEMBER) };
-/* A difference is the first operand less the others, an inverse has one; of NODE_CLIPPED and NODE_BOUNDED the first
- * operand is what is seen, of any kind, and the second the solid that cuts it open, or that it is known to lie in. */
+/* A difference is the first operand minus the others, an inverse has one; of NODE_CLIPPED and NODE_BOUNDED the first
+ * operand is the visible object, of any kind, and the second the solid that clips it, or that contains it. */
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
 
-/* docs/language.md 12.4: which way later calls compose. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept apart.
+/* docs/language.md 12.4: the composition of later calls. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept
+ * apart.
  */
 #define TRANSFORM_ORDERS(X)                                                                                            \
     X(ORDER_NEW, "new")                                                                                                \
@@ -63,7 +64,7 @@ struct node {
     bool singular;   /* some scale factor was 0: nothing under it is drawn */
     uint32_t child_count;
     struct node_child *first_child, *last_child;
-    const struct placements *placements; /* or NULL: the children are placed once for each of them */
+    const struct placements *placements; /* or NULL: the children are instantiated once for each of them */
     struct transform *separate;          /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
     struct transform parent_from_node;
     struct vec3 velocity; /* in the parent's space, of every unit of time */

@@ -1,4 +1,4 @@
-/* The box round everything under a node, by the traversal of all paths below it. */
+/* The box around everything under a node, by the traversal of all paths below it. */
 #ifndef GRAY_SCENE_NODE_BOUNDS_H
 #define GRAY_SCENE_NODE_BOUNDS_H
 
@@ -7,8 +7,8 @@
 #include "scene/node.h"
 
 /* In the space of its parents; empty where nothing is drawn. Vertices of meshes are mapped one by one, so that the box
- * is tight under any transform; nodes that place millions of objects are measured more coarsely or refused, so that the
- * answer is always fast. Combined solids are measured by their operands. Errors: too deep, too much, no memory. */
+ * is tight under any transform; nodes with millions of objects are measured more coarsely or refused, so that the query
+ * is always fast. Combined solids are measured by their operands. Errors: too deep, too much, no memory. */
 bool node_bounds(const struct node *node, struct box *out, struct error *error);
 
 #endif

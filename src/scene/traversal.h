@@ -1,7 +1,7 @@
 /* The one traversal of the scene graph. Its order: a node, then its operands, then its children in the order in which
  * they were added, once for each of its placements. Flattening, paths, lists of lights, bounds and picking all follow
- * it, so that they agree. A node that hangs under several others is visited on every path to it. The stack is in memory
- * of its own: depth is limited by memory alone.
+ * it, so that they agree. A node with several parents is visited on every path to it. The stack is on the heap: only
+ * memory limits the depth.
  *
  *   struct scene_traversal t = {.operands = OPERANDS_AS_CHILD, .frame_size = sizeof(struct my_frame)};
  *   scene_traversal_begin(&t, root);
@@ -20,7 +20,7 @@ struct scene_step {
 
 /* Which operands of NODE_CSG are visited. */
 enum scene_operands {
-    OPERANDS_AS_CHILD,  /* what a clipped or bounded node places as if it were a child: its first one */
+    OPERANDS_AS_CHILD,  /* of a clipped or bounded node: the first one, like a child */
     OPERANDS_OF_SOLIDS, /* all, but of a bounded node the first one only: the bound is no part of the solid */
     OPERANDS_ALL
 };
@@ -39,10 +39,11 @@ struct transform scene_step_map(const struct scene_step *step, const struct tran
 /* Set the first part, the rest to zero. */
 struct scene_traversal {
     enum scene_operands operands;
-    bool distinct; /* children are visited once, whatever the placements: for what looks at nodes, not at paths */
+    bool distinct; /* children are visited once, ignoring placements: for functions of nodes, not of paths */
     bool inside;   /* of the root only its operands are visited */
-    const uint8_t *draws; /* by node->index: below nodes with 0, and at them, nothing is visited; NULL: everything is */
-    size_t frame_size;    /* bytes of the caller's own memory for each node of the path; not initialised */
+    const uint8_t
+        *draws; /* by node->index: nodes with 0 and everything below them are not visited; NULL: visits everything */
+    size_t frame_size; /* bytes of the caller's own memory for each node of the path; not initialised */
 
     /* The path from the root to the node of the last event. */
     struct scene_step *steps;
@@ -56,7 +57,7 @@ struct scene_traversal {
 
 void scene_traversal_begin(struct scene_traversal *t, const struct node *root);
 enum scene_event scene_traversal_next(struct scene_traversal *t);
-/* After SCENE_ENTER: nothing below this node is visited, nor is it left. */
+/* After SCENE_ENTER: skips everything below this node, and its SCENE_LEAVE. */
 void scene_traversal_skip(struct scene_traversal *t);
 void scene_traversal_end(struct scene_traversal *t); /* at any time */
 
