@@ -76,7 +76,7 @@ static double lights_seen(const struct world *world, const struct hit *hit, stru
         if (!ray_to_light(&world->lights[i], hit, &ray))
             continue;
         all++;
-        /* What lies behind the surface is hidden by it, closed or not. */
+        /* The surface hides points behind it, whether it is closed or not. */
         bool above = (vec3_dot(ray.direction, hit->normal_geometric) > 0) == hit->front;
         seen += above && !world_any(world, &ray, scratch);
     }
@@ -167,7 +167,7 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
     }
 }
 
-/* Pictures beside the picture, tile by tile after the picture is done. */
+/* Render layers, tile by tile after the picture is done. */
 
 /* Through the middle of the lens, when the shutter opens. */
 static bool middle_ray(const struct renderer *renderer, const struct pixel_sample *position, struct ray *out) {
@@ -185,7 +185,7 @@ static uint64_t work_of(const struct worker *worker) {
            done->shape_tests;
 }
 
-/* What the samples of a pixel cost, and how many there are. */
+/* The cost of the samples of a pixel, and their number. */
 static void measure_pixel(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y, float cost[3],
                           float samples[3]) {
     uint64_t work = work_of(worker), rays = worker->camera_rays;
@@ -196,7 +196,7 @@ static void measure_pixel(struct renderer *renderer, struct worker *worker, int6
     }
 }
 
-/* True where something had to be changed. */
+/* True if a value was changed. */
 static bool clamp_layers(float values[AOV_COUNT][3]) {
     bool clamped = false;
     for (int i = 0; i < AOV_COUNT; i++) {

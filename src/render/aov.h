@@ -1,5 +1,6 @@
-/* Pictures beside the picture: what the first sample of every pixel met, and what the pixel cost. Each layer has three
- * numbers a pixel; aov_colour makes them colours, files of light (.pfm, .hdr, .exr) have them as they are. */
+/* Render layers (AOVs): the hit of the first sample of every pixel, and the cost of the pixel. Each layer has three
+ * numbers per pixel; aov_colour converts them to colours, files of linear light (.pfm, .hdr, .exr) have them unchanged.
+ */
 #ifndef GRAY_RENDER_AOV_H
 #define GRAY_RENDER_AOV_H
 
@@ -28,11 +29,11 @@ const char *aov_name(enum aov aov);
 const char *aov_channels(enum aov aov); /* one to three letters, one for each number that means something */
 /* Names separated by commas, or "all", as a mask. */
 bool aov_parse(const char *text, uint32_t *mask);
-/* How many layers a mask has, and which one a layer is. */
+/* The number of layers of a mask, and the index of a layer. */
 uint32_t aov_layers(uint32_t mask);
 uint32_t aov_layer(uint32_t mask, enum aov aov);
 
-/* The layers of `mask` that describe the hit of the ray; out[AOV_COUNT]. All zero where nothing is met. */
+/* The layers of `mask` that describe the hit of the ray; out[AOV_COUNT]. All zero without a hit. */
 void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask, struct world_scratch *scratch,
                  float out[AOV_COUNT][3]);
 

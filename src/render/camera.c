@@ -12,7 +12,7 @@
 
 #include <stdio.h>
 
-/* up is parallel to view: the coordinate axis most at right angles to the view takes its place. */
+/* up is parallel to view: it is replaced by the coordinate axis most perpendicular to the view. */
 static struct vec3 nearest_axis(struct vec3 forward) {
     double x = fabs(forward.x), y = fabs(forward.y), z = fabs(forward.z);
     if (y <= x && y <= z)

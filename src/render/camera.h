@@ -1,5 +1,5 @@
-/* The camera: an eye and a window one unit along the view (docs/language.md 10.2), and what a lens, another projection
- * or a second eye makes of it. */
+/* The camera: an eye and a window one unit along the view (docs/language.md 10.2), with lens, other projections and
+ * stereo. */
 #ifndef GRAY_RENDER_CAMERA_H
 #define GRAY_RENDER_CAMERA_H
 
@@ -25,7 +25,7 @@ struct camera_frame {
 struct picture_size {
     double width, height; /* pixels */
 };
-/* Errors: view zero or not finite, a lens that cannot be. Sets *warning to a sentence when up had to be replaced. */
+/* Errors: view zero or not finite, an impossible lens. Sets *warning to a sentence if up was replaced. */
 bool camera_prepare(const struct camera *camera, const struct settings *settings, struct picture_size size,
                     struct camera_frame *out, char warning[256], struct error *error);
 /* The camera at a moment. */
@@ -35,7 +35,7 @@ struct box camera_origins(const struct camera_frame *frame);
 /* The ray of a pinhole through (x, y), pixels from the upper left corner of the picture. */
 struct ray camera_ray(const struct camera_frame *frame, double x, double y);
 
-/* A pinhole in the middle: camera_ray is all there is. */
+/* A pinhole in the middle: camera_ray is sufficient. */
 static inline bool camera_is_plain(const struct camera_frame *frame) {
     const struct lens *lens = &frame->lens;
     return lens->projection == PROJECTION_PERSPECTIVE && lens->aperture == 0 && lens->stereo == STEREO_NONE &&
@@ -47,11 +47,11 @@ static inline bool camera_spreads(const struct camera_frame *frame) {
     return lens->projection == PROJECTION_ORTHOGRAPHIC || lens->stereo != STEREO_NONE || lens->aperture > 0;
 }
 /* The ray through (x, y) from a place on the lens (of the unit square) for an eye: -1 left, 1 right, 0 as the picture
- * has it (by halves side by side, else the middle). False: nothing is shown there. */
+ * has it (by halves side by side, else the middle). False: nothing is visible there. */
 bool camera_ray_through(const struct camera_frame *frame, double x, double y, struct sample2 position, int eye,
                         struct ray *out);
-/* Where a point of the world is in the picture, as a pinhole sees it: the way back from camera_ray_through. For a
- * stereo pair, the result is the middle between the eyes. False: nowhere. */
+/* The position of a world point in the picture of a pinhole camera: the inverse of camera_ray_through. For a
+ * stereo pair, the result is the middle between the eyes. False: it is not in the picture. */
 bool camera_project(const struct camera_frame *frame, struct vec3 point, double *x, double *y);
 
 #endif

@@ -1,6 +1,6 @@
 /* The cost pre-pass, if a time estimate is requested: SIDE x SIDE rays through each tile before the first
  * one, about 1 % of the work, and from then on the time estimate (render/time_estimate.h) a hundred times a second,
- * reported by the next free worker. Processor time, so that what else the machine does counts for nothing. */
+ * reported by the next free worker. Uses processor time, so that other programs have no influence. */
 #include "base/clock.h"
 #include "render/integrator_internal.h"
 
@@ -10,7 +10,7 @@ enum { SIDE = 4, RAYS = SIDE * SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
 /* Nanoseconds between two forecasts. */
 static const uint64_t pause = 10000000;
 
-/* Between how many neighbours on the lattice the picture changes as much as makes pixels be sampled again. */
+/* The number of lattice neighbours between which the picture changes so much that pixels will be resampled. */
 static uint32_t count_edges(const struct renderer *renderer, const struct vec3 *colours) {
     uint32_t edges = 0;
     for (uint32_t i = 0; i < RAYS; i++) {
@@ -20,7 +20,7 @@ static uint32_t count_edges(const struct renderer *renderer, const struct vec3 *
     return edges;
 }
 
-/* Tiles that others will make, of a farm, are looked at, too. */
+/* Includes tiles that other ranks of a farm will render. */
 static void probe_tile(void *context, uint32_t tile, int index) {
     struct renderer *renderer = context;
     struct worker *worker = &renderer->workers[index];
@@ -44,7 +44,7 @@ static void probe_tile(void *context, uint32_t tile, int index) {
                         (double)count_edges(renderer, colours) / PAIRS);
 }
 
-/* What was looked at is no part of the picture's statistics. */
+/* These rays are not part of the picture's statistics. */
 static void forget_counts(struct renderer *renderer) {
     for (int i = 0; i < pool_workers(renderer->pool); i++) {
         struct worker *worker = &renderer->workers[i];

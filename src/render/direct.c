@@ -1,18 +1,18 @@
-/* Light that comes straight from the lights of the scene, and that of the photon map. A delta light is one evaluation
- * times the share of its shadow rays that arrive; of a lamp every shadow ray is evaluated by itself. The samples of a
+/* Direct light from the lights of the scene, and that of the photon map. A delta light is one evaluation times the
+ * share of its shadow rays that arrive; for an area light every shadow ray is evaluated separately. The samples of a
  * light are in cells of the unit square, which are divided once more among the samples of a pixel. */
 #include "render/direct_internal.h"
 
 #include "world/packet.h"
 
-enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are asked together */
+enum { AREA_BATCH = 256 }; /* shadow rays of one hit that are traced together */
 
-/* Where shadow rays start: on the viewer's side of the surface, wherever the light is. */
+/* The origin of shadow rays: on the viewer's side of the surface, for any position of the light. */
 static struct vec3 off_surface(const struct hit *hit) {
     return vec3_add_scaled(hit->point, hit->normal_geometric, hit->front ? hit->offset : -hit->offset);
 }
 
-/* On which side of the hit's surface a point lies that was moved off it: the sign. */
+/* The side of the hit's surface on which an offset point is: the sign. */
 static double side_of(const struct hit *hit, struct vec3 from) {
     return vec3_dot(vec3_sub(from, hit->point), hit->normal_geometric);
 }
@@ -36,7 +36,7 @@ static bool target_is_free(struct integrator_state *state, const struct hit *hit
     return is_free(state, hit, from, light_target_from(target, from), light_target_end(target));
 }
 
-/* The places of the shadow rays of one hit to a light with an extent, asked batch by batch. */
+/* The samples of the shadow rays of one hit to a light with an extent, batch by batch. */
 static struct sample_set samples_on_light(const struct integrator_state *state, const struct light *light,
                                           const struct light_context *context, uint32_t number, uint64_t key) {
     const struct settings *settings = &state->job->settings;
@@ -46,7 +46,7 @@ static struct sample_set samples_on_light(const struct integrator_state *state, 
     return sampler_on_light(&state->sampler, key, number, side, context->shares_cells);
 }
 
-/* Occluders: not the hit's own primitive where all of it is behind the surface and all of the light before.
+/* Occluders, without the hit's own primitive if all of it is behind the surface and all of the light in front.
  */
 static struct occluder_candidates
 light_occluder_candidates(const struct world *world, const struct light_context *context, const struct hit *hit) {
@@ -93,14 +93,14 @@ static double visible_share(struct integrator_state *state, const struct light *
     return (double)seen / (double)all;
 }
 
-/* What shadow rays of one point are sent to, all distant or none. */
+/* The targets of shadow rays of one point, all distant or none. */
 struct shadow_targets {
     const struct vec3 *at;
     uint32_t count;
     bool distant;
 };
 
-/* Which of the targets arrive. Lights all around have no shaft: each ray looks for itself.
+/* The visible targets. Lights on all sides have no shaft: rays are traced one by one.
  */
 static void ask_targets(struct integrator_state *state, const struct light_context *context, const struct hit *hit,
                         const struct shadow_targets *targets, bool *visible) {
@@ -121,14 +121,15 @@ static void ask_targets(struct integrator_state *state, const struct light_conte
     }
 }
 
-/* What a surface shows of a light that rays see: a surface that mirrors shows its image, and a highlight would be the
- * same light again. */
+/* The reflection of a visible light: a mirroring surface shows its image, and a highlight would count the same light
+ * again. */
 static uint32_t without_highlight(const struct bsdf *bsdf) {
     uint32_t traced = bsdf_lobes_with(bsdf, BSDF_TRACED);
     return traced ? BSDF_ALL & ~(traced | bsdf_lobes_with(bsdf, BSDF_EXPONENT)) : BSDF_ALL;
 }
 
-/* A lamp: every shadow ray shades by itself, with the cosine at the lamp. Rays that cannot bring light are not asked.
+/* An area light: every shadow ray is shaded separately, with the cosine at the light. Rays that cannot bring light are
+ * not traced.
  */
 static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,
                                     const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* However the part lies on the grid of tiles. */
+/* For any position of the part on the grid of tiles. */
 static size_t max_tiles(uint32_t width, uint32_t height) {
     return ((size_t)width / FILM_TILE + 2) * ((size_t)height / FILM_TILE + 2);
 }
@@ -229,9 +229,9 @@ void film_row_linear(const struct film *film, enum film_view view, uint32_t y, f
     }
 }
 
-/* Dealing in turns that go forwards and backwards ("snake draft"): whoever gets the dearest tile of one turn gets the
- * cheapest of the next. The order of equal costs is the tiles' own scrambled number, so that neighbours, which cost
- * alike, go to different shards. */
+/* Distributes tiles in alternating forward and backward rounds ("snake draft"): the shard with the most expensive tile
+ * of one round gets the cheapest of the next. Equal costs are ordered by the tiles' scrambled number, so that
+ * neighbours, which have similar costs, go to different shards. */
 
 struct tile_cost {
     uint64_t cost, scrambled;
@@ -263,10 +263,10 @@ bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint3
     return true;
 }
 
-/* ORDER_SPREAD: tile i comes at the place of i times the golden ratio, modulo 1. However many are done, they lie evenly
- * over the rows of the picture and within them (Weyl's sequence; no irrational number is further from all fractions),
- * so that their cost represents that of the others. ORDER_CENTRE: by the distance of their middles from that of
- * the rendered part, in units of its half sides. */
+/* ORDER_SPREAD: the sort key of tile i is i times the golden ratio, modulo 1. At any time the finished tiles are evenly
+ * distributed over the rows of the picture and within them (Weyl's sequence; no irrational number is further from all
+ * fractions), so that their cost represents that of the others. ORDER_CENTRE: by the distance of their middles from
+ * that of the rendered part, in units of its half sides. */
 
 static uint32_t spread_key(uint32_t tile) {
     return tile * UINT32_C(2654435769); /* 2^32 over the golden ratio */

@@ -24,7 +24,7 @@ struct film_pixel {
     float rgb[3]; /* final, or as far as it is */
 };
 
-/* What the film records of a pixel beside its colour: the integrator of the picture states it (integrator_record). */
+/* The additional record of a pixel: the integrator of the picture defines it (integrator_record). */
 struct film_record {
     uint32_t floats; /* at most FILM_RECORD_FLOATS; the integrator knows what they are, and they are finite */
     uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the floats; else 0 */
@@ -39,25 +39,25 @@ struct film {
     float *floats;             /* record.floats of each pixel; Whitted: the first pass, one sample */
     uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be; NULL without marks */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
-    /* Pictures beside the picture (render/aov.h): the layers of the mask one after the other, width * height each; NULL
+    /* Render layers (render/aov.h): the layers of the mask one after the other, width * height each; NULL
      * without any. Filled after the tiles are done. */
     uint32_t layer_mask;
     float (*layers)[3];
 };
 
-/* What is known of a tile. Tiles are aligned to the grid of the whole picture, so that a crop has the same tiles. */
+/* The state of a tile. Tiles are aligned to the grid of the whole picture, so that a crop has the same tiles. */
 enum film_tile {
     FILM_TILE_WANTED,
     FILM_TILE_DONE,
-    FILM_TILE_ELSEWHERE, /* another shard's, or handed on */
+    FILM_TILE_ELSEWHERE, /* another shard's, or passed on */
     FILM_TILE_LATER,     /* in a farm: not handed out yet */
-    FILM_TILE_TAKEN,     /* being made, here or, in a farm, elsewhere */
+    FILM_TILE_TAKEN,     /* in progress, here or, in a farm, elsewhere */
     /* With the number of the pass added: some samples are in the pixels, more will come. */
     FILM_TILE_PASSED = 0x80
 };
 enum { FILM_PASSES = 0x80 }; /* numbers of passes, which begin again then */
 
-/* Whether there is something to be seen of a tile in that state. */
+/* Whether a tile in that state is visible. */
 static inline bool film_tile_shows(uint8_t state) {
     return state == FILM_TILE_DONE || state >= FILM_TILE_PASSED;
 }
@@ -70,7 +70,7 @@ struct film_rectangle {
 static inline bool film_record_equal(struct film_record a, struct film_record b) {
     return a.floats == b.floats && a.marks == b.marks;
 }
-/* Whether there can be such a record. */
+/* Whether such a record is valid. */
 static inline bool film_record_valid(struct film_record record) {
     return record.floats <= FILM_RECORD_FLOATS && record.marks <= 1;
 }
@@ -79,7 +79,7 @@ static inline size_t film_record_size(struct film_record record) {
     return sizeof(struct film_pixel) + record.floats * sizeof(float) + record.marks;
 }
 
-/* Bytes for the arrays of a film; false when the numbers are too large (over 2^31 pixels). The record is valid. */
+/* Bytes for the arrays of a film; false if the numbers are too large (over 2^31 pixels). The record is valid. */
 bool film_size(uint32_t width, uint32_t height, struct film_record record, size_t *bytes, struct error *error);
 /* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles. */
 void film_layout(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record);
@@ -89,16 +89,16 @@ bool film_size_layered(uint32_t width, uint32_t height, struct film_record recor
                        struct error *error);
 void film_layout_layers(struct film *film, void *block, uint32_t mask);
 
-/* How the rendered part is cut into tiles, numbered row by row; x0 and y0 must be set. */
+/* The division of the rendered part into tiles, numbered row by row; x0 and y0 must be set. */
 uint32_t film_tiles_across(const struct film *film);
 uint32_t film_tile_count(const struct film *film);
 struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile);
-/* How many tiles are in that state. */
+/* The number of tiles in that state. */
 uint32_t film_tiles_in(const struct film *film, enum film_tile state);
-/* Black where nothing is to be seen of a tile. */
+/* Black for invisible tiles. */
 void film_clear_unfinished(struct film *film);
 
-/* Whether a final colour is as large as a float can be, which is what clamped light is. */
+/* Whether a final colour is the largest float, i.e. clamped light. */
 bool film_holds_largest(const struct film *film);
 
 /* A tile as bytes: with marks a bit for each pixel that is marked; then of each pixel the colour and, if it is marked
@@ -108,7 +108,7 @@ size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
 /* Whether the bytes have the size that their own mask asks for, and all colours are finite; needs no more of the film
  * than its rectangle and record. */
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
-/* Puts it back and marks the tile as done; false: not the bytes of such a tile, nothing is changed. */
+/* Unpacks it and marks the tile as done; false: not the bytes of such a tile, and nothing changes. */
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 
 enum film_view {
@@ -122,15 +122,15 @@ void film_row_toned(const struct film *film, enum film_view view, const struct t
 void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line);
 void film_row_linear(const struct film *film, enum film_view view, uint32_t y, float *line);
 
-/* Which tiles of a picture belong to which of several machines, decided by each of them alone and the same on all. */
+/* The assignment of tiles to machines: each machine computes it alone, with the same result. */
 
 /* cost: of every tile of the film, in any unit. Marks the tiles that belong to other shards (1 <= shard <= shards).
- * False: no memory. The tiles are dealt out from the dearest to the cheapest, forwards and backwards in turn, so every
- * shard gets as many tiles as any other, or one more, and nearly the same cost. Reserves nothing that outlives it. */
+ * False: no memory. The tiles are distributed from the most expensive to the cheapest, alternately forwards and
+ * backwards, so the numbers of tiles of two shards differ by at most one, and their costs are nearly equal. Allocates
+ * nothing that outlives the call. */
 bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint32_t shards);
 
-/* In which order tiles are made: the picture does not depend on it, but the view during rendering and the time estimate
- * do. */
+/* The order of tiles: the picture does not depend on it, but the view during rendering and the time estimate do. */
 
 /* out[k] is the k-th tile to be made; room for film_tile_count(film). False: no memory. */
 bool tile_order(const struct film *film, enum order order, uint32_t *out);

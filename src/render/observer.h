@@ -1,7 +1,6 @@
-/* What an integrator shows of its work: events at its stages, in the order in which they happen. The stages call the
- * functions below whether anything listens or not; without an observer a call is one test of a pointer. An observer
- * keeps its own state and cannot change what it sees: a number in an event is the number that goes into the picture.
- * The pixel trace (render/pixel_trace.h) is an observer. */
+/* Events of an integrator at its stages, in order. The stages always call the functions below; without an observer a
+ * call is one test of a pointer. An observer has its own state and cannot change the work: a number in an event is the
+ * number that goes into the picture. The pixel trace (render/pixel_trace.h) is an observer. */
 #ifndef GRAY_RENDER_OBSERVER_H
 #define GRAY_RENDER_OBSERVER_H
 
@@ -12,7 +11,7 @@
 #include <stdint.h>
 
 enum ray_kind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_HOLE };
-/* Why a ray was not followed, or why what it met was not evaluated. */
+/* Why a ray was not followed, or its hit not evaluated. */
 enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
 #define OBSERVER_NO_BLOCKER UINT32_MAX
 
@@ -20,19 +19,19 @@ enum observation_kind {
     OBSERVED_SAMPLE_BEGIN,  /* sample.place */
     OBSERVED_SAMPLE_END,    /* sample.place, sample.colour */
     OBSERVED_SPLIT,         /* part: the rays that the ray under way sends from now on have this part of their weight */
-    OBSERVED_RAY_SENT,      /* sent: a ray is sent on from the hit of the one under way, or would be without the cut */
-    OBSERVED_RAY_BEGIN,     /* begin: it is under way, and what it has met */
+    OBSERVED_RAY_SENT,      /* sent: a secondary ray leaves the hit of the current ray, or would without the cut */
+    OBSERVED_RAY_BEGIN,     /* begin: the ray is current; its hit */
     OBSERVED_MATERIAL,      /* material: one link of the material of the hit is evaluated */
     OBSERVED_SURFACE,       /* surface: all of it is */
     OBSERVED_LIGHT_BEGIN,   /* light.number, light.light */
-    OBSERVED_LIGHT_SAMPLE,  /* place: the light is shaded as from one place */
-    OBSERVED_SHADOW_RAYS,   /* shadow: of the light under way */
+    OBSERVED_LIGHT_SAMPLE,  /* the light is shaded as if from one position */
+    OBSERVED_SHADOW_RAYS,   /* shadow: of the current light */
     OBSERVED_LIGHT_END,     /* light.colour */
     OBSERVED_LIGHT_SKIPPED, /* light.number, light.light: its lists leave the surface out */
     OBSERVED_DIRECT,        /* direct: after the lights of a hit */
     OBSERVED_RAY_END,       /* end */
     OBSERVED_PIXEL,         /* pixel: it is final */
-    OBSERVED_MARK           /* mark: the pixel is marked, for it differs from a neighbour */
+    OBSERVED_MARK           /* mark: the pixel is marked, because it differs from a neighbour */
 };
 
 struct observation {
@@ -53,7 +52,7 @@ struct observation {
             const struct hit *hit;     /* or NULL */
             const struct light *light; /* that shows itself before the hit, or NULL; neither: the sky */
             double distance;           /* world units; infinite */
-            double share;              /* how much of what the ray brings can arrive in the pixel, at most */
+            double share;              /* the largest share of its result that can reach the pixel */
         } begin;
         struct {
             const struct material *link;
@@ -79,7 +78,7 @@ struct observation {
             bool has_photons;
         } direct;
         struct observed_end {
-            bool evaluated;                               /* what it met was; else it was too weak */
+            bool evaluated;                               /* its hit was evaluated; else it was too weak */
             struct vec3 seen, left, in_scattered, brings; /* brings: left * seen + veil */
         } end;
         struct observed_mark {

@@ -1,6 +1,6 @@
 /* An edge of a box is a straight line in perspective and parallel projections, once the part behind the eye is cut off;
- * elsewhere it goes in 32 straight pieces. Which surface a pixel shows is asked once for each pixel that a line
- * touches. The depth along a line in the picture: in perspective 1 / depth is linear. */
+ * elsewhere it is drawn in 32 straight pieces. The visible surface is computed once for each pixel that a line touches.
+ * The depth along a line in the picture: in perspective 1 / depth is linear. */
 #include "render/overlay.h"
 
 #include "base/mem.h"
@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-/* A place in the picture, and how deep it lies. */
+/* A position in the picture, and its depth. */
 struct place3 {
     double x, y, depth;
 };
@@ -224,7 +224,7 @@ static bool stopped(const struct overlay_drawing *drawing) {
     return (drawing->drawn & 63) == 0 && pool_cancelled(drawing->pool);
 }
 
-/* --- what is drawn --- */
+/* --- boxes and cells --- */
 
 static uint32_t step_for(const struct overlay_drawing *drawing, uint64_t count) {
     return (uint32_t)((count + drawing->request->limit - 1) / drawing->request->limit);

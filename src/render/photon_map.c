@@ -1,9 +1,9 @@
 /* Every photon lights a disc of its own radius, with Epanechnikov's filter: 2 / (pi r^2) (1 - d^2 / r^2), whose
- * integral over the surface is 1, so no light is lost or won whatever the radii are. By itself the radius follows the
- * density (a sample-point estimator: Breiman, Meisel, Purcell, "Variable Kernel Estimates of Multivariate Densities",
- * Technometrics 1977): the distance of the PILOT-th neighbour times STRETCH, so about 50 photons light any place, fine
- * lines stay fine, and thin light is smooth. It is at most what 95 of 100 photons have: a stray photon does not light
- * half the scene.
+ * integral over the surface is 1, so light is conserved for any radii. By default the radius follows the density (a
+ * sample-point estimator: Breiman, Meisel, Purcell, "Variable Kernel Estimates of Multivariate Densities",
+ * Technometrics 1977): the distance of the PILOT-th neighbour times STRETCH, so about 50 photons light any point, fine
+ * lines stay fine, and sparse light is smooth. It is at most the 95th percentile: a stray photon does not light half
+ * the scene.
  *
  * The tree halves the photons by the median along the longest side of their box; ranges follow from the number of a
  * node alone. Invariant: the photons under node k of level l are those from n k / 2^l to n (k + 1) / 2^l. Every
@@ -64,7 +64,7 @@ _Static_assert(sizeof(struct entry) == sizeof(struct photon_spot), "entries beco
 struct builder {
     struct photon_map *map;
     const struct photon *photons;
-    uint32_t count;    /* of the photons, with those that did not land */
+    uint32_t count;    /* of the photons, including those that did not land */
     uint32_t *firsts;  /* of each chunk: where its photons begin among those that landed */
     struct box *boxes; /* of each chunk */
     double *powers;    /* the largest of each chunk */
@@ -488,7 +488,7 @@ void photon_map_destroy(struct photon_map *map) {
 
 /* --- gathering --- */
 
-/* What one place asks of the photons. */
+/* The query at one point. */
 struct density_query {
     const struct photon_map *map;
     const struct world *world;

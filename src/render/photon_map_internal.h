@@ -1,6 +1,6 @@
-/* A photon map: where light that went through or off specular surfaces fell, kept so that the light at a place can be
- * summed up (Jensen, "Global Illumination using Photon Maps", EGWR 1996; "Realistic Image Synthesis Using Photon
- * Mapping", 2001). Built once before a picture, read by every thread. */
+/* A photon map: where light that went through or off specular surfaces fell, kept to sum up the light at a point
+ * (Jensen, "Global Illumination using Photon Maps", EGWR 1996; "Realistic Image Synthesis Using Photon Mapping", 2001).
+ * Built once before a picture, read by every thread. */
 #ifndef GRAY_RENDER_PHOTON_MAP_INTERNAL_H
 #define GRAY_RENDER_PHOTON_MAP_INTERNAL_H
 
@@ -10,7 +10,7 @@
 
 #define PHOTON_NOWHERE UINT32_MAX
 
-/* A photon as it landed. Power: irradiance times area, in the unit in which a light's colour times its fading is
+/* A photon as it landed. Power: irradiance times area, in the unit in which a light's colour times its falloff is
  * irradiance (docs/light.md). */
 struct photon {
     struct vec3 position, power;
@@ -30,7 +30,7 @@ struct photon_map {
         uint32_t from, light;
     } * lights;
     struct photon_node {
-        float min[3], max[3]; /* holds the discs below it */
+        float min[3], max[3]; /* contains the discs below it */
     } * nodes;
     struct vec3 origin;
     double unit, power_unit; /* world units per unit of the map */
@@ -41,13 +41,13 @@ struct photon_list {
     const struct photon *items;
     uint32_t count;
 };
-/* Of the photons those that landed are kept, in their order. radius: world units, 0 for one by
+/* Keeps the photons that landed, in order. radius: world units, 0 for one by
  * density. Errors: no memory, cancelled. An empty map is fine. */
 bool photon_map_build(struct photon_map *map, const struct world *world, const struct photon_list *photons,
                       double radius, struct pool *pool, struct error *error);
 void photon_map_destroy(struct photon_map *map);
 
-/* What the surface sends to hit->view of the light of all photons around the hit, which fell on its lit side. */
+/* The light that the surface reflects towards hit->view from all photons around the hit that landed on its lit side. */
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
                              const struct bsdf *bsdf);
 

@@ -34,20 +34,20 @@ struct photon_targets {
     uint32_t count;
 };
 
-/* Finds the cells of every light of the world and shares `photons` among them by flux. Memory comes from the arena.
- * Errors: no memory, cancelled. Without specular things there are no aims. */
+/* Finds the cells of every light of the world and divides `photons` among them by flux. Memory comes from the arena.
+ * Errors: no memory, cancelled. Without specular objects there are no targets. */
 bool photon_targets_make(struct photon_targets *out, const struct world *world, uint32_t photons, struct arena *arena,
                          struct pool *pool, struct error *error);
 
 struct photon_start {
     struct vec3 origin, direction; /* direction: unit */
     struct vec3 power;             /* before fading */
-    double strength;               /* of its cell: power is divided by it, and what is left after a thing as strong as
-                                      this is what all photons are to have */
-    bool from_afar;                /* something without end may lie behind its origin */
+    double strength; /* reflectance of the strongest object of its cell: power is divided by it, and after such an
+                        object all photons have equal power */
+    bool from_afar;  /* an unbounded object may be behind its origin */
     uint64_t key;
 };
-/* Photon `index` (0 .. count-1) of the aim; a function of its arguments. */
+/* Photon `index` (0 .. count-1) of the target; a function of its arguments. */
 struct photon_start photon_target_start(const struct photon_target *target, uint32_t index, uint64_t seed);
 
 #endif

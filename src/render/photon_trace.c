@@ -1,8 +1,7 @@
-/* The way of one photon: at each surface one draw decides between the mirror, what is behind, the map and nothing, by
- * how much light each would get (Russian roulette: Arvo and Kirk, "Particle Transport and Image Synthesis", SIGGRAPH
- * 1990), and the photon carries on undivided. What Whitted's rays do at a surface happens here by the same code: the
- * stack of media, Snell, Fresnel, facets, Beer. One difference: total reflection is total, whatever -use-tir says about
- * camera rays.
+/* The path of one photon: at each surface one random number decides between reflection, refraction, storage and
+ * absorption, by their shares of light (Russian roulette: Arvo and Kirk, "Particle Transport and Image Synthesis",
+ * SIGGRAPH 1990), and the photon continues undivided. Surfaces use the same code as Whitted's rays: the stack of media,
+ * Snell, Fresnel, facets, Beer. One difference: total reflection is total, whatever -use-tir says about camera rays.
  *
  * A photon is a function of its number, and its place in the array is that number: threads cannot change the map. It
  * lands at most once, so memory is known before. */
@@ -48,7 +47,7 @@ static double mean(struct vec3 c) {
     return (c.x + c.y + c.z) / 3;
 }
 
-/* What a surface does with a photon. */
+/* The interaction of a surface with a photon. */
 struct branching {
     struct bsdf_branch branches[BSDF_LOBES];
     int count;
@@ -73,7 +72,7 @@ static bool scatter_photon(struct photon_path *path, const struct hit *hit, cons
         to[i] = fmax(mean(vec3_mul(path->left, branching->branches[i].weight)), 0) * branching->branches[i].expected;
         all += to[i];
     }
-    /* All photons are to have the same power: what is left of one that met the strongest thing of its cell. */
+    /* All photons should have equal power: that after the strongest object of the cell. */
     double survival = all < path->strength ? all / path->strength : 1, x = draw(path);
     if (!(x < survival) || branching->count == 0)
         return false;
@@ -120,7 +119,7 @@ static void trace_photon(struct photon_job *s, const struct photon_target *targe
     if (start.power.x == 0 && start.power.y == 0 && start.power.z == 0)
         return;
     if (start.from_afar) {
-        /* It comes from beyond what is finite: a ground without end may be in its way. */
+        /* It starts beyond the finite objects: an unbounded ground may block it. */
         struct ray back = path.ray;
         struct hit ground;
         back.direction = vec3_negate(start.direction);

@@ -1,12 +1,12 @@
-/* Caustics: light that went through or off something specular before it met something diffuse. Photons are sent before
- * the picture is made, and kept in a map. */
+/* Caustics: light that went through or off something specular before it met something diffuse. Photons are traced
+ * before the picture is made, and stored in a map. */
 #ifndef GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
 #define GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
 
 #include "render/photon_map_internal.h"
 #include "render/render.h"
 
-/* More bounces than this end a photon's way; in lossless glass next to nothing is left by then. */
+/* The maximum number of bounces of a photon; in lossless glass almost nothing is left by then. */
 enum { PHOTON_BOUNCES = 100 };
 
 struct photon_statistics {

@@ -1,5 +1,5 @@
-/* See pixel_trace.h. Rays hang under the ray that sent them, in the order in which they were sent. Where memory ends,
- * or the limit is reached, rays go on untold: `mute` counts the levels below the last recorded ray. */
+/* See pixel_trace.h. Rays are children of the ray that spawned them, in order. Without memory, or beyond the limit,
+ * rays are not recorded: `mute` counts the levels below the last recorded ray. */
 #include "render/pixel_trace.h"
 
 #include "material/medium.h"

@@ -1,8 +1,6 @@
-/* The trace of a pixel: what happened on the way to its colour, written down by an observer (render/observer.h) of the
- * integrator while that works. Nothing is worked out a second time: a number in a trace is the number that went into
- * the picture.
- *
- * Everything lives in the arena of the trace. It holds pointers into the world and dies before it. */
+/* The trace of a pixel: the computation of its colour, recorded by an observer (render/observer.h) of the integrator.
+ * Nothing is computed a second time: a number in a trace is the number that went into the picture. * Everything is in
+ * the arena of the trace. It has pointers into the world and must not outlive it. */
 #ifndef GRAY_RENDER_PIXEL_TRACE_H
 #define GRAY_RENDER_PIXEL_TRACE_H
 
@@ -25,12 +23,11 @@ enum pixel_trace_lit {
     PIXEL_TRACE_LIGHT_REACHES,
     PIXEL_TRACE_LIGHT_BLOCKED,   /* no shadow ray arrives */
     PIXEL_TRACE_LIGHT_NOT_OURS,  /* include or exclude leave the surface out */
-    PIXEL_TRACE_LIGHT_NO_EFFECT, /* nothing of it would be reflected this way, or it has faded away: shadows are not
-                                    asked */
+    PIXEL_TRACE_LIGHT_NO_EFFECT, /* its reflection or its falloff is zero: no shadow rays */
 };
 
-/* What a light brings to a hit. Of lamps `reflected`, `strength` and `distance` are not set: every shadow ray has its
- * own. */
+/* The contribution of a light at a hit. Of lamps `reflected`, `strength` and `distance` are not set: every shadow ray
+ * has its own. */
 struct pixel_trace_light {
     uint32_t number; /* in the world, from 0 */
     const struct light *light;
@@ -57,7 +54,7 @@ struct pixel_trace_ray {
     struct vec3 weight; /* of what it brings, in the surface it started from */
     uint32_t media_count;
     double media_ior; /* of where it starts */
-    /* What it met: a hit, else a light that shows itself, else the sky. */
+    /* What it hit: a surface, else a visible light, else the sky. */
     bool met;
     struct hit hit;
     const struct light *area_light;

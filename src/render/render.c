@@ -1,5 +1,5 @@
-/* Tiles, handed out to the workers; within one works the integrator. A tile is self-contained and final when it is
- * done. No barrier, nothing shared but the film, of which every tile writes its own pixels. */
+/* Tiles, handed out to the workers; the integrator renders the pixels of a tile. A tile is self-contained and final
+ * when it is done. There is no barrier, and only the film is shared: every tile writes its own pixels. */
 #include "base/clock.h"
 #include "render/integrator_internal.h"
 
@@ -13,8 +13,8 @@
 #include <string.h>
 #include <time.h>
 
-/* What a tile costs, from few rays: surfaces met and rays sent on, which no way of searching and no instruction set
- * changes. */
+/* The cost of a tile, from few rays: the number of hits and of secondary rays, which does not depend on the accelerator
+ * or the instruction set. */
 enum { COST_SAMPLES = 4 };
 
 static void cost_item(void *context, uint32_t item, int index) {
@@ -23,7 +23,7 @@ static void cost_item(void *context, uint32_t item, int index) {
     struct film_rectangle r = film_tile_rectangle(renderer->job->film, item);
     struct integrator_state *state = &worker->state;
     uint64_t before = state->hits + state->reflected_rays + state->refracted_rays;
-    /* Many shards look at fewer rays: each of them looks at all tiles. */
+    /* With many shards fewer rays per tile: each shard samples all tiles. */
     uint32_t count = renderer->job->shards <= 16 ? COST_SAMPLES : 1;
     for (uint32_t i = 0; i < count && !renderer_stopped(renderer, worker); i++) {
         uint32_t x = r.x0 + (r.x1 - r.x0) * (2 * i + 1) / (2 * count);
@@ -56,7 +56,7 @@ bool renderer_is_done(const struct renderer *renderer) {
     return renderer->job->drain && atomic_load_explicit(renderer->job->drain, memory_order_relaxed) != 0;
 }
 
-/* Makes a tile or a part of it; false: stopped. A ray that was given up leaves a wrong colour: what ends after a wish
+/* Makes a tile or a part of it; false: stopped. A cancelled ray leaves a wrong colour: a tile that ends after a request
  * to stop counts as not done. */
 static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
                       double share) {
@@ -113,8 +113,9 @@ static void end_passes(struct renderer *renderer) {
     }
 }
 
-/* The last tiles of the order are made in quarters, so that no thread waits long for another one's last tile. Who comes
- * first takes the tile, who ends last ends it; once it is begun, its other quarters are made even when it is enough. */
+/* The last tiles of the order are rendered in quarters, so that no thread waits long for the last tile of another. The
+ * first worker begins the tile, the last one ends it; once it is begun, its other quarters are finished even while
+ * draining. */
 enum { QUARTERS = 4, QUARTER_FAILED = 0x80, TAIL_SHARE = 16, TAIL_LIMIT = 64 };
 
 static void make_quarter(struct renderer *renderer, uint32_t number, int index) {
@@ -149,7 +150,7 @@ static void tile_item(void *context, uint32_t position, int index) {
         make_quarter(renderer, position - renderer->whole_tiles, index);
 }
 
-/* Makes whatever becomes wanted until no more can. */
+/* Renders tiles that become wanted until no more can. */
 static void handout_item(void *context, uint32_t item, int index) {
     struct renderer *renderer = context;
     const struct film *film = renderer->job->film;
@@ -253,7 +254,7 @@ static void count_tiles(struct renderer *renderer) {
     atomic_store(&renderer->done, done);
 }
 
-/* The solids that rays may start in, and whether each ray must ask for itself. */
+/* The solids that may contain ray origins, and whether each ray needs its own query. */
 static bool find_eye_medium_stack(struct renderer *renderer, const struct box *origins, bool spread) {
     const struct world *world = renderer->job->world;
     renderer->closed_count = world->medium_count > 0 ? world_closed_in(world, origins, NULL, 0) : 0;

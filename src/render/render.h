@@ -43,12 +43,12 @@ struct render_job {
     struct progress_estimate
         *progress_estimate; /* or NULL; zero: reports the progress, from an estimate made before the first tile */
     const _Atomic int
-        *drain; /* or NULL; while it is not 0 no further tile is begun, and the render counts as stopped */
+        *drain; /* or NULL; while it is not 0, no further tile is begun, and the render counts as stopped */
 };
 
 /* What films for pictures of an integrator record. */
 struct film_record integrator_record(enum integrator_kind integrator);
-/* Lines about what the scene says and the integrator of the job takes otherwise; the world is built. */
+/* Warnings about parts of the scene that the integrator interprets differently; the world is built. */
 void integrator_warn(const struct render_job *job, world_warning *warn, void *context);
 /* False: cancelled or out of memory (error says which). The film then holds what was finished. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
@@ -58,7 +58,7 @@ struct pixel_list {
     uint32_t count;
 };
 /* Renders single pixels {x, y} of the whole picture as render_run would, and records and reports the trace of each; it
- * ends when `listen` returns. The film of the job is not looked at. False: as render_run, or `listen` said so. */
+ * ends when `listen` returns. Does not read the film of the job. False: as render_run, or `listen` returned false. */
 typedef bool pixel_trace_listener(void *context, struct pixel_trace *pixel_trace, struct error *error);
 bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel_list pixels,
                    pixel_trace_listener *listen, void *context, struct error *error);

@@ -1,4 +1,4 @@
-/* One sample of a pixel, from the place in the picture to the colour; alone, or many whose camera rays go together. The
+/* One sample of a pixel, from its position to its colour; single, or many with camera rays in packets. The
  * random key of a sample is a function of the pixel and of the sample's number. */
 #include "base/unreachable.h"
 #include "math/elementary.h"
@@ -150,7 +150,7 @@ static const uint64_t order_of_lens = UINT64_MAX, order_of_times = UINT64_MAX - 
 static const uint64_t jitter_of_times = UINT64_MAX - 1; /* below the key of the sample */
 static const uint64_t jitter_of_lens = 2;
 
-/* Which part is this sample's turn: over the samples of a pixel each is visited once. */
+/* The part for this sample: the samples of a pixel visit each part once. */
 static uint32_t part_of(const struct sampler *sampler, uint64_t dimension) {
     if (sampler->side <= 1)
         return 0;

@@ -1,4 +1,4 @@
-/* What the command line and the script decide about a picture. The zero value is NOT the default here, because many
+/* The settings of a picture from the command line and the script. The zero value is NOT the default here, because many
  * defaults are not zero: settings_default() is. */
 #ifndef GRAY_RENDER_SETTINGS_H
 #define GRAY_RENDER_SETTINGS_H
@@ -27,7 +27,7 @@ enum projection { PROJECTIONS(LIST_MEMBER) };
     X(STEREO_ANAGLYPH, "anaglyph")
 enum stereo { STEREOS(LIST_MEMBER) };
 
-/* What is in front of the film. The zero value is a pinhole in the middle of the window. */
+/* The camera in front of the film. The zero value is a pinhole in the middle of the window. */
 struct lens {
     enum projection projection;
     double view_height;      /* orthographic: height of the window, world units */
@@ -43,14 +43,14 @@ struct lens {
     double screen;       /* distance along the view where both eyes see the same place of the picture */
 };
 
-/* Where the camera is at time 1 when it moves; it is where it is said to be at time 0, and all three change linearly.
+/* The camera at time 1 if it moves; it has its given values at time 0, and all three change linearly.
  */
 struct camera_motion {
     bool moves;
     struct vec3 eye, view, up;
 };
 
-/* A photon map of the light that specular things throw (docs/light.md). */
+/* A photon map for caustics (docs/light.md). */
 struct caustics {
     int photons;   /* sent; 0: no caustics; at most PHOTONS_MAX */
     double radius; /* of what one photon lights, world units; 0: by their density */
@@ -132,7 +132,7 @@ struct settings {
 };
 
 struct settings settings_default(void);
-/* How much to leave out so that something is seen soon. QUICK: one sample a pixel, coarse, no caustics, no blur by lens
+/* Drafts: what to leave out for a fast picture. QUICK: one sample a pixel, coarse, no caustics, no blur by lens
  * or motion; PREVIEW: neither mirrored nor refracted rays either, one shadow ray for a light. */
 enum draft_level { DRAFT_NONE, DRAFT_QUICK, DRAFT_PREVIEW };
 void settings_set_draft(struct settings *settings, enum draft_level draft_level);

@@ -1,8 +1,8 @@
 /* The file is a magic word, a format number, the side of a tile and a row of records: kind, size, payload, check. The
- * check covers kind, size, place in the row and payload, so that records cannot be swapped or left out unnoticed; the
- * last record counts them. All numbers are little-endian. Reading first walks over everything (every check, every size,
- * every tile number) and only then returns anything. It holds one record at a time: what a file claims, or how large it
- * is, costs no memory.
+ * check covers kind, size, place in the row and payload, so that swapped or missing records are detected; the
+ * last record counts them. All numbers are little-endian. Reading first checks everything (every checksum, every size,
+ * every tile number) and only then returns data. It has one record in memory at a time: neither the claims nor the size
+ * of a file cost memory.
  *
  * Format 1 is of pictures that record format_1 of a pixel, and of files without a picture; format 2 states the record
  * of its picture. */

@@ -1,7 +1,7 @@
 /* Tile files: finished tiles of a picture, for later (checkpoints) or for merging (parts of a picture that several
  * machines render). A file identifies the scene and options of its tiles, so that foreign tiles are never merged. Every
- * record has a checksum, and the file has an end record, so that damaged files are refused. The checks are no
- * signatures: they find accidents, not forgers who know the format; whatever a file says, reading it is safe. */
+ * record has a checksum, and the file has an end record, so that damaged files are refused. The checksums are not
+ * signatures: they detect accidents, not forgeries; reading any file is safe. */
 #ifndef GRAY_RENDER_TILE_FILE_H
 #define GRAY_RENDER_TILE_FILE_H
 
@@ -12,7 +12,7 @@
 
 enum { TILE_FILE_NAME = 4096, TILE_FILE_VERSION_TEXT = 32 };
 
-/* What a picture is made of: equal keys, equal bytes. */
+/* The key of a picture: equal keys, equal bytes. */
 struct tile_key {
     char version[TILE_FILE_VERSION_TEXT]; /* of the program, with its final NUL */
     struct digest options;                /* those that can change a picture */
@@ -41,12 +41,12 @@ struct tile_done {
 };
 
 /* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film`. The old file stays until the new
- * one is whole. */
+ * one is complete. */
 bool tile_file_write(const struct file_target *target, const struct tile_done *done, size_t done_count,
                      const struct tile_picture *picture, const struct film *film, struct error *error);
 
 /* A file that was read and checked as a whole. Its tiles stay in it until they are put into a film, so that a file of
- * any size takes the memory of one record. Owner: the caller, tile_file_close gives it back. */
+ * any size takes the memory of one record. Owner: the caller, tile_file_close frees it. */
 struct tile_file {
     struct file_source source;
     struct file_bytes bytes; /* in the place of the source: a file in memory */

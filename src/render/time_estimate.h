@@ -1,6 +1,6 @@
-/* What the tiles that are not made yet will take, learned from those that are. Before the first tile a few rays go
- * through each (time_estimate_probe); afterwards a tile that is done says what it took (time_estimate_done), and the
- * time estimate is the combination of what the rays saw that fits these tiles best. Costs are in any unit, say
+/* The time of the remaining tiles, estimated from the finished ones. Before the first tile a few rays go
+ * through each (time_estimate_probe); afterwards each finished tile reports its cost (time_estimate_done), and the
+ * time estimate is the combination of the rays' numbers that fits these tiles best. Costs are in any unit, say
  * nanoseconds. */
 #ifndef GRAY_RENDER_TIME_ESTIMATE_H
 #define GRAY_RENDER_TIME_ESTIMATE_H
@@ -48,7 +48,7 @@ void time_estimate_begin(struct time_estimate *time_estimate, int worker, uint32
 void time_estimate_part(struct time_estimate *time_estimate, int worker, int pass, double part);
 void time_estimate_done(struct time_estimate *time_estimate, int worker, double cost, double first_pass_cost);
 
-/* Work that is done and that is left, in a unit of its own: with what was done in a time, the rest takes that time
+/* Work that is done and that is left, in an arbitrary unit: with what was done in a time, the rest takes that time
  * times left / done. film: what others have made counts, too (a farm); else NULL. At any time, from any thread. */
 struct time_estimate_work {
     double done, left;
@@ -68,9 +68,9 @@ struct progress_estimate {
 
 /* Nothing is known; somebody will ask, or nobody. */
 void progress_estimate_reset(struct progress_estimate *progress_estimate, bool wanted);
-/* Whether somebody asked before the render that is told of. */
+/* Whether an estimate was requested before the render. */
 bool progress_estimate_is_wanted(const struct progress_estimate *progress_estimate);
-/* So much is done, out of the same unit so much is left; the share never falls. */
+/* Sets the work done and the work left, in the same unit; the share never decreases. */
 void progress_estimate_report(struct progress_estimate *progress_estimate, double done, double left, uint64_t now);
 /* Seconds by the clock that a second of work takes where other programs want the processor, too; 1 while unknown. */
 double progress_estimate_pace(const struct progress_estimate *progress_estimate);

@@ -1,5 +1,5 @@
 /* See whitted_internal.h. A path is (ray, key, counters): the key makes every random number a function of pixel, sample
- * and the way through the tree of rays. */
+ * and the position in the tree of rays. */
 #include "render/whitted_internal.h"
 
 #include "material/medium.h"
@@ -20,7 +20,7 @@ struct path {
 
 static struct vec3 trace(struct integrator_state *state, const struct ray *ray, const struct path *path);
 
-/* The nearest light that shows itself before t_max, or NULL. */
+/* The nearest visible light before t_max, or NULL. */
 static const struct light *visible_light(const struct world *world, const struct ray *ray, double t_max,
                                          struct light_hit *hit) {
     const struct light *best = NULL;
@@ -39,7 +39,7 @@ static const struct light *visible_light(const struct world *world, const struct
 
 /* --- secondary rays --- */
 
-/* Number by number: a copy of the whole would wait for what has just been written of it. */
+/* Field by field: a copy of the whole struct would wait for recent stores. */
 static struct path path_on(const struct path *path, double share) {
     return (struct path){.key = path->key,
                          .reflections = path->reflections,
@@ -50,7 +50,7 @@ static struct path path_on(const struct path *path, double share) {
                          .holes = path->holes};
 }
 
-/* Whether what a ray brings cannot count any more. */
+/* Whether the result of a ray is negligible. */
 static bool is_given_up(const struct integrator_state *state, enum ray_kind kind, bool limit, struct vec3 filter,
                         const struct path *path) {
     enum ray_cut cut = limit ? RAY_OVER_LIMIT : path->weight < path->cutoff ? RAY_TOO_WEAK : RAY_FOLLOWED;
@@ -97,7 +97,7 @@ static struct vec3 follow_branch(struct integrator_state *state, const struct su
     return vec3_mul(filter, trace(state, &onward, &path));
 }
 
-/* What is seen through the holes of a surface that is only partly there (a picture of leaves): the ray continues
+/* The light through the holes of a surface (an opacity texture of leaves): the ray continues
  * unchanged. Bounded, since every hole is a deeper call. */
 static struct vec3 follow_hole(struct integrator_state *state, const struct hit *hit, const struct ray *ray,
                                double share, const struct path *from) {
@@ -186,7 +186,7 @@ static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colou
     return vec3_clamped(colour, limit);
 }
 
-/* What a ray brings that has met `hit`, or nothing: NULL. */
+/* The radiance of a ray with its hit, or NULL. */
 static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
                                      const struct path *path) {
     const struct world *world = state->job->world;
@@ -195,7 +195,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
     const struct light *area_light = visible_light(world, ray, met ? hit->t : ray->t_max, &area_light_hit);
     double end = area_light ? area_light_hit.t : met ? hit->t : ray->t_max;
 
-    /* What is between here and there. */
+    /* The medium along the ray. */
     double distance = met || area_light ? end * vec3_length(ray->direction) : INFINITY;
     struct medium_effect air;
     struct path dimmed;

@@ -10,16 +10,16 @@
 
 #include <math.h>
 
-/* --- when a ray no longer counts --- */
+/* --- the cut-off of rays --- */
 
 static double largest(struct vec3 c) {
     double max = c.x > c.y ? c.x : c.y;
     return c.z > max ? c.z : max;
 }
 
-/* The brightest thing that a ray can meet: the sky, a lamp that is seen, what emits, the fog, or a white surface that
- * gets all the light of all lights as if each were at the distance where it has its own colour. Closer to a light that
- * fades it may be brighter: the bound is one for scenes as they are, not for all that can be. */
+/* The largest radiance that a ray can meet: the sky, a visible light, an emitting surface, the fog, or a white surface
+ * in the light of all lights, each at the distance where it has its nominal colour. Closer to a light with falloff it
+ * may be brighter: the bound holds for usual scenes, not for all. */
 static double brightest_of_scene(const struct render_job *job) {
     const struct world *world = job->world;
     double max = sky_brightest(&world->sky), lit = largest(job->ambient);
@@ -82,7 +82,7 @@ void whitted_add_statistics(const struct whitted *whitted, const struct renderer
         out->marked_pixels += whitted->workers[i].marked;
 }
 
-/* The first pass is kept: a viewer may show it, and which pixels were sampled again. */
+/* The first pass is kept: a viewer may show it, and the resampled pixels. */
 struct film_record whitted_record(void) {
     return (struct film_record){.floats = 3, .marks = 1};
 }
@@ -93,7 +93,7 @@ static double clamp01(double c) {
     return c >= 1 ? 1 : c > 0 ? c : 0;
 }
 
-/* What counts is the difference in the picture file. */
+/* The difference in the picture file counts. */
 static struct vec3 toned(const struct tone *tone, struct vec3 c) {
     if (tone_is_plain(tone))
         return c;
@@ -248,7 +248,7 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
         *first_at(part, batch->positions[i].x, batch->positions[i].y) = batch->colours[i];
 }
 
-/* For a viewer: the first pass as far as it is, and what will be sampled again. */
+/* For a viewer: the current first pass, and the pixels to be resampled. */
 static void show_refined(const struct part *part, const struct rectangle *tile) {
     struct film *film = part->renderer->job->film;
     for (int64_t y = tile->y0; y < tile->y1; y++) {

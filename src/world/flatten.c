@@ -1,6 +1,6 @@
-/* Flattening of the node DAG. First a traversal of the distinct nodes finds cycles and counts what each node will place
- * (saturating), so that a tree that doubles at every level is refused, or skipped where it places nothing, before any
- * memory is taken. Then every path from the root to a primitive makes one primitive. Temporary data of nodes are in
+/* Flattening of the node DAG. First a traversal of the distinct nodes finds cycles and counts the primitives of each
+ * node (saturating), so that a tree that doubles at every level is refused, or skipped if it has no primitives, before
+ * memory is allocated. Then every path from the root to a primitive makes one primitive. Temporary data of nodes are in
  * tables beside the nodes, which are only read. */
 #include "world/flatten_internal.h"
 
@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum { PRIMITIVE_LIMIT = 1 << 28 };
-/* In the table of things by node. */
+/* In the table of prototypes by node. */
 #define PROTOTYPE_UNKNOWN UINT32_MAX
 #define PROTOTYPE_NOTHING (UINT32_MAX - 1)
 
@@ -44,7 +44,7 @@ static uint32_t multiply_saturating(uint32_t a, uint32_t b) {
     return b > 0 && a > UINT32_MAX / b ? UINT32_MAX : a * b;
 }
 
-/* What a node and everything below it places, where that is known of what is below it. */
+/* The number of primitives of a node and everything below it, from the numbers of its children. */
 static uint32_t count_below(const uint32_t *drawable, const struct node *node) {
     uint32_t own = node_is_placing(node) ? drawable[node->operands[0]->index]
                                          : node->kind == NODE_GEOMETRY || node->kind == NODE_CSG;
@@ -83,7 +83,7 @@ static bool count_nodes(struct flattening *f, const struct node *root, uint32_t 
     return !cycle && (event == SCENE_END || error_no_memory(f->error, "flattening the scene"));
 }
 
-/* How many primitives will be placed, as far as that is known before solids are split; and world->authored.draws. */
+/* The number of primitives, as far as known before solids are split; and world->authored.draws. */
 static bool count_drawable(struct flattening *f, const struct node *root, uint32_t *count) {
     uint32_t *drawable = mem_alloc_zero(f->scene->node_total, sizeof *drawable);
     uint8_t *draws = arena_alloc_array(f->arena, f->scene->node_total, sizeof *draws);
@@ -113,7 +113,7 @@ static bool any_holes(const struct flattening *f, const struct prototype *protot
     return !csg && any_slot_has_holes(f, prototype->material, prototype->slot_count);
 }
 
-/* Room for one more in a list that doubles. */
+/* Makes room for one more entry in a list that doubles. */
 static void *room_for_one(void *list, uint32_t count, uint32_t *capacity, size_t size) {
     if (count < *capacity)
         return list;
@@ -136,7 +136,7 @@ static bool instantiate_moving(struct flattening *f, const struct pose *pose, st
     return true;
 }
 
-/* Room for more than was counted: a union that is placed in parts. */
+/* Makes room for more than was counted: a union of several parts. */
 static bool grow_primitives(struct flattening *f) {
     uint32_t count = f->world->primitive_count, capacity = f->primitive_capacity + f->primitive_capacity / 2 + 16;
     if (count >= PRIMITIVE_LIMIT)
@@ -154,7 +154,7 @@ static bool grow_primitives(struct flattening *f) {
     return true;
 }
 
-/* The box of what is placed next. The list of them is made when the first one comes. */
+/* The box of the next primitive. The list is created with the first one. */
 static bool keep_limit(struct flattening *f, const struct box *limit) {
     const struct box everywhere = {vec3_all(-INFINITY), vec3_all(INFINITY)};
     if (!f->limits) {
@@ -185,7 +185,7 @@ bool flatten_mesh_accel(struct flattening *f, const struct shape *shape) {
     return shape->kind != SHAPE_MESH || mesh_build_accel(shape->mesh, f->world->mesh_accel, f->pool, f->error);
 }
 
-/* Of a thing, and of the node that it was made of. */
+/* The name of a prototype's node in messages. */
 static bool add_prototype(struct flattening *f, const struct node *node, struct prototype *prototype) {
     struct world *world = f->world;
     uint32_t capacity = f->prototype_capacity;
@@ -220,7 +220,7 @@ static bool make_csg(struct flattening *f, const struct node *node, const struct
     return true;
 }
 
-/* The shape of a node, ready for rays, and its materials: the things from `first` on, or none. */
+/* Prepares the shape of a node for rays, and its materials: the prototypes from `first` on, or none. */
 static bool make_prototype(struct flattening *f, const struct node *node, const struct pose *pose,
                            const struct graphics_state *state, uint32_t *first, uint32_t *parts) {
     *first = f->world->prototype_count;
@@ -242,7 +242,7 @@ static bool make_prototype(struct flattening *f, const struct node *node, const 
     return true;
 }
 
-/* Things are made when their node is placed for the first time, or always where nodes above it have something to say.
+/* Prototypes are made at the first instance of their node, or at every one if ancestors affect them.
  */
 static bool find_prototype(struct flattening *f, const struct node *node, const struct pose *pose,
                            const struct graphics_state *state, uint32_t *first, uint32_t *parts) {
@@ -273,14 +273,14 @@ static bool instantiate_node(struct flattening *f, const struct node *node, cons
     return true;
 }
 
-/* Of every node on the path. What is said about the operand of a clipped or bounded node is not said of its children.
+/* Data of every node on the path. Clips and bounds of an operand do not apply to the children of the node.
  */
 struct instance_frame {
     struct pose pose, of_children;
-    const struct graphics_state *state_of_operand, *state; /* NULL: nothing above says anything */
+    const struct graphics_state *state_of_operand, *state; /* NULL: no ancestor has a state */
 };
 
-/* A node that moves: a link of its own, which is the base of its children. */
+/* A moving node has a link, which is the base of its children. */
 static bool pose_moving(struct flattening *f, const struct node *node, const struct pose *parent, struct pose *out) {
     struct world *world = f->world;
     struct moving_link *links = room_for_one(world->links, world->link_count, &f->link_capacity, sizeof *links);
@@ -305,7 +305,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     return true;
 }
 
-/* What a clipped or bounded node says about its operand; NULL without memory or for an error. */
+/* The state that a clipped or bounded node gives its operand; NULL without memory or for an error. */
 static const struct graphics_state *surround(struct flattening *f, const struct node *node, const struct pose *pose,
                                              const struct graphics_state *state) {
     struct graphics_state *own = arena_alloc(f->arena, sizeof *own);
@@ -319,7 +319,7 @@ static const struct graphics_state *surround(struct flattening *f, const struct 
         *own = *state;
     if (node->material)
         own->inherited = node->material;
-    if (node->operation == NODE_BOUNDED) /* under what moves the hint is not taken */
+    if (node->operation == NODE_BOUNDED) /* the hint is ignored below moving nodes */
         return pose->above != LINK_NONE || flatten_limit(f, node->operands[1], &pose->from_node, &own->limit) ? own
                                                                                                               : NULL;
     *clip = (struct clip){node->operands[1], *pose, own->clips};

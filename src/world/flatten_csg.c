@@ -1,9 +1,9 @@
 /* From a CSG node to one postfix program: operands are closed geometry, other CSG nodes or groups, which count as the
- * union of what is under them. An operand without any surface is the empty set, or everything if it is the inverse of
+ * union of their descendants. An operand without any surface is the empty set, or everything if it is the inverse of
  * that, and disappears by the algebra (A u 0 = A, A n 0 = 0, A - 0 = A, 0 - A = 0, and so on).
  *
- * A clipped primitive becomes the surface of its own program with the clips behind it. A union of opaque solids, or of
- * one material, becomes as many primitives as keep apart. */
+ * A clipped primitive becomes the surface of its own program, followed by the clips. A union of opaque solids, or of
+ * one material, becomes one primitive for each disjoint part. */
 #include "world/flatten_internal.h"
 
 #include "base/mem.h"
@@ -18,11 +18,12 @@ struct csg_draft {
     struct csg_leaf *leaves;
     struct csg_token *program;
     uint32_t leaf_count, leaf_capacity, length, capacity;
-    uint32_t met; /* shapes so far, those too that the algebra has taken away again (world_operand_path counts alike) */
-    bool unseen;  /* its surfaces are not shown: leaves need no material */
+    uint32_t
+        met;     /* shapes so far, including those removed by the algebra (world_operand_path counts in the same way) */
+    bool unseen; /* its surfaces are invisible: leaves need no material */
 };
 
-/* What the nodes above an operand say about it. */
+/* The state from the ancestors of an operand. */
 struct above {
     struct transform csg_from_parent;
     const struct material *inherited;
@@ -30,8 +31,8 @@ struct above {
     uint32_t nesting;
 };
 
-/* Of every node on the path: where it stands, what it says about its operands and its children, and what it and those
- * of them that have been visited amount to so far. */
+/* Data of every node on the path: its pose, the state for its operands and children, and the result of it and of those
+ * visited so far. */
 struct operand_frame {
     struct transform csg_from_node, of_children;
     const struct material *inherited, *inherited_operands;
@@ -101,7 +102,7 @@ static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operati
     enum content neutral = operation == CSG_INTERSECTION ? EVERYTHING : NOTHING;
     if (operand == neutral)
         return true;
-    if (operand != SOMETHING) { /* decides: nothing in an intersection, everything in a union or taken away */
+    if (operand != SOMETHING) { /* decides: an empty set in an intersection, everything in a union or as a subtrahend */
         *so_far = operation == CSG_UNION ? EVERYTHING : NOTHING;
         return true;
     }
@@ -116,7 +117,7 @@ static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operati
 static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
                       const struct above *above, bool inside, enum content *content);
 
-/* The box around a solid whose pose is given by the nodes above it; without end where nothing is known. */
+/* The box around a solid whose pose is given by its ancestors; infinite if unknown. */
 static bool box_of_solid(struct flattening *f, const struct node *solid, const struct above *above, struct box *out) {
     struct csg_draft draft = {.unseen = true};
     enum content content = NOTHING;
@@ -161,7 +162,7 @@ static const struct box *bound_of(struct flattening *f, const struct node *node,
     return limit;
 }
 
-/* What a CSG node says about its operands, before the first of them. Its material goes to what has none under it. */
+/* Begins a CSG node, before its first operand. Its material applies to operands without one. */
 static bool begin_operation(struct flattening *f, const struct node *node, struct operand_frame *frame,
                             uint32_t nesting) {
     frame->inherited_operands = node->material ? node->material : frame->inherited;
@@ -209,7 +210,7 @@ static bool enter_operand(struct flattening *f, struct csg_draft *draft, const s
     return add_leaf(f, draft, node, &frame->csg_from_node, above);
 }
 
-/* What decides alone needs no program. */
+/* An operand that decides the result needs no program. */
 static void forget_decided(struct csg_draft *draft, const struct operand_frame *frame) {
     if (frame->content == SOMETHING)
         return;
@@ -217,7 +218,7 @@ static void forget_decided(struct csg_draft *draft, const struct operand_frame *
     draft->leaf_count = frame->leaves;
 }
 
-/* Adds what operand `number` amounts to. */
+/* Adds the result of operand `number`. */
 static bool add_operand(struct flattening *f, struct csg_draft *draft, const struct node *node, uint32_t number,
                         enum content operand, struct operand_frame *frame) {
     bool ok = true;
@@ -247,7 +248,7 @@ static bool add_operand(struct flattening *f, struct csg_draft *draft, const str
     return ok;
 }
 
-/* A node is finished: the one above it takes it up; of the root it is the result. */
+/* Ends a node: its parent adds its result; for the root it is the final result. */
 static bool leave_operand(struct flattening *f, struct csg_draft *draft, const struct scene_traversal *t,
                           enum content *content) {
     struct operand_frame *frame = scene_traversal_frame(t, 0);
@@ -261,7 +262,7 @@ static bool leave_operand(struct flattening *f, struct csg_draft *draft, const s
     return join(f, draft, CSG_UNION, frame->content, &above->content);
 }
 
-/* What the node above the one that was just entered says about it. */
+/* The state that the parent gives the node just entered. */
 static struct above above_of(const struct scene_traversal *t, uint32_t nesting) {
     const struct operand_frame *frame = scene_traversal_frame(t, 1);
     nesting += t->depth - 1;
@@ -275,7 +276,7 @@ static bool enter_solid(struct flattening *f, struct csg_draft *draft, struct sc
     struct operand_frame *frame = scene_traversal_frame(t, 0);
     const struct node *node = scene_traversal_node(t);
     bool skip = false;
-    if (t->inside && t->depth == 1) { /* where it stands is no matter of the solid's own space */
+    if (t->inside && t->depth == 1) { /* its own pose does not affect the solid's space */
         *frame = (struct operand_frame){
             .csg_from_node = above->csg_from_parent, .inherited = above->inherited, .limit = above->limit};
         return begin_operation(f, node, frame, above->nesting);
@@ -292,8 +293,8 @@ static bool enter_solid(struct flattening *f, struct csg_draft *draft, struct sc
     return true;
 }
 
-/* Everything under a node as one operand: its own surface, and what its children are, united. inside: only its
- * operands, as if the node stood where its parent does. */
+/* Everything under a node as one operand: the union of its own surface and of its children. inside: only its operands,
+ * as if the node had the pose of its parent. */
 static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
                       const struct above *above, bool inside, enum content *content) {
     struct scene_traversal t = {

@@ -8,35 +8,35 @@
 struct material_table; /* distinct (material, texture) pairs */
 struct linear_table;
 
-/* Where a node stands: fixed to the world, or to the moving node above it. */
+/* The pose of a node: relative to the world, or to its nearest moving ancestor. */
 struct pose {
     uint32_t above;             /* number of its link, or LINK_NONE: nothing above moves */
     struct transform from_node; /* to the space of `above`, or to the world */
 };
 
-/* A solid that cuts open what is placed; the pose of the node that it is an operand of. */
+/* A clipping solid; the pose of the node that it is an operand of. */
 struct clip {
     const struct node *solid;
     struct pose pose;
     const struct clip *next;
 };
 
-/* What nodes above say about everything that is placed under them. */
+/* The inherited graphics state for everything below a node. */
 struct graphics_state {
     const struct clip *clips;
-    const struct material *inherited; /* of what has no material of its own */
-    struct box limit;                 /* in the world: nothing under it is outside of it */
+    const struct material *inherited; /* for shapes without a material */
+    struct box limit;                 /* in the world: contains everything below */
 };
 
 struct flattening {
-    struct arena *arena; /* of the job: everything made here lives there */
+    struct arena *arena; /* of the job: owns all results */
     struct scene *scene; /* its nodes are only read */
     struct world *world;
     struct pool *pool;
     world_warning *warn; /* or NULL */
     void *warn_context;
     struct error *error;
-    bool unasked; /* no ray will ask this world: its meshes get no index */
+    bool unasked; /* no ray will query this world: its meshes get no index */
     struct primitive *primitives;
     struct box *limits; /* of each primitive, when there are any; else NULL */
     uint32_t primitive_capacity, prototype_capacity, linear_capacity, moving_capacity, link_capacity;
@@ -49,11 +49,11 @@ struct flattening {
  * operands of CSG, no memory. */
 bool flatten_scene(struct flattening *f, const struct node *root);
 
-/* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none when it is empty, several
- * when it is a union of solids that keep apart. around: may be NULL. */
+/* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none if it is empty, several if
+ * it is a union of disjoint solids. around: may be NULL. */
 bool flatten_csg(struct flattening *f, const struct node *node, const struct pose *pose,
                  const struct graphics_state *state, const struct csg ***parts, uint32_t *count);
-/* Shrinks a box to what a solid that bounds things leaves of it. */
+/* Shrinks a box by a bounding solid. */
 bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
                    struct box *limit);
 /* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
@@ -65,11 +65,11 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
 /* The tables of textures and bumps that the authored materials read; the world's materials, flat copies of these, refer
  * to them by index from now on. Errors: no memory. */
 bool flatten_textures(struct world *world, struct arena *arena, struct error *error);
-/* False: the map of a node into the world, or into its solid, has left the range of numbers. */
+/* False: the map of a node into the world, or into its solid, exceeds the range of doubles. */
 bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape);
-/* Sets shifts and linear map of a placement. Maps that are equal to the bit are kept once. */
+/* Sets shifts and linear map of a placement. Maps that are equal to the bit are stored once. */
 bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct primitive *out);
-void flatten_map_end(struct flattening *f); /* gives back what only flattening needs */
+void flatten_map_end(struct flattening *f); /* frees memory that only flattening needs */
 
 #endif

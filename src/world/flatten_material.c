@@ -1,7 +1,7 @@
-/* Effective materials: a node's texture (set_texture) and relief (set_bump) go over its material, a node without
+/* Effective materials: a node's texture (set_texture) and bump (set_bump) go over its material, a node without
  * material is plain gray. Each distinct set gets one number, in order of first use, and one index for each layout of
- * shapes on which its images lie otherwise (material/material_mapping.h). The table that finds sets again is hashed by
- * address, which decides the position of an entry and never its number. */
+ * shapes on which its images have another mapping (material/material_mapping.h). The table that finds sets again is
+ * hashed by address, which decides the position of an entry and never its number. */
 #include "world/flatten_internal.h"
 
 #include "base/random.h"
@@ -41,7 +41,7 @@ static bool same(const struct material_entry *a, const struct material_entry *b)
            ((!a->texture && !a->bump) || a->shape == b->shape);
 }
 
-/* Where the entry is, or would be. */
+/* The slot of the entry, existing or free. */
 static struct material_entry *find(struct material_table *table, const struct material_entry *wanted) {
     uint64_t key = random_combine((uint64_t)(uintptr_t)wanted->material, (uint64_t)(uintptr_t)wanted->texture);
     key = random_combine(key, (uint64_t)(uintptr_t)wanted->bump);
@@ -140,8 +140,8 @@ static bool grow_list(struct flattening *f, uint32_t count) {
     return true;
 }
 
-/* The set of an entry on shapes of one layout goes to the end of the list, which has room. *alike: no image lies
- * otherwise than it was asked for. */
+/* Appends the set of an entry for shapes of one layout to the list, which has room. *alike: every image has the
+ * requested mapping. */
 static bool add_set(struct flattening *f, const struct material_entry *entry, const struct material *const *bases,
                     uint32_t count, enum surface_layout layout, bool *alike) {
     struct material_table *table = f->materials;

@@ -1,5 +1,5 @@
-/* Tables of textures and bumps. What the materials of a world read is reached through pointers while it is authored;
- * here each distinct texture and each distinct bump gets an index, in order of first use, parts before what reads them,
+/* Tables of textures and bumps. Authored materials refer to textures by pointers;
+ * here each distinct texture and each distinct bump gets an index, in order of first use, parts before their readers,
  * and the world's materials refer to them by it. The numbering that finds them again is hashed by address, which
  * decides the position of an entry and never its index. */
 #include "base/mem.h"

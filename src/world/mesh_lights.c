@@ -1,6 +1,5 @@
-/* What lamps need to know about the scene: the triangles of a lamp that is a mesh are gathered from every place where
- * the scene shows one of its meshes. What the scene does not show is flattened by itself, into a world that lasts as
- * long as its triangles are gathered. */
+/* The triangles of mesh lights are collected from every instance of their meshes in the scene. A node that is not in
+ * the scene is flattened separately, into a temporary world. */
 #include "world/mesh_lights_internal.h"
 
 #include "light/light_mesh.h"
@@ -11,10 +10,10 @@
 #include <string.h>
 
 struct mesh_light_collection {
-    const struct world *world; /* the one that shows the meshes */
+    const struct world *world; /* the world of the meshes */
     const struct light *light;
     const struct node *node; /* of a light of the scene */
-    const uint8_t *marked;   /* by its primitives: which of them are the lamp's; NULL: all */
+    const uint8_t *marked;   /* by its primitives: which of them belong to the light; NULL: all */
     struct light_mesh_builder mesh;
 };
 
@@ -39,7 +38,7 @@ static void add_mesh(struct mesh_light_collection *g, uint32_t index) {
     const struct prototype *prototype = primitive_prototype(g->world, index);
     const struct mesh *mesh = prototype->geometry.shape.mesh;
     struct transform map =
-        world_placement(g->world, index, 0.5); /* of what moves: in the middle of the shutter's time */
+        world_placement(g->world, index, 0.5); /* of moving primitives: in the middle of the shutter interval */
     bool mirrored = affine_determinant(&map.forward) < 0;
     double sign = mesh_is_closed(mesh) && mesh_is_outward(mesh) == mirrored ? -1 : 1;
     g->mesh.one_sided = g->mesh.one_sided && mesh_is_closed(mesh);
@@ -86,7 +85,7 @@ bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct
     return true;
 }
 
-/* Of a node that the scene does not show. */
+/* For a node that is not in the scene. */
 static bool gather_unseen(struct mesh_light_collection *g, struct flattening *f, struct error *error) {
     const struct node *node = g->node;
     struct world own = {.mesh_accel = f->world->mesh_accel, .shutter = f->world->shutter};
@@ -126,7 +125,7 @@ static bool resolve_mesh(struct flattening *f, const struct node *node, struct l
     return true;
 }
 
-/* A sky that was turned by a change. The script's own stays as it is. */
+/* A sky that a change has rotated. The script's own does not change. */
 static bool turn_sky(struct world *world, const struct sky *behind, const struct sky_turn *turn, struct light *light,
                      struct arena *arena, struct error *error) {
     struct sky *turned = arena_alloc(arena, sizeof *turned);
@@ -156,7 +155,7 @@ bool mesh_lights_resolve(struct flattening *f, const struct scene_light *authore
     return true;
 }
 
-/* One traversal for each list; scenes without lists pay nothing. */
+/* One traversal for each list; scenes without lists have no cost. */
 
 static bool is_listed(const struct node *const *list, uint32_t count, const struct node *node) {
     for (uint32_t i = 0; i < count; i++)

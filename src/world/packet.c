@@ -1,7 +1,7 @@
-/* Rays of one origin together: the camera rays of a few pixels go through the hierarchy over the primitives as
- * one beam, and the shadow rays of one hit towards one light test only what is in the shaft between them. Meshes
- * get all the rays that meet their box at once (accel/triangle_packet.h), other shapes one after the other. The answers
- * are those of single rays. */
+/* Rays of one origin together: the camera rays of a few pixels traverse the hierarchy over the primitives as one beam,
+ * and the shadow rays of one hit towards one light test only primitives in the shaft between them. Meshes get all rays
+ * that hit their box together (accel/triangle_packet.h), other shapes one after the other. The results are those of
+ * single rays. */
 #include "world/packet.h"
 
 #include "accel/beam.h"
@@ -18,7 +18,7 @@ struct packet_search {
     const struct ray_packet *rays;
     struct world_scratch *scratch;
     _Alignas(64) double inverse[3][PACKET_RAYS];
-    double limit[PACKET_RAYS]; /* just behind the best answer, so that an equal t is still found */
+    double limit[PACKET_RAYS]; /* just after the best hit, so that an equal t is still found */
     struct packet_answer *best;
     uint64_t found;
 };
@@ -27,7 +27,7 @@ static uint32_t slot_count(const struct ray_packet *rays) {
     return (rays->count + PACKET_STEP - 1) / PACKET_STEP * PACKET_STEP;
 }
 
-/* Which rays may meet the box: box_probe_meets of every ray, two at a time. */
+/* The rays that may hit the box: box_probe_meets of every ray, two at a time. */
 static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
     const double low[3] = {box->min.x, box->min.y, box->min.z}, high[3] = {box->max.x, box->max.y, box->max.z};
     const double origin[3] = {s->rays->origin.x, s->rays->origin.y, s->rays->origin.z};
@@ -41,7 +41,7 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
             __m128d inverse = _mm_load_pd(&s->inverse[axis][i]);
             __m128d a = _mm_mul_pd(_mm_set1_pd(low[axis] - origin[axis]), inverse);
             __m128d b = _mm_mul_pd(_mm_set1_pd(high[axis] - origin[axis]), inverse);
-            /* Of a NaN, which lies in a plane, nothing may come: its slab is all of the line. */
+            /* A NaN (the ray is in a plane) must not exclude: its slab is the whole line. */
             __m128d known = _mm_cmpord_pd(a, b), near = _mm_min_pd(a, b), far = _mm_max_pd(a, b);
             near = _mm_sub_pd(near, _mm_mul_pd(_mm_and_pd(near, size), slack));
             far = _mm_add_pd(far, _mm_mul_pd(_mm_and_pd(far, size), slack));
@@ -73,7 +73,7 @@ static uint64_t meet_box(const struct packet_search *s, const struct box *box) {
     return met & ray_packet_all(s->rays);
 }
 
-/* A mesh without faces to pass over, at rest: all rays may go together. */
+/* A mesh without culled faces, at rest: all rays may form a packet. */
 static bool is_plain_mesh(const struct world *world, uint32_t index) {
     const struct prototype *prototype = primitive_prototype(world, index);
     uint32_t linear = world->primitives[index].linear;
@@ -81,7 +81,7 @@ static bool is_plain_mesh(const struct world *world, uint32_t index) {
            (linear == LINEAR_NONE || !(linear & LINEAR_MOVING));
 }
 
-/* The rays in the space of a primitive, number by number what primitive_ray says. */
+/* The rays in the space of a primitive, with the bits of primitive_ray. */
 static const struct ray_packet *primitive_rays(const struct packet_search *s, uint32_t index, struct ray_packet *out) {
     const struct primitive *primitive = &s->world->primitives[index];
     const struct ray_packet *rays = s->rays;
@@ -150,7 +150,7 @@ static void try_shape(struct packet_search *s, uint32_t index, uint64_t active) 
     }
 }
 
-/* Beyond this, nothing is searched. */
+/* The limit of the search. */
 static double farthest(const struct packet_search *s) {
     double limit = -INFINITY;
     for (uint32_t i = 0; i < s->rays->count; i++)
@@ -203,7 +203,7 @@ uint64_t world_nearest_packet(const struct world *world, const struct ray_packet
 
 /* --- between a hit and a light --- */
 
-/* Which of the rays one primitive stops. */
+/* The rays that one primitive occludes. */
 static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64_t active) {
     const struct prototype *prototype = primitive_prototype(s->world, index);
     if (is_plain_mesh(s->world, index) && !prototype->holes) {
@@ -220,7 +220,7 @@ static uint64_t stopped_by(const struct packet_search *s, uint32_t index, uint64
     return stopped;
 }
 
-/* The rays of `active` that none of the candidates stops; what stops some is asked first the next time. */
+/* The rays of `active` that no candidate occludes; an occluder is tested first the next time. */
 static uint64_t pass(struct packet_search *s, struct occluder_candidates *occluder_candidates) {
     uint64_t alive = ray_packet_all(s->rays);
     for (uint32_t i = 0; i < slot_count(s->rays); i++) {
@@ -314,7 +314,7 @@ uint32_t world_visible(const struct world *world, struct occluder_candidates *oc
 
 /* Batches of rays. Rays in a row that share their origin go as a packet (world/packet.h), the others one by one in the
  * order in which they come: the bounces of neighbouring pixels visit the same part of the world. Sorting them by octant
- * and origin was measured and lost (0.76 to 0.81 of the speed: what the order of tiles brought together is separated).
+ * and origin was slower (0.76 to 0.81 of the speed), because it destroys the coherence of tiles.
  */
 
 static bool goes_with(const struct ray *first, const struct ray *ray) {

@@ -1,4 +1,4 @@
-/* What the rays of one origin meet in the world, all of them at once. The answers are those of single rays. */
+/* Queries for several rays of one origin together. The results are those of single rays. */
 #ifndef GRAY_WORLD_PACKET_H
 #define GRAY_WORLD_PACKET_H
 
@@ -10,11 +10,11 @@ struct packet_answer {
     uint32_t primitive;
 };
 
-/* For each ray what world_nearest_crossing says: its bit, and out[i]. The packet is padded (ray_packet_pad). */
+/* world_nearest_crossing for each ray: its bit, and out[i]. The packet is padded (ray_packet_pad). */
 uint64_t world_nearest_packet(const struct world *world, const struct ray_packet *rays, struct world_scratch *scratch,
                               struct packet_answer *out);
 
-/* What can be between a point and a parallelogram, in any order; not known when there is much. */
+/* The primitives that can be between a point and a parallelogram, in any order; unknown if there are too many. */
 enum { OCCLUDER_CANDIDATES = 24 };
 struct occluder_candidates {
     uint32_t items[OCCLUDER_CANDIDATES], count;
@@ -30,9 +30,8 @@ struct shadow_rays {
     const struct vec3 *targets;
     uint32_t count;
 };
-/* How many of the targets, all inside the parallelogram, are seen: as world_any would say of every segment, t in (0,
- * 1). visible (count entries, or NULL) says it of each. What stops some rays comes first in `occluder_candidates`
- * afterwards. */
+/* The number of visible targets, all inside the parallelogram: as world_any for every segment, t in (0, 1). visible
+ * (count entries, or NULL): the result for each. Occluders move to the front of `occluder_candidates`. */
 uint32_t world_visible(const struct world *world, struct occluder_candidates *occluder_candidates,
                        const struct shadow_rays *shadow_rays, struct world_scratch *scratch, bool *visible);
 

@@ -1,4 +1,4 @@
-/* What a node has placed is what comes next in the list and says that it is of this node. */
+/* The primitives of a node are the next ones in the list that name this node. */
 #include "world/path.h"
 
 #include <stdio.h>
@@ -118,7 +118,7 @@ struct wanted_operand {
 
 static bool keep_operand(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
     struct wanted_operand *wanted = context;
-    /* What is below a shape was reported before it, so the first one that has the leaf is its origin. */
+    /* Shapes are reported after their descendants, so the first one with the leaf is its origin. */
     if (wanted->origin < first || wanted->origin >= end || depth > wanted->capacity)
         return wanted->origin >= end;
     memcpy(wanted->steps, steps, depth * sizeof *steps);

@@ -1,19 +1,19 @@
-/* The way from the root to what is placed. A primitive knows its node, but a node may hang under several others
- * and in many places: the way is found by the same traversal as flattening's. */
+/* The path from the root to a primitive. A primitive knows its node, but a node may have several parents and many
+ * placements: the path is found by the same traversal as in flattening. */
 #ifndef GRAY_WORLD_PATH_H
 #define GRAY_WORLD_PATH_H
 
 #include "scene/traversal.h"
 #include "world/world.h"
 
-/* The traversal that flattening has made, of a tree that has not changed since; the caller sets frame_size and ends it.
+/* The traversal of flattening, over a tree that has not changed since; the caller sets frame_size and ends it.
  */
 struct scene_traversal world_traversal(const struct world *world, const struct node *root, size_t frame_size);
-/* How many primitives, from number `next` on, this node has placed when it is entered for the next time. */
+/* The number of primitives, from number `next` on, of this node at its next visit. */
 uint32_t world_primitives_of(const struct world *world, const struct node *node, uint32_t next);
 
-/* Told in flattening order: primitives first .. first + count - 1 are those of the last node of the way. False: the
- * walk may end. */
+/* Called in flattening order: primitives first .. first + count - 1 are those of the last node of the path. Returns
+ * false to end the traversal. */
 typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
                               uint32_t depth);
 
@@ -30,21 +30,22 @@ struct primitive_list {
     const uint32_t *numbers;
     uint32_t count;
 };
-/* As texts in the arena: out[i] is the way to the primitive wanted.numbers[i]; they ascend. NULL where there is none.
+/* As texts in the arena: out[i] is the path to the primitive wanted.numbers[i], in ascending order. NULL if there is
+ * none.
  */
 bool world_find_paths(const struct world *world, const struct node *root, struct primitive_list wanted,
                       struct arena *arena, const char **out, struct error *error);
 
-/* Inside of combined solids (NODE_CSG): every node under one, told after what is below it. steps: the way to it,
- * without the solid; its leaves, and those of what is below it, are the ones of origin first .. end - 1
- * (csg_leaf.origin). Paths of more than OPERAND_DEPTH nodes are not reported. The visit answers false: the walk may
- * end. False: no memory. */
+/* Inside of combined solids (NODE_CSG): every node under a solid, reported after its descendants. steps: the path to
+ * it, without the solid; its leaves, and those of its descendants, have origin first .. end - 1 (csg_leaf.origin).
+ * Paths of more than OPERAND_DEPTH nodes are not reported. The visit returns false to end the traversal. False: no
+ * memory. */
 enum { OPERAND_DEPTH = 256 };
 typedef bool world_operand_visit(void *context, uint32_t first, uint32_t end, const struct scene_step *steps,
                                  uint32_t depth);
 bool world_visit_operands(const struct node *solid, world_operand_visit *visit, void *context);
-/* The way down to the shape that a leaf was made of; steps has room for `capacity`. length: 0: there is none, or
- * it is longer. False: no memory. */
+/* The path to the shape of a leaf; steps has room for `capacity`. length: 0: there is none, or it is longer. False: no
+ * memory. */
 bool world_operand_path(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
                         uint32_t *length);
 

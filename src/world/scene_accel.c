@@ -1,11 +1,11 @@
-/* How many voxels has the frame? A voxel spares a ray that passes it the upper levels of the hierarchy and costs it a
- * step. In a cloud of alike primitives without surroundings, with three voxels to each of them, steps win by a
- * tenth (10,000 spheres) to a fifth (200,000) of the whole picture. But one floor around the cloud makes voxels of the
- * floor's size, which contain everything at once: 25 times slower at 10,000, 190 times at 200,000. No resolution that
- * is the same everywhere suits both. ACCEL_AUTO asks the cost model of accel/accel_cost.c, which knows from a sample of
- * the boxes how many voxels a line visits, how long their lists are, and how long for somebody who looks at the
- * crowd: voxels with lists where they cost clearly less, else one voxel with the hierarchy of box_tree.c in it, which
- * also lets packets and shafts through. ACCEL_GRID and ACCEL_BVH pin it. docs/performance.md has the measurements. */
+/* How many voxels has the frame? Voxels save a ray the upper levels of the hierarchy and cost a step each. In a cloud
+ * of similar primitives without other objects, with three voxels to each of them, steps win by a tenth (10,000 spheres)
+ * to a fifth (200,000) of the whole picture. But one floor around the cloud makes voxels of the floor's size, which
+ * contain everything at once: 25 times slower at 10,000, 190 times at 200,000. No uniform resolution suits both.
+ * ACCEL_AUTO asks the cost model of accel/accel_cost.c, which estimates from a sample of the boxes how many voxels a
+ * line visits, the length of their lists, and the length for rays to the crowd: voxels with lists where they cost
+ * clearly less, else one voxel with the hierarchy of box_tree.c in it, which also lets packets and shafts through.
+ * ACCEL_GRID and ACCEL_BVH pin it. docs/performance.md has the measurements. */
 #include "world/scene_accel.h"
 
 #include "accel/accel_cost.h"
@@ -15,8 +15,8 @@ static struct box box_of(const void *context, uint32_t i) {
     return ((const struct box *)context)[i];
 }
 
-/* Voxels only where the account is clear: packets and shafts, which the hierarchy alone can answer, are worth about a
- * third of it, and few primitives cost little either way. */
+/* Voxels only if clearly cheaper: packets and shafts, which need the hierarchy, save about a third of its cost, and few
+ * primitives cost little in both cases. */
 static enum accel_kind choose(const struct box *boxes, uint32_t count) {
     enum { FEW = 1000, SAMPLES = 4096 };
     const double clear = 0.6;
@@ -68,7 +68,7 @@ static uint32_t step_for(uint64_t count, uint32_t limit) {
     return (uint32_t)((count + limit - 1) / limit);
 }
 
-/* Voxels that hold something. */
+/* Occupied voxels. */
 static void visit_voxels(const struct grid *grid, uint32_t limit, scene_accel_visit *visit, void *context) {
     uint64_t count = (uint64_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
     uint32_t step = step_for(count, limit);
@@ -100,7 +100,7 @@ static void visit_tree(const struct box_tree *tree, uint32_t limit, scene_accel_
     }
 }
 
-/* Leaves that hold something; the cell of a node is that of its parent, cut. */
+/* Occupied leaves; the cell of a node is that of its parent, cut. */
 static void visit_halves(const struct kd_tree *tree, uint32_t limit, scene_accel_visit *visit, void *context) {
     struct {
         struct box cell;

@@ -18,20 +18,20 @@ struct scene_accel {
 };
 
 /* Of ACCEL_AUTO becomes what the cost model chooses, ACCEL_GRID or ACCEL_BVH. `boxes` in the world, by primitive; they
- * are not kept. Errors: no memory, cancelled; what there is then is the caller's to destroy. */
+ * are not kept. Errors: no memory, cancelled; then the caller destroys partial results. */
 bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const struct box *boxes, uint32_t count,
                        struct pool *pool, struct error *error);
 void scene_accel_destroy(struct scene_accel *accel);
 size_t scene_accel_memory(const struct scene_accel *accel); /* bytes */
 
-/* Called with a cell and how full, or how near to the root, it is: 1 and more is very. `whole`: the box of everything,
- * which comes first. Returns whether to go on. */
+/* Called with a cell and its load, or its closeness to the root: 1 and more is high. `whole`: the box of everything,
+ * which comes first. Returns whether to continue. */
 typedef bool scene_accel_visit(void *context, const struct box *cell, bool whole, double share);
-/* Cells for pictures of the accelerator, about `limit` of them, spread evenly: the voxels and leaves that hold
- * something, or the inner nodes of the hierarchy; none of ACCEL_NONE. */
+/* Cells for pictures of the accelerator, about `limit` of them, spread evenly: the occupied voxels and leaves, or the
+ * inner nodes of the hierarchy; none for ACCEL_NONE. */
 void scene_accel_cells(const struct scene_accel *accel, uint32_t limit, scene_accel_visit *visit, void *context);
 
-/* The hierarchy that beams and shafts go through; NULL: there is none. */
+/* The hierarchy for beams and shafts; NULL: there is none. */
 static inline const struct box_tree *scene_accel_hierarchy(const struct scene_accel *accel) {
     return accel->tree.nodes ? &accel->tree : NULL;
 }

@@ -1,5 +1,5 @@
 /* The flattened scene: primitives, a voxel grid over them, lights; immutable, flat arrays with 32-bit indices,
- * owned by the arena of one job. Answers what a ray meets. */
+ * owned by the arena of one job. Answers ray queries. */
 #ifndef GRAY_WORLD_WORLD_H
 #define GRAY_WORLD_WORLD_H
 
@@ -12,36 +12,36 @@
 #include "scene/node.h"
 #include "world/scene_accel.h"
 
-/* The way from a moving node to the world: after its own motion a fixed transform, then the next moving node above. */
+/* The map from a moving node to the world: after its own motion a fixed transform, then the next moving ancestor. */
 struct moving_link {
     uint32_t above;                   /* number of a link, or LINK_NONE: the world itself */
     struct transform above_from_node; /* from the space its motion leads to, to the one that moves above it */
     struct motion motion;
 };
 #define LINK_NONE UINT32_MAX
-/* Of a primitive under moving nodes. */
+/* The map of a primitive under moving nodes. */
 struct moving {
     uint32_t link;
     struct transform link_from_object;
 };
 
-/* What all placements of one node share. */
+/* Data shared by all instances of one node. */
 struct prototype {
     struct geometry geometry;
     uint32_t material;   /* unused for CSG: the leaves have their own */
     uint32_t slot_count; /* of a mesh: face slot k has material + k; below 2 all have `material` */
     enum node_cull cull; /* of a mesh */
-    uint32_t parts;     /* of a union primitive in parts: how many things from this one on belong to its node; else 1 */
-    bool is_later_part; /* not the first of them */
+    uint32_t parts;      /* of a union in parts: how many prototypes, from this one on, belong to its node; else 1 */
+    bool is_later_part;  /* not the first of them */
     enum hit_convexity convexity; /* unused for CSG, like material */
-    bool holes;                   /* some of its materials let rays through by a picture */
+    bool holes;                   /* some of its materials have an opacity texture */
 };
 
-/* What was flattened, for inspection: searches and shading never look here. Borrows from the scene. */
+/* The authored objects, for inspection: searches and shading never read this. Borrows from the scene. */
 struct authored {
-    const struct node **nodes;         /* of each thing; owned */
+    const struct node **nodes;         /* of each prototype; owned */
     const struct material **materials; /* of each material, with the chain that it was derived from */
-    const uint8_t *draws;              /* by node->index: whether the node, or something below it, placed anything */
+    const uint8_t *draws;              /* by node->index: whether the node, or a descendant, has primitives */
 };
 
 /* The linear part of a placement's map and of its inverse; most placements share theirs with others. */
@@ -50,7 +50,7 @@ struct linear_map {
     double stretch; /* transform_stretch: bounds errors */
 };
 
-/* A primitive, kept small: a scene may have millions. Its map is worked out by world_placement. */
+/* A primitive, kept small: a scene may have millions. world_placement computes its map. */
 struct primitive {
     struct vec3 shift, shift_back; /* the last columns of world_from_object and of its inverse */
     uint32_t prototype;
@@ -70,18 +70,18 @@ struct world {
     struct shutter shutter;
     bool moves; /* something does */
     struct authored authored;
-    /* Flat (material_flatten), as shapes show them: one whose images lie otherwise on balls or boxes stands here
-     * several times, with the same number. */
+    /* Flattened (material_flatten), by layout of shapes: a material whose images have another mapping on spheres or
+     * boxes is here several times, with the same number. */
     struct material *materials;
     const uint32_t *material_numbers;
-    const struct texture *textures; /* what materials and bumps read; parts come before what reads them */
+    const struct texture *textures; /* textures of materials and bumps; parts come before their readers */
     const struct bump *bumps;
     bool *material_has_image;  /* such materials need to know the footprint on the surface */
     bool *material_has_bump;   /* and such ones where it rises */
     uint32_t *material_medium; /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
     struct medium *media;      /* one for each transparent material; their `primitive` is anything */
     uint32_t material_count, material_number_count, texture_count, bump_count, medium_count;
-    double emission_bound; /* at least the largest component that a material emits */
+    double emission_bound; /* a bound of the largest component of emission */
     const struct light *lights;
     uint32_t light_count;
     struct sky sky;
@@ -93,27 +93,27 @@ struct world {
 };
 
 #define MEDIUM_NONE UINT32_MAX
-#define WORLD_NOTHING UINT32_MAX /* in the place of a primitive's number */
+#define WORLD_NOTHING UINT32_MAX /* instead of a primitive's number */
 enum { WORLD_SHADOW_CACHE = 8 };
 
-/* One worker's mutable memory while it asks the world. */
+/* One worker's mutable memory for queries. */
 struct world_scratch {
     struct geom_scratch geom;
     bool failed; /* no memory to grow: the frame is abandoned with ERROR_MACHINE */
     uint64_t rays, any_rays;
-    /* What stopped the last shadow ray to the light in question (its number, modulo), or WORLD_NOTHING. */
+    /* The occluder of the last shadow ray to a light (its number, modulo), or WORLD_NOTHING. */
     uint32_t shadow_cache[WORLD_SHADOW_CACHE], light;
 };
 bool world_scratch_init(struct world_scratch *scratch, const struct world *world);
 void world_scratch_destroy(struct world_scratch *scratch);
 
-/* Called with one line for things that are odd but not wrong (a geometry node without material ...). */
+/* Called with one line for warnings (a geometry node without material ...). */
 typedef void world_warning(void *context, const char *text);
 
-/* What a world is built from; all of it is only read, but the scene notes which nodes it has warned of. */
+/* The input of a world; it is only read, except that the scene records which nodes it has warned of. */
 struct world_input {
     struct scene *scene;
-    const struct node *root; /* everything under it, as it stands now */
+    const struct node *root; /* everything under it in its current state */
     const struct scene_light *lights;
     uint32_t light_count;
     const struct sky *sky;
@@ -122,14 +122,14 @@ struct world_input {
     world_warning *warn;   /* or NULL */
     void *warn_context;
 };
-/* Flattens the tree under the root; mesh indices are built where they are missing. The world points into the scene's
+/* Flattens the tree under the root; missing mesh indices are built. The world points into the scene's
  * arena (textures, names), so it must not outlive the script. Errors: cycles (naming the nodes), no memory, cancelled;
  * nothing is left to destroy then. Lights and sky are copied. */
 bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                  struct error *error);
 /* Copies the numbers of the scene's materials again, after changes that keep the world (change_keeps_world). */
 void world_update_materials(struct world *world);
-void world_destroy(struct world *world); /* what is not in the arena */
+void world_destroy(struct world *world); /* memory outside the arena */
 /* Bytes of placements with what they share and their boxes. */
 size_t world_primitive_memory(const struct world *world);
 
@@ -148,8 +148,8 @@ static inline bool primitive_moves(const struct world *world, uint32_t primitive
 static inline const struct node *primitive_node(const struct world *world, uint32_t primitive) {
     return world->authored.nodes[world->primitives[primitive].prototype];
 }
-/* world_from_object at a ray's time; for what does not move, the bits are those of the composed transforms of the
- * nodes. */
+/* world_from_object at a ray's time; for static primitives, the bits are those of the composed transforms of the nodes.
+ */
 struct transform world_placement(const struct world *world, uint32_t primitive, double ray_time);
 /* The ray in the space of a primitive that moves. */
 struct ray world_ray_of_moving(const struct world *world, uint32_t primitive, const struct ray *ray);
@@ -175,45 +175,44 @@ static inline struct ray primitive_ray(const struct world *world, uint32_t primi
 /* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order.
  */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
-/* Only which primitive and where, both anything if there is none; for tests and counters. */
+/* Only the primitive and the crossing, both undefined if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,
                             uint32_t *primitive, struct crossing *crossing);
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch);
-/* What stopped the last ray of world_any; WORLD_NOTHING: nothing, or every primitive was tried (ACCEL_NONE). */
+/* The occluder of the last ray of world_any; WORLD_NOTHING: none, or ACCEL_NONE. */
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {
     return scratch->shadow_cache[scratch->light];
 }
-/* The same of many rays: of any origin, interval, time and primitive to skip; they may be in any order. hits[i] is what
- * world_nearest says of rays[i], to the bit; where it says no, hits[i].placed is WORLD_NOTHING and the rest is
- * anything.
+/* The same for many rays: of any origin, interval, time and primitive to skip, in any order. hits[i] is the result of
+ * world_nearest for rays[i], to the bit; without a hit, its primitive is WORLD_NOTHING and the rest is undefined.
  */
 void world_nearest_batch(const struct world *world, const struct ray *rays, uint32_t count,
                          struct world_scratch *scratch, struct hit *hits);
-/* met[i] is what world_any says of rays[i]. */
+/* met[i] is the result of world_any for rays[i]. */
 void world_any_batch(const struct world *world, const struct ray *rays, uint32_t count, struct world_scratch *scratch,
                      bool *met);
-/* Only what world_nearest_crossing has found, described. */
+/* Describes a result of world_nearest_crossing. */
 void world_describe(const struct world *world, const struct ray *ray, uint32_t primitive,
                     const struct crossing *crossing, struct hit *hit);
 /* The u and v that the shape of a hit supplies. False: it has none. */
 bool world_native_uv(const struct world *world, const struct hit *hit, double *u, double *v);
-/* The closed primitives whose box meets `region`: all that can hold a point of it, in flattening order. `out` (or NULL)
- * has room for `limit`. Returns how many there are. */
+/* The closed primitives whose box meets `region`: all that can contain a point of it, in flattening order. `out` (or
+ * NULL) has room for `limit`. Returns how many there are. */
 uint32_t world_closed_in(const struct world *world, const struct box *region, uint32_t *out, uint32_t limit);
-/* A point at a ray's time, and the primitives that may hold it (world_closed_in). */
+/* A point at a ray's time, and the primitives that may contain it (world_closed_in). */
 struct inside_query {
     struct vec3 point;
     double ray_time;
     const uint32_t *candidates;
     uint32_t count;
 };
-/* Those of the candidates whose inside holds the point, innermost last; at most `limit`, which is at most
+/* The candidates that contain the point, innermost last; at most `limit`, which is at most
  * WORLD_NESTING. Returns how many there are. */
 enum { WORLD_NESTING = 64 };
 uint32_t world_containing(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
                           uint32_t *primitive, uint32_t limit);
 
-/* The media of the transparent solids that hold the point, found by counting crossings. */
+/* The media of the transparent solids that contain the point, found by counting crossings. */
 void medium_stack_at(const struct world *world, const struct inside_query *query, struct world_scratch *scratch,
                      struct medium_stack *out);
 

@@ -47,7 +47,7 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
     return true;
 }
 
-/* Leaves it to the caller to destroy what there is when it fails. */
+/* On failure the caller destroys partial results. */
 static bool build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                   struct error *error) {
     struct light *copied = arena_alloc_array(arena, input->light_count, sizeof *copied);

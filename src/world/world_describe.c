@@ -1,4 +1,4 @@
-/* The complete description of the one crossing that a search has found. */
+/* The complete description of the crossing that a search has found. */
 #include "math/frame.h"
 #include "shape/sphere.h"
 #include "world/world.h"
@@ -15,14 +15,14 @@ static double row_sum(const struct affine *a, struct vec3 p) {
 }
 
 /* How far a secondary ray must start off the surface. The point is known up to the surface's own error and the rounding
- * of both transforms; everything scales with the numbers involved, so no length is wired in. map NULL: as it is. */
+ * of both transforms; everything scales with the numbers involved, so no length is built in. map NULL: identity. */
 static double offset_of(const struct transform *map, double scale, const struct surface *surface, struct vec3 point) {
     double mapped = map ? row_sum(&map->forward, surface->point) : vec3_max_abs(surface->point);
     double back = map ? row_sum(&map->inverse, point) * scale : vec3_max_abs(point);
     return 16 * surface->error * scale + (mapped + back) * 0x1p-42;
 }
 
-/* What the identity makes of a vector, down to the signs of zeros. */
+/* The identity map of a vector, including the signs of zeros. */
 static struct vec3 as_it_is(struct vec3 v) {
     return vec3_make(v.x + 0 * v.y + 0 * v.z, 0 * v.x + v.y + 0 * v.z, 0 * v.x + 0 * v.y + v.z);
 }
@@ -37,7 +37,7 @@ bool world_native_uv(const struct world *world, const struct hit *hit, double *u
 }
 
 /* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
- * the tangents of their coordinates, which other materials do not ask for. */
+ * the tangents of their coordinates, which other materials do not need. */
 static void describe_bump(const struct prototype *prototype, const struct affine *map, const struct csg_leaf *leaf,
                           struct hit *hit) {
     const struct shape *shape = geometry_shape(&prototype->geometry, hit->leaf);
@@ -57,7 +57,7 @@ static void describe_bump(const struct prototype *prototype, const struct affine
     raise = affine_vector(map, raise);
     hit->along_a = affine_vector(map, a);
     hit->along_b = affine_vector(map, b);
-    /* The hollow that an operand leaves has its outside in the operand. */
+    /* The surface of a subtracted operand has its outside inside the operand. */
     hit->raise = vec3_dot(raise, hit->normal_geometric) < 0 ? vec3_negate(raise) : raise;
     if (is_ball) {
         hit->curvature = 1 / shape->sphere.radius;
@@ -110,7 +110,7 @@ static void surface_to_world(const struct surface *surface, const struct transfo
     hit->leaf = surface->leaf;
 }
 
-/* How the ray's cone falls on patterns, where a picture asks. */
+/* The footprint of the ray's cone on patterns, if an image needs it. */
 static double pattern_scale(const struct transform *map, const struct csg_leaf *leaf, struct vec3 normal) {
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);

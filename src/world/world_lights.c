@@ -1,6 +1,7 @@
-/* See world_lights.h. A sphere, a flat shape and a mesh become a light of a kind that samples them; everything else is
- * sampled by the solid angle of its bound, a ball or a box, and the ray decides whether it meets what sends light. So
- * is what moves: its bound holds every place of the shutter's time. What has no end cannot be sampled; rays meet it. */
+/* See world_lights.h. A sphere, a planar shape and a mesh become a light of a kind that samples them; everything else
+ * is sampled by the solid angle of its bound, a ball or a box, and the ray decides whether it hits an emitting surface.
+ * The same holds for moving primitives: the bound contains their whole motion. Unbounded primitives cannot be sampled;
+ * rays hit them. */
 #include "world/world_lights.h"
 #include "math/elementary.h"
 
@@ -12,9 +13,9 @@
 
 #include <string.h>
 
-/* --- what emits --- */
+/* --- emission --- */
 
-/* Of a thing: its brightest material. */
+/* Of a prototype: its brightest material. */
 struct emission {
     struct vec3 colour;
     bool emissive, varies;
@@ -59,7 +60,7 @@ static bool keeps_right_angles(const struct affine *map) {
     return true;
 }
 
-/* The map's factor of lengths; 0: it is none for all directions. */
+/* The factor of lengths of a map; 0: it differs between directions. */
 static double similarity(const struct affine *map) {
     double squared = vec3_length_squared(column(map, 0));
     for (int i = 1; i < 3; i++)
@@ -79,13 +80,13 @@ struct derived {
     struct error *error;
 };
 
-/* The box of its shape as it is placed, where it keeps its right angles, else its box in the world. */
+/* The transformed box of its shape if it keeps its right angles, else its box in the world. */
 static struct light_box bounding_box(const struct derived *d, bool moves) {
     struct box box = geometry_bounds(primitive_geometry(d->world, d->primitive));
     bool own = !moves && keeps_right_angles(&d->map.forward) && vec3_finite(box.min) && vec3_finite(box.max);
     if (!own)
         box = d->world->boxes[d->primitive];
-    /* Flat ones have faces on all sides, too. */
+    /* Planar shapes also get a box with faces on all sides. */
     double margin = 0x1p-20 * vec3_max_abs(vec3_sub(box.max, box.min));
     box.min = vec3_sub(box.min, vec3_all(margin));
     box.max = vec3_add(box.max, vec3_all(margin));
@@ -98,8 +99,7 @@ static struct light_box bounding_box(const struct derived *d, bool moves) {
     return out;
 }
 
-/* The bound with the smaller mean area as it is seen from all sides (a quarter of its surface, Cauchy). False: it has
- * no end. */
+/* The bound with the smaller mean projected area (a quarter of its surface, Cauchy). False: it is unbounded. */
 static bool derive_bound(struct derived *d, bool moves, bool *ok) {
     struct light_box box = bounding_box(d, moves);
     struct vec3 diagonal = vec3_add(vec3_add(box.edges[0], box.edges[1]), box.edges[2]);
@@ -257,7 +257,7 @@ struct building {
     struct error *error;
 };
 
-/* A light of the scene. Of several over one primitive the first has it. */
+/* A light of the scene. If several lights use one primitive, it belongs to the first. */
 static void take_light(struct building *b, uint32_t number) {
     const struct world *world = b->out->world;
     const struct light *light = &b->lights[number];
@@ -511,7 +511,7 @@ double world_lights_pdf_of_hit(const struct world_lights *lights, const struct l
 
 enum { HOLE_LIMIT = 1000 };
 
-/* What the rest of a ray meets, with what its material makes of it. */
+/* The next hit of the rest of a ray, with its BSDF. */
 static bool next_surface(const struct world *world, const struct ray *rest, struct world_scratch *scratch,
                          struct hit *hit, struct bsdf *bsdf) {
     if (!world_nearest(world, rest, scratch, hit))

@@ -1,4 +1,4 @@
-/* Where primitives stand: their maps, at a time where they move, and their boxes in the world. */
+/* Poses of primitives: their maps, at a time if they move, and their boxes in the world. */
 #include "base/hash.h"
 #include "base/mem.h"
 #include "world/flatten_internal.h"
@@ -42,8 +42,8 @@ struct ray world_ray_of_moving(const struct world *world, uint32_t primitive, co
     return ray_transform(&world_from_object.inverse, ray);
 }
 
-/* Everything that a moving primitive covers while the shutter is open: link by link, so that what the moves of two
- * links have to do with each other is forgotten and the box may be too large, never too small. */
+/* The box of everything that a moving primitive covers while the shutter is open: link by link, ignoring how the
+ * motions of two links depend on each other, so the box may be too large, never too small. */
 static struct box moving_bounds(const struct world *world, const struct geometry *geometry,
                                 const struct moving *moving) {
     struct box box = box_pad(geometry_bounds_under(geometry, &moving->link_from_object.forward));
@@ -56,7 +56,7 @@ static struct box moving_bounds(const struct world *world, const struct geometry
 }
 
 /* The tightest box of a mesh looks at all its corners: done for the first placements, until so many triangles have been
- * looked at; the others take the box of the mapped box. Between two of them it is asked whether to stop. */
+ * looked at; the others take the box of the mapped box. Polls for cancellation between two of them. */
 enum { EXACT_AT_ONCE = 1 << 20, EXACT_IN_ALL = 1 << 22 };
 
 static struct box primitive_bounds(const struct world *world, uint32_t primitive, uint32_t *exact) {
@@ -98,8 +98,8 @@ bool world_primitive_boxes(struct world *world, const struct box *limits, struct
     return true;
 }
 
-/* Placements as a shift and a number of a linear map: a million pots in rows share one map, and cost 56 bytes each
- * instead of the 192 of a map with its inverse. A hash over the bits finds the equal ones; the newest is asked first.
+/* Placements as a translation and the number of a linear map: a million pots in rows share one map, and cost 56 bytes
+ * each instead of 192 for a map with its inverse. A hash over the bits finds equal maps; the newest is tested first.
  */
 
 struct linear_table {
@@ -182,7 +182,7 @@ void flatten_map_end(struct flattening *f) {
         mem_free(f->linear_table->slots);
     mem_free(f->linear_table);
     f->linear_table = NULL;
-    /* Give back what doubling took too much; without success it is kept. */
+    /* Frees the unused part of the list; on failure it is kept. */
     struct world *world = f->world;
     struct linear_map *maps = mem_resize_array(world->linear_maps, world->linear_count, sizeof *maps);
     world->linear_maps = maps ? maps : world->linear_maps;

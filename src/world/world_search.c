@@ -1,6 +1,5 @@
-/* What a ray meets first, and whether it meets anything: one traversal of the accelerator, compiled for both searches,
- * which ends in the same tests of one primitive. A primitive in several cells is tested once per ray: a small mailbox
- * remembers it. */
+/* Nearest hit and any hit: one traversal of the accelerator, compiled for both searches, with the same tests of
+ * primitives. A primitive in several cells is tested once per ray: a small mailbox remembers it. */
 #include "world/world_internal.h"
 
 #include "material/material_eval.h"
@@ -24,7 +23,7 @@ void world_scratch_destroy(struct world_scratch *scratch) {
 
 /* --- one primitive --- */
 
-/* Faces that are not seen are passed: the search goes on behind them. */
+/* Culled faces are skipped: the search continues behind them. */
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
                             struct geom_scratch *geom, struct crossing *out) {
     const struct prototype *prototype = primitive_prototype(world, index);
@@ -39,7 +38,7 @@ static bool nearest_of_mesh(const struct world *world, uint32_t index, const str
     return found;
 }
 
-/* Runs one question about one primitive again with more scratch until it fits. */
+/* Repeats a query of one primitive with more scratch until it fits. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out) {
     const struct geometry *geometry = primitive_geometry(world, index);
@@ -57,7 +56,7 @@ bool world_ask_nearest(const struct world *world, uint32_t index, const struct r
     }
 }
 
-/* A surface with holes occludes where its opacity is at least one half: shadows have two values. */
+/* A surface with holes occludes where its opacity is at least one half: shadows are binary. */
 static bool any_with_holes(const struct world *world, uint32_t index, const struct ray *ray,
                            struct world_scratch *scratch) {
     struct ray rest = *ray;
@@ -111,10 +110,11 @@ struct search {
     struct world_scratch *scratch;
     struct box_probe probe; /* SEARCH_NEAREST: not for the hierarchy, which has one of its own */
     bool found;
-    uint32_t primitive; /* that was found; of SEARCH_ANY before that: one that was tested already, or WORLD_NOTHING */
+    uint32_t
+        primitive; /* the primitive that was found; for SEARCH_ANY before that: one already tested, or WORLD_NOTHING */
     /* SEARCH_NEAREST: */
-    struct ray limited; /* the ray with t_max just behind the best answer, so that an equal t is still found */
-    /* The best answer, if there is one, and where the next goes: what was just written in pieces is slow to copy. */
+    struct ray limited; /* the ray with t_max just after the best hit, so that an equal t is still found */
+    /* The best hit, if there is one, and the slot for the next: copying a struct just written in pieces is slow. */
     struct crossing *best, *next;
 };
 
@@ -150,7 +150,7 @@ FOR_EACH_MODE bool try_primitive(struct search *s, uint32_t index, enum search_m
     return s->found = true;
 }
 
-/* Where the ray ends for now. */
+/* The current end of the ray. */
 FOR_EACH_MODE double search_end(const struct search *s, enum search_mode mode) {
     return mode == SEARCH_NEAREST ? s->limited.t_max : s->ray->t_max;
 }
@@ -236,7 +236,7 @@ FOR_EACH_MODE void search_kd_tree(struct search *s, enum search_mode mode) {
     s->scratch->geom.cost.voxels += traversal.leaves;
 }
 
-/* What the others are compared with: it depends on nothing, so it leaves no blocker behind to be tested first. */
+/* The reference for the others: it has no state, so it does not store an occluder. */
 FOR_EACH_MODE void search_all(struct search *s, enum search_mode mode) {
     probe_begin(s, mode);
     for (uint32_t i = 0; i < s->world->primitive_count; i++) {
@@ -295,7 +295,7 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 }
 
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
-    /* Neighbouring shadow rays mostly end at the same primitive: it is tested first. The answer cannot depend on it. */
+    /* Neighbouring shadow rays mostly have the same occluder: it is tested first. The result does not depend on it. */
     uint32_t *blocker = &scratch->shadow_cache[scratch->light];
     struct search s;
     s.world = world;
@@ -327,9 +327,9 @@ void medium_stack_at(const struct world *world, const struct inside_query *query
     }
 }
 
-/* Which closed primitives can hold a point, and which of them do. */
+/* The closed primitives that can contain a point, and those that do. */
 
-/* Such a solid holds what is outside of its box. */
+/* Such a solid contains the points outside its box. */
 static bool is_inside_out(const struct geometry *geometry) {
     return geometry->csg && geometry->csg->inside_out;
 }
@@ -383,7 +383,7 @@ uint32_t world_containing(const struct world *world, const struct inside_query *
             memmove(ends + at + 1, ends + at, (count - at) * sizeof *ends);
             count++;
         } else if (at > 0) {
-            at--; /* the outermost falls off */
+            at--; /* the outermost is dropped */
             memmove(primitive, primitive + 1, at * sizeof *primitive);
             memmove(ends, ends + 1, at * sizeof *ends);
         } else {
