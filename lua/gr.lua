@@ -1600,6 +1600,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error with which a tile of integrator path is done; the option wins.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path, 0: any; a limit makes the picture darker.
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field denoise? boolean denoise (true or false; default --denoise): Whether noise is removed, of integrator path; the option wins.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
@@ -1672,6 +1673,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error with which a tile of integrator path is done; the option wins.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path, 0: any; a limit makes the picture darker.
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field denoise? boolean denoise (true or false; default --denoise): Whether noise is removed, of integrator path; the option wins.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.

@@ -97,11 +97,11 @@ bool stage_render(struct stage *s, uint32_t width, uint32_t height) {
     size_t bytes;
     struct render_area area;
     bool ok = stage_build(s, s->root, s->settings.accel) && render_prepare(&job, &area, warning, &s->error) &&
-              film_size_layered(area.width, area.height, integrator_record(s->settings.integrator),
-                                aov_layers(s->settings.aov), &bytes, &s->error);
+              film_size_layered(area.width, area.height, render_record(&s->settings), aov_layers(s->settings.aov),
+                                &bytes, &s->error);
     if (ok) {
         free(s->film.pixels);
-        film_layout(&s->film, calloc(1, bytes), area.width, area.height, integrator_record(s->settings.integrator));
+        film_layout(&s->film, calloc(1, bytes), area.width, area.height, render_record(&s->settings));
         film_layout_layers(&s->film, s->film.pixels, s->settings.aov);
         s->film.x0 = area.x0;
         s->film.y0 = area.y0;

@@ -392,6 +392,29 @@ enum error_kind file_refusal_kind(int number) {
     }
 }
 
+bool file_make_temporary_folder(char *out, size_t size, struct error *error) {
+    const char *parent = getenv("TMPDIR");
+    int length = snprintf(out, size, "%s/gray-XXXXXX", parent && parent[0] == '/' ? parent : "/tmp");
+    if (length < 0 || (size_t)length >= size)
+        return error_set(error, ERROR_MACHINE, "the name of the temporary folder is too long");
+    return mkdtemp(out) || error_set(error, ERROR_MACHINE, "%s: cannot be created: %s", out, strerror(errno));
+}
+
+static bool remove_entry(void *context, const char *name) {
+    const int *folder = context;
+    (void)unlinkat(*folder, name, 0);
+    return true;
+}
+
+void file_remove_temporary_folder(const char *folder) {
+    int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (descriptor >= 0) {
+        file_list(folder, 64, remove_entry, &descriptor);
+        (void)close(descriptor);
+    }
+    (void)rmdir(folder);
+}
+
 bool file_remove(const char *path, struct error *error) {
     if (unlink(path) == 0 || errno == ENOENT)
         return true;

@@ -106,6 +106,10 @@ bool file_canonical(const char *path, char *out, size_t size);
 enum error_kind file_refusal_kind(int number);
 /* Removes one file; succeeds if there is none. */
 bool file_remove(const char *path, struct error *error);
+/* A new folder of this user alone, below TMPDIR or /tmp, and its name. */
+bool file_make_temporary_folder(char *out, size_t size, struct error *error);
+/* Removes it with the files in it. */
+void file_remove_temporary_folder(const char *folder);
 /* mkdir -p of the folder part of `path`. */
 bool file_make_folders_for(const char *path, struct error *error);
 /* Calls fn for every entry name of a folder in byte order, at most `limit` entries; stops early when fn returns false.

@@ -14,7 +14,9 @@
 #include "inspect/inspect.h"
 #include "output/progress.h"
 #include "render/aov.h"
+#include "render/denoise.h"
 #include "render/overlay.h"
+#include "render/path_film_internal.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "session/text.h"
@@ -372,13 +374,23 @@ static struct picture_request picture_request_of(const struct options *options, 
                                     .curve = (uint32_t)job->settings.tone.curve,
                                     .srgb = job->settings.tone.srgb,
                                     .deep = job->settings.deep,
-                                    .record = integrator_record(job->settings.integrator),
+                                    .record = render_record(&job->settings),
                                     .layers = job->settings.aov,
                                     .in_window = options->window,
                                     .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
                                     .lens = job->settings.lens,
                                     .check = options->check || is_asked(options)};
+}
+
+/* Enlarges the part that is rendered, within the picture. */
+static void add_rim(struct picture_request *asked, uint32_t rim) {
+    const struct film_rectangle shown = asked->shown;
+    uint32_t right = asked->full_width - shown.x1, below = asked->full_height - shown.y1;
+    asked->x0 = shown.x0 > rim ? shown.x0 - rim : 0;
+    asked->y0 = shown.y0 > rim ? shown.y0 - rim : 0;
+    asked->width = shown.x1 + (right > rim ? rim : right) - asked->x0;
+    asked->height = shown.y1 + (below > rim ? rim : below) - asked->y0;
 }
 
 /* Names the picture and has its film made. *already: nothing is to be done. */
@@ -401,6 +413,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     asked->x0 = area.x0, asked->y0 = area.y0, asked->width = area.width, asked->height = area.height;
     if (warning[0] != '\0')
         warn_of_scene(process, warning);
+    asked->shown = (struct film_rectangle){asked->x0, asked->y0, asked->x0 + asked->width, asked->y0 + asked->height};
+    add_rim(asked, path_film_parts(asked->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0);
     if (job->settings.view_is_target)
         asked->camera.view = vec3_sub(job->camera.view, job->camera.eye);
     asked->files = file_read_log_sum(&process->read_log);
@@ -446,6 +460,9 @@ static void init_work(struct picture_work *work, struct render_process *process,
     settings_set_draft(&work->job.settings, options->preview ? DRAFT_PREVIEW
                                             : options->quick ? DRAFT_QUICK
                                                              : DRAFT_NONE);
+    struct settings *settings = &work->job.settings;
+    if (settings->integrator != INTEGRATOR_PATH && settings->aov == AOV_ALL)
+        settings->aov &= ~AOV_PATH; /* all that there are */
 }
 
 static bool render_job_run(struct render_process *process, const struct render_request *request, struct error *error) {

@@ -58,8 +58,9 @@ static bool is_settled(const struct supervisor *supervisor, uint32_t number) {
 
 static bool same_picture(const struct picture_request *a, const struct picture_request *b) {
     return a->full_width == b->full_width && a->full_height == b->full_height && a->x0 == b->x0 && a->y0 == b->y0 &&
-           a->width == b->width && a->height == b->height && a->layers == b->layers && a->check == b->check &&
-           digest_equal(a->files, b->files) && strcmp(a->file, b->file) == 0;
+           memcmp(&a->shown, &b->shown, sizeof a->shown) == 0 && a->width == b->width && a->height == b->height &&
+           a->layers == b->layers && a->check == b->check && digest_equal(a->files, b->files) &&
+           strcmp(a->file, b->file) == 0;
 }
 
 /* A script that starts again reaches its pictures again; the one that is kept goes on with the tiles it has. False:

@@ -59,7 +59,7 @@ static void layer_row_linear(void *context, uint32_t y, float *line) {
 bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error) {
     static const char *const light[3] = {"R", "G", "B"};
     struct exr_channel channels[3 + 3 * AOV_COUNT];
-    char names[AOV_COUNT][3][16]; /* "normal.X" */
+    char names[AOV_COUNT][3][32]; /* "normal.X" */
     uint32_t count = 0, floats = sizeof *film->pixels / sizeof(float);
     size_t pixels = (size_t)film->width * film->height;
     for (int c = 0; c < 3; c++)

@@ -121,6 +121,7 @@ static bool merge_picture(struct output_session *output, const struct part *part
                                       .y0 = first->y0,
                                       .width = first->width,
                                       .height = first->height,
+                                      .shown = first->shown,
                                       .exposure = first->tone.exposure,
                                       .curve = (uint32_t)first->tone.curve,
                                       .srgb = first->tone.srgb,

@@ -9,6 +9,7 @@
 #include "base/version.h"
 #include "image/exr.h"
 #include "output/layers_internal.h"
+#include "output/picture_shown.h"
 #include "output/statistics_internal.h"
 #include "render/aov.h"
 #include "session/text.h"
@@ -102,7 +103,9 @@ static bool check_only(struct output_session *output, const struct picture *pict
         return true; /* --pixel and --dump-scene write nothing and make no folders */
     if (!check_files(output, picture, error))
         return false;
-    (void)snprintf(line, sizeof line, "%s: %u x %u\n", picture->name, picture->request.width, picture->request.height);
+    (void)snprintf(line, sizeof line, "%s: %u x %u\n", picture->name,
+                   picture->request.shown.x1 - picture->request.shown.x0,
+                   picture->request.shown.y1 - picture->request.shown.y0);
     if (!output->options->quiet)
         output_report(output, LINE_OUTPUT, line);
     return true;
@@ -120,6 +123,7 @@ static void describe_tiles(const struct output_session *output, struct picture *
                                    .y0 = request->y0,
                                    .width = request->width,
                                    .height = request->height,
+                                   .shown = request->shown,
                                    .tone = picture_tone(request),
                                    .deep = request->deep != 0,
                                    .record = request->record,
@@ -325,8 +329,12 @@ static void write_partial(struct output_session *output) {
     if (done == 0)
         return;
     film_clear_unfinished(&picture->film);
-    if (!layers_name(picture->name, "partial", name, &error) ||
-        !picture_write_view(picture, &target, FILM_FINAL, NULL, &error)) {
+    struct picture_shown shown = {0};
+    bool ok = layers_name(picture->name, "partial", name, &error) &&
+              picture_shown_make(&shown, picture, DENOISER_NONE, NULL, &error) &&
+              picture_write_view(&shown.picture, &target, FILM_FINAL, NULL, &error);
+    picture_shown_destroy(&shown);
+    if (!ok) {
         output_report(output, LINE_ERROR, error.text);
         return;
     }

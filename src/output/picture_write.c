@@ -5,6 +5,8 @@
 #include "image/float_write.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
+#include "output/picture_shown.h"
+#include "render/path_film_internal.h"
 
 #include <string.h>
 #include <strings.h>
@@ -101,6 +103,17 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     return png_write_from(target, &source, pool, error);
 }
 
+/* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
+static struct pool *writing_pool(const struct options *options, const struct picture *picture, bool denoises) {
+    const struct picture_request *request = &picture->request;
+    uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);
+    int threads = options->threads > 0 ? options->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    char warning[256];
+    if (parts < (uint32_t)threads && !denoises)
+        threads = (int)parts;
+    return threads > 1 || denoises ? pool_create(threads, warning) : NULL;
+}
+
 static bool write_prefixed(const struct picture_files *files, const struct picture *picture, enum film_view view,
                            struct pool *pool, struct error *error) {
     const struct options *options = files->options;
@@ -113,15 +126,21 @@ static bool write_prefixed(const struct picture_files *files, const struct pictu
            picture_write_view(picture, &target, view, pool, error);
 }
 
-/* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
-static struct pool *writing_pool(const struct options *options, const struct picture *picture) {
-    const struct picture_request *request = &picture->request;
-    uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);
-    int threads = options->threads > 0 ? options->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
-    char warning[256];
-    if (parts < (uint32_t)threads)
-        threads = (int)parts;
-    return threads > 1 ? pool_create(threads, warning) : NULL;
+/* A film with features is there to be denoised; the command line may choose the program that does it. */
+static enum denoiser denoiser_of(const struct options *options, const struct picture *picture) {
+    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES))
+        return DENOISER_NONE;
+    return options->settings.denoise == DENOISER_OIDN ? DENOISER_OIDN : DENOISER_GRAY;
+}
+
+static bool write_shown(const struct picture_files *files, const struct picture *picture, const char *name,
+                        struct pool *pool, struct error *error) {
+    const struct file_target target = {.path = name, .rules = &files->picture};
+    const struct file_target beside = {.path = picture->name, .rules = &files->beside};
+    return write_prefixed(files, picture, FILM_TARGETS, pool, error) &&
+           write_prefixed(files, picture, FILM_FIRST, pool, error) &&
+           layers_write(&beside, &picture->film, picture->request.deep != 0, error) &&
+           picture_write_view(picture, &target, FILM_FINAL, pool, error);
 }
 
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
@@ -132,13 +151,15 @@ bool picture_write_files(const struct picture_files *files, const struct picture
         return tile_file_write(&(struct file_target){.path = name, .rules = &files->part}, NULL, 0, &whole,
                                &picture->film, error);
     }
-    struct pool *pool = writing_pool(files->options, picture);
-    const struct file_target target = {.path = name, .rules = &files->picture};
-    const struct file_target beside = {.path = picture->name, .rules = &files->beside};
-    bool ok = write_prefixed(files, picture, FILM_TARGETS, pool, error) &&
-              write_prefixed(files, picture, FILM_FIRST, pool, error) &&
-              layers_write(&beside, &picture->film, picture->request.deep != 0, error) &&
-              picture_write_view(picture, &target, FILM_FINAL, pool, error);
+    enum denoiser denoiser = denoiser_of(files->options, picture);
+    struct pool *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
+    bool ok = (pool || denoiser != DENOISER_GRAY) || error_no_memory(error, "a picture that is denoised");
+    struct picture_shown shown;
+    ok = ok && picture_shown_make(&shown, picture, denoiser, pool, error);
+    if (ok) {
+        ok = write_shown(files, &shown.picture, name, pool, error);
+        picture_shown_destroy(&shown);
+    }
     pool_destroy(pool);
     return ok;
 }

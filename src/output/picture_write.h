@@ -30,7 +30,8 @@ bool picture_name_ends_in(const char *name, const char *extension);
  * alone: the others hold light. pool: or NULL, for this thread alone. */
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
                         struct pool *pool, struct error *error);
-/* All files of the picture under that name: itself, its layers, those of -write-...; with --shard the part. */
+/* All files of the picture under that name, denoised if its film has features and the options do not forbid it: itself,
+ * its layers, those of -write-...; with --shard the part. */
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
                          struct error *error);
 /* Seconds of one core that packing some finished tiles takes; *pixels: of them. Negative: it could not be measured. */

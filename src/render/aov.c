@@ -10,6 +10,7 @@
 #include "math/elementary.h"
 #include "math/range.h"
 #include "render/integrator_internal.h"
+#include "render/path_film_internal.h"
 
 #include <string.h>
 
@@ -163,6 +164,15 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
         break;
     case AOV_ALBEDO:
     case AOV_LIGHTS:
+    case AOV_RAW:
+    case AOV_VARIANCE:
+    case AOV_EMISSION:
+    case AOV_DIFFUSE_DIRECT:
+    case AOV_DIFFUSE_INDIRECT:
+    case AOV_SPECULAR_DIRECT:
+    case AOV_SPECULAR_INDIRECT:
+    case AOV_TRANSMISSION_DIRECT:
+    case AOV_TRANSMISSION_INDIRECT:
         break;
     }
 }
@@ -209,6 +219,18 @@ static bool clamp_layers(float values[AOV_COUNT][3]) {
     return clamped;
 }
 
+/* What the film records of a path-traced pixel. */
+static void path_layers(const struct film *film, size_t at, float values[AOV_COUNT][3]) {
+    struct path_pixel pixel = path_film_load(film, at);
+    struct vec3 raw = path_pixel_mean(&pixel), variance = path_pixel_variance_of_samples(&pixel);
+    set(values[AOV_RAW], raw.x, raw.y, raw.z);
+    set(values[AOV_VARIANCE], variance.x, variance.y, variance.z);
+    for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
+        struct vec3 light = path_pixel_light(&pixel, (enum path_light_group)i);
+        set(values[AOV_EMISSION + i], light.x, light.y, light.z);
+    }
+}
+
 void renderer_layer_item(void *context, uint32_t item, int index) {
     struct renderer *renderer = context;
     struct worker *worker = &renderer->workers[index];
@@ -225,6 +247,8 @@ void renderer_layer_item(void *context, uint32_t item, int index) {
                 aov_surface(renderer->job->world, &ray, mask, &worker->scratch, values);
             if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
                 measure_pixel(renderer, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);
+            if (mask & AOV_PATH && renderer->job->settings.integrator == INTEGRATOR_PATH)
+                path_layers(film, at, values);
             worker->clamped |= clamp_layers(values);
             for (int i = 0; i < AOV_COUNT; i++) {
                 size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;

@@ -16,12 +16,22 @@ struct integrator {
 
 static const char *const no_kind = "an integrator of no kind";
 
+struct film_record render_record(const struct settings *settings) {
+    switch (settings->integrator) {
+    case INTEGRATOR_WHITTED:
+        return whitted_record();
+    case INTEGRATOR_PATH:
+        return path_tracer_record(settings);
+    }
+    UNREACHABLE(no_kind);
+}
+
 struct film_record integrator_record(enum integrator_kind integrator) {
     switch (integrator) {
     case INTEGRATOR_WHITTED:
         return whitted_record();
     case INTEGRATOR_PATH:
-        return path_tracer_record();
+        return path_tracer_record(NULL);
     }
     UNREACHABLE(no_kind);
 }

@@ -4,6 +4,7 @@
 #define GRAY_RENDER_INTEGRATOR_STATE_INTERNAL_H
 
 #include "render/observer.h"
+#include "render/path_parts.h"
 #include "render/photon_map_internal.h"
 #include "render/render.h"
 #include "render/sampler.h"
@@ -17,6 +18,7 @@ struct integrator_state {
     struct sampler sampler;                      /* of the pixel sample that is traced */
     const struct photon_map *caustics;           /* or NULL */
     struct observer *observer;                   /* or NULL */
+    struct path_parts *parts;                    /* or NULL; of the camera ray that is traced, zero before */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set where a colour was not finite or too large */
 };

@@ -2,13 +2,19 @@
  * says or until a tile has little enough noise. See path_internal.h. */
 #include "render/path_internal.h"
 
+#include "render/aov.h"
 #include "render/integrator_internal.h"
 #include "render/path_film_internal.h"
 
 #include <stdio.h>
 
-struct film_record path_tracer_record(void) {
-    return path_film_record();
+struct film_record path_tracer_record(const struct settings *settings) {
+    unsigned parts = 0;
+    if (settings && settings->denoise != DENOISER_NONE)
+        parts |= PATH_PART_FEATURES;
+    if (settings && settings->aov & AOV_LIGHT)
+        parts |= PATH_PART_LIGHT;
+    return path_film_record(parts);
 }
 
 /* Of the pixel's width, what a sample stands for: that of 64 samples, for any number of them, so that a picture does
@@ -22,6 +28,17 @@ static uint32_t samples_of(const struct settings *settings) {
     return settings->noise > 0        ? PATH_SAMPLES_NOISE
            : settings->time_limit > 0 ? PATH_SAMPLES_MAX
                                       : PATH_SAMPLES_DEFAULT;
+}
+
+/* Where the parts of a batch of samples go, for each worker. */
+static bool make_sample_parts(struct path_tracer *tracer, struct renderer *renderer) {
+    for (int i = 0; i < pool_workers(renderer->pool); i++) {
+        struct path_parts *parts = arena_alloc(&tracer->arena, PACKET_RAYS * sizeof *parts);
+        if (!parts)
+            return false;
+        renderer->workers[i].batch.parts = parts;
+    }
+    return true;
 }
 
 /* Which lights photons come from. */
@@ -48,6 +65,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
+    if (path_film_parts(path_tracer_record(settings)) && !make_sample_parts(tracer, renderer))
+        return error_no_memory(error, "the workers of a render");
     struct world_lights_options options = {renderer->job->background_lights, LIGHT_CHOICE_TREE};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
     if (!tracer->built || settings->caustics.photons == 0)
@@ -113,6 +132,8 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
             return false;
         for (uint32_t i = 0; i < batch->count; i++) {
             int64_t x = batch->positions[i].x;
+            if (batch->parts)
+                path_pixel_add_parts(&pixel, &batch->parts[i], batch->positions[i].weight);
             path_pixel_add(&pixel, batch->colours[i], batch->positions[i].weight);
             if (pixel.samples < end)
                 continue;

@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum {
     RECORD_SUMS,                         /* of each half three channels */
@@ -11,12 +12,26 @@ enum {
     RECORD_WEIGHTS = RECORD_RESTS + 6,   /* of each half */
     RECORD_SAMPLES = RECORD_WEIGHTS + 2, /* at most PATH_SAMPLES_MAX = 2^24: a float holds it */
     RECORD_SQUARES = RECORD_SAMPLES + 1, /* three channels */
-    RECORD_FLOATS = RECORD_SQUARES + 3
+    RECORD_FLOATS = RECORD_SQUARES + 3,
+    FEATURE_FLOATS = 2 * PATH_FEATURES,
+    LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* sums, then what they leave */
 };
-_Static_assert((int)RECORD_FLOATS <= (int)FILM_RECORD_FLOATS, "a tile cannot carry the record of a path-traced pixel");
+/* Behind RECORD_FLOATS: the features, then the light. */
+_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS <= (int)FILM_RECORD_FLOATS,
+               "a tile cannot carry the record of a path-traced pixel");
 
-struct film_record path_film_record(void) {
-    return (struct film_record){.floats = RECORD_FLOATS, .marks = 0};
+struct film_record path_film_record(unsigned parts) {
+    uint32_t floats = RECORD_FLOATS;
+    floats += parts & PATH_PART_FEATURES ? FEATURE_FLOATS : 0;
+    floats += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
+    return (struct film_record){.floats = floats, .marks = 0};
+}
+
+unsigned path_film_parts(struct film_record record) {
+    for (unsigned parts = 0; parts <= (PATH_PART_FEATURES | PATH_PART_LIGHT); parts++)
+        if (film_record_equal(record, path_film_record(parts)))
+            return parts;
+    return 0;
 }
 
 /* --- what a record can hold --- */
@@ -54,6 +69,14 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
         pixel.weights[half] = (double)record[RECORD_WEIGHTS + half];
     }
     pixel.squares = vec3_make((double)squares[0], (double)squares[1], (double)squares[2]);
+    unsigned parts = path_film_parts(film->record);
+    const float *more = record + RECORD_FLOATS;
+    if (parts & PATH_PART_FEATURES) {
+        memcpy(pixel.features, more, sizeof pixel.features);
+        more += FEATURE_FLOATS;
+    }
+    for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
+        pixel.light[i] = load_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i);
     return pixel;
 }
 
@@ -63,25 +86,50 @@ static void store_colour(float out[3], struct vec3 colour) {
     out[2] = (float)colour.z;
 }
 
+/* A sum and what it leaves. */
+static void store_sum(float *sum, float *rest, struct vec3 value) {
+    struct vec3 near = nearest_floats(value);
+    store_colour(sum, near);
+    store_colour(rest, vec3_sub(value, near));
+}
+
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel) {
     float *record = &film->floats[at * film->record.floats];
     for (int half = 0; half < 2; half++) {
-        struct vec3 near = nearest_floats(pixel->sums[half]);
-        store_colour(record + RECORD_SUMS + 3 * half, near);
-        store_colour(record + RECORD_RESTS + 3 * half, vec3_sub(pixel->sums[half], near));
+        store_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half, pixel->sums[half]);
         record[RECORD_WEIGHTS + half] = (float)pixel->weights[half];
     }
     record[RECORD_SAMPLES] = (float)pixel->samples;
     store_colour(record + RECORD_SQUARES, pixel->squares);
+    unsigned parts = path_film_parts(film->record);
+    float *more = record + RECORD_FLOATS;
+    if (parts & PATH_PART_FEATURES) {
+        memcpy(more, pixel->features, sizeof pixel->features);
+        more += FEATURE_FLOATS;
+    }
+    for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
+        store_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i, pixel->light[i]);
     store_colour(film->pixels[at].rgb, path_pixel_mean(pixel));
 }
 
 /* --- sums --- */
 
+static struct vec3 rounded_sums(struct vec3 sum) {
+    return vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
+}
+
+void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight) {
+    float *features = pixel->features[pixel->samples % 2];
+    for (int i = 0; i < PATH_FEATURES; i++)
+        features[i] = (float)in_range((double)features[i] + weight * (double)parts->features[i]);
+    for (int i = 0; i < PATH_LIGHT_GROUPS; i++)
+        pixel->light[i] = rounded_sums(vec3_add(pixel->light[i], vec3_scale(parts->light[i], weight)));
+}
+
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight) {
     unsigned half = pixel->samples % 2;
     struct vec3 value = vec3_scale(radiance, weight), sum = vec3_add(pixel->sums[half], value);
-    pixel->sums[half] = vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
+    pixel->sums[half] = rounded_sums(sum);
     pixel->squares = nearest_floats(vec3_add(pixel->squares, vec3_mul(value, value)));
     pixel->weights[half] += weight;
     pixel->samples++;
@@ -100,6 +148,15 @@ struct vec3 path_pixel_mean(const struct path_pixel *pixel) {
 
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half) {
     return over(pixel->sums[half], pixel->weights[half]);
+}
+
+double path_pixel_feature(const struct path_pixel *pixel, int half, int feature) {
+    double weight = pixel->weights[half];
+    return weight == 0 ? 0 : (double)pixel->features[half][feature] / weight;
+}
+
+struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group) {
+    return over(pixel->light[group], pixel->weights[0] + pixel->weights[1]);
 }
 
 /* The mean of both halves has half the variance of one of them, and their difference twice that. */

@@ -31,7 +31,7 @@ struct path_tracer {
 };
 
 /* See render/integrator_internal.h. `tracer` is zero. */
-struct film_record path_tracer_record(void);
+struct film_record path_tracer_record(const struct settings *settings); /* NULL: the least */
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error);
 void path_tracer_destroy(struct path_tracer *tracer);
@@ -57,9 +57,10 @@ struct path_vertex {
     const struct hit *hit;
     const struct bsdf *bsdf;
     struct light_receiver receiver;
-    uint32_t lobes;      /* that scatter */
-    uint32_t substitute; /* highlights that stand for the mirror image of lights which no mirror shows */
-    struct vec3 thrown;  /* share of the path's weight that photons bring, if traced lobes scatter here */
+    uint32_t lobes;             /* that scatter */
+    uint32_t substitute;        /* highlights that stand for the mirror image of lights which no mirror shows */
+    struct vec3 thrown;         /* share of the path's weight that photons bring, if traced lobes scatter here */
+    struct vec3 *direct_shares; /* or NULL; path_direct sets what path_shares says about the light that it finds */
 };
 
 /* A ray that was scattered at a receiver. */
@@ -73,6 +74,11 @@ struct path_segment {
 /* Light that comes straight from one light of the scene: `choice` chooses it, `xi` lies on it. */
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
                         const struct path_vertex *vertex, double choice, struct sample2 xi);
+/* How much of the light that these lobes of the vertex scatter from wi belongs to each kind of scattering, by channel;
+ * the sum is 1. */
+void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]);
+/* A kind alone: that of a lobe with these flags. */
+void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]);
 /* What scattered rays bring, weighted against path_direct: of a surface whose material emits `emission` at the hit; of
  * the lamps that the ray meets before t_max; of skies where it meets nothing. */
 struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,

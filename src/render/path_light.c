@@ -80,6 +80,60 @@ static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_
     return vec3_mul(radiance, effect.transmittance);
 }
 
+/* --- kinds of scattering --- */
+
+enum scattering { SCATTERING_DIFFUSE, SCATTERING_SPECULAR, SCATTERING_TRANSMISSION };
+
+static enum scattering scattering_of(unsigned lobe_flags) {
+    return lobe_flags & BSDF_TRANSMITS ? SCATTERING_TRANSMISSION
+           : lobe_flags & BSDF_LAMBERT ? SCATTERING_DIFFUSE
+                                       : SCATTERING_SPECULAR;
+}
+
+static enum scattering scattering_of_lobe(enum lobe_kind kind) {
+    bool rough_diffuse = kind == LOBE_OREN_NAYAR || kind == LOBE_OREN_NAYAR_MULTIPLE;
+    return rough_diffuse ? SCATTERING_DIFFUSE : scattering_of(lobe_flags(kind));
+}
+
+void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]) {
+    for (int i = 0; i < PATH_SCATTERINGS; i++)
+        out[i] = vec3_all((int)scattering_of(flags) == i ? 1 : 0);
+}
+
+static double share_of(double part, double all) {
+    return all != 0 ? part / all : 0;
+}
+
+void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]) {
+    const struct bsdf *bsdf = vertex->bsdf;
+    uint32_t of_kind[PATH_SCATTERINGS] = {0};
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < bsdf->count; i++)
+        of_kind[scattering_of_lobe(bsdf->lobes[i].kind)] |= lobes & UINT32_C(1) << i;
+    for (int i = 0; i < PATH_SCATTERINGS; i++) {
+        out[i] = of_kind[i] ? scattered(vertex, of_kind[i], wi) : vec3_all(0);
+        sum = vec3_add(sum, out[i]);
+    }
+    for (int i = 0; i < PATH_SCATTERINGS; i++)
+        out[i] = vec3_make(share_of(out[i].x, sum.x), share_of(out[i].y, sum.y), share_of(out[i].z, sum.z));
+    /* A channel of no lobe: its light is 0 whatever the share. */
+    out[0] = vec3_sub(vec3_all(1), vec3_add(out[1], out[2]));
+}
+
+/* --- one light --- */
+
+/* Of light from wi that the lobes answer by f, and highlights beside them. */
+static void share_direct(const struct path_vertex *vertex, struct vec3 wi, struct vec3 f, struct vec3 highlight) {
+    struct vec3 *shares = vertex->direct_shares, sum = vec3_add(f, highlight);
+    path_shares(vertex, vertex->lobes, wi, shares);
+    if (is_black(highlight))
+        return;
+    struct vec3 all = vec3_make(share_of(f.x, sum.x), share_of(f.y, sum.y), share_of(f.z, sum.z));
+    for (int i = 0; i < PATH_SCATTERINGS; i++)
+        shares[i] = vec3_mul(shares[i], all);
+    shares[SCATTERING_SPECULAR] = vec3_add(shares[SCATTERING_SPECULAR], vec3_sub(vec3_all(1), all));
+}
+
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
                         const struct path_vertex *vertex, double choice, struct sample2 xi) {
     const struct world_lights *lights = &tracer->lights;
@@ -105,8 +159,12 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
         double other = bsdf_pdf(vertex->bsdf, vertex->lobes, vertex->hit->view, sample.direction);
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
+    struct vec3 highlight = none;
     if (vertex->substitute && !shown)
-        f = vec3_add_scaled(f, scattered(vertex, vertex->substitute, sample.direction), 1 / pdf);
+        highlight = vec3_scale(scattered(vertex, vertex->substitute, sample.direction), 1 / pdf);
+    if (vertex->direct_shares)
+        share_direct(vertex, sample.direction, f, highlight);
+    f = vec3_add(f, highlight);
     return is_black(f) ? none : vec3_mul(f, arriving(tracer, state, vertex, &sample));
 }
 

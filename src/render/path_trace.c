@@ -9,6 +9,8 @@
 #include "material/medium.h"
 #include "math/range.h"
 
+#include <string.h>
+
 enum { HOLE_LIMIT = 200 };           /* holes in a row of surfaces, as in Whitted */
 enum { ROULETTE_FROM = 2 };          /* scattering events before roulette */
 static const double survival = 0.95; /* at most */
@@ -18,7 +20,9 @@ struct path {
     struct vec3 weight, light;
     double
         radiance_scale; /* what refraction has done to the weight so far: products of eta^2, which roulette ignores */
-    double pdf;         /* of the ray's direction, by solid angle; 0: it had no other one */
+    struct path_parts *parts; /* or NULL */
+    double travelled;         /* along the line of sight so far; only with parts */
+    double pdf;               /* of the ray's direction, by solid angle; 0: it had no other one */
     /* Shares of the weight, with photons: the last scattering was that of a lobe that photons light; after such a one
      * the path was scattered by traced lobes only. */
     struct vec3 received, thrown;
@@ -29,9 +33,90 @@ struct path {
     struct medium_stack media;
 };
 
-static void add_light(struct path *path, struct vec3 radiance) {
-    path->light = vec3_add(path->light, vec3_mul(path->weight, radiance));
+/* Light that was scattered `depth` times, its first time by the shares. */
+static void add_to_groups(struct path_parts *parts, int depth, const struct vec3 shares[PATH_SCATTERINGS],
+                          struct vec3 light) {
+    if (depth == 0) {
+        parts->light[PATH_LIGHT_EMISSION] = vec3_add(parts->light[PATH_LIGHT_EMISSION], light);
+        return;
+    }
+    for (int i = 0; i < PATH_SCATTERINGS; i++) {
+        struct vec3 *group = &parts->light[PATH_LIGHT_DIFFUSE_DIRECT + 2 * i + (depth > 1)];
+        *group = vec3_add(*group, vec3_mul(shares[i], light));
+    }
 }
+
+/* What the ray of the path meets. */
+static void add_light(struct path *path, struct vec3 radiance) {
+    struct vec3 light = vec3_mul(path->weight, radiance);
+    path->light = vec3_add(path->light, light);
+    if (path->parts)
+        add_to_groups(path->parts, path->depth, path->parts->shares, light);
+}
+
+/* What the vertex scatters straight from the lights. */
+static void add_direct(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
+                       struct path_vertex *vertex, double choice, struct sample2 position) {
+    struct vec3 first[PATH_SCATTERINGS];
+    vertex->direct_shares = path->parts && path->depth == 0 ? first : NULL;
+    struct vec3 light = vec3_mul(path->weight, path_direct(tracer, state, vertex, choice, position));
+    path->light = vec3_add(path->light, light);
+    if (path->parts && vec3_max_abs(light) > 0)
+        add_to_groups(path->parts, path->depth + 1, path->depth == 0 ? first : path->parts->shares, light);
+}
+
+/* --- features --- */
+
+static double compressed(double x) {
+    return x > 0 ? x / (1 + x) : 0;
+}
+
+/* Of light that a line of sight shows. */
+static struct vec3 light_albedo(struct vec3 radiance) {
+    return vec3_make(compressed(radiance.x), compressed(radiance.y), compressed(radiance.z));
+}
+
+static float in_unit(double x) {
+    return x >= 1 ? 1 : x > 0 ? (float)x : 0;
+}
+
+/* Where a line of sight ends. distance: of the last ray of the path. */
+static void set_features(struct path *path, struct vec3 albedo, struct vec3 normal, double distance) {
+    struct path_parts *parts = path->parts;
+    if (!parts || parts->surface_known)
+        return;
+    parts->surface_known = true;
+    const struct vec3 a = vec3_mul(path->weight, albedo);
+    const float features[PATH_GLOW] = {in_unit(a.x),
+                                       in_unit(a.y),
+                                       in_unit(a.z),
+                                       (float)normal.x,
+                                       (float)normal.y,
+                                       (float)normal.z,
+                                       (float)number_clamped(path->travelled + distance, (double)FLT_MAX)};
+    memcpy(parts->features, features, sizeof features);
+}
+
+/* At a surface that scatters light in more than single directions, or emits it. */
+static void meet_features(struct path *path, const struct hit *hit, const struct bsdf *bsdf) {
+    struct vec3 albedo = light_albedo(bsdf->emission);
+    bool shows = vec3_max_abs(bsdf->emission) > 0;
+    double distance = hit->t * vec3_length(path->ray.direction);
+    for (int i = 0; i < bsdf->count; i++) {
+        const struct lobe *lobe = &bsdf->lobes[i];
+        unsigned flags = lobe_flags(lobe->kind);
+        if (flags & BSDF_EXPONENT)
+            continue;
+        bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
+        shows = shows || (!smooth && vec3_max_abs(lobe->weight) > 0);
+        albedo = vec3_add(albedo, lobe->weight);
+    }
+    if (shows)
+        set_features(path, albedo, bsdf->lit, distance);
+    path->travelled += distance;
+}
+
+/* --- one ray --- */
 
 /* What lies between the origin of the ray and what it meets: lamps, fog, absorption. False: the path ends at a lamp. */
 static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
@@ -51,18 +136,23 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
         add_light(path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
         path->weight = vec3_mul(path->weight, effect.transmittance);
     }
-    if (seen)
+    if (seen) {
+        set_features(path, light_albedo(radiance), vec3_all(0), distance);
         add_light(path, radiance);
+    }
     return !seen;
 }
 
 static void leave_scene(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path) {
     const struct world *world = state->job->world;
-    if (path->sight)
-        add_light(path, sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread));
-    else
+    if (path->sight) {
+        struct vec3 sky = sky_colour(&world->sky, vec3_normalize(path->ray.direction), path->ray.footprint.spread);
+        set_features(path, light_albedo(sky), vec3_all(0), -path->travelled);
+        add_light(path, sky);
+    } else {
         add_light(path, path_environment(tracer,
                                          &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown}));
+    }
 }
 
 /* Which lobes scatter. A highlight stands for the mirror image of lights: where smooth traced lobes show that image, it
@@ -117,7 +207,14 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
     for (int i = 0; i < bsdf.count; i++)
         if (!(lobes & UINT32_C(1) << i))
             bsdf.lobes[i].weight = vec3_all(0);
-    add_light(path, photon_map_light(&tracer->caustics, state->job->world, vertex->hit, &bsdf));
+    struct vec3 light =
+        vec3_mul(path->weight, photon_map_light(&tracer->caustics, state->job->world, vertex->hit, &bsdf));
+    path->light = vec3_add(path->light, light);
+    /* Photons were scattered before, and diffuse lobes receive nearly all of them. */
+    struct vec3 diffuse[PATH_SCATTERINGS];
+    path_share_all(BSDF_LAMBERT, diffuse);
+    if (path->parts)
+        add_to_groups(path->parts, path->depth + 2, path->depth == 0 ? diffuse : path->parts->shares, light);
 }
 
 static double share_of(double part, double all) {
@@ -158,6 +255,12 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
         return false;
     if (tracer->photon_lights)
         count_shares(path, vertex, &sample);
+    if (path->parts && path->depth == 0) {
+        if (delta)
+            path_share_all(sample.flags, path->parts->shares);
+        else
+            path_shares(vertex, vertex->lobes, sample.direction, path->parts->shares);
+    }
     path->weight = vec3_mul(path->weight, sample.weight);
     path->depth++;
     if (transmits)
@@ -192,6 +295,8 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         path->ray = hit_ray(hit, &path->ray, vec3_negate(hit->view), &path->media);
         return path->holes++ < HOLE_LIMIT;
     }
+    if (path->parts && path->sight)
+        meet_features(path, hit, &bsdf);
     if (path->sight)
         add_light(path, bsdf.emission);
     else
@@ -210,7 +315,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         vertex.thrown = vec3_add(path->received, path->thrown);
     }
     struct sample2 choice = sampler_point(sampler, dimension);
-    add_light(path, path_direct(tracer, state, &vertex, choice.x, sampler_point(sampler, dimension + 1)));
+    add_direct(tracer, state, path, &vertex, choice.x, sampler_point(sampler, dimension + 1));
     return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
 }
 
@@ -227,6 +332,18 @@ static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colou
     return vec3_clamped(colour, (double)FLT_MAX);
 }
 
+/* Where the radiance was limited, each group of light is scaled as it is. */
+static void finish_parts(struct integrator_state *state, struct path_parts *parts, double found, double left) {
+    for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
+        struct vec3 light = clamp_light(state, parts->light[i]);
+        parts->light[i] = left < found ? vec3_scale(light, left / found) : light;
+    }
+    const struct vec3 *glow = &parts->light[PATH_LIGHT_EMISSION];
+    parts->features[PATH_GLOW] = (float)glow->x;
+    parts->features[PATH_GLOW + 1] = (float)glow->y;
+    parts->features[PATH_GLOW + 2] = (float)glow->z;
+}
+
 /* hit: what the camera ray has met, or NULL; the hits of later rays go into it, too. */
 static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                           struct sampler *sampler, struct hit *hit, bool met) {
@@ -241,7 +358,9 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
     }
-    struct vec3 light = limited(clamp_light(state, path->light), tracer->clamp);
+    struct vec3 found = clamp_light(state, path->light), light = limited(found, tracer->clamp);
+    if (path->parts)
+        finish_parts(state, path->parts, vec3_max_abs(found), vec3_max_abs(light));
     observe_ray_end(state->observer, &(struct observed_end){true, light, vec3_all(1), none, light});
     return light;
 }
@@ -251,6 +370,8 @@ static void begin(struct path *path, struct sampler *sampler, const struct integ
     path->ray = *ray;
     path->weight = vec3_all(1);
     path->light = vec3_all(0);
+    path->parts = state->parts;
+    path->travelled = 0;
     path->radiance_scale = 1;
     path->pdf = 0;
     path->received = path->thrown = vec3_all(0);

@@ -4,6 +4,7 @@
 #include "render/integrator_internal.h"
 
 #include "base/mem.h"
+#include "render/aov.h"
 #include "render/film.h"
 #include "render/pixel_trace.h"
 #include "render/settings.h"
@@ -192,12 +193,23 @@ static bool render_tiles(struct renderer *renderer, struct render_statistics *st
     return whole;
 }
 
+/* The first one of a mask. */
+static enum aov path_layer(uint32_t mask) {
+    int i = 0;
+    while (!((mask & AOV_PATH) >> i & 1))
+        i++;
+    return (enum aov)i;
+}
+
 bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error) {
     const struct settings *s = &job->settings;
     struct camera_frame frame;
     char ignored[256];
     if (!renderer_prepare_at(job, 0, &frame, warning, error) || !renderer_prepare_at(job, 1, &frame, ignored, error))
         return false;
+    if (s->integrator != INTEGRATOR_PATH && s->aov & AOV_PATH && s->aov != AOV_ALL)
+        return error_set(error, ERROR_USAGE, "--aov %s is a layer of --integrator path only",
+                         aov_name(path_layer(s->aov)));
     *area = (struct render_area){0, 0, job->width, job->height};
     if (!s->cropped)
         return true;
@@ -325,7 +337,7 @@ bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel
                         .height = 1,
                         .full_width = job->width,
                         .full_height = job->height,
-                        .record = integrator_record(job->settings.integrator),
+                        .record = render_record(&job->settings),
                         .pixels = &pixel,
                         .floats = floats,
                         .marked = &marked};

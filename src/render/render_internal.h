@@ -16,6 +16,7 @@
 struct batch {
     struct pixel_sample positions[PACKET_RAYS];
     struct vec3 colours[PACKET_RAYS];
+    struct path_parts *parts; /* or NULL; PACKET_RAYS of them */
     uint32_t count;
     struct ray_packet packet;
     struct packet_answer answers[PACKET_RAYS];

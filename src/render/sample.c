@@ -51,6 +51,13 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
     return vec3_make(colour.x, right.y, right.z);
 }
 
+/* Where the parts of a sample go. */
+static void begin_parts(struct worker *worker, struct path_parts *parts) {
+    worker->state.parts = parts;
+    if (parts)
+        *parts = (struct path_parts){0};
+}
+
 static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
     const struct settings *settings = &renderer->job->settings;
     uint64_t pixel = (uint64_t)position->y * renderer->job->width + (uint64_t)position->x;
@@ -103,8 +110,11 @@ struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, co
 void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     struct batch *batch = &worker->batch;
     if (!renderer->together || batch->count == 1) {
-        for (uint32_t i = 0; i < batch->count; i++)
+        for (uint32_t i = 0; i < batch->count; i++) {
+            begin_parts(worker, batch->parts ? &batch->parts[i] : NULL);
             batch->colours[i] = renderer_sample(renderer, worker, &batch->positions[i]);
+        }
+        worker->state.parts = NULL;
         return;
     }
     struct ray_packet *packet = &batch->packet;
@@ -131,9 +141,11 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
         ray.footprint.spread *= share;
         ray.footprint.width *= share;
         begin_sample(renderer, worker, position);
+        begin_parts(worker, batch->parts ? &batch->parts[i] : NULL);
         batch->colours[i] = integrator_radiance_met(renderer, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
                                                     worker->state.sampler.key);
     }
+    worker->state.parts = NULL;
 }
 
 /* The first sample has number 0, at the centre or the corner of the pixel. */

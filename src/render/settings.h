@@ -70,6 +70,13 @@ enum {
     DEPTH_DEFAULT = 16,
     DEPTH_MAX = 1000000
 };
+/* What makes noise of few samples invisible, where the picture is written. GRAY: render/denoise.h; OIDN: the program
+ * oidnDenoise of Intel's Open Image Denoise. */
+#define DENOISERS(X)                                                                                                   \
+    X(DENOISER_NONE, "none")                                                                                           \
+    X(DENOISER_GRAY, "gray")                                                                                           \
+    X(DENOISER_OIDN, "oidn")
+enum denoiser { DENOISERS(LIST_MEMBER) };
 #define OVERLAYS(X)                                                                                                    \
     X(OVERLAY_NONE, "none")                                                                                            \
     X(OVERLAY_OF_BOXES, "boxes")                                                                                       \
@@ -110,10 +117,11 @@ struct settings {
     int path_samples; /* --spp: samples of a pixel; 0: nobody chose, PATH_SAMPLES_DEFAULT */
     int max_depth;    /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
     enum filter_kind filter;
-    double noise;      /* --noise: a tile whose relative standard error is not larger is done; 0: all samples */
-    double time_limit; /* --time-limit: seconds, for whole passes of paths over the picture; 0: none */
-    double clamp;      /* --clamp: the largest component that a sample of a path may have; 0: any */
-    bool passes;       /* paths: the picture is looked at while it is made, so its samples come in passes */
+    double noise;          /* --noise: a tile whose relative standard error is not larger is done; 0: all samples */
+    double time_limit;     /* --time-limit: seconds, for whole passes of paths over the picture; 0: none */
+    double clamp;          /* --clamp: the largest component that a sample of a path may have; 0: any */
+    bool passes;           /* paths: the picture is looked at while it is made, so its samples come in passes */
+    enum denoiser denoise; /* of path-traced pictures */
     uint64_t seed;
     bool view_is_target;         /* --view target */
     bool pixel_corner;           /* --pixel-sample corner */

@@ -5,7 +5,7 @@
  * of a file cost memory.
  *
  * Format 1 is of pictures that record format_1 of a pixel, and of files without a picture; format 2 states the record
- * of its picture. */
+ * of its picture, format 3 also the part of it that is shown. */
 #include "render/tile_file.h"
 
 #include "base/mem.h"
@@ -19,6 +19,7 @@ static const char magic[8] = "GRAYTILE";
 enum {
     FORMAT = 1,
     FORMAT_RECORD = 2,
+    FORMAT_SHOWN = 3,
     RECORD_DONE = 1,
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
@@ -28,14 +29,30 @@ enum {
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
     DONE_FIXED = 4 + KEY_SIZE + 16,
     PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
-    RECORD_FIELDS = 8, /* behind PICTURE_FIXED in FORMAT_RECORD */
-    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS,
+    RECORD_FIELDS = 8, /* behind PICTURE_FIXED in FORMAT_RECORD and FORMAT_SHOWN */
+    SHOWN_FIELDS = 16, /* behind them in FORMAT_SHOWN */
+    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS,
     DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */
 };
 
 static const struct film_record format_1 = {.floats = 3, .marks = 1};
 
+static struct film_rectangle whole_of(const struct tile_picture *picture) {
+    return (struct film_rectangle){picture->x0, picture->y0, picture->x0 + picture->width,
+                                   picture->y0 + picture->height};
+}
+
+static struct film_rectangle shown_of(const struct tile_picture *picture) {
+    return picture->shown.x1 == 0 ? whole_of(picture) : picture->shown;
+}
+
+static bool rectangles_equal(struct film_rectangle a, struct film_rectangle b) {
+    return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
+}
+
 static uint32_t format_of(const struct tile_picture *picture) {
+    if (picture && !rectangles_equal(shown_of(picture), whole_of(picture)))
+        return FORMAT_SHOWN;
     return !picture || film_record_equal(picture->record, format_1) ? FORMAT : FORMAT_RECORD;
 }
 
@@ -111,6 +128,11 @@ static struct film_record get_film_record(struct eye *eye) {
     return (struct film_record){floats, get_u32(eye)};
 }
 
+static struct film_rectangle get_rectangle(struct eye *eye) {
+    uint32_t x0 = get_u32(eye), y0 = get_u32(eye), x1 = get_u32(eye);
+    return (struct film_rectangle){x0, y0, x1, get_u32(eye)};
+}
+
 static uint64_t check_of(uint64_t position, uint32_t kind, const uint8_t *payload, size_t size) {
     return hash_bytes(payload, size, position * 64 + kind);
 }
@@ -161,9 +183,15 @@ static bool write_picture(struct text_writer *writer, const struct tile_picture 
     put_u32(&pen, picture->shard);
     put_u32(&pen, picture->shards);
     put_u32(&pen, picture->whole);
-    if (format_of(picture) == FORMAT_RECORD) {
+    if (format_of(picture) != FORMAT) {
         put_u32(&pen, picture->record.floats);
         put_u32(&pen, picture->record.marks);
+    }
+    if (format_of(picture) == FORMAT_SHOWN) {
+        put_u32(&pen, picture->shown.x0);
+        put_u32(&pen, picture->shown.y0);
+        put_u32(&pen, picture->shown.x1);
+        put_u32(&pen, picture->shown.y1);
     }
     put(&pen, picture->name, strlen(picture->name));
     return write_record(writer, RECORD_PICTURE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
@@ -290,11 +318,16 @@ static bool read_done(const struct reader *reader, const struct record *record, 
            wrong(reader, error, "a finished picture has an invalid name");
 }
 
+static bool is_part(const struct film_rectangle *part, const struct tile_picture *picture) {
+    return part->x0 >= picture->x0 && part->x1 > part->x0 && part->x1 <= picture->x0 + picture->width &&
+           part->y0 >= picture->y0 && part->y1 > part->y0 && part->y1 <= picture->y0 + picture->height;
+}
+
 static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
                          struct error *error) {
     struct eye eye = {record->payload};
-    bool stated = reader->file->format == FORMAT_RECORD;
-    if (record->size < PICTURE_FIXED + (stated ? RECORD_FIELDS : 0))
+    bool stated = reader->file->format != FORMAT, cut = reader->file->format == FORMAT_SHOWN;
+    if (record->size < (size_t)PICTURE_FIXED + (stated ? RECORD_FIELDS : 0) + (cut ? SHOWN_FIELDS : 0))
         return wrong(reader, error, "the description of the picture is too short");
     out->number = get_u32(&eye);
     out->key = get_key(&eye);
@@ -314,12 +347,13 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->shards = get_u32(&eye);
     out->whole = get_u32(&eye) != 0;
     out->record = stated ? get_film_record(&eye) : format_1;
+    out->shown = cut ? get_rectangle(&eye) : whole_of(out);
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
                 out->y0 < out->full_height && out->width <= out->full_width - out->x0 &&
                 out->height <= out->full_height - out->y0 && film_record_valid(out->record) &&
-                film_size(out->width, out->height, out->record, &bytes, &size_error);
+                is_part(&out->shown, out) && film_size(out->width, out->height, out->record, &bytes, &size_error);
     if (!fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 || out->shard == 0 ||
         out->shard > out->shards)
         return wrong(reader, error, "the description of the picture is invalid");
@@ -418,7 +452,7 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
         return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
     eye.at += sizeof magic;
     out->format = get_u32(&eye);
-    if ((out->format != FORMAT && out->format != FORMAT_RECORD) || get_u32(&eye) != FILM_TILE)
+    if (out->format < FORMAT || out->format > FORMAT_SHOWN || get_u32(&eye) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;
@@ -488,7 +522,8 @@ const char *tile_picture_difference(const struct tile_picture *have, const struc
     if (have->number != want->number)
         return "it is of another picture of the run";
     if (have->full_width != want->full_width || have->full_height != want->full_height || have->x0 != want->x0 ||
-        have->y0 != want->y0 || have->width != want->width || have->height != want->height)
+        have->y0 != want->y0 || have->width != want->width || have->height != want->height ||
+        !rectangles_equal(shown_of(have), shown_of(want)))
         return "it is of a picture of another size";
     if (!film_record_equal(have->record, want->record))
         return "its pixels have records of another size";

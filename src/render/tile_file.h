@@ -24,6 +24,7 @@ struct tile_picture {
     uint32_t number; /* counted over the run, from 1 */
     struct tile_key key;
     uint32_t full_width, full_height, x0, y0, width, height;
+    struct film_rectangle shown; /* the part of it that is written; zero: all */
     struct tone tone;
     bool deep;
     struct film_record record;

@@ -72,6 +72,8 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->clamp = args[RENDER_CLAMP].number;
     if (args[RENDER_FILTER].given)
         settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
+    if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE)
+        settings->denoise = DENOISER_GRAY;
     /* Light that goes from wall to wall is computed in linear colours, which a screen shows by the sRGB curve. */
     if (settings->integrator == INTEGRATOR_PATH && !args[RENDER_SRGB].given)
         settings->tone.srgb = true;

@@ -659,6 +659,8 @@ static const struct script_parameter render_parameters[] = {
                       "Largest component of a sample of integrator path, 0: any; a limit makes the picture darker."},
     [RENDER_FILTER] = {"filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(FILTERS), NULL, "--filter",
                        "Reconstruction filter of a pixel."},
+    [RENDER_DENOISE] = {"denoise", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--denoise",
+                        "Whether noise is removed, of integrator path; the option wins."},
     [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, IN_RANGE(-100, 100), "stops", "--exposure",
                          "Light is multiplied by 2^exposure when a PNG file is written."},
     [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",

@@ -18,6 +18,12 @@ static bool ends_with_zero(const char *text, size_t size) {
     return memchr(text, '\0', size) != NULL;
 }
 
+static bool shown_is_valid(const struct picture_request *request) {
+    const struct film_rectangle *shown = &request->shown;
+    return shown->x0 >= request->x0 && shown->x1 > shown->x0 && shown->x1 <= request->x0 + request->width &&
+           shown->y0 >= request->y0 && shown->y1 > shown->y0 && shown->y1 <= request->y0 + request->height;
+}
+
 static bool reply_is_valid(const struct preview_reply *reply) {
     const struct picked *picked = &reply->picked;
     const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, reply->root_name};
@@ -41,9 +47,10 @@ bool message_is_valid(const struct message *message) {
                request->width >= 1 && request->height >= 1 && request->full_width <= 1u << 20 &&
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
-               request->y0 <= request->full_height - request->height && request->exposure >= -100 &&
-               request->exposure <= 100 && request->curve <= TONE_FILMIC && film_record_valid(request->record) &&
-               request->overlay <= OVERLAY_OF_GRID && (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
+               request->y0 <= request->full_height - request->height && shown_is_valid(request) &&
+               request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FILMIC &&
+               film_record_valid(request->record) && request->overlay <= OVERLAY_OF_GRID &&
+               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
                (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
     case MESSAGE_DONE:
         return message->size == sizeof message->body.report;

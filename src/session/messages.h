@@ -101,6 +101,7 @@ struct view_overlay_buffers {
 struct picture_request {
     uint32_t full_width, full_height; /* of the whole picture */
     uint32_t x0, y0, width, height;   /* the part that is rendered */
+    struct film_rectangle shown;      /* the part of that which is written: less where it is denoised with a rim */
     double exposure;                  /* of its file, as in struct tone */
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */

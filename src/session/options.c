@@ -277,13 +277,15 @@ static bool value_error(const struct option *option, const char *text, struct er
                          shown, option->names, text);
     case OPTION_CHOICE:
     case OPTION_STATS:
+    case OPTION_DENOISE:
         return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
                          option->value + (option->value[0] == '='), text);
     case OPTION_LAYERS:
         return error_set(
             error, ERROR_USAGE,
             "%.*s needs names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, "
-            "lights) or all, not '%s'",
+            "lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
+            "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not '%s'",
             shown, option->names, text);
     case OPTION_TEXT:
         return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, option->names);
@@ -377,6 +379,10 @@ static bool apply_option(const struct option *option, const char *text, struct o
     case OPTION_LAYERS:
         ok = aov_parse(text, &options->settings.aov);
         break;
+    case OPTION_DENOISE:
+        ok = strcmp(text, "gray") == 0 || strcmp(text, "oidn") == 0;
+        options->settings.denoise = strcmp(text, "oidn") == 0 ? DENOISER_OIDN : DENOISER_GRAY;
+        break;
     case OPTION_STATS:
         ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
         options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
@@ -442,6 +448,9 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->noise, sizeof settings->noise, digest);
         digest = digest_bytes(&settings->clamp, sizeof settings->clamp, digest);
     }
+    /* Films are the same for all denoisers. */
+    if (settings->denoise != DENOISER_NONE)
+        digest = digest_bytes("denoise", sizeof "denoise", digest);
     const int64_t numbers[] = {options->width,          options->height,
                                (int64_t)settings->seed, settings->cropped,
                                settings->crop_x,        settings->crop_y,
@@ -516,6 +525,8 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             return value_error(option, text, error);
         if (option->kind == OPTION_STATS && !text)
             text = "text";
+        if (option->kind == OPTION_DENOISE && !text)
+            text = "gray";
         if (option->value && !text) {
             if (i + 1 >= argc)
                 return error_set(error, ERROR_USAGE, "%s needs a value: %s", word, option->value);

@@ -21,6 +21,7 @@ enum option_kind {
     OPTION_SHARD,   /* I/N: two uint32_t from the field on */
     OPTION_LAYERS,  /* --aov */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
+    OPTION_DENOISE, /* --denoise, --denoise=gray, --denoise=oidn */
 };
 
 enum option_group {

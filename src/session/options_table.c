@@ -66,6 +66,9 @@ const struct option option_table[] = {
      "becomes darker than it should be (bias)"},
     {OPTION_GROUP_PICTURE, "--filter", OPTION_CHOICE, LIST_BARS(FILTERS), NO_RANGE, FIELD(settings.filter), "box",
      "reconstruction filter of a pixel"},
+    {OPTION_GROUP_PICTURE, "--denoise", OPTION_DENOISE, "=gray|oidn", NO_RANGE, NO_FIELD, NULL,
+     "remove noise, with --integrator path; oidn: by the program oidnDenoise of Open Image Denoise, which must be on "
+     "PATH"},
     {OPTION_GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "seed of all random numbers, including math.random in scripts"},
 

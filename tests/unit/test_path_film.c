@@ -14,7 +14,7 @@ static struct film_pixel pixels[2];
 static struct film two_pixels(void) {
     memset(floats, 0, sizeof floats);
     memset(pixels, 0, sizeof pixels);
-    return (struct film){.width = 2, .height = 1, .record = path_film_record(), .pixels = pixels, .floats = floats};
+    return (struct film){.width = 2, .height = 1, .record = path_film_record(0), .pixels = pixels, .floats = floats};
 }
 
 static struct vec3 sample_of(uint64_t seed, uint64_t number) {

@@ -249,7 +249,7 @@ TEST(a_file_of_tiles_with_a_wrong_end_is_refused) {
     m.bytes[24] = 9;
     refused(&m, "it ends too early");
     begin(&m);
-    m.bytes[8] = 3;
+    m.bytes[8] = 4;
     refused(&m, "is a file of tiles in another format");
     begin(&m);
     m.bytes[12] = 1;

@@ -1,0 +1,16 @@
+/* Denoising by Intel's Open Image Denoise: the program oidnDenoise, found on PATH. */
+#ifndef GRAY_OUTPUT_OIDN_H
+#define GRAY_OUTPUT_OIDN_H
+
+#include "base/error.h"
+#include "render/denoise.h"
+
+#include <stdbool.h>
+
+/* Hands colour, albedo and normal to the program as three PFM files in a folder of their own, waits for it, and reads
+ * its picture into out[width * height]. Its arguments are always the same and it works in that folder; what it prints
+ * is thrown away. Errors, each in one line: the program is not on PATH, it fails, its picture has another size, a file
+ * cannot be written. */
+bool oidn_run(const struct denoise_source *source, float (*out)[3], struct error *error);
+
+#endif

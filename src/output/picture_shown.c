@@ -1,0 +1,129 @@
+/* The film of a crop that is denoised has a rim that its files do not show (DENOISE_RIM). Denoising happens here, where
+ * the picture is written, so that merged parts and resumed pictures are denoised as a whole. The film is shared with
+ * the render process, whose numbers are not trusted: whatever they are, denoising them is safe. */
+#include "output/picture_shown.h"
+
+#include "base/mem.h"
+#include "output/oidn.h"
+#include "render/aov.h"
+#include "render/denoise.h"
+#include "render/path_film_internal.h"
+
+#include <string.h>
+
+/* Features of the film are in the order of enum denoise_feature, and glow follows. */
+static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
+    const struct film *film = context;
+    for (uint32_t x = 0; x < film->width; x++) {
+        struct path_pixel pixel = path_film_load(film, (size_t)y * film->width + x);
+        double weight = pixel.weights[0] + pixel.weights[1];
+        for (int half = 0; half < 2; half++) {
+            int from = pixel.weights[half] != 0 ? half : 1 - half; /* of one sample there is one half */
+            struct vec3 colour = path_pixel_half(&pixel, from);
+            row[x].colour[half][0] = (float)colour.x;
+            row[x].colour[half][1] = (float)colour.y;
+            row[x].colour[half][2] = (float)colour.z;
+            for (int i = 0; i < DENOISE_FEATURES; i++)
+                row[x].features[half][i] = (float)path_pixel_feature(&pixel, from, PATH_ALBEDO + i);
+            for (int i = 0; i < 3; i++)
+                row[x].glow[half][i] = (float)path_pixel_feature(&pixel, from, PATH_GLOW + i);
+        }
+        row[x].share = weight != 0 ? (float)(pixel.weights[0] / weight) : 0.5F;
+    }
+}
+
+static bool denoise_film(const struct film *film, enum denoiser denoiser, struct pool *pool, float (*out)[3],
+                         struct error *error) {
+    struct film source = *film;
+    switch (denoiser) {
+    case DENOISER_NONE:
+        return true;
+    case DENOISER_GRAY:
+        return denoise(&(struct denoise_source){film->width, film->height, film->x0, film->y0, film_row, &source}, pool,
+                       out, error);
+    case DENOISER_OIDN:
+        return oidn_run(&(struct denoise_source){film->width, film->height, film->x0, film->y0, film_row, &source}, out,
+                        error);
+    }
+    return true;
+}
+
+/* Rows of a rectangle of the film, of elements of that size. */
+static void cut(void *out, const void *in, size_t size, const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0;
+    for (uint32_t y = part->y0; y < part->y1; y++) {
+        size_t at = (size_t)(y - film->y0) * film->width + (part->x0 - film->x0);
+        memcpy((char *)out + (y - part->y0) * width * size, (const char *)in + at * size, width * size);
+    }
+}
+
+static bool is_whole(const struct film *film, const struct film_rectangle *part) {
+    return part->x0 == film->x0 && part->y0 == film->y0 && part->x1 - part->x0 == film->width &&
+           part->y1 - part->y0 == film->height;
+}
+
+/* The film of the part, its arrays in the memory of `out`. */
+static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part,
+                     const void *colours) {
+    size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
+    struct film *shown = &out->picture.film;
+    out->pixels = mem_alloc(width * height * sizeof *out->pixels);
+    out->layers = mem_alloc(width * height * count * sizeof *out->layers);
+    if (!out->pixels || !out->layers) {
+        picture_shown_destroy(out);
+        return false;
+    }
+    cut(out->pixels, colours, sizeof *out->pixels, film, part);
+    for (size_t i = 0; i < count; i++)
+        cut(out->layers + i * width * height, film->layers + i * (size_t)film->width * film->height,
+            sizeof *out->layers, film, part);
+    *shown = (struct film){.width = (uint32_t)width,
+                           .height = (uint32_t)height,
+                           .x0 = part->x0,
+                           .y0 = part->y0,
+                           .full_width = film->full_width,
+                           .full_height = film->full_height,
+                           .pixels = out->pixels,
+                           .layer_mask = film->layer_mask,
+                           .layers = count > 0 ? out->layers : NULL};
+    return true;
+}
+
+bool picture_shown_make(struct picture_shown *out, const struct picture *picture, enum denoiser denoiser,
+                        struct pool *pool, struct error *error) {
+    const struct film *film = &picture->film;
+    struct film_rectangle part = picture->request.shown;
+    if (part.x1 == 0)
+        part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};
+    bool denoises = denoiser != DENOISER_NONE && path_film_parts(film->record) & PATH_PART_FEATURES;
+    *out = (struct picture_shown){.picture = *picture};
+    if (!denoises && is_whole(film, &part))
+        return true;
+    float(*denoised)[3] = NULL;
+    if (denoises) {
+        denoised = mem_alloc((size_t)film->width * film->height * sizeof *denoised);
+        if (!denoised)
+            return error_no_memory(error, "a picture that is denoised");
+        if (!denoise_film(film, denoiser, pool, denoised, error)) {
+            mem_free(denoised);
+            return false;
+        }
+    }
+    bool ok = cut_film(out, film, &part, denoised ? (const void *)denoised : (const void *)film->pixels);
+    mem_free(denoised);
+    if (!ok)
+        return error_no_memory(error, "a picture that is denoised");
+    struct picture_request *request = &out->picture.request;
+    request->x0 = part.x0;
+    request->y0 = part.y0;
+    request->width = part.x1 - part.x0;
+    request->height = part.y1 - part.y0;
+    return true;
+}
+
+void picture_shown_destroy(struct picture_shown *shown) {
+    mem_free(shown->pixels);
+    mem_free(shown->layers);
+    shown->pixels = NULL;
+    shown->layers = NULL;
+}

@@ -1,0 +1,24 @@
+/* What the files of a picture show of its film: the part that was asked for, denoised if the film has features. */
+#ifndef GRAY_OUTPUT_PICTURE_SHOWN_H
+#define GRAY_OUTPUT_PICTURE_SHOWN_H
+
+#include "base/pool.h"
+#include "output/picture_write.h"
+#include "session/options.h"
+
+#include <stdbool.h>
+
+/* A picture whose film borrows from the one that it is made of, and owns `pixels` and `layers`. */
+struct picture_shown {
+    struct picture picture;
+    struct film_pixel *pixels; /* or NULL */
+    float (*layers)[3];        /* or NULL */
+};
+
+/* denoiser: DENOISER_NONE shows the film as it is, and so does a film without features. Errors: no memory; with
+ * DENOISER_OIDN that the program is missing or has failed. After an error there is nothing to destroy. */
+bool picture_shown_make(struct picture_shown *out, const struct picture *picture, enum denoiser denoiser,
+                        struct pool *pool, struct error *error);
+void picture_shown_destroy(struct picture_shown *shown);
+
+#endif

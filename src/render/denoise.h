@@ -1,0 +1,45 @@
+/* Denoising of a path-traced picture: first-order regression on features with weights of non-local means (B. Bitterli
+ * et al., "Nonlinearly Weighted First-order Regression for Denoising Monte Carlo Renderings", EGSR 2016; F. Rousselle,
+ * M. Manzi, M. Zwicker, "Robust Denoising using Feature and Color Information", Pacific Graphics 2013).
+ *
+ * A pixel depends on those that are at most DENOISE_RIM away, in each direction, and on nothing else: a part that has a
+ * rim of that width, or ends where the picture ends, is denoised as the whole. */
+#ifndef GRAY_RENDER_DENOISE_H
+#define GRAY_RENDER_DENOISE_H
+
+#include "base/error.h"
+#include "base/pool.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum denoise_feature {
+    DENOISE_ALBEDO,     /* 3 channels, 0 to 1 */
+    DENOISE_NORMAL = 3, /* 3 */
+    DENOISE_DEPTH = 6,  /* along the ray, world units */
+    DENOISE_FEATURES
+};
+
+/* What was measured of a pixel by two independent halves of its samples. All numbers are finite. */
+struct denoise_pixel {
+    float colour[2][3];
+    float features[2][DENOISE_FEATURES];
+    float glow[2][3]; /* the part of the colour that needs no denoising: lamps and skies that are seen */
+    float share;      /* of half 0 in the picture, 0 to 1; the rest is that of half 1 */
+};
+
+/* A picture, or a part of one. */
+struct denoise_source {
+    uint32_t width, height;
+    uint32_t x0, y0; /* place in the whole picture */
+    /* Gives the pixels of row y, counted from 0; called from any thread. */
+    void (*row)(void *context, uint32_t y, struct denoise_pixel *row);
+    void *context;
+};
+
+enum { DENOISE_RIM = 28 };
+
+/* Into out[width * height]. The same bytes for any number of threads. Errors: no memory, cancelled. */
+bool denoise(const struct denoise_source *source, struct pool *pool, float (*out)[3], struct error *error);
+
+#endif

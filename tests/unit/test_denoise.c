@@ -1,0 +1,238 @@
+/* The denoiser on synthetic films with known noise. */
+#include "render/denoise.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 96, PIXELS = SIDE * SIDE };
+
+/* A picture without noise, the noise, and what the denoiser makes of both. */
+struct synthetic {
+    float truth[PIXELS][3], albedo[PIXELS][3], depth[PIXELS];
+    float sigma; /* of the mean of both halves */
+    struct denoise_pixel pixels[PIXELS];
+    float out[PIXELS][3];
+};
+
+static double gaussian(struct test_random *random) {
+    double sum = 0;
+    for (int i = 0; i < 12; i++)
+        sum += test_uniform(random, 0, 1);
+    return sum - 6;
+}
+
+static void give_row(void *context, uint32_t y, struct denoise_pixel *row) {
+    const struct synthetic *s = context;
+    memcpy(row, s->pixels + (size_t)y * SIDE, SIDE * sizeof *row);
+}
+
+static void begin(struct synthetic *s, float value, float sigma) {
+    memset(s, 0, sizeof *s);
+    s->sigma = sigma;
+    for (int i = 0; i < PIXELS; i++) {
+        for (int c = 0; c < 3; c++) {
+            s->truth[i][c] = value;
+            s->albedo[i][c] = 0.5F;
+        }
+        s->depth[i] = 10;
+    }
+}
+
+static void measure(struct synthetic *s, uint64_t seed) {
+    struct test_random random = {seed};
+    for (int i = 0; i < PIXELS; i++) {
+        struct denoise_pixel *pixel = &s->pixels[i];
+        *pixel = (struct denoise_pixel){.share = 0.5F};
+        for (int h = 0; h < 2; h++) {
+            for (int c = 0; c < 3; c++) {
+                pixel->colour[h][c] = s->truth[i][c] + (float)(gaussian(&random) * sqrt(2) * (double)s->sigma);
+                pixel->features[h][DENOISE_ALBEDO + c] = s->albedo[i][c];
+            }
+            pixel->features[h][DENOISE_NORMAL + 2] = 1;
+            pixel->features[h][DENOISE_DEPTH] = s->depth[i];
+        }
+    }
+}
+
+static void run_part(struct synthetic *s, int threads, uint32_t x0, uint32_t y0) {
+    char warning[256];
+    struct error error = {0};
+    struct pool *pool = pool_create(threads, warning);
+    const struct denoise_source source = {SIDE, SIDE, x0, y0, give_row, s};
+    CHECK(denoise(&source, pool, s->out, &error));
+    pool_destroy(pool);
+}
+
+static double mean_square_error(const struct synthetic *s, bool raw) {
+    double sum = 0;
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++) {
+            const struct denoise_pixel *pixel = &s->pixels[i];
+            double value = raw ? (double)(pixel->colour[0][c] + pixel->colour[1][c]) / 2 : (double)s->out[i][c];
+            sum += (value - (double)s->truth[i][c]) * (value - (double)s->truth[i][c]);
+        }
+    return sum / (3.0 * PIXELS);
+}
+
+/* Of a rectangle x0 <= x < x1, all rows. */
+static double mean_of(float (*colours)[3], int x0, int x1) {
+    double sum = 0;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = x0; x < x1; x++)
+            sum += (double)colours[y * SIDE + x][1];
+    return sum / ((double)SIDE * (x1 - x0));
+}
+
+TEST(a_constant_picture_stays_when_it_is_denoised) {
+    static struct synthetic s;
+    begin(&s, 0.7F, 0);
+    measure(&s, 1);
+    run_part(&s, 1, 0, 0);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR((double)s.out[i][c], (double)0.7F, 1e-5);
+}
+
+TEST(denoising_a_smooth_picture_removes_all_but_a_thirtieth_of_the_error) {
+    static struct synthetic s;
+    begin(&s, 0.5F, 0.05F);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            s.truth[i][c] = 0.5F + 0.2F * (float)sin(0.03 * (i % SIDE)) * (float)cos(0.04 * (i / SIDE));
+    measure(&s, 2);
+    run_part(&s, 2, 0, 0);
+    CHECK_NEAR(mean_square_error(&s, true), 0.05 * 0.05, 0.05 * 0.05 * 0.05);
+    CHECK(mean_square_error(&s, false) < mean_square_error(&s, true) / 30);
+}
+
+/* On both sides of the edge, over one and over three pixels, up to that part of it. */
+static void check_contrast(struct synthetic *s, double part) {
+    double wanted = mean_of(s->truth, 48, 49) - mean_of(s->truth, 47, 48);
+    CHECK_NEAR(mean_of(s->out, 48, 49) - mean_of(s->out, 47, 48), wanted, part * wanted);
+    CHECK_NEAR(mean_of(s->out, 48, 51) - mean_of(s->out, 45, 48), wanted, part * wanted);
+}
+
+TEST(edges_of_albedo_and_depth_keep_their_contrast_in_noise_as_large_as_they_are) {
+    static struct synthetic s;
+    for (int kind = 0; kind < 2; kind++) {
+        begin(&s, 0.3F, 0.2F);
+        for (int i = 0; i < PIXELS; i++) {
+            bool right = i % SIDE >= 48;
+            for (int c = 0; c < 3; c++) {
+                s.truth[i][c] = right ? 0.5F : 0.3F;
+                if (kind == 0)
+                    s.albedo[i][c] = right ? 0.8F : 0.48F;
+            }
+            if (kind == 1)
+                s.depth[i] = right ? 10 : 12;
+        }
+        measure(&s, 3);
+        run_part(&s, 2, 0, 0);
+        check_contrast(&s, 0.05);
+    }
+}
+
+TEST(an_edge_that_no_feature_shows_keeps_nine_tenths_of_its_contrast_of_eight_deviations) {
+    static struct synthetic s;
+    begin(&s, 0.2F, 0.05F);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            s.truth[i][c] = i % SIDE >= 48 ? 0.6F : 0.2F;
+    measure(&s, 4);
+    run_part(&s, 2, 0, 0);
+    check_contrast(&s, 0.1);
+}
+
+TEST(denoising_keeps_the_mean_of_the_picture) {
+    static struct synthetic s;
+    begin(&s, 1, 0.3F);
+    measure(&s, 5);
+    run_part(&s, 2, 0, 0);
+    /* The mean of the raw picture has a standard error of 0.3 / 96. */
+    CHECK_NEAR(mean_of(s.out, 0, SIDE), 1, 4 * 0.3 / SIDE + 0.005);
+}
+
+TEST(single_bright_paths_make_no_blotches) {
+    static struct synthetic s;
+    begin(&s, 0.5F, 0.02F);
+    measure(&s, 6);
+    for (int y = 10; y < SIDE; y += 24)
+        for (int x = 10; x < SIDE; x += 24)
+            for (int c = 0; c < 3; c++)
+                s.pixels[y * SIDE + x].colour[(x + y) / 24 % 2][c] = 5000;
+    run_part(&s, 2, 0, 0);
+    double largest = 0;
+    for (int i = 0; i < PIXELS; i++)
+        largest = fmax(largest, fabs((double)s.out[i][0] - 0.5));
+    CHECK(largest < 0.05);
+}
+
+TEST(a_denoised_picture_has_the_same_bytes_for_any_number_of_threads) {
+    static struct synthetic s;
+    static float one[PIXELS][3];
+    begin(&s, 0.5F, 0.2F);
+    measure(&s, 7);
+    run_part(&s, 1, 0, 0);
+    memcpy(one, s.out, sizeof one);
+    run_part(&s, 3, 0, 0);
+    CHECK(memcmp(one, s.out, sizeof one) == 0);
+}
+
+static void give_later_row(void *context, uint32_t y, struct denoise_pixel *row) {
+    const struct synthetic *s = context;
+    memcpy(row, s->pixels + (size_t)(y + 5) * SIDE + 7, (SIDE - 7) * sizeof *row);
+}
+
+TEST(a_part_is_denoised_as_the_whole_beyond_its_rim) {
+    static struct synthetic s;
+    static float part[PIXELS][3];
+    char warning[256];
+    struct error error = {0};
+    begin(&s, 0.5F, 0.2F);
+    measure(&s, 8);
+    run_part(&s, 2, 0, 0);
+    struct pool *pool = pool_create(2, warning);
+    const struct denoise_source source = {SIDE - 7, SIDE - 5, 7, 5, give_later_row, &s};
+    CHECK(denoise(&source, pool, part, &error));
+    pool_destroy(pool);
+    for (int y = 5 + DENOISE_RIM; y < SIDE; y++)
+        for (int x = 7 + DENOISE_RIM; x < SIDE; x++)
+            CHECK(memcmp(part[(y - 5) * (SIDE - 7) + x - 7], s.out[y * SIDE + x], sizeof *part) == 0);
+}
+
+TEST(whatever_a_film_holds_denoises_to_finite_numbers) {
+    static struct synthetic s;
+    static const float strange[] = {NAN, INFINITY, -INFINITY, 3e38F, -3e38F, 1e-40F, 0, -1};
+    struct test_random random = {9};
+    begin(&s, 0.5F, 0.2F);
+    measure(&s, 9);
+    for (int i = 0; i < 500; i++) {
+        struct denoise_pixel *pixel = &s.pixels[(int)test_uniform(&random, 0, PIXELS)];
+        float value = strange[(int)test_uniform(&random, 0, 8)];
+        pixel->colour[i % 2][i % 3] = value;
+        pixel->features[i % 2][i % DENOISE_FEATURES] = value;
+    }
+    run_part(&s, 2, 0, 0);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3; c++)
+            CHECK(isfinite(s.out[i][c]));
+}
+
+TEST(light_stays_positive_and_glow_is_kept_as_it_is) {
+    static struct synthetic s;
+    begin(&s, 0.001F, 0);
+    measure(&s, 10);
+    for (int i = 0; i < PIXELS; i++)
+        for (int h = 0; h < 2; h++)
+            for (int c = 0; c < 3; c++) {
+                float glow = i % SIDE == 20 && i / SIDE == 30 ? 100 : 0;
+                s.pixels[i].colour[h][c] = glow + 0.001F * (float)((i * 7 + h) % 3);
+                s.pixels[i].glow[h][c] = glow;
+            }
+    run_part(&s, 1, 0, 0);
+    for (int i = 0; i < PIXELS; i++) {
+        bool glows = i % SIDE == 20 && i / SIDE == 30;
+        CHECK(s.out[i][0] >= (glows ? 100.0F : 0.0F) && s.out[i][0] < (glows ? 100.01F : 0.003F));
+    }
+}

@@ -1,0 +1,186 @@
+/* --denoise and layers of light: bytes of denoised pictures do not depend on how they were made, and the sum of the
+ * light is the picture. */
+#define _GNU_SOURCE
+#include "render/aov.h"
+#include "tests/harness.h"
+#include "tests/stage.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+/* A ball on a floor under a lamp that is seen, with a mirror. */
+#define SCENE                                                                                                          \
+    "local r = gr.node('root')\n"                                                                                      \
+    "r:add_child(gr.plane{normal = {0, 1, 0}, distance = -1, material = gr.material{kd = {.6, .5, .4}}})\n"            \
+    "r:add_child(gr.sphere{material = gr.material{kd = {.7, .2, .2}}})\n"                                              \
+    "r:add_child(gr.sphere{centre = {2, 0, 0}, material = gr.material{kd = {.1, .1, .1}, ks = {1, 1, 1}, reflect = "   \
+    ".8}})\n"                                                                                                          \
+    "r:add_child(gr.sphere{centre = {-2, 2.5, 0}, radius = .5, material = gr.material{kd = {0, 0, 0}, emission = "     \
+    "{9, 8, 7}}})\n"                                                                                                   \
+    "gr.render{node = r, file = 'out.png', width = 90, height = 70, eye = {0, 1, 7}, target = {0, .5, 0}, fov = 45, "  \
+    "integrator = 'path', spp = 4, background = {.2, .25, .3}"
+#define PLAIN SCENE "}\n"
+#define DENOISED SCENE ", denoise = true}\n"
+
+/* A line of shell in the folder of the test; $gray is the program, err.txt takes standard error. */
+static int shell(const char *line) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; } 2>err.txt", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command);
+    free(command);
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+static void gives(const char *line, int status, const char *says) {
+    int got = shell(line);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    if (got != status || !said || (says ? !strstr(said, says) : said[0] != '\0'))
+        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\"; standard error:\n%s", line, got, status,
+                  says ? says : "", said ? said : "");
+    free(said);
+}
+
+TEST(a_denoised_picture_is_another_one_with_the_same_bytes_however_it_was_made) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    test_write_text(test_path("field.lua"), DENOISED);
+    gives("$gray -q scene.lua -o raw.pfm && $gray -q scene.lua --denoise -o one.pfm && ! cmp -s raw.pfm one.pfm", 0,
+          NULL);
+    gives("$gray -q field.lua -j 3 -o two.pfm && cmp one.pfm two.pfm", 0, NULL);
+    gives("$gray -q scene.lua --denoise=gray --no-fork -o three.pfm && cmp one.pfm three.pfm", 0, NULL);
+    gives("for i in 1 2 3; do $gray -q scene.lua --denoise -o four.pfm --shard $i/3; done; "
+          "$gray -q merge four.pfm.*.part && cmp one.pfm four.pfm",
+          0, NULL);
+    gives("$gray -q scene.lua --denoise --aov raw,variance -o five.pfm && cmp one.pfm five.pfm && cmp raw.pfm "
+          "five.raw.pfm && test -s five.variance.pfm",
+          0, NULL);
+}
+
+/* Of a PFM file of that width: whether its rectangle is the other file. */
+static bool is_part(const char *whole, int width, int height, int x0, int y0, const char *part, int part_width,
+                    int part_height) {
+    size_t whole_size = 0, part_size = 0;
+    char *a = test_read_file(test_path(whole), &whole_size), *b = test_read_file(test_path(part), &part_size);
+    size_t row = (size_t)part_width * 12;
+    bool same = a && b && whole_size > (size_t)(width * height * 12) && part_size > row * (size_t)part_height;
+    for (int y = 0; same && y < part_height; y++) {
+        const char *p = a + whole_size - (size_t)((y0 + y + 1) * width - x0) * 12; /* from the bottom */
+        same = memcmp(p, b + part_size - (size_t)(y + 1) * row, row) == 0;
+    }
+    free(a);
+    free(b);
+    return same;
+}
+
+TEST(a_crop_is_denoised_as_the_whole_picture) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    gives("$gray -q scene.lua --denoise -o whole.pfm && $gray -q scene.lua --denoise --crop 41,33,20,11 -o part.pfm", 0,
+          NULL);
+    CHECK(is_part("whole.pfm", 90, 70, 41, 33, "part.pfm", 20, 11));
+    gives("for i in 1 2; do $gray -q scene.lua --denoise --crop 41,33,20,11 -o merged.pfm --shard $i/2; done; "
+          "$gray -q merge merged.pfm.*.part && cmp part.pfm merged.pfm",
+          0, NULL);
+    gives("$gray -q scene.lua --denoise --crop 41,33,20,11 --aov raw,depth -o layers.pfm && "
+          "$gray -q scene.lua --crop 41,33,20,11 --aov depth -o raw.pfm && cmp raw.pfm layers.raw.pfm && "
+          "cmp raw.depth.pfm layers.depth.pfm",
+          0, NULL);
+}
+
+/* The stand-in looks at its arguments and its files, and answers with the albedo. */
+TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    gives("mkdir bin && printf '#!/bin/sh\\ntest \"$*\" = \"--hdr colour.pfm --alb albedo.pfm --nrm normal.pfm -o "
+          "denoised.pfm\" && head -c 2 colour.pfm | grep -q PF && test -s normal.pfm && cp albedo.pfm denoised.pfm\\n' "
+          "> bin/oidnDenoise && chmod +x bin/oidnDenoise",
+          0, NULL);
+    gives("mkdir tmp; PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray -q scene.lua --denoise=oidn -o out.pfm && rmdir tmp", 0,
+          NULL);
+    gives("$gray -q scene.lua --denoise -o own.pfm && ! cmp -s own.pfm out.pfm", 0, NULL);
+    gives("printf '#!/bin/sh\\nexit 3\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
+          "--denoise=oidn: oidnDenoise failed (status 3)\n");
+    gives("printf '#!/bin/sh\\nexit 0\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 1,
+          "denoised.pfm");
+    gives("PATH=$PWD/none $gray -q scene.lua --denoise=oidn", 3,
+          "--denoise=oidn: there is no program oidnDenoise on PATH\n");
+    gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of gray|oidn, not 'other'");
+}
+
+TEST(layers_of_light_belong_to_the_path_tracer) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    gives("$gray -q scene.lua --aov all && ls out.transmission_indirect.png out.raw.png out.depth.png >ls.txt", 0,
+          NULL);
+    test_write_text(test_path("whitted.lua"), "gr.render(gr.node('r'), 'w.png', 4, 4, {0, 0, 5}, {0, 0, -1}, "
+                                              "{0, 1, 0}, 40, {1, 1, 1}, {})\n");
+    gives("$gray -q whitted.lua --aov all && test ! -e w.raw.png && test -e w.lights.png", 0, NULL);
+    gives("$gray -q whitted.lua --aov emission", 2, "--aov emission is a layer of --integrator path only");
+}
+
+static const float *layer(const struct stage *s, enum aov aov, size_t at) {
+    return s->film.layers[aov_layer(s->film.layer_mask, aov) * s->film.width * s->film.height + at];
+}
+
+/* Diffuse, glossy, mirroring and clear balls under a lamp, in a box that closes the scene. The picture and each layer
+ * are rounded to float: 8 roundings of at most 2^-24 of the picture. */
+TEST(the_sum_of_the_layers_of_light_is_the_picture) {
+    enum { SIZE = 40 };
+    struct stage s;
+    stage_begin(&s, 2);
+    struct material *glossy = stage_phong(&s, vec3_make(0.2, 0.1, 0.1), vec3_make(0.5, 0.6, 0.7), 10);
+    struct material *area_light = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+    area_light->phong.emission = vec3_make(5, 4, 3);
+    const struct material *materials[] = {stage_phong(&s, vec3_make(0.7, 0.6, 0.2), vec3_all(0), 1), glossy,
+                                          stage_glass(&s, 1, 0, 1), stage_glass(&s, 1, 1, 1.5), area_light};
+    for (int i = 0; i < 5; i++)
+        stage_move(&s, stage_sphere(&s, s.root, materials[i]), 2.2 * (i - 2), i == 4 ? 1.5 : 0, 0);
+    struct node *wall = stage_cube(&s, s.root, materials[0]);
+    stage_scale(&s, wall, 30, 30, 1);
+    stage_move(&s, wall, -15, -15, -5);
+    s.settings.integrator = INTEGRATOR_PATH;
+    s.settings.path_samples = 16;
+    s.settings.aov = AOV_PATH;
+    CHECK(stage_render(&s, SIZE, SIZE));
+    double sums[AOV_COUNT] = {0};
+    for (size_t i = 0; i < SIZE * SIZE; i++)
+        for (int c = 0; c < 3; c++) {
+            double sum = 0, picture = (double)s.film.pixels[i].rgb[c];
+            for (int aov = AOV_EMISSION; aov < AOV_COUNT; aov++) {
+                sum += (double)layer(&s, (enum aov)aov, i)[c];
+                sums[aov] += (double)layer(&s, (enum aov)aov, i)[c];
+            }
+            CHECK_NEAR(sum, picture, 8 * 0x1p-24 * picture);
+            CHECK(layer(&s, AOV_RAW, i)[c] == s.film.pixels[i].rgb[c] && layer(&s, AOV_VARIANCE, i)[c] >= 0);
+        }
+    /* Into a ball and out of it are two events. */
+    for (int aov = AOV_EMISSION; aov < AOV_COUNT; aov++)
+        CHECK(aov == AOV_TRANSMISSION_DIRECT || sums[aov] > 0);
+    stage_end(&s);
+}
+
+/* At depth 1 there is no indirect light, at depth 0 only emission. */
+TEST(layers_of_light_follow_the_depth_of_paths) {
+    for (int depth = 0; depth < 2; depth++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        struct material *area_light = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
+        area_light->phong.emission = vec3_all(1);
+        stage_sphere(&s, s.root, area_light);
+        stage_move(&s, stage_sphere(&s, s.root, area_light), 1.5, 0, 0);
+        s.settings.integrator = INTEGRATOR_PATH;
+        s.settings.path_samples = 4;
+        s.settings.max_depth = depth;
+        s.settings.aov = AOV_LIGHT;
+        CHECK(stage_render(&s, 24, 24));
+        double direct = 0, indirect = 0;
+        for (size_t i = 0; i < 24 * 24; i++) {
+            direct += (double)layer(&s, AOV_DIFFUSE_DIRECT, i)[0];
+            indirect += (double)layer(&s, AOV_DIFFUSE_INDIRECT, i)[0];
+        }
+        CHECK(indirect == 0 && (direct > 0) == (depth == 1));
+        stage_end(&s);
+    }
+}
