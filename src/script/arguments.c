@@ -741,14 +741,6 @@ _Noreturn static void no_form_fits(struct script_context *c, const struct script
     context_raise(c, "%s must be %s, not %s", names, words, value_words(c->lua, first));
 }
 
-/* The parameter that takes whatever number of nodes, or NULL; its place among the parameters. */
-static const struct script_parameter *rest_of(const struct script_function *function, int *index) {
-    for (*index = 0; *index < function->parameter_count; (*index)++)
-        if (function->parameters[*index].flags & REST)
-            return &function->parameters[*index];
-    return NULL;
-}
-
 /* Nodes behind a positional form. Returns the place of the first argument that is none. */
 static int read_rest(struct script_context *c, const struct script_parameter *p, int argument_path,
                      struct script_value *value) {
@@ -800,7 +792,7 @@ static bool read_positional(struct script_context *c, const struct script_functi
             return false;
     }
     int rest_index;
-    const struct script_parameter *rest = rest_of(function, &rest_index);
+    const struct script_parameter *rest = function_rest(function, &rest_index);
     if (rest)
         argument_path = read_rest(c, rest, argument_path, &args[rest_index]);
     if (lua_gettop(L) >= argument_path)
@@ -808,40 +800,11 @@ static bool read_positional(struct script_context *c, const struct script_functi
     return true;
 }
 
-/* An unknown field is an error: the first in byte order, so that the message is the same every time. */
-static void check_fields(struct script_context *c, const struct script_function *function, int table) {
-    lua_State *L = c->lua;
-    const char *unknown = NULL;
-    int skip = function->owner == OWNER_NODE; /* `self` is no field */
-    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
-        int rest;
-        if (lua_isinteger(L, -2) && rest_of(function, &rest))
-            continue;
-        if (lua_type(L, -2) != LUA_TSTRING)
-            context_raise(c, "fields need names, as in %s = ...", function->parameters[skip].name);
-        const char *field = lua_tostring(L, -2);
-        bool known = false;
-        for (int k = skip; k < function->parameter_count && !known; k++)
-            known = strcmp(function->parameters[k].name, field) == 0;
-        if (!known && (!unknown || strcmp(field, unknown) < 0))
-            unknown = field;
-    }
-    if (!unknown)
-        return;
-    struct suggestion suggestion;
-    suggest_begin(&suggestion, unknown);
-    for (int k = skip; k < function->parameter_count; k++)
-        suggest_offer(&suggestion, function->parameters[k].name);
-    if (suggestion.best)
-        context_raise(c, "unknown field '%.100s'; did you mean '%s'?", unknown, suggestion.best);
-    context_raise(c, "unknown field '%.100s'", unknown);
-}
-
 /* Entries without names, if there are any. */
 static bool read_unnamed(struct script_context *c, const struct script_function *function, int table,
                          struct script_value *args) {
     int index;
-    const struct script_parameter *rest = rest_of(function, &index);
+    const struct script_parameter *rest = function_rest(function, &index);
     struct argument_path argument_path = {.parameter = rest};
     if (!rest)
         return false;
@@ -871,7 +834,7 @@ static bool read_named(struct script_context *c, const struct script_function *f
             c->subject = lua_tostring(L, value);
         lua_pop(L, 1);
     }
-    check_fields(c, function, table);
+    context_check_fields(c, function, table);
     bool listed = read_unnamed(c, function, table, args);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
@@ -894,7 +857,7 @@ static bool is_table_form(lua_State *L, const struct script_function *function, 
     if (function->owner == OWNER_NODE && function->result != RESULT_NOTHING)
         return false;
     int rest;
-    bool named = lua_rawgeti(L, first, 1) == LUA_TNIL || rest_of(function, &rest);
+    bool named = lua_rawgeti(L, first, 1) == LUA_TNIL || function_rest(function, &rest);
     lua_pop(L, 1);
     return named;
 }

@@ -256,3 +256,38 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate) {
         suggestion->best = candidate;
     }
 }
+
+const struct script_parameter *function_rest(const struct script_function *function, int *index) {
+    for (*index = 0; *index < function->parameter_count; (*index)++)
+        if (function->parameters[*index].flags & REST)
+            return &function->parameters[*index];
+    return NULL;
+}
+
+void context_check_fields(struct script_context *c, const struct script_function *function, int table) {
+    lua_State *L = c->lua;
+    const char *unknown = NULL;
+    int skip = function->owner == OWNER_NODE; /* `self` is no field */
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        int rest;
+        if (lua_isinteger(L, -2) && function_rest(function, &rest))
+            continue;
+        if (lua_type(L, -2) != LUA_TSTRING)
+            context_raise(c, "fields need names, as in %s = ...", function->parameters[skip].name);
+        const char *field = lua_tostring(L, -2);
+        bool known = false;
+        for (int k = skip; k < function->parameter_count && !known; k++)
+            known = strcmp(function->parameters[k].name, field) == 0;
+        if (!known && (!unknown || strcmp(field, unknown) < 0))
+            unknown = field;
+    }
+    if (!unknown)
+        return;
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, unknown);
+    for (int k = skip; k < function->parameter_count; k++)
+        suggest_offer(&suggestion, function->parameters[k].name);
+    if (suggestion.best)
+        context_raise(c, "unknown field '%.100s'; did you mean '%s'?", unknown, suggestion.best);
+    context_raise(c, "unknown field '%.100s'", unknown);
+}

@@ -109,6 +109,10 @@ void context_warn_once(struct script_context *context, unsigned bit, const char 
     __attribute__((format(printf, 3, 4)));
 /* "gr.sphere" or "node:scale". */
 const char *function_title(const struct script_function *function, char out[96]);
+/* The parameter that takes whatever number of nodes, or NULL; its place among the parameters. */
+const struct script_parameter *function_rest(const struct script_function *function, int *index);
+/* An unknown field is an error: the first in byte order, so that the message is the same every time. */
+void context_check_fields(struct script_context *context, const struct script_function *function, int table);
 
 /* Raise "scene.lua:12: gr.sphere: TEXT (node 'x')". */
 _Noreturn void context_raise(struct script_context *context, const char *format, ...)
