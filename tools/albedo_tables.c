@@ -1,7 +1,8 @@
-/* Writes src/material/albedo_tables.h: what rough surfaces send on after one facet, and what fuzz reflects, of light
- * from one direction.
+/* Writes src/material/albedo_tables_internal.h: what rough surfaces send on after one facet, and what fuzz reflects, of
+ * light from one direction.
  *
- *     cc -O2 tools/albedo_tables.c -lm -o build/albedo_tables && build/albedo_tables >src/material/albedo_tables.h
+ *     cc -O2 tools/albedo_tables.c -lm -o build/albedo_tables && build/albedo_tables
+ * >src/material/albedo_tables_internal.h
  *
  * Facets: the distribution of Trowbridge and Reitz with the masking of both directions together, summed over the
  * normals that are visible (Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018). Points of the unit

@@ -10,7 +10,7 @@
 
 #include "material/classic.h"
 #include "material/microfacet_internal.h"
-#include "material/rough_lobes.h"
+#include "material/rough_lobes_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 

@@ -70,7 +70,7 @@ struct bsdf_facets {
     struct facet_distribution distribution;
     double eta; /* index on the ray's side over that behind; 1 for metals */
     struct vec3 f0, edge;
-    /* Light that meets more than one facet (rough_lobes.h). */
+    /* Light that meets more than one facet (rough_lobes_internal.h). */
     double roughness;         /* of a surface that is as wide in all directions */
     double lack, lack_behind; /* 1 - mean albedo, on the ray's side and behind */
     double through;           /* the share of that light that goes through */

@@ -1,7 +1,7 @@
 /* Layers, from the top: fuzz, coat, then metal beside dielectric, which is glossy over diffuse or lets light through.
  * What a layer does not reflect of light from the view goes to those below it ("albedo scaling"), so the sum is not
- * reciprocal, but nothing is lost: white layers send back or on all light. Albedos are those of albedo.h, those of
- * smooth layers Fresnel's formula.
+ * reciprocal, but nothing is lost: white layers send back or on all light. Albedos are those of albedo_internal.h,
+ * those of smooth layers Fresnel's formula.
  *
  * Where the specification leaves a choice: the colour of the coat multiplies what comes from below; darkening acts on
  * metal and on diffuse light, each by its own albedo, with the mean reflectance of the coat from inside for diffuse
@@ -10,9 +10,9 @@
  * from inside has neither coat nor fuzz; compensation with two widths is that of one in between. */
 #include "material/openpbr.h"
 
-#include "material/albedo.h"
+#include "material/albedo_internal.h"
 #include "material/microfacet_internal.h"
-#include "material/rough_lobes.h"
+#include "material/rough_lobes_internal.h"
 
 #include <stddef.h>
 

@@ -1,4 +1,4 @@
-/* See rough_lobes.h.
+/* See rough_lobes_internal.h.
  *
  * Rough diffuse surfaces: the energy-preserving model of Oren and Nayar by J. Portsmouth, P. Kutz and S. Hill, "EON: A
  * Practical Energy-Preserving Rough Diffuse BRDF", 2024, as two lobes, since their colours differ: the formula of M.
@@ -14,9 +14,9 @@
  * goes to the other side, (1 - E(cos wo)) (1 - E'(cos wi)) / (pi (1 - mean E')) with E' for directions behind. It is (1
  * - mean Fresnel) min(1 - mean E, 1 - mean E') / (1 - mean E), so that there is as much either way, by the square of
  * the index: (1 - mean Fresnel) n^2 is the same on both sides. */
-#include "material/rough_lobes.h"
+#include "material/rough_lobes_internal.h"
 
-#include "material/albedo.h"
+#include "material/albedo_internal.h"
 #include "material/microfacet_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"

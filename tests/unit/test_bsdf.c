@@ -6,7 +6,7 @@
 #include "material/material_inputs.h"
 #include "material/microfacet_internal.h"
 #include "material/openpbr.h"
-#include "material/rough_lobes.h"
+#include "material/rough_lobes_internal.h"
 
 #include <math.h>
 #include <stdio.h>

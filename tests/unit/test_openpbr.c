@@ -2,13 +2,13 @@
  * uniform light, from which all of it has to come back. */
 #include "tests/harness.h"
 
-#include "material/albedo.h"
+#include "material/albedo_internal.h"
 #include "material/material_eval.h"
 #include "material/material_inputs.h"
 #include "material/metals.h"
 #include "material/microfacet_internal.h"
 #include "material/openpbr.h"
-#include "material/rough_lobes.h"
+#include "material/rough_lobes_internal.h"
 
 #include <math.h>
 #include <stdio.h>

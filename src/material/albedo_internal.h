@@ -3,8 +3,8 @@
  *
  * The tables are made by tools/albedo_tables.c and read by cubics, so that a value is off by some 2e-4. Indices of
  * refraction above 3 count as 3. */
-#ifndef GRAY_MATERIAL_ALBEDO_H
-#define GRAY_MATERIAL_ALBEDO_H
+#ifndef GRAY_MATERIAL_ALBEDO_INTERNAL_H
+#define GRAY_MATERIAL_ALBEDO_INTERNAL_H
 
 /* Of rough surfaces whose facets reflect all: what leaves after one facet, and the mean of that over directions with
  * the cosine. */

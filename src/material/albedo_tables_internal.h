@@ -1,6 +1,6 @@
 /* Written by tools/albedo_tables.c, which says what they are; units of 1 / 65535. */
-#ifndef GRAY_MATERIAL_ALBEDO_TABLES_H
-#define GRAY_MATERIAL_ALBEDO_TABLES_H
+#ifndef GRAY_MATERIAL_ALBEDO_TABLES_INTERNAL_H
+#define GRAY_MATERIAL_ALBEDO_TABLES_INTERNAL_H
 
 #include <stdint.h>
 

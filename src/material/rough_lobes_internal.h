@@ -1,7 +1,7 @@
 /* The lobes of layered materials, which bsdf.h lists: rough diffuse surfaces, fuzz, gloss, metal, glass and thin walls
  * with facets, and the light that meets more than one facet. bsdf.c asks them. */
-#ifndef GRAY_MATERIAL_ROUGH_LOBES_H
-#define GRAY_MATERIAL_ROUGH_LOBES_H
+#ifndef GRAY_MATERIAL_ROUGH_LOBES_INTERNAL_H
+#define GRAY_MATERIAL_ROUGH_LOBES_INTERNAL_H
 
 #include "material/bsdf.h"
 
