@@ -1,4 +1,4 @@
-/* Each request is a message and, where there is one, its answer. When the supervisor cannot be reached, every request
+/* Each request is a message, and its answer if it has one. When the supervisor cannot be reached, every request
  * fails as "cancelled", which ends the scripts. */
 #include "host/channel_services.h"
 
@@ -35,7 +35,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
         message.descriptor >= 0
             ? share_attach(&link->memory, message.descriptor, bytes, error)
             : error_set(error, ERROR_MACHINE, "the memory of the picture cannot be reached: %s", strerror(EMFILE));
-    if (!attached) { /* the supervisor has begun the picture */
+    if (!attached) { /* the supervisor has started the picture */
         note(link, channel_send(&link->channel, MESSAGE_ABANDON, NULL, 0, -1));
         return false;
     }
@@ -83,7 +83,7 @@ static void link_line(void *context, enum line_kind kind, const char *text) {
 static void link_script_ended(void *context, int index, int status) {
     struct channel_services *link = context;
     struct message_script script = {index, status};
-    /* A script that ended because the channel did not work has not ended by itself. */
+    /* A script that ended because the channel failed did not end normally. */
     if (!link->broken)
         note(link, channel_send(&link->channel, MESSAGE_SCRIPT, &script, sizeof script, -1));
 }

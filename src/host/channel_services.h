@@ -7,13 +7,13 @@
 #include "session/services.h"
 
 struct channel_services {
-    struct error_stream *stream; /* of the control that channel_services_make got */
+    struct error_stream *stream; /* of the control passed to channel_services_make */
     struct channel channel;      /* to the supervisor */
-    struct share memory;         /* the film of the picture being made */
-    bool broken;                 /* a message was not delivered: this process is of no use any more */
+    struct share memory;         /* the film of the current picture */
+    bool broken;                 /* a message was not delivered: this process must end */
 };
 
-/* The services point to `link`, which must stay where it is. */
+/* The services point to `link`, which must not move. */
 struct host_services channel_services_make(struct channel_services *link, struct control *control);
 void channel_services_close(struct channel_services *link);
 

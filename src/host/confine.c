@@ -1,7 +1,7 @@
-/* Landlock (linux/landlock.h, since Linux 5.13): a list of folders with what may be done below each; everything else is
- * refused by the kernel wherever a path leads. Seccomp (man 2 seccomp): a filter in classic BPF over the number and the
- * first arguments of each system call, read from the table below: what is not listed does not exist (ENOSYS), so a C
- * library that tries something newer falls back; what only an attack would call ends the process.
+/* Landlock (linux/landlock.h, since Linux 5.13): a list of folders with the allowed operations below each; the kernel
+ * refuses everything else, whatever path leads to it. Seccomp (man 2 seccomp): a filter in classic BPF over the number
+ * and the first arguments of each system call, read from the table below: a call that is not listed fails with ENOSYS,
+ * so a C library that tries a newer call falls back; a call that only an attack would make ends the process.
  *
  * The sanitizers need ptrace, personality and more of /proc than this leaves, so their builds run without the filter.
  */
@@ -48,7 +48,7 @@
 #define AUDIT_ARCH_HERE AUDIT_ARCH_AARCH64
 #endif
 
-/* Names that the headers of the build machine may not know yet; values as in linux/landlock.h. */
+/* Names that older headers may not define; values as in linux/landlock.h. */
 #ifndef LANDLOCK_ACCESS_FS_REFER
 #define LANDLOCK_ACCESS_FS_REFER (1ULL << 13)
 #endif
@@ -78,7 +78,7 @@ static bool add_rule(int ruleset, int folder, uint64_t rights) {
     return MAY_FAIL(syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &rule, 0)) == 0;
 }
 
-/* A file or folder that the process itself reads; one that is not there is no loss. */
+/* A file or folder that the process itself reads; it may be missing. */
 static bool add_path(int ruleset, const char *path, uint64_t rights) {
     int descriptor = file_open_folder_of(path);
     if (descriptor < 0)
@@ -101,7 +101,7 @@ static bool add_rules(int ruleset, const struct options *options, const struct p
         if (file_is_regular(options->scripts[i]))
             ok = ok && add_path(ruleset, options->scripts[i], LANDLOCK_ACCESS_FS_READ_FILE);
     }
-    /* How many processors there are; memory maps for the sanitizers' reports. */
+    /* The number of processors; memory maps for the reports of the sanitizers. */
     ok = ok && add_path(ruleset, "/sys/devices/system/cpu", read_rights);
 #if SANITIZED
     ok = ok && add_path(ruleset, "/proc", read_rights) && add_path(ruleset, "/usr", read_rights) &&
@@ -149,10 +149,10 @@ struct test {
 };
 
 enum rule_kind {
-    RULE_ALLOW,   /* where the arguments pass the tests; otherwise EPERM */
-    RULE_KILL,    /* only an attack calls it */
-    RULE_OPEN,    /* with these flags, or with any where some folder may be written */
-    RULE_WRITING, /* as RULE_ALLOW where some folder may be written */
+    RULE_ALLOW,   /* if the arguments pass the tests; otherwise EPERM */
+    RULE_KILL,    /* only an attack would call it */
+    RULE_OPEN,    /* with these flags, or with any flags if some folder may be written */
+    RULE_WRITING, /* as RULE_ALLOW if some folder may be written */
     RULE_BENEATH, /* allowed when Landlock is active: its arguments lie in memory */
 };
 
@@ -170,14 +170,14 @@ struct rule {
     { width, argument, bits, 0 }
 
 #define WRITING_FLAGS ((uint32_t)(O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY)))
-/* What a thread of this process is made with; no other flag may come along, least of all a new namespace. */
+/* The flags of a new thread of this process; no other flag is allowed, especially not a new namespace. */
 #define THREAD_FLAGS ((uint32_t)(CLONE_VM | CLONE_THREAD | CLONE_SIGHAND))
 #define OTHER_FLAGS                                                                                                    \
     (~(uint32_t)(CLONE_FS | CLONE_FILES | CLONE_SYSVSEM | CLONE_SETTLS | CLONE_PARENT_SETTID | CLONE_CHILD_CLEARTID |  \
                  CLONE_CHILD_SETTID | CLONE_DETACHED))
 /* The clocks of other processes have negative numbers. */
 #define OTHER_CLOCKS (UINT32_C(1) << 31)
-/* Advice from 64 on is about the machine (MADV_HWPOISON) rather than about this memory. */
+/* Advice from 64 on concerns the machine (MADV_HWPOISON) instead of this memory. */
 #define OTHER_ADVICE (~UINT32_C(63))
 
 static const struct rule rules[] = {
@@ -240,14 +240,14 @@ static const struct rule rules[] = {
     {.call = SYS_openat2, .kind = RULE_BENEATH},
     {.call = SYS_fcntl, .tests = {IS(INT, 1, F_GETFL)}},
     {.call = SYS_ioctl, .tests = {IS(INT, 1, TCGETS)}},
-    /* Its own limits, which it reads and does not set. */
+    /* Its own limits: reading only. */
     {.call = SYS_prlimit64, .tests = {IS(INT, 0, 0), IS(LONG, 2, 0)}},
     {.call = SYS_ftruncate, .kind = RULE_WRITING},
     {.call = SYS_fsync, .kind = RULE_WRITING},
     {.call = SYS_unlinkat, .kind = RULE_WRITING, .tests = {IS(INT, 2, 0)}},
     {.call = SYS_renameat, .kind = RULE_WRITING},
     {.call = SYS_renameat2, .kind = RULE_WRITING, .tests = {IS(INT, 4, 0)}},
-#ifdef SYS_open /* what newer architectures have left out */
+#ifdef SYS_open /* calls that newer architectures do not have */
     {.call = SYS_open, .kind = RULE_OPEN, .tests = {WITHOUT(INT, 1, WRITING_FLAGS)}},
     {.call = SYS_stat},
     {.call = SYS_lstat},
@@ -303,7 +303,7 @@ static void put_load(struct program *program, uint32_t argument, uint32_t half) 
     put(program, BPF_LD | BPF_W | BPF_ABS, at, 0, 0);
 }
 
-/* Refuses where the number just loaded is not this one. */
+/* Refuses if the loaded number is not this one. */
 static void put_equal(struct program *program, uint32_t value) {
     put(program, BPF_JMP | BPF_JEQ | BPF_K, value, 1, 0);
     put_answer(program, SECCOMP_RET_ERRNO | EPERM);
@@ -322,7 +322,7 @@ static void put_tests(struct program *program, const struct test tests[TESTS]) {
     }
 }
 
-/* One rule: when the number is not this one, jump over its answer; the number is loaded before. */
+/* One rule: if the loaded number is not this one, it jumps over its result. */
 static void put_rule(struct program *program, const struct rule *rule, bool writing, bool landlock) {
     const uint32_t refuse = SECCOMP_RET_ERRNO | EPERM, allow = SECCOMP_RET_ALLOW;
     put(program, BPF_JMP | BPF_JEQ | BPF_K, rule->call, 0, 1);
@@ -376,7 +376,7 @@ static bool confine_calls(bool writing, bool landlock) {
 }
 #endif
 
-/* Everything that was open before but the standard streams and the channel: descriptors of whoever started us. */
+/* Closes all descriptors inherited from the parent process, except the standard streams and the channel. */
 static void close_others(int keep) {
 #ifdef SYS_close_range
     if (keep > 3)
@@ -392,14 +392,14 @@ bool confine_process_as(const struct options *options, int keep, long landlock_m
     struct path_policy path_policy = {0};
     bool ok = true;
     close_others(keep);
-    /* What the C library reads once must be read before: the time zone. */
+    /* Data that the C library reads only once must be read before: the time zone. */
     tzset();
     for (int i = 0; ok && i < options->script_count; i++)
         ok = script_path_policy(options->scripts[i], &options->script, &path_policy, error);
     ok = ok && (MAY_FAIL(prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0)) == 0 ||
                 error_set(error, ERROR_MACHINE, "gray: privileges cannot be dropped: %s", strerror(errno)));
     long landlock = ok ? confine_files(options, &path_policy, landlock_max, error) : -1;
-    /* What is missing stands first; what confines the process nevertheless follows. */
+    /* The report lists first what is missing, then what is active. */
     char missing[256] = "", files[64] = "checks of file names";
     const char *calls = ", seccomp";
     if (landlock > 0)

@@ -1,5 +1,5 @@
-/* A file is suspected when its folder reports an event with its name; when it has been quiet for a moment it is looked
- * at, and only another content counts. A folder that went away is asked for again whenever something is looked at. */
+/* A file may have changed when its folder reports an event with its name; after a moment without events it is read, and
+ * only a different content is a change. A removed folder is looked for again at every check. */
 #define _GNU_SOURCE
 #include "host/file_watch.h"
 
@@ -11,7 +11,7 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-/* Seconds without any event before files are looked at. */
+/* Seconds without any event before files are checked. */
 static const double quiet_time = 0.06;
 static const uint32_t wanted_events = IN_CLOSE_WRITE | IN_MODIFY | IN_CREATE | IN_DELETE | IN_MOVED_FROM | IN_MOVED_TO |
                                       IN_DELETE_SELF | IN_MOVE_SELF | IN_ATTRIB;
@@ -78,7 +78,7 @@ static bool add_one(struct watch *watch, const char *path, const struct file_ver
     if (version) {
         file->version = *version;
         file->there = true;
-        /* It may have changed between the reading and the watching. */
+        /* It may have changed between reading it and watching it. */
         file->suspect = true;
         watch->last = now;
     }
@@ -89,7 +89,7 @@ bool watch_add(struct watch *watch, const char *path, const struct file_version 
     char canonical[4096];
     if (!add_one(watch, path, version, now))
         return false;
-    /* A link and what it leads to may both be changed. */
+    /* A link and its target may both change. */
     bool leads_on =
         path[0] != '\0' && file_canonical(path, canonical, sizeof canonical) && strcmp(path, canonical) != 0;
     return !leads_on || add_one(watch, canonical, version, now);
@@ -159,7 +159,7 @@ bool watch_changed(struct watch *watch, double now) {
             continue;
         bool there = file_version_of(file->path, file->there ? &file->version : NULL, &version);
         bool differs = there != file->there || (there && !digest_equal(version.content, file->version.content));
-        /* One that is gone for a moment comes back: what counts is what can be read. */
+        /* A file may be missing for a moment: only a readable file is compared. */
         file->suspect = false;
         if (!there)
             continue;

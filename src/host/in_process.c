@@ -1,4 +1,4 @@
-/* The services of the render process, done at once by the output session: no channel, no second process. */
+/* The services of the render process, called directly in the output session: no channel, no second process. */
 #include "host/in_process.h"
 
 #include "base/mem.h"
@@ -99,7 +99,7 @@ static int run(struct in_process *in_process, const struct options *options) {
     return in_process->status;
 }
 
-/* Not on the stack: that may be a small one. */
+/* Not on the stack, which may be small. */
 int in_process_run(const struct options *options) {
     struct in_process *in_process = mem_alloc_zero(1, sizeof *in_process);
     if (!in_process) {

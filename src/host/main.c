@@ -4,8 +4,8 @@
 #include <sys/epoll.h>
 #include <unistd.h>
 
-/* A program that was started with closed standard streams must not find its own sockets and pictures under their
- * numbers. The place is taken by a descriptor that can neither be read nor written. */
+/* A program that was started with closed standard streams must not use their numbers for its own sockets and pictures.
+ * Each number is occupied by a descriptor that can be neither read nor written. */
 static void occupy_standard_descriptors(void) {
     int descriptor;
     do {

@@ -1,6 +1,6 @@
 /* gray-gui: the same program with a window, by SDL 2. `gray -gui` becomes it. Two textures, the picture and what is
- * drawn over it, are laid on each other; the position of the picture comes with every frame. SDL reports the mouse in
- * units of the desktop, of which a screen of high density has several pixels each: everything leaves here in pixels. */
+ * drawn over it, are drawn over each other; every frame has the position of the picture. SDL reports the mouse in units
+ * of the desktop, which have several pixels on a screen of high density: this file converts everything to pixels. */
 #define _GNU_SOURCE
 #include "host/program.h"
 
@@ -12,8 +12,8 @@ struct sdl {
     SDL_Texture *picture, *overlay;
     int overlay_width, overlay_height;
     int width, height; /* of the window in pixels */
-    double unit;       /* pixels for a unit of the desktop, in which SDL reports the mouse */
-    double density;    /* pixels for one dot of a letter */
+    double unit;       /* pixels per unit of the desktop, in which SDL reports the mouse */
+    double density;    /* pixels per dot of a letter */
     bool full, size_sent;
 };
 
@@ -31,9 +31,9 @@ static void close_window(void *context) {
     *sdl = (struct sdl){0};
 }
 
-/* Where the desktop has the pixels of the screen as its units (X11), the environment says how small they are
- * (GDK_SCALE, which desktops set), or the dots per inch do: 96 count as one. Below one and a half of that, and beyond
- * ten, nothing is used: many screens report nonsense. */
+/* If the units of the desktop are the pixels of the screen (X11), the scale comes from the environment (GDK_SCALE,
+ * which desktops set), or from the dots per inch divided by 96. Values below 1.5 and above 10 are ignored: many screens
+ * report wrong numbers. */
 static double screen_density(SDL_Window *window) {
     const char *said = SDL_getenv("GDK_SCALE");
     float across = 0, dots = 0;
@@ -44,7 +44,7 @@ static double screen_density(SDL_Window *window) {
     return density >= 1.5 && density <= 10 ? SDL_floor(2 * density + 0.5) / 2 : 1;
 }
 
-/* True: it is another size than before. */
+/* True: the size has changed. */
 static bool measure(struct sdl *sdl) {
     int width = 0, height = 0, units = 0, ignored = 0;
     if (SDL_GetRendererOutputSize(sdl->renderer, &width, &height) != 0)
@@ -66,7 +66,7 @@ static bool open_window(void *context, uint32_t width, uint32_t height, const ch
     (void)SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     (void)SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
     if (SDL_Init(SDL_INIT_VIDEO) == 0) {
-        /* No larger than nine tenths of the screen, and no smaller than a hand can click into. */
+        /* No larger than nine tenths of the screen, and not too small to use. */
         if (SDL_GetDesktopDisplayMode(0, &screen) == 0) {
             double fit = SDL_min(0.9 * screen.w / w, 0.9 * screen.h / h);
             if (fit < 1) {
@@ -180,7 +180,7 @@ static void send_size(struct sdl *sdl, struct window_event *out) {
     *out = (struct window_event){.kind = WINDOW_SIZE, .x = sdl->width, .y = sdl->height, .density = sdl->density};
 }
 
-/* True: it is one that the program knows. */
+/* True: the program uses this event. */
 static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event *out) {
     double density = sdl->unit;
     *out = (struct window_event){0};
@@ -217,7 +217,7 @@ static bool translate(struct sdl *sdl, const SDL_Event *in, struct window_event 
         out->shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
         return true;
     case SDL_WINDOWEVENT:
-        /* The receiver of the size draws again what was covered. */
+        /* The receiver of the size draws covered parts again. */
         if (in->window.event == SDL_WINDOWEVENT_EXPOSED || in->window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
             (void)measure(sdl);
             send_size(sdl, out);

@@ -1,7 +1,7 @@
 /* gray-mpi: the same program, its processes joined by the Message Passing Interface (MPI 3.1). `gray --mpi` becomes it.
- * Only the supervisor of each rank talks; the processes that run scenes are forked from it and know nothing of MPI.
- * Nothing here waits for another rank, which may be stopped or dead: what is sent is kept until it has gone, what comes
- * is received piece by piece, and the end of all is not awaited for ever. */
+ * Only the supervisor of each rank communicates; the processes that run scenes are forked from it and do not use MPI.
+ * Nothing here waits for another rank, which may be stopped or dead: messages are stored until they are sent, incoming
+ * messages are received in pieces, and the wait for the end of all ranks is limited. */
 #define _GNU_SOURCE
 #include "base/error.h"
 #include "base/mem.h"
@@ -22,15 +22,15 @@ struct transfer {
     struct transfer *next;
     MPI_Request request;
     int from, kind;
-    bool broken; /* the sender died on the way */
+    bool broken; /* the sender died during the transfer */
     size_t size;
     unsigned char data[];
 };
 
-/* Lists begin with what is oldest. */
+/* Lists begin with the oldest entry. */
 struct queues {
     struct transfer *sent, *coming;
-    double patience; /* of the end, in seconds; 0: for ever */
+    double patience; /* limit of the wait at the end, in seconds; 0: no limit */
 };
 
 static struct transfer *add_transfer(struct transfer **list, size_t size) {
@@ -50,7 +50,7 @@ static void remove_transfer(struct transfer **link) {
     mem_free(transfer);
 }
 
-/* True: it has gone or come, or will never. */
+/* True: it was sent or received, or has failed. */
 static bool is_through(struct transfer *transfer) {
     int done = 0;
     return MPI_Test(&transfer->request, &done, MPI_STATUS_IGNORE) != MPI_SUCCESS || done;
@@ -73,7 +73,7 @@ static void send_message(void *context, int to, int kind, const void *data, size
     (void)MPI_Isend(transfer->data, (int)size, MPI_BYTE, to, kind, MPI_COMM_WORLD, &transfer->request);
 }
 
-/* Begins to receive what is there. */
+/* Begins to receive available messages. */
 static void find_messages(struct queues *queues) {
     for (;;) {
         int there = 0, count = 0;
@@ -92,7 +92,7 @@ static void find_messages(struct queues *queues) {
     }
 }
 
-/* Whether an older message of the same rank is still on its way. */
+/* Whether an older message of the same rank is still being received. */
 static bool must_wait(const struct queues *queues, const struct transfer *transfer) {
     for (const struct transfer *older = queues->coming; older != transfer; older = older->next) {
         if (older->from == transfer->from)
@@ -173,7 +173,7 @@ static void leave(int number) {
     _exit(at_end.status);
 }
 
-/* Who is not stopped does not mind. */
+/* This has no effect on a process that is not stopped. */
 static void wake_neighbours(int number) {
     (void)number;
     for (int i = 0; i < at_end.count; i++) {
@@ -189,9 +189,9 @@ static struct itimerval timer_of(double seconds) {
     return (struct itimerval){.it_value = {whole, (suseconds_t)(1e6 * (seconds - (double)whole))}};
 }
 
-/* MPI_Finalize waits for all ranks. All is written by now: one that does not come is woken, in case it is stopped; when
- * that does not help either, the others leave without it. The first rank is the first to leave, since mpirun ends the
- * others by force when one has left so. */
+/* MPI_Finalize waits for all ranks. All pictures are written by now: a rank that does not arrive is woken, in case it
+ * is stopped; if that does not help, the others exit without it. The first rank exits first, since mpirun then kills
+ * the others. */
 static void finalize(const struct queues *queues, int rank, int status) {
     struct itimerval limit = timer_of(queues->patience);
     at_end.status = status;
@@ -202,8 +202,8 @@ static void finalize(const struct queues *queues, int rank, int status) {
     (void)MPI_Finalize();
 }
 
-/* Threads of the library begin with signals blocked: those that end a run are the supervisor's, in the main thread, and
- * would end the process at once in any other one. */
+/* Threads of the library begin with signals blocked: signals that end a run are for the supervisor, in the main thread;
+ * in any other thread they would end the process at once. */
 static bool start_library(int *argc, char ***argv) {
     static const int wanted[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
     sigset_t set, before;

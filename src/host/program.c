@@ -1,4 +1,4 @@
-/* The command line is read, and each action is handed on to its room. */
+/* Reads the command line and calls the module of each action. */
 #define _GNU_SOURCE
 #include "host/program.h"
 
@@ -25,8 +25,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The Lua library: $GRAY_LUA, else beside the program as it was installed (PREFIX/bin/gray and PREFIX/share/gray/lua),
- * else above it in the source tree (build/release/gray and lua). NULL when there is none. */
+/* The Lua library: $GRAY_LUA, else relative to the program as it is installed (PREFIX/bin/gray and
+ * PREFIX/share/gray/lua), else above it in the source tree (build/release/gray and lua). NULL when there is none. */
 static const char *find_library(struct arena *arena) {
     static const char *const folders[] = {"../share/gray/lua", "lua", "../lua", "../../lua"};
     char program[4096], folder[4096];
@@ -66,7 +66,7 @@ static void print_version(void) {
         exr_library(), window, farm);
 }
 
-/* Text that the script layer makes of its table. */
+/* Prints text that the script layer makes of its table. */
 static int print_document(const char *text) {
     if (!text) {
         (void)fputs("gray: out of memory for the text\n", stderr);
@@ -76,7 +76,7 @@ static int print_document(const char *text) {
     return 0;
 }
 
-/* Where more than one process makes a picture, only the first one talks and keeps. */
+/* If several processes render a picture, only the first one reports and writes files. */
 static void disable_output(struct options *options) {
     options->checkpoint = NULL;
     options->resume = false;
@@ -122,7 +122,8 @@ static int act(struct options *options, const struct program_parts *parts, struc
     return render(options, parts);
 }
 
-/* The programs with MPI and with a window are of their own beside this one, so that others do not load their libraries.
+/* The programs with MPI and with a window are separate programs beside this one, so that this one does not load their
+ * libraries.
  */
 static int exec_variant(const char *which, const char *missing, char **argv) {
     char program[4096];
@@ -143,7 +144,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     struct error error;
     int status;
     file_fill_standard();
-    /* A reader that goes away and a limit on file sizes are errors of writing, not the end of the process. */
+    /* A closed pipe and a limit on file sizes are write errors and do not end the process. */
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     if (!options_parse(&options, argc, argv, &arena, &error)) {
@@ -160,7 +161,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     } else {
         status = act(&options, parts, &arena);
     }
-    /* A full disk shows here when text was asked for; rendering has looked at it already. */
+    /* Detects a full disk after text output; rendering has already checked it. */
     if (options.action != ACTION_RENDER && (fflush(stdout) != 0 || ferror(stdout))) {
         (void)fputs("gray: standard output cannot be written\n", stderr);
         status = ERROR_MACHINE;

@@ -1,13 +1,13 @@
-/* The whole program, for all of its mains. */
+/* The whole program, called by all main functions. */
 #ifndef GRAY_HOST_PROGRAM_H
 #define GRAY_HOST_PROGRAM_H
 
 #include "output/farm.h"
 #include "viewer/window.h"
 
-/* What only some of the programs have; used under the option that asks for it. */
+/* Features that only some of the programs have; used with the option that requests them. */
 struct program_parts {
-    const struct farm_transport *transport; /* how the processes of a farm reach each other: --mpi */
+    const struct farm_transport *transport; /* the transport between the processes of a farm: --mpi */
     const struct window_driver *window;     /* -gui */
 };
 

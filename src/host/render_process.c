@@ -1,5 +1,5 @@
 /* Scripts run one after the other in this process, so that meshes and images (assets) outlive the script that read
- * them. Each gr.render is a job: prepare, begin (names and film), build the world, render, hand over. The world lives
+ * them. Each gr.render is a job: prepare, begin (names and film), build the world, render, deliver. The world lives
  * in the arena of the job, which is emptied for the next one. */
 #include "host/render_process.h"
 
@@ -34,19 +34,19 @@ struct render_process {
     const struct host_services *services;
     const char *script; /* the one that runs */
     struct pool *pool;  /* made for the first picture */
-    struct arena job;   /* memory of the picture being made */
+    struct arena job;   /* memory of the current picture */
     struct assets assets;
     struct scene_writer *errors;     /* what scripts write to standard error */
-    uint64_t pictures;               /* of this run of the scripts, those that cannot be made too */
+    uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
     struct mem_account memory;       /* of the pictures of this script: worlds, indexes of meshes, photons, films */
-    struct mem_account *account;     /* the same while there is a limit, or NULL */
-    uint64_t reserved;               /* in it, for the picture that is made */
-    struct file_read_log read_log;   /* what the scripts read, when tiles are kept for later */
-    struct file_set reported;        /* files that the supervisor knows of; empty under --watch */
+    struct mem_account *account;     /* the same if there is a limit, or NULL */
+    uint64_t reserved;               /* its part for the current picture */
+    struct file_read_log read_log;   /* hash of the files that the scripts read, if tiles are kept for a later run */
+    struct file_set reported;        /* files already reported to the supervisor; empty under --watch */
     int status;                      /* --check: worst of the problems reported so far in this script */
     bool building;                   /* the world */
     uint64_t runs_before;            /* of the pool, before that */
-    uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script was given */
+    uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
 };
 
@@ -66,7 +66,7 @@ static bool is_cancelled(void *context) {
     return atomic_load(&process->services->control->cancel) == CANCEL_ALL;
 }
 
-/* What the script printed and said is written; the supervisor reports what could not be, once for all scripts. */
+/* Writes the output of the script; the supervisor reports failures, once for all scripts. */
 static void finish_output(const struct render_process *process) {
     scene_writer_flush(process->errors);
     if (fflush(stdout) != 0 || ferror(stdout))
@@ -87,7 +87,7 @@ static void report_scene(const struct render_process *process, enum line_kind ki
     report(process, kind, mark[0] != '\0' ? line : text);
 }
 
-/* How many steps building takes depends on the scene; only the progress of each one is known. */
+/* The number of building steps depends on the scene; only the progress of each one is known. */
 static void report_building(const struct render_process *process) {
     struct pool_progress progress = pool_progress(process->pool);
     struct control *control = process->services->control;
@@ -123,7 +123,7 @@ static bool need_pool(struct render_process *process, struct error *error) {
     return true;
 }
 
-/* A script may render hundreds of frames of one scene; each warning about it comes once. */
+/* A script may render hundreds of frames of one scene; each warning about it is printed once. */
 static void warn_of_scene(void *context, const char *text) {
     struct render_process *process = context;
     static const char word[] = "warning: ";
@@ -144,7 +144,7 @@ static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t coun
     struct control *control = context;
     (void)tile;
     atomic_store_explicit(&control->tiles, count, memory_order_relaxed);
-    /* Those of an earlier run count too; of two workers the later one may come first. */
+    /* Those of an earlier run are included; of two workers the later one may report first. */
     uint32_t warned = atomic_load_explicit(&control->tiles_done, memory_order_relaxed);
     while (warned < done && !atomic_compare_exchange_weak_explicit(&control->tiles_done, &warned, done,
                                                                    memory_order_relaxed, memory_order_relaxed))
@@ -189,7 +189,7 @@ static bool is_asked(const struct options *options) {
     return options->pixel_count > 0 || options->dump_scene;
 }
 
-/* Not by way of the supervisor: later output of the script follows it. */
+/* Not through the supervisor, so that later output of the script follows it. */
 static void print_piece(void *context, const char *text) {
     (void)context;
     text_print(stdout, text);
@@ -208,7 +208,7 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
             inspect_pixels(&picture, options->pixels, options->pixel_count, &writer, error));
 }
 
-/* With --time-limit how many samples there were room for, with --noise how many were wanted. */
+/* With --time-limit the number of samples that were possible, with --noise the number that were needed. */
 static void report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
@@ -330,7 +330,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     return ok;
 }
 
-/* The same within what memory is left. */
+/* The same within the remaining memory. */
 static bool make_picture(struct picture_work *work, struct error *error) {
     struct render_process *process = work->process;
     (void)mem_charge(process->account);
@@ -338,7 +338,7 @@ static bool make_picture(struct picture_work *work, struct error *error) {
     bool ok = make_picture_unlimited(work, error);
     if (!ok && mem_refusals() != refusals)
         (void)too_much_memory(process, error);
-    /* Of a large scene nothing is kept: the next picture may need its memory in other pieces. */
+    /* After a large scene the memory is released: the next picture may need blocks of other sizes. */
     if (process->job.total > LARGE_JOB)
         arena_destroy(&process->job);
     else
@@ -347,8 +347,8 @@ static bool make_picture(struct picture_work *work, struct error *error) {
     return ok;
 }
 
-/* What is not allocated block by block: the film with half as much again for its way into a file, unless the command
- * line chooses its size, and the stacks of the workers, which rays of rays may use level by level. */
+/* The memory outside the arenas: the film plus half of its size for writing it, unless the command line chooses its
+ * size, and the stacks of the workers. */
 static bool reserve_memory(struct render_process *process, const struct picture_request *asked,
                            const struct settings *settings, struct error *error) {
     enum { STACK_OF_A_LEVEL = 8 << 10 };
@@ -393,7 +393,7 @@ static void add_rim(struct picture_request *asked, uint32_t rim) {
     asked->height = shown.y1 + (below > rim ? rim : below) - asked->y0;
 }
 
-/* Names the picture and has its film made. *already: nothing is to be done. */
+/* Names the picture and creates its film. *already: there is nothing to do. */
 static bool begin_picture(struct picture_work *work, bool *already, struct error *error) {
     struct render_process *process = work->process;
     struct render_job *job = &work->job;
@@ -424,7 +424,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return false;
     if (!process->services->begin(process->services->context, asked, film, already, error))
         return false;
-    /* Also where only questions are answered, and there is no film. */
+    /* Also for queries without a film. */
     film->x0 = asked->x0;
     film->y0 = asked->y0;
     film->full_width = asked->full_width;
@@ -491,8 +491,8 @@ static bool render_job_run(struct render_process *process, const struct render_r
     return ok;
 }
 
-/* Pictures may use what the script leaves. They have an account of their own: what is kept from one to the next, as the
- * index of a mesh, does not count as the script's. `script` is its account, or NULL. */
+/* Pictures may use the memory that the script does not use. They have their own account: memory kept between pictures,
+ * such as the index of a mesh, is not counted for the script. `script` is its account, or NULL. */
 static void grant_memory(struct render_process *process, const struct mem_account *script) {
     uint64_t all = script_picture_memory(&process->options->script);
     uint64_t held = script && script->held > 0 ? (uint64_t)script->held : 0;
@@ -543,8 +543,8 @@ static void message(void *context, enum script_message kind, const char *text) {
     }
 }
 
-/* The first line, and below it the traceback. Wrong usage is no fault of the scene: the program speaks. What the
- * machine or a limit refused comes with the name of the script. */
+/* Prints the first line, and below it the traceback. Wrong usage is no error of the scene: the line begins with the
+ * program's name. Errors of the machine or a limit begin with the name of the script. */
 static void report_error(const struct render_process *process, struct arena *arena, const struct error *error,
                          const char *traceback) {
     const char *below = traceback ? traceback : "", *who = "";
@@ -564,8 +564,8 @@ static void report_error(const struct render_process *process, struct arena *are
         report_scene(process, LINE_ERROR, text ? text : error->text);
 }
 
-/* Meshes and images of earlier scripts, with the indexes that pictures have added, stay for the next one until they
- * exceed what a script and its picture may hold. */
+/* Meshes and images of earlier scripts, with the indexes that pictures have added, are kept for the next one until they
+ * exceed the memory limit of a script and its picture. */
 static void begin_memory(struct render_process *process) {
     (void)mem_charge(process->account);
     arena_destroy(&process->job);
@@ -579,7 +579,7 @@ static void begin_memory(struct render_process *process) {
 
 /* Exit status of one script. */
 static int run_script(struct render_process *process, const char *path) {
-    /* Without the sandbox and in a process of its own standard output is a copy of standard error by now. */
+    /* Without the sandbox, in a separate process, standard output is a copy of standard error here. */
     bool sandboxed = !process->options->script.no_sandbox, in_process = process->options->no_fork;
     struct script_host host = {.context = process,
                                .assets = &process->assets,
@@ -623,7 +623,8 @@ static void report_file(struct render_process *process, const char *path, const 
     if (!watched && file_set_has(&process->reported, version->identity))
         return;
     if (!watched)
-        (void)file_set_add(&process->reported, version->identity); /* without memory for it: reported again */
+        (void)file_set_add(&process->reported,
+                           version->identity); /* without memory for the entry it is reported again */
     process->services->read(process->services->context, path, version, written);
 }
 

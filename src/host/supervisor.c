@@ -1,5 +1,5 @@
-/* One render process runs all scripts, so that what one script has read serves the next. When it dies, a new one
- * continues with the next script. */
+/* One render process runs all scripts, so that files read by one script can be used by the next. When it dies, a new
+ * one continues with the next script. */
 #include "host/supervisor_internal.h"
 
 #include "base/mem.h"
@@ -16,7 +16,7 @@ void supervisor_note_status(struct supervisor *supervisor, int status) {
         supervisor->status = status;
 }
 
-/* In the terminal, and what is wrong in the window, too. */
+/* In the terminal; errors also in the window. */
 void supervisor_report(struct supervisor *supervisor, enum line_kind kind, const char *text) {
     output_report(&supervisor->output, kind, text);
     if (kind == LINE_ERROR)
@@ -64,7 +64,7 @@ static bool files_changed(struct supervisor *supervisor) {
     return watch_changed(&supervisor->watch, progress_clock());
 }
 
-/* Until the child closes its end, or has nothing more to do until something changes. */
+/* Runs until the child closes the channel, or waits for changes. */
 static void talk_to_child(struct supervisor *supervisor) {
     struct message message;
     while (!supervisor->broken) {
@@ -105,7 +105,7 @@ static void talk_to_child(struct supervisor *supervisor) {
     (void)kill(supervisor->child, SIGKILL);
 }
 
-/* A child that is there goes on; another one is started where there is none. */
+/* An existing child continues; without one, a new one is started. */
 static void run_children(struct supervisor *supervisor) {
     struct error error;
     bool there = supervisor->child > 0;
@@ -139,7 +139,7 @@ static bool wait_for_change(struct supervisor *supervisor) {
     while (!supervisor->ended && !supervisor->restarts) {
         struct pollfd watched[2] = {{.fd = supervisor->watch.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};
-        /* Not at once: a file that was read while it was written is looked at a second time. */
+        /* Not at once: a file that was read while it was being written is checked again. */
         (void)poll(watched, 2, supervisor->window ? 4 : supervisor->watch.last > 0 ? 20 : 500);
         if (watched[1].revents)
             supervisor_read_signals(supervisor);
@@ -150,7 +150,7 @@ static bool wait_for_change(struct supervisor *supervisor) {
     return !supervisor->ended;
 }
 
-/* The child ends, or runs the scripts again: only where no mesh or picture it may have kept has changed. */
+/* The child runs the scripts again, or ends if a mesh or image that it may have kept has changed. */
 static void answer_again(struct supervisor *supervisor, bool again) {
     const struct error none = {0};
     if (supervisor->child <= 0)
@@ -175,7 +175,7 @@ static bool watch_scripts(struct supervisor *supervisor, struct error *error) {
     return true;
 }
 
-/* Every run is judged by itself; the last one's status is the program's. */
+/* Every run has its own status; the last one is the status of the program. */
 static void run_and_watch(struct supervisor *supervisor) {
     struct error error;
     run_children(supervisor);
@@ -199,7 +199,7 @@ static void run_and_watch(struct supervisor *supervisor) {
     answer_again(supervisor, false);
 }
 
-/* Where the farm waits for other ranks. */
+/* Called while the farm waits for other ranks. */
 static void poll_in_farm(void *context) {
     struct supervisor *supervisor = context;
     supervisor_read_signals(supervisor);
@@ -225,8 +225,8 @@ static bool start_farm(struct supervisor *supervisor, const struct farm_transpor
     return true;
 }
 
-/* The first rank stays until the others have ended; all is written before. It also says what became of the pictures:
- * what went wrong on another rank alone is a line, not a status. */
+/* The first rank waits until the others have ended, after everything is written. It also determines the status: an
+ * error only on another rank is a line, not a status. */
 static void end_farm(struct supervisor *supervisor) {
     struct farm *farm = supervisor->output.farm;
     if (!farm)
@@ -286,7 +286,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     return supervisor->status;
 }
 
-/* Not on the stack: that may be a small one. */
+/* Not on the stack, which may be small. */
 int supervisor_run(const struct options *options, const struct program_parts *parts) {
     struct supervisor *supervisor = mem_alloc_zero(1, sizeof *supervisor);
     if (!supervisor) {

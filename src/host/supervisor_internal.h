@@ -73,7 +73,7 @@ static const double supervisor_patience = 0.03;
 
 /* supervisor.c */
 void supervisor_note_status(struct supervisor *supervisor, int status); /* the worst stays */
-/* In the terminal, and what is wrong in the window, too. */
+/* In the terminal; errors also in the window. */
 void supervisor_report(struct supervisor *supervisor, enum line_kind kind, const char *text);
 void supervisor_note_error(struct supervisor *supervisor, const struct error *error);
 

@@ -1,4 +1,4 @@
-/* Words for kinds, and the two questions put together from their parts. */
+/* Names of kinds, and the two queries. */
 #include "inspect/inspect.h"
 
 #include "base/sort.h"
@@ -30,7 +30,7 @@ const char *trace_path(const struct trace_report *report, uint32_t primitive) {
     return found ? report->names.paths[low] : primitive_node(report->picture->job->world, primitive)->name;
 }
 
-/* All primitives that the rays of a list and below have met: counts them, or notes them too. */
+/* All primitives that the rays of a list and their child rays have hit: counts them, or lists them too. */
 static size_t note_primitives(const struct pixel_trace_ray *ray, uint64_t *out, size_t count) {
     for (; ray; ray = ray->next) {
         if (ray->met) {

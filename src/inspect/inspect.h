@@ -1,4 +1,4 @@
-/* Questions about a scene that are answered instead of rendering it: the trace of a pixel, and the flattened world as a
+/* Queries about a scene, made instead of rendering it: the trace of a pixel, and the flattened world as a
  * table. */
 #ifndef GRAY_INSPECT_INSPECT_H
 #define GRAY_INSPECT_INSPECT_H
@@ -8,7 +8,7 @@
 #include "session/text.h"
 #include "world/path.h"
 
-/* A picture about to be made: its name, its world, the tree that the world was built of. */
+/* A picture to be rendered: its name, its world, and the tree from which the world was built. */
 struct inspected {
     const char *file;
     const struct render_job *job; /* with its world */
@@ -21,10 +21,10 @@ struct inspected {
  * Errors: a pixel is not in the picture (ERROR_USAGE), those of render_pixels. */
 bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count,
                     struct text_writer *writer, struct error *error);
-/* --dump-scene: everything placed, in flattening order, then lights and materials. */
+/* --dump-scene: all primitives, in flattening order, then lights and materials. */
 bool inspect_world(const struct inspected *picture, struct text_writer *writer, struct error *error);
 
-/* A trace with what its text needs: the paths of the nodes in it. */
+/* A trace with the node paths that its text needs. */
 struct trace_names {
     uint32_t count;
     uint32_t *primitives; /* ascending */

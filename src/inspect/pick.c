@@ -1,6 +1,6 @@
-/* The node's box is that of its own shape, turned with it, where the node is one shape; of a group it is the box along
- * the world's axes around everything under it. The route to a combined solid continues to the operand whose surface was
- * hit; the user selects one of its nodes by going up or down on it. */
+/* The box of a node with one shape is that of its shape, rotated with it; the box of a group is the axis-aligned box in
+ * world space around all its descendants. The route to a combined solid continues to the operand whose surface was hit;
+ * the user selects one of its nodes by moving up or down the route. */
 #include "inspect/pick.h"
 
 #include "base/hash.h"
@@ -49,7 +49,7 @@ uint64_t route_hash(const struct scene_step *steps, uint32_t depth) {
     return route ? route : 1;
 }
 
-/* The route to what was hit; the traversal ends there. */
+/* The route to the primitive that was hit; the traversal ends there. */
 static bool find_route(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     struct picking *p = context;
     if (p->primitive < first || p->primitive >= first + count)
@@ -59,7 +59,7 @@ static bool find_route(void *context, uint32_t first, uint32_t count, const stru
     return false;
 }
 
-/* The node that is so many above what was placed, or below. */
+/* The node that is this many levels above the primitive's node, or below. */
 static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     const struct csg *csg = primitive_geometry(p->world, p->primitive)->csg;
     uint32_t length = 0;
@@ -200,7 +200,7 @@ static bool same_inputs(const struct surface_inputs *a, const struct surface_inp
     return same;
 }
 
-/* Found by trying: each part is given another number, and the inputs at the hit are compared. */
+/* Found by trial: each part gets another value, and the inputs at the hit are compared. */
 static uint32_t idle_parts(const struct material *material, const struct hit *hit) {
     struct surface_inputs before, after;
     uint32_t idle = 0;

@@ -1,4 +1,4 @@
-/* Picking: what the ray through a point of the picture hits first, and which node that belongs to. */
+/* Picking: the first hit of the ray through a point of the picture, and its node. */
 #ifndef GRAY_INSPECT_PICK_H
 #define GRAY_INSPECT_PICK_H
 
@@ -13,7 +13,7 @@ uint64_t route_hash(const struct scene_step *steps, uint32_t depth);
 
 struct pick_query {
     double x, y; /* pixels of the whole picture */
-    int32_t up;  /* so many nodes above the one that is hit; below 0: so many operands below it, in a combined solid */
+    int32_t up;  /* levels above the node that is hit; if negative, levels of operands below it, in a combined solid */
 };
 /* What the ray through a pixel hits, with the camera of the job as it is at time 0. False: no memory, or no such
  * camera. */

@@ -1,5 +1,5 @@
-/* The trace of a pixel in words. A ray is a paragraph, indented below the surface that sent it; the last line of each
- * is what it brings. Numbers have six digits: enough to read; --json has them all. */
+/* The trace of a pixel in words. A ray is a paragraph, indented below the surface that it starts from; the last line of
+ * each is its light. Numbers have six digits, for reading; --json prints all digits. */
 #include "image/png_write.h"
 #include "inspect/inspect.h"
 #include "material/texture_mapping.h"
@@ -8,7 +8,7 @@ struct text_state {
     const struct trace_report *report;
     struct text_writer *writer;
     int depth;
-    bool changed; /* by the link that is printed */
+    bool changed; /* for the link that is printed */
 };
 
 static void indent(const struct text_state *t, int deeper) {
@@ -46,7 +46,7 @@ static void changed_flag(struct text_state *t, const char *name, bool now, bool 
     text_writer_print(t->writer, now ? " %s" : " not %s", name);
 }
 
-/* One link: what it has changed. */
+/* One link: its effect. */
 static void print_link(struct text_state *t, const struct pixel_trace_link *link, const struct surface_inputs *before) {
     const struct surface_inputs *inputs = &link->inputs;
     indent(t, 1);
@@ -165,7 +165,7 @@ static void print_hit(const struct text_state *t, const struct pixel_trace_ray *
 
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray);
 
-/* The parts of what the surface shows, in the order in which they are added. */
+/* The terms of the surface's colour, in the order in which they are added. */
 static void print_surface(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct surface_inputs nothing = {.opacity = 1, .normal = ray->hit.normal};
     const struct surface_inputs *before = &nothing;
@@ -287,7 +287,7 @@ static void print_samples(struct text_state *t) {
         text_writer_print(t->writer, "\n%u more rays are not shown\n", pixel_trace->omitted);
 }
 
-/* How the colour is the sum, and what becomes of it in the file. */
+/* The sum that gives the colour, and its value in the file. */
 static void print_sum(struct text_state *t) {
     const struct pixel_trace *pixel_trace = t->report->pixel_trace;
     const struct settings *settings = &t->report->picture->job->settings;

@@ -1,4 +1,4 @@
-/* The flattened world as it was built: one line for everything placed, in flattening order, then materials and lights.
+/* The flattened world as it was built: one line for each primitive, in flattening order, then materials and lights.
  */
 #include "inspect/inspect.h"
 #include "mesh/mesh.h"
@@ -155,7 +155,7 @@ static void dump_rest(const struct dump *d) {
     const struct world *world = d->world;
     text_writer_print(d->writer, d->json ? "],\"materials\":[" : "\n  number  material\n");
     for (uint32_t i = 0, numbers = 0; i < world->material_count; i++) {
-        if (world->material_numbers[i] != numbers) /* known already, as another shape shows it */
+        if (world->material_numbers[i] != numbers) /* already listed, since another shape has it */
             continue;
         dump_material(d, i);
         numbers++;

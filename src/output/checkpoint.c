@@ -1,6 +1,6 @@
-/* The file is written again each time, beside the old one, which stays until the new one is complete: a kill at any
- * moment leaves one of the two. So that this never costs much, the pause between two writings is at least twenty times
- * what the last one took. */
+/* The file is written anew each time, beside the old one, which is kept until the new one is complete: after a kill at
+ * any moment one of the two exists. To limit the cost, the pause between two writes is at least twenty times the
+ * duration of the last one. */
 #include "output/checkpoint.h"
 
 #include "base/mem.h"
@@ -59,7 +59,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
     return true;
 }
 
-/* From then on nothing is written: the file stays what it is. */
+/* From then on nothing is written: the file is not changed. */
 static bool refuse(struct checkpoint *checkpoint, const char *why, struct error *error) {
     error_set(&checkpoint->refused, ERROR_SCENE, "%.400s: cannot be resumed: %s", checkpoint->path, why);
     checkpoint->opened = false;
@@ -156,7 +156,7 @@ bool checkpoint_note_written(struct checkpoint *checkpoint, uint32_t number, con
         return true;
     checkpoint->pending = true;
     checkpoint->tiles_kept = 0;
-    if (!file_digest(name, &done.written)) /* a pipe cannot be looked at again */
+    if (!file_digest(name, &done.written)) /* a pipe cannot be checked again */
         return true;
     (void)snprintf(done.name, sizeof done.name, "%s", name);
     return add_done(checkpoint, &done, error);

@@ -1,4 +1,4 @@
-/* See display.h. One packet is under way at a time; the next is made when it is gone. */
+/* See display.h. One packet is sent at a time; the next is made when it has been sent. */
 #define _GNU_SOURCE
 #include "output/display.h"
 
@@ -42,7 +42,7 @@ static size_t finish_packet(uint8_t *out, const uint8_t *end) {
     return size;
 }
 
-static const char channels[] = "R\0G\0B"; /* with the zero that ends it: three texts */
+static const char channels[] = "R\0G\0B"; /* with the final zero byte: three texts */
 
 size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uint32_t height) {
     uint8_t *at = out + 4;
@@ -68,9 +68,9 @@ size_t display_update_packet(uint8_t *out, const char *name, const struct film *
     at = put_number(at, r.y0 - film->y0, 4);
     at = put_number(at, r.x1 - r.x0, 4);
     at = put_number(at, r.y1 - r.y0, 4);
-    for (uint64_t c = 0; c < 3; c++) /* where each channel begins, in floats */
+    for (uint64_t c = 0; c < 3; c++) /* the offset of each channel, in floats */
         at = put_number(at, c, 8);
-    for (int c = 0; c < 3; c++) /* and how far it is to its next value */
+    for (int c = 0; c < 3; c++) /* and the step to its next value */
         at = put_number(at, 3, 8);
     for (uint32_t y = r.y0; y < r.y1; y++) {
         const struct film_pixel *row = film->pixels + (size_t)(y - film->y0) * film->width - film->x0;
@@ -82,7 +82,7 @@ size_t display_update_packet(uint8_t *out, const char *name, const struct film *
 
 /* --- the connection --- */
 
-/* A host that does not answer is not waited for longer than this. */
+/* The longest wait for a host that does not answer. */
 enum { CONNECT_WAIT = 3000 };
 
 static bool connect_soon(int made, const struct addrinfo *at) {
@@ -105,7 +105,7 @@ static bool connect_soon(int made, const struct addrinfo *at) {
 static bool connect_tev(struct display *display, struct error *error) {
     struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM}, *list = NULL;
     const struct display_choice *choice = &display->choice;
-    /* "localhost" is this machine also where no table of names says so (RFC 6761, 6.3). */
+    /* "localhost" is this machine even if no name service defines it (RFC 6761, 6.3). */
     const char *host = strcmp(choice->host, "localhost") == 0 ? "127.0.0.1" : choice->host;
     int failure = MAY_FAIL(getaddrinfo(host, choice->port, &hints, &list)), yes = 1, saved = 0;
     if (failure != 0)
@@ -181,7 +181,7 @@ static bool next_packet(struct display *display) {
     return false;
 }
 
-/* wait: milliseconds for each pause of the other side. */
+/* wait: the longest time without progress, in milliseconds. */
 static bool send_tiles(struct display *display, int wait, struct error *error) {
     while (display->begun < display->size || next_packet(display)) {
         ssize_t gone = MAY_FAIL(send(display->socket, display->packet + display->begun, display->size - display->begun,

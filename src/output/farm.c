@@ -1,10 +1,10 @@
 /* State of a tile in a farm: LATER until it may be rendered, WANTED when a worker of this process may, TAKEN when one
- * does, DONE when it is finished; a rank that has sent a finished tile on marks it ELSEWHERE. The first rank keeps for
- * every tile who has it, so that a rank that falls out gives its tiles back. Every picture has the number that counts
- * pictures in the run; messages of other pictures are late and are passed over.
+ * does, DONE when it is finished; a rank that has sent a finished tile to the first rank marks it ELSEWHERE. The first
+ * rank stores the owner of every tile, so that the tiles of a lost rank can be assigned again. Pictures of a run are
+ * numbered; messages about other pictures are late and are ignored.
  *
- * All ranks send heartbeats, so that silence means that a rank is stopped, dead or cut off. A silent rank
- * gets no tiles and is not waited for, but it stays a member: what it missed reaches it when it continues. */
+ * All ranks send heartbeats, so that silence means that a rank is stopped, dead or cut off. A silent rank gets no tiles
+ * and is not waited for, but it remains a member: it receives the missed messages when it continues. */
 #include "output/farm.h"
 
 #include "base/mem.h"
@@ -22,7 +22,7 @@ enum farm_message_kind {
     FARM_ANSWER,    /* from the first rank: number, enum farm_answer */
     FARM_ASSIGN,    /* from the first rank: number, tile */
     FARM_CLOSE,     /* from the first rank: number; all tiles are there */
-    FARM_ALIVE,     /* to and from the first rank: a heartbeat, nothing else */
+    FARM_ALIVE,     /* to and from the first rank: a heartbeat */
     FARM_NOTE,      /* to the first rank: a line to be shown at once */
     FARM_END,       /* from the first rank: number, how many ranks are silent; the farm has ended */
 };
@@ -39,13 +39,13 @@ struct pair {
 };
 
 enum { LINES_LIMIT = 32, LINE_LIMIT = 1024, NOTES_LIMIT = 16, NOBODY = UINT16_MAX };
-/* So many heartbeats fit into the time after which a rank is regarded as lost; and the first rank may be silent for so
- * many of these times (it writes pictures, which takes long) before the others end. */
+/* The number of heartbeats in the time after which a rank is regarded as lost; and the number of these times that the
+ * first rank may be silent (it writes pictures, which takes long) before the others end. */
 enum { HEARTBEATS = 8, PATIENCE = 10 };
 
 struct peer {
     bool waiting; /* for an answer to `begin` */
-    bool joined;  /* makes tiles of the current picture */
+    bool joined;  /* renders tiles of the current picture */
     bool gone;
     bool silent;
     double last_heard; /* when, on farm.time */
@@ -60,21 +60,21 @@ struct farm {
     struct peer *peers; /* of the first rank, by rank */
     struct tile_picture picture;
     struct film *film; /* of the current picture, or NULL */
-    uint16_t *owner;   /* of every tile; the first rank's */
-    uint32_t number;   /* of the picture that was begun last */
-    uint32_t from;     /* no tile before it is LATER */
-    bool over, failed; /* the first rank's scripts have ended; badly */
+    uint16_t *owner;   /* of every tile; on the first rank */
+    uint32_t number;   /* of the current picture */
+    uint32_t from;     /* no tile before it has the state LATER */
+    bool over, failed; /* the first rank's scripts have ended; with an error */
     char (*lines)[LINE_LIMIT];
     int line_count, own_lines;
     char (*notes)[LINE_LIMIT];
     int note_count;
     uint8_t *message;
     double silence;    /* the limit */
-    double time;       /* seconds in which this process ran, as far as it was here often enough */
-    double clock;      /* of the transport, when it was read last */
+    double time;       /* seconds in which this process ran, measured at regular calls */
+    double clock;      /* of the transport, at the last reading */
     double sent;       /* on `time`: when the last heartbeat was sent */
     double last_heard; /* on `time`: from the first rank */
-    bool ended;        /* the first rank has said so */
+    bool ended;        /* the first rank has reported it */
     int silent;        /* ranks, when the farm ended */
     void (*poll)(void *context);
     void *poll_context;
@@ -133,8 +133,8 @@ static void rest(const struct farm *farm) {
     (void)nanosleep(&pause, NULL);
 }
 
-/* A stretch in which this process was stopped, slept with its machine or wrote a picture counts as a short one: what
- * was sent meanwhile is read before anyone is judged. */
+/* A time in which this process was stopped, slept with its machine or wrote a picture is counted as short: the messages
+ * of that time are read before a rank is regarded as lost. */
 static void pass_time(struct farm *farm) {
     double now = farm->transport->clock(farm->transport->context), passed = now - farm->clock;
     farm->clock = now;
@@ -171,7 +171,7 @@ static uint32_t next_tile(struct farm *farm) {
     return farm->from < count ? farm->from : UINT32_MAX;
 }
 
-/* A tile that another rank has is TAKEN here until it comes back. */
+/* A tile of another rank is TAKEN here until it is returned. */
 static bool assign(struct farm *farm, int rank) {
     uint32_t tile = next_tile(farm);
     if (tile == UINT32_MAX)
@@ -199,7 +199,7 @@ static void give_slots(struct farm *farm, int rank) {
         continue;
 }
 
-/* Something has come from this rank. */
+/* A message of this rank was received. */
 static void receive_all(struct farm *farm, int rank) {
     struct peer *peer = &farm->peers[rank];
     static const char text[] = "is heard again";
@@ -270,7 +270,7 @@ static void take_tile(struct farm *farm, int from, const uint8_t *data, size_t s
     memcpy(&pair, data, sizeof pair);
     if (!farm->film || pair.number != farm->number || pair.value >= film_tile_count(farm->film))
         return;
-    /* Of a rank that was silent: a tile that no other rank has got yet is as good as before. */
+    /* From a rank that was silent: a tile that was not assigned to another rank is still useful. */
     enum film_tile state = state_of(farm->film, pair.value);
     if (state == FILM_TILE_DONE || (state != FILM_TILE_LATER && farm->owner[pair.value] != from))
         return;
@@ -384,7 +384,7 @@ bool farm_is_abandoned(const struct farm *farm) {
     return !farm_is_first(farm) && farm->silence > 0 && farm->time - farm->last_heard > PATIENCE * farm->silence;
 }
 
-/* After a silence a tile may be given that is still being made here: it is sent when it is finished, in any case. */
+/* After a silence a tile may be assigned that is still being rendered here: it is sent when it is finished. */
 static void want_tile(struct film *film, uint32_t tile) {
     enum film_tile state = state_of(film, tile);
     if (state != FILM_TILE_TAKEN && state != FILM_TILE_DONE)
@@ -523,7 +523,7 @@ void farm_report(struct farm *farm, const char *line) {
         (void)snprintf(farm->lines[farm->line_count++], LINE_LIMIT, "0 %s", line);
 }
 
-/* Lines of other ranks that the first one did not have itself: the same script error happens on all. */
+/* Lines of other ranks that the first one has not printed itself: the same script error happens on all. */
 static void report_foreign(const struct farm *farm, void (*report)(void *context, const char *line), void *context) {
     for (int i = 0; i < farm->line_count; i++) {
         const char *text = strchr(farm->lines[i], ' ') + 1;
@@ -538,12 +538,12 @@ static void report_foreign(const struct farm *farm, void (*report)(void *context
     }
 }
 
-/* The first rank: until all others have said goodbye or are silent. */
+/* The first rank: waits until all others have reported their end or are silent. */
 static void await_others(struct farm *farm) {
     for (bool all_gone = false; !all_gone; rest(farm)) {
         step_first(farm);
         if (atomic_load(&farm->control->cancel))
-            return; /* the others were interrupted, too, and may be gone without a word */
+            return; /* the others were interrupted, too, and may have ended without a message */
         all_gone = true;
         farm->silent = 0;
         for (int rank = 1; rank < farm->transport->size; rank++) {
@@ -551,7 +551,7 @@ static void await_others(struct farm *farm) {
             farm->silent += farm->peers[rank].silent;
         }
     }
-    /* A silent rank may still read it, when it continues. */
+    /* A silent rank can still read it when it continues. */
     for (int rank = 1; rank < farm->transport->size; rank++)
         send_pair(farm, rank, FARM_END, (uint32_t)farm->silent);
 }

@@ -6,8 +6,8 @@
 #include "render/film.h"
 
 /* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. An EXR picture
- * has them in itself (layers_write_exr), so that nothing is left to do. Depth is
- * written with 16 bits always, the others with as many as the picture. */
+ * contains them (layers_write_exr), so that there is nothing to do. Depth is always written with 16 bits, the others
+ * with the bit depth of the picture. */
 bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error);
 
 /* Light as R, G, B, and the layers as channels with their names: depth.Z, normal.X ... */

@@ -1,6 +1,6 @@
-/* Parts are sorted by the picture they are of; each picture then goes through the output session like one that a scene
- * rendered, so that names, formats and the care for old files are the same. A part is read twice, once to know it and
- * once for its tiles, so that no more than one of them is in memory. */
+/* Parts are sorted by their picture; each picture then goes through the output session like one that a scene rendered,
+ * so that names, formats and the protection of old files are the same. A part is read twice, once for its header and
+ * once for its tiles, so that at most one part is in memory. */
 #include "output/merge.h"
 
 #include "base/mem.h"
@@ -52,7 +52,7 @@ static void list_missing(const struct part *parts, size_t count, char out[256]) 
         (void)snprintf(out + length, 256 - length, " and %u more", missing - shown);
 }
 
-/* That there are as many tiles as the picture has: its size is what a part claims, its film what the tiles fill. */
+/* Checks that there are as many tiles as the picture has: its size is taken from a part, its film from the tiles. */
 static bool check_tiles(const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *picture = &parts[0].picture;
     const struct film film = {.width = picture->width, .height = picture->height, .x0 = picture->x0, .y0 = picture->y0};
@@ -63,7 +63,7 @@ static bool check_tiles(const struct part *parts, size_t count, struct error *er
                                         (unsigned long long)(wanted - tiles));
 }
 
-/* That the parts of one picture belong together and none is missing or there twice. */
+/* Checks that the parts of one picture belong together and none is missing or present twice. */
 static bool check_parts(const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *first = &parts[0].picture;
     for (size_t i = 1; i < count; i++) {
@@ -162,7 +162,7 @@ int merge_run(const struct options *options) {
         if (!read_part(options->scripts[i], &parts[i], &error))
             status = report_error(&output, &error, status);
     }
-    /* A part that cannot be read may be of any picture: nothing is put together without it. */
+    /* A part that cannot be read may belong to any picture: no picture is merged without it. */
     if (status != 0)
         count = 0;
     if (count > 0)

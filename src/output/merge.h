@@ -1,4 +1,4 @@
-/* gray merge: puts the parts that --shard wrote together and writes the pictures. */
+/* gray merge: merges the parts that --shard wrote and writes the pictures. */
 #ifndef GRAY_OUTPUT_MERGE_H
 #define GRAY_OUTPUT_MERGE_H
 

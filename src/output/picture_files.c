@@ -1,5 +1,5 @@
-/* A name from a scene is untrusted: it must end as a picture does, lie in a folder where scenes may have pictures
- * written, and may only replace a picture. A name from the command line is the user's. */
+/* A name from a scene is untrusted: it must have the extension of a picture, be in a folder where scenes may write
+ * pictures, and may only replace a picture. A name from the command line is trusted. */
 #include "output/picture_files.h"
 
 #include "base/error.h"
@@ -90,7 +90,7 @@ static const char *last_part(const char *name) {
 
 enum ending { ENDING_PICTURE, ENDING_NONE, ENDING_OTHER };
 
-/* Old scenes have names such as "frame" and "frame.001": no ending at all. */
+/* Old scenes have names such as "frame" and "frame.001": no extension. */
 static enum ending ending_of(const char *name) {
     static const char *const known[] = {".png", ".pfm", ".hdr", ".exr"};
     const char *dot = strrchr(last_part(name), '.');
@@ -189,7 +189,7 @@ struct named_file {
     const struct file_rules *rules;
 };
 
-/* The one with this number of those that a picture may have. */
+/* The file with this number of those that a picture may have. */
 static bool name_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
                       struct named_file *file, struct error *error) {
     const struct options *options = files->options;
@@ -213,7 +213,7 @@ static bool name_file(const struct picture_files *files, const char *name, uint3
     return true;
 }
 
-/* One of them: that it can be written, and is none of those before it, nor the checkpoint. */
+/* Checks that one of them can be written, and differs from those before it and the checkpoint. */
 static bool check_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
                        const char *checkpoint, struct error *error) {
     struct named_file file, other;

@@ -1,5 +1,5 @@
-/* The files of pictures: which name a scene or -o gives a picture, which files are named after it, and whether they can
- * be written, decided before anything is rendered. docs/security.md has the rules as a table. */
+/* The files of pictures: the name of a picture from a scene or -o, the names of its further files, and whether they can
+ * be written, decided before rendering. docs/security.md has the rules as a table. */
 #ifndef GRAY_OUTPUT_PICTURE_FILES_H
 #define GRAY_OUTPUT_PICTURE_FILES_H
 
@@ -12,20 +12,20 @@
 
 enum { NAME_LIMIT = 4096 };
 
-/* One for each run. picture_files_destroy releases what it holds. */
+/* One for each run. picture_files_destroy releases its memory. */
 struct picture_files {
     const struct options *options; /* not owned */
-    struct path_policy folders;    /* where scripts may have pictures written: the working directory, --allow-write */
-    struct error folders_error;    /* why there may be fewer */
+    struct path_policy folders; /* the folders where scripts may write pictures: the working directory, --allow-write */
+    struct error folders_error; /* why some are missing */
     struct file_guard guard;
     struct file_interrupt interrupt; /* descriptor -1: none */
     struct file_quota quota;         /* --picture-bytes: of all files of pictures */
     struct file_rules picture;       /* the picture itself */
-    struct file_rules beside;        /* layers, -write-*, --partial: as the picture, but never in place */
+    struct file_rules beside;        /* layers, -write-*, --partial: as the picture, but never written in place */
     struct file_rules part;          /* --shard */
     struct file_rules checkpoint;    /* --checkpoint auto */
     struct file_rules named_checkpoint;
-    struct file_rules saved; /* views and edits saved from the window: replace nothing */
+    struct file_rules saved; /* views and edits saved from the window: never replace a file */
     bool ending_noticed;
 };
 
@@ -34,18 +34,18 @@ void picture_files_destroy(struct picture_files *files);
 /* A file that this run reads or uses for another purpose is never replaced, unless it is a picture of this run.
  * written: a script has opened it for writing, so it is no such picture any more. */
 void picture_files_keep(struct picture_files *files, struct file_identity identity, bool written);
-/* A picture that an earlier run wrote and this one leaves as it is: counts as written by this run. */
+/* A picture that an earlier run wrote and this one does not change: treated as written by this run. */
 void picture_files_own(struct picture_files *files, const char *name);
 
 /* The name of picture `number` (from 1). notice: a line to report, or empty. */
 bool picture_files_name(struct picture_files *files, const char *from_script, unsigned number, char name[NAME_LIMIT],
                         char notice[NAME_LIMIT + 128], struct error *error);
-/* What is written for it: the picture, or with --shard the part of it. */
+/* The name of its main file: the picture, or with --shard its part. */
 bool picture_files_written(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                            struct error *error);
 /* dir/foo.png with prefix X is dir/Xfoo.png. */
 bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error);
-/* The name of the checkpoint, which the first picture decides under --checkpoint auto. */
+/* The name of the checkpoint; with --checkpoint auto it is that of the first picture. */
 bool picture_files_checkpoint(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                               struct error *error);
 /* Whether every file of the picture can be written: see file_output_check. layers: a mask of enum aov. checkpoint: its

@@ -1,4 +1,4 @@
-/* A film becomes files. Rows are toned while they are packed, so that no second picture is in memory. */
+/* Writes a film as files. Rows are tone-mapped while they are packed, so that there is no second picture in memory. */
 #include "output/picture_write.h"
 
 #include "image/exr.h"
@@ -42,7 +42,7 @@ static void row_linear(void *context, uint32_t y, float *line) {
     film_row_linear(rows->film, rows->view, y, line);
 }
 
-/* Finished tiles one below the other: what packing the picture will take, before it is there. */
+/* Packs some finished tiles, to estimate how long packing the picture will take. */
 enum { PACKING_SAMPLE_TILES = 16 };
 struct packing_sample {
     const struct film *film;
@@ -103,7 +103,7 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     return png_write_from(target, &source, pool, error);
 }
 
-/* Threads for the time of writing: there are none while a process is started. NULL: this one alone. */
+/* Threads for writing only: there must be none while a process is started. NULL: this thread alone. */
 static struct pool *writing_pool(const struct options *options, const struct picture *picture, bool denoises) {
     const struct picture_request *request = &picture->request;
     uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);

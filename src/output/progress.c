@@ -1,4 +1,4 @@
-/* The time left is that until the end that the render foretells (render/time_estimate.h), and that of writing. The
+/* The remaining time is the estimate for rendering (render/time_estimate.h) plus that for writing. The
  * bar is erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "output/progress.h"
@@ -15,8 +15,8 @@
 
 enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 
-/* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on tiles
- * that are done: it depends on the picture. */
+/* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on finished
+ * tiles: it depends on the picture. */
 static const double usual_writing = 5e-8;
 
 double progress_clock(void) {
@@ -33,7 +33,7 @@ void progress_init(struct progress *progress, enum progress_mode mode, bool quie
         progress->mode = quiet ? PROGRESS_NONE : isatty(STDERR_FILENO) ? PROGRESS_BAR : PROGRESS_LINES;
 }
 
-/* Output of scenes to the same stream has a line of its own. */
+/* Output of scenes to the same stream starts on a new line. */
 static void begin_line(const struct progress *progress) {
     if (progress->stream)
         error_stream_begin_line(progress->stream);
@@ -46,16 +46,16 @@ void progress_hide(struct progress *progress) {
     progress->columns = 0;
 }
 
-/* One column less than the terminal has: a full line would wrap. */
+/* One column less than the terminal has: a full line would be broken. */
 static int terminal_columns(void) {
     struct winsize size;
     int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col - 1 : 79;
     return columns < COLUMNS_LIMIT ? columns : COLUMNS_LIMIT - 1;
 }
 
-/* How far the picture is. Where no estimate is wanted, tiles are counted. */
+/* The finished share of the picture. Without an estimate, tiles are counted. */
 struct state {
-    double elapsed, share, left; /* share and left: negative while they are not known */
+    double elapsed, share, left; /* share and left: negative while unknown */
     uint32_t done, count;
 };
 
@@ -87,7 +87,7 @@ static void short_name(const char *name, size_t shown, char *out, size_t size) {
     size_t length = strlen(name), used = 0;
     const char *at = length > shown ? name + length - shown : name;
     while (((unsigned char)*at & 0xc0) == 0x80 && at > name)
-        at++; /* not from the middle of a character */
+        at++; /* not inside a character */
     for (size_t taken; *at && used + 8 < sizeof clean; at += taken)
         used += text_clean_piece(at, clean + used, &taken);
     clean[used] = '\0';
@@ -97,7 +97,7 @@ static void short_name(const char *name, size_t shown, char *out, size_t size) {
 static void draw_bar(struct progress *progress, const struct state *state) {
     char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], left[80] = "", elapsed[48];
     double share = state->share > 0 ? state->share : 0;
-    /* In a narrow terminal the time left is worth more than a long bar. */
+    /* In a narrow terminal the remaining time is more useful than a long bar. */
     int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
     memset(cells, '.', (size_t)bar);
     memset(cells, '#', (size_t)(share * bar));
@@ -182,8 +182,8 @@ bool progress_wants_estimate(const struct progress *progress) {
     return progress->mode != PROGRESS_NONE;
 }
 
-/* Ten times a second is smooth; lines are for logs: the first after ten seconds, then one for a tenth of the time so
- * far. */
+/* Ten times a second is smooth; lines are for logs: the first after ten seconds, then one whenever the time has grown
+ * by a tenth. */
 static double pause_of(const struct progress *progress, double now) {
     switch (progress->mode) {
     case PROGRESS_BAR:

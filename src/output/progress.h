@@ -13,21 +13,21 @@
 struct progress {
     struct error_stream *stream; /* standard error, where scenes write to it, too; not owned */
     enum progress_mode mode;     /* never PROGRESS_AUTO */
-    const char *name;            /* of the picture; NULL while there is none */
+    const char *name;            /* of the picture; NULL if there is none */
     uint32_t width, height;
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last reported */
     bool printed;        /* a line was printed */
     double writing;      /* seconds of one core for a pixel of the file */
     bool tried;          /* that was measured; else it is a guess */
-    bool known;          /* that tiles have begun was reported */
-    double share;        /* that was reported; it never falls */
-    int columns;         /* that the bar on the screen covers; 0: none is there */
+    bool known;          /* the start of tiles was reported */
+    double share;        /* the reported share; it never decreases */
+    int columns;         /* columns of the bar on the screen; 0: no bar */
 };
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
 
-double progress_clock(void);           /* seconds of a clock that never jumps */
+double progress_clock(void);           /* seconds of a monotonic clock */
 double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
@@ -36,13 +36,13 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
 /* count 0: the scene is still being built. Reports at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
                      const struct progress_estimate *progress_estimate);
-/* It is time to measure what writing the file will take: enough of it is there, and an estimate is shown. */
+/* Whether to measure the time for writing the file now: enough tiles are finished, and an estimate is shown. */
 bool progress_wants_packing_time(const struct progress *progress);
-/* Processor seconds for so many pixels; negative: it could not be measured. */
+/* The processor seconds for this many pixels; negative: it could not be measured. */
 void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels);
 /* Whether an estimate is shown. */
 bool progress_wants_estimate(const struct progress *progress);
-/* Takes the bar off the screen, so that a line can be printed; the next update draws it again. */
+/* Erases the bar, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);
 

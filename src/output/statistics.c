@@ -1,4 +1,4 @@
-/* One list of figures serves both forms, so they cannot differ. */
+/* Both forms use the same list of numbers, so they cannot differ. */
 #include "output/statistics_internal.h"
 
 #include "session/text.h"

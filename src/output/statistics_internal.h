@@ -1,4 +1,4 @@
-/* What a picture cost, as a table or as one JSON line. */
+/* The statistics of a picture, as a table or as one JSON line. */
 #ifndef GRAY_OUTPUT_STATISTICS_INTERNAL_H
 #define GRAY_OUTPUT_STATISTICS_INTERNAL_H
 

@@ -1,5 +1,6 @@
-/* Half blocks: U+2580, its upper half in the foreground's colour, its lower half in the background's. Sixels: six rows
- * at a time, for each of 6 x 6 x 6 colours one pass over the row; an ordered dither (Bayer) hides that they are few. */
+/* Half blocks: U+2580, with the foreground colour in its upper half and the background colour in its lower half.
+ * Sixels: six rows at a time, for each of 6 x 6 x 6 colours one pass over the row; an ordered dither (Bayer) hides the
+ * small number of colours. */
 #define _GNU_SOURCE
 #include "output/terminal.h"
 
@@ -14,14 +15,14 @@
 #include <termios.h>
 #include <unistd.h>
 
-enum { KITTY_PIECE = 4096 /* letters of base64 a command */, PIXELS_MAX = 1600 };
+enum { KITTY_PIECE = 4096 /* characters of base64 in a command */, PIXELS_MAX = 1600 };
 
 static bool variable_has(const char *name, const char *word) {
     const char *value = getenv(name);
     return value && strstr(value, word);
 }
 
-/* The terminal's answer to "what are you" lists 4 among its features where it draws sixels. */
+/* The reply to a request for the terminal's attributes contains 4 if it draws sixels. */
 static bool answers_sixel(void) {
     struct termios before, raw;
     char answer[64];
@@ -101,7 +102,7 @@ void terminal_blocks(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t 
     }
 }
 
-/* RFC 4648. Three bytes are four letters; the last ones are filled up with '='. */
+/* RFC 4648. Three bytes become four characters; the last group is padded with '='. */
 static void base64(FILE *stream, const uint8_t *bytes, size_t size) {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (size_t i = 0; i < size; i += 3) {
@@ -129,7 +130,7 @@ void terminal_kitty(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t h
         (void)fputc('\n', stream);
 }
 
-/* Which of 6 steps a byte is shown by at this place: the fraction decides against the threshold of the place. */
+/* The one of 6 levels that shows a byte at this pixel: the fraction is compared with the threshold of the pixel. */
 static int dithered(int byte, uint32_t x, uint32_t y) {
     static const int bayer[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
     int scaled = byte * 5, step = scaled / 255, rest = scaled % 255;
@@ -187,7 +188,7 @@ void terminal_sixel(FILE *stream, const uint8_t *rgb, uint32_t width, uint32_t h
     (void)fputs("\033\\\n", stream);
 }
 
-/* The largest size of the picture's proportions within these limits, at least 1 x 1. */
+/* The largest size with the picture's aspect ratio within these limits, at least 1 x 1. */
 static void fit(const struct film *film, double widest, double highest, uint32_t *width, uint32_t *height) {
     double scale = fmin(1, fmin(widest / film->width, highest / film->height));
     *width = (uint32_t)fmax(1, floor(film->width * scale));

@@ -1,6 +1,6 @@
-/* Reading arguments: the first paragraph of every binding function, driven by the table. It may raise, so it owns
- * nothing: arrays go to the arena of the call. Tables are read raw, so that no metamethod runs in between and a million
- * vertices take a fraction of a second. NaN, infinities and numbers beyond NUMBER_LIMIT stop here. */
+/* Reads the arguments of every gr function as the table of functions describes them. It may raise a Lua error, so it
+ * owns no memory: arrays are in the arena of the call. Tables are read without metamethods, so that a million vertices
+ * take a fraction of a second. NaN, infinities and numbers beyond NUMBER_LIMIT are errors here. */
 #include "base/unreachable.h"
 #include "math/range.h"
 #include "render/settings.h"
@@ -39,7 +39,7 @@ _Noreturn static void wrong_type(struct script_context *c, const struct argument
 /* "a > 0 and b < 180" in words. */
 static void range_words(const struct script_parameter *p, char out[128]) {
     const char *above = p->flags & LOW_OPEN ? ">" : ">=", *below = p->flags & HIGH_OPEN ? "<" : "<=";
-    assert(isfinite(p->low)); /* every range has a beginning; a test looks at all of them */
+    assert(isfinite(p->low)); /* every range has a lower limit; a test checks all of them */
     if (!isfinite(p->high))
         snprintf(out, 128, "%s %.15g", above, p->low);
     else if (p->flags & (LOW_OPEN | HIGH_OPEN))
@@ -99,7 +99,7 @@ static void read_tuple(struct script_context *c, int index, struct argument_path
         if (lua_rawgeti(L, index, k + 1) == LUA_TNUMBER && argument_path.parameter->low == 0 &&
             argument_path.parameter->high == 0 && number_in_range(out[k] = lua_tonumber(L, -1)) &&
             !(argument_path.parameter->flags & NOT_ZERO)) {
-            lua_pop(L, 1); /* the common case, without the cost of naming the place */
+            lua_pop(L, 1); /* the common case, without the cost of the argument path */
             continue;
         }
         struct argument_path inner = argument_path;
@@ -132,7 +132,8 @@ static struct vec3 read_interval(struct script_context *c, int index, const stru
     return (struct vec3){x[0], x[1], 0};
 }
 
-/* Strings stay where they are: on the stack or in the table of the call. Numbers count as text, as everywhere in Lua.
+/* Strings are not copied: they remain on the stack or in the table of the call. Numbers count as text, as everywhere in
+ * Lua.
  */
 static const char *read_text(struct script_context *c, int index, const struct argument_path *argument_path) {
     lua_State *L = c->lua;
@@ -161,7 +162,7 @@ static const char *read_file_name(struct script_context *c, int index, const str
     return text;
 }
 
-/* Index of the word among the choices, letters compared as they are (axes: in either case). */
+/* Index of the word among the choices; upper and lower case differ, except for axes. */
 enum { LONG_LIST = 8 };
 static int read_choice(struct script_context *c, int index, const struct argument_path *argument_path) {
     const struct script_parameter *p = argument_path->parameter;
@@ -198,7 +199,7 @@ static int read_choice(struct script_context *c, int index, const struct argumen
     context_raise(c, "%s must be %s, not '%.100s'", argument_path_text(argument_path, words), list, text);
 }
 
-/* The handle of that type, or NULL for a ghost. */
+/* The handle of that type, or NULL for a ghost (a feature that this version does not have, see context.c). */
 static void *read_handle(struct script_context *c, int index, const struct argument_path *argument_path,
                          enum handle_type type) {
     const struct handle *handle = handle_at(c->lua, index);
@@ -227,7 +228,7 @@ static void *call_array(struct script_context *c, size_t count, size_t size) {
     return array;
 }
 
-/* `{a, nil, b}` may count as one entry or as three: an entry beyond a hole is found and the hole named. */
+/* `{a, nil, b}` may count as one entry or as three: an entry after a nil is found, and the message names the nil. */
 static void check_holes(struct script_context *c, int index, const struct argument_path *argument_path,
                         uint32_t length) {
     lua_State *L = c->lua;
@@ -252,7 +253,7 @@ static void read_list_of_handles(struct script_context *c, int index, struct arg
             context_raise(c, "%s[%u] is nil", argument_path.parameter->name, (unsigned)k + 1);
         void *pointer = read_handle(c, -1, &argument_path, is_lights ? HANDLE_LIGHT : HANDLE_NODE);
         lua_pop(L, 1);
-        if (!pointer && !(argument_path.parameter->flags & REST)) /* a ghost; where places count it is NULL */
+        if (!pointer && !(argument_path.parameter->flags & REST)) /* a ghost; NULL in lists whose indices matter */
             continue;
         if (is_lights)
             lights[value->count++] = *(const struct scene_light *)pointer;
@@ -391,7 +392,7 @@ static void read_numbers(struct script_context *c, int index, struct argument_pa
     }
 }
 
-/* Lists of numbers, or of pairs, of any lengths, one after the other: count first, then fill. */
+/* Several lists of numbers or pairs, stored one after the other: they are counted first, then filled. */
 static void read_rows(struct script_context *c, int index, struct argument_path argument_path, bool pairs,
                       struct script_value *value) {
     lua_State *L = c->lua;
@@ -426,7 +427,7 @@ static void read_rows(struct script_context *c, int index, struct argument_path 
     value->pairs = pairs ? (const double(*)[2])(void *)numbers : NULL;
 }
 
-/* How the photons of caustics are asked for: a number of them, or a table of its own. */
+/* The photons of caustics: their number, or a table of settings. */
 static void read_caustics(struct script_context *c, int index, const struct argument_path *argument_path,
                           struct script_value *value) {
     static const struct script_parameter photons = {
@@ -461,7 +462,7 @@ static void read_caustics(struct script_context *c, int index, const struct argu
     lua_pop(L, 2);
 }
 
-/* The image of a texture that is nothing else, or NULL. */
+/* The image of a texture that consists of one image only, or NULL. */
 static struct image *image_of(const struct script_texture *texture) {
     const struct texture_image *image = texture_as_image(texture->texture);
     return image ? image->image : NULL;
@@ -626,7 +627,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
     UNREACHABLE("a parameter of no kind");
 }
 
-/* Reads one parameter unless it is nil. False: the whole call is to be left undone. */
+/* Reads one parameter unless it is nil. False: the whole call has no effect. */
 static bool read_parameter(struct script_context *c, int index, const struct script_parameter *p,
                            struct script_value *value) {
     if (lua_isnoneornil(c->lua, index) || read_value(c, index, p, value))
@@ -635,7 +636,8 @@ static bool read_parameter(struct script_context *c, int index, const struct scr
     return (p->flags & GHOST_IS_NONE) != 0;
 }
 
-/* What a value can be taken for, by its type alone: bits. Texts that read as numbers are both, a ghost is any handle.
+/* The argument types that a value can have, judged by its Lua type alone: bits. Strings that are numbers are both, a
+ * ghost is any handle.
  */
 enum {
     LIKE_NUMBER = 1 << HANDLE_TYPES,
@@ -688,12 +690,13 @@ static bool resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
         [KIND_ROWS] = LIKE_TABLE,
         [KIND_CURVES] = LIKE_TABLE,
     };
-    assert(wanted[kind]); /* every kind has its line */
+    assert(wanted[kind]); /* every kind has a case */
     int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }
 
-/* How well the arguments fit a form: how many of the first ones do, then how near their number is to the form's. */
+/* How well the arguments match a form: how many of the first ones match, then the difference of their number from the
+ * form's. */
 struct fit {
     int leading, difference;
 };
@@ -715,7 +718,7 @@ static bool fits_better(struct fit a, struct fit b) {
     return a.leading != b.leading ? a.leading > b.leading : a.difference < b.difference;
 }
 
-/* The first argument fits no form: say what any of them would take. */
+/* The first argument matches no form: the message lists what the forms accept. */
 _Noreturn static void no_form_fits(struct script_context *c, const struct script_function *function, int first) {
     char names[256] = "", words[512] = "";
     for (int k = 0; k < FORM_LIMIT && function->forms[k]; k++) {
@@ -741,7 +744,7 @@ _Noreturn static void no_form_fits(struct script_context *c, const struct script
     context_raise(c, "%s must be %s, not %s", names, words, value_words(c->lua, first));
 }
 
-/* Nodes behind a positional form. Returns the place of the first argument that is none. */
+/* Nodes after a positional form. Returns the index of the first argument that is not a node. */
 static int read_rest(struct script_context *c, const struct script_parameter *p, int argument_path,
                      struct script_value *value) {
     lua_State *L = c->lua;
@@ -776,7 +779,7 @@ static bool read_positional(struct script_context *c, const struct script_functi
     int index = 0, argument_path = first;
     bool optional;
     for (const char *form = best; form_next(function, &form, &index, &optional); argument_path++) {
-        /* Messages about the arguments after it contain the name; no method takes one, a test looks. */
+        /* Messages about the arguments after it contain the name; no method has one, which a test checks. */
         if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, argument_path))
             c->subject =
                 read_text(c, argument_path, &(struct argument_path){.parameter = &function->parameters[index]});
@@ -800,7 +803,7 @@ static bool read_positional(struct script_context *c, const struct script_functi
     return true;
 }
 
-/* Entries without names, if there are any. */
+/* Entries without names, if any. */
 static bool read_unnamed(struct script_context *c, const struct script_function *function, int table,
                          struct script_value *args) {
     int index;
@@ -839,7 +842,7 @@ static bool read_named(struct script_context *c, const struct script_function *f
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         lua_pushstring(L, p->name);
-        bool may_miss = (p->flags & OPTIONAL) || listed; /* nodes in a list: none needs a name of its own */
+        bool may_miss = (p->flags & OPTIONAL) || listed; /* nodes in a list: none needs a field name */
         if (lua_rawget(L, table) == LUA_TNIL && !may_miss)
             context_raise(c, "%s is missing", p->name);
         if (!read_parameter(c, value, p, &args[k]))
@@ -849,7 +852,7 @@ static bool read_named(struct script_context *c, const struct script_function *f
     return true;
 }
 
-/* One plain table without an entry 1 holds named fields. Of the methods only node:render has that form: the others take
+/* One plain table without an entry 1 holds named fields. Of the methods only node:render accepts it: the others take
  * tuples or handles. */
 static bool is_table_form(lua_State *L, const struct script_function *function, int first) {
     if (lua_gettop(L) != first || !lua_istable(L, first))

@@ -1,5 +1,5 @@
-/* The middle paragraphs of the gr functions: plain C that cannot raise. The enums number the parameters in table.c;
- * shapes and lights are whole, with their parameters and their rows, in gr_shapes.c, gr_swept.c and gr_lights.c. */
+/* The C functions behind the gr functions; they cannot raise Lua errors. The enums number the parameters in table.c;
+ * gr_shapes.c, gr_swept.c and gr_lights.c also contain the parameters and rows of their functions. */
 #ifndef GRAY_SCRIPT_BINDINGS_INTERNAL_H
 #define GRAY_SCRIPT_BINDINGS_INTERNAL_H
 
@@ -106,12 +106,12 @@ enum {
 enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX, MARBLE_COUNT };
 enum { WOOD_MATERIAL, WOOD_F, WOOD_DENSITY, WOOD_INTERP, WOOD_MIX, WOOD_COUNT };
 enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_COUNT };
-/* How a picture is looked up: these fields come together. */
+/* How an image is looked up: these fields always follow one another. */
 enum { LOOKUP_FILTER, LOOKUP_WRAP, LOOKUP_FLIP_U, LOOKUP_TILES, LOOKUP_OFFSET, LOOKUP_COUNT };
 enum { TEXTURE_FILE, TEXTURE_LOOKUP };
 enum { BUMP_FILE, BUMP_LOOKUP, BUMP_AMOUNT = BUMP_LOOKUP + LOOKUP_COUNT, BUMP_KIND };
 enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOKUP_COUNT };
-/* What these parameters may choose. */
+/* The choices of these parameters. */
 #define HIGHLIGHTS(X) X(HIGHLIGHT_PHONG, "phong") X(HIGHLIGHT_BLINN, "blinn")
 #define IMAGE_CHANNELS(X) X(INPUT_KD, "kd") X(INPUT_KS, "ks") X(INPUT_EMISSION, "emission") X(INPUT_OPACITY, "opacity")
 #define BUMP_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
@@ -119,25 +119,25 @@ enum { BUMP_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, BUMP_OVER_KIND };
 enum { FRESNEL_MATERIAL, FRESNEL_COUNT };
 binding gr_material, gr_rr_material, gr_marble, gr_wood, gr_td_cube, gr_td_sphere, gr_fresnel, gr_texture;
 binding gr_bump, gr_image_material, gr_bump_material;
-/* What a script gave as an image, from the store or from its file; NULL and error. */
+/* The image of an argument, from the store or from its file; NULL with an error. */
 struct image *gr_find_image(struct script_context *context, const struct script_value *value, struct error *error);
 
-/* What node:set_texture keeps: an image as its texture says, else mip-mapped and repeated; NULL and error. */
+/* The image for node:set_texture: looked up as its texture says, else mip-mapped and repeated; NULL with an error. */
 const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,
                                      struct error *error);
-/* What node:set_bump keeps: a result of gr.bump, or any other image with the default height. */
+/* The bump map for node:set_bump: a result of gr.bump, or any other image with the default height. */
 const struct bump *read_bump_values(struct script_context *context, const struct script_value *value,
                                     struct error *error);
 
 /* gr_textures.c */
-/* What a script holds of a texture; NULL and error. */
+/* The handle of a texture; NULL with an error. */
 struct script_texture *gr_keep_texture(struct script_context *context, const struct script_texture *value,
                                        struct error *error);
-/* The texture that a script gave for an input, or that of its number or colour; NULL and error. */
+/* The texture of an input, or a constant texture of its number or colour; NULL with an error. */
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error);
 
-/* gr_environment.c; the fields of the sun come together, counted from SUN_DIRECTION */
+/* gr_environment.c; the fields of the sun follow one another from SUN_DIRECTION on */
 enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
@@ -156,7 +156,7 @@ enum { FOG_PROFILE_TABLE = FOG_OWN };
 enum { FOG_CORNER = FOG_OWN, FOG_SIZE, FOG_CELLS, FOG_DENSITIES };
 binding gr_fog, gr_linear_fog, gr_height_fog, gr_fog_profile, gr_fog_grid;
 
-/* Every light begins with these; fields of fading and of lamps only where the kind has them. */
+/* Every light has these first; fields of fading and of lamps only where the kind has them. */
 enum {
     LIGHT_COLOUR,
     LIGHT_INCLUDE,
@@ -167,9 +167,9 @@ enum {
     LIGHT_EMISSION,
     LIGHT_SAMPLES,
     LIGHT_VISIBLE,
-    LIGHT_OWN /* the first field of the kind's own */
+    LIGHT_OWN /* the first field of the kind itself */
 };
-/* gr_lights.c; the other lights are there whole, with their parameters and their rows. */
+/* gr_lights.c; the other lights are there, with their parameters and rows. */
 enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
 enum { SUNLIGHT_SUN = LIGHT_EXCLUDE + 1 };
 binding gr_directional_light;

@@ -1,4 +1,4 @@
-/* Old Lua: what scripts of the days of 5.0 and 5.1 use and 5.4 no longer has (Lua reference manuals 5.0 to 5.4,
+/* Functions of Lua 5.0 and 5.1 that 5.4 no longer has (Lua reference manuals 5.0 to 5.4,
  * "Changes since the previous version"). Not possible: the implicit table `arg` of vararg functions. */
 #include "script/context_internal.h"
 
@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* tostring(3.0) is "3", as it was; so are print and string.format('%s'), which ask the same metamethod. */
+/* tostring(3.0) is "3", as in Lua 5.1; so are print and string.format('%s'), which use the same metamethod. */
 static int number_text(lua_State *L) {
     lua_Number x = lua_tonumber(L, 1);
     char text[64];
@@ -27,7 +27,7 @@ static int table_length(lua_State *L) {
     return 1;
 }
 
-/* Lengths have followed the entries since 5.1. */
+/* Since 5.1 the length of a table is found from its entries. */
 static int table_set_length(lua_State *L) {
     lua_settop(L, 1);
     return 1;
@@ -103,8 +103,8 @@ static int math_ldexp(lua_State *L) {
     return 1;
 }
 
-/* math.randomseed without arguments would take the time: here it starts the numbers again. Floats count as their whole
- * part, as they did. Upvalue 1: Lua's own. */
+/* math.randomseed without arguments would use the time: here it restarts the sequence. Floats are truncated, as in
+ * Lua 5.1. Upvalue 1: Lua's own function. */
 static int math_seed(lua_State *L) {
     lua_Integer seed = (lua_Integer)context_of(L)->options->seed, second = 0;
     if (!lua_isnoneornil(L, 1)) {
@@ -122,7 +122,7 @@ static int math_seed(lua_State *L) {
     return 0;
 }
 
-/* Cuts the float at `index` down to a whole number, toward zero, as C's conversion did. */
+/* Truncates the float at `index` to a whole number, toward zero, as a C conversion does. */
 static void make_whole(lua_State *L, int index) {
     if (lua_type(L, index) != LUA_TNUMBER || lua_isinteger(L, index))
         return;
@@ -177,7 +177,7 @@ static int load_string(lua_State *L) {
     return lua_gettop(L);
 }
 
-/* The upvalue of the function at `index` that is its _ENV; 0 when it uses no globals. */
+/* The index of the upvalue _ENV of the function at `index`; 0 if it uses no globals. */
 static int environment_upvalue(lua_State *L, int index) {
     const char *name;
     for (int k = 1; (name = lua_getupvalue(L, index, k)) != NULL; k++) {
@@ -188,8 +188,8 @@ static int environment_upvalue(lua_State *L, int index) {
     return 0;
 }
 
-/* Gives the function at `function` a variable _ENV of its own that holds the table on top of the stack; pops the table.
- * Functions that shared the old one keep it. */
+/* Gives the function at `function` its own variable _ENV with the table on top of the stack as value; pops the table.
+ * Functions that shared the old variable keep it. */
 static void set_environment(lua_State *L, int function) {
     int k = environment_upvalue(L, function);
     if (k == 0) {
@@ -241,7 +241,7 @@ static int environment_set(lua_State *L) {
     return 1;
 }
 
-/* package.seeall: names that are not in the module are looked for among the globals. */
+/* package.seeall: names that are not in the module are looked up in the globals. */
 static int see_all(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (!lua_getmetatable(L, 1)) {
@@ -254,7 +254,7 @@ static int see_all(lua_State *L) {
     return 0;
 }
 
-/* module(name, ...): the table package.loaded[name] (a new one if need be, reachable as a global of that dotted name)
+/* module(name, ...): the table package.loaded[name] (created if necessary, and stored as a global of that dotted name)
  * becomes the environment of the calling chunk; the further arguments are called with it. */
 static int module_begin(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
@@ -276,7 +276,7 @@ static int module_begin(lua_State *L) {
                 lua_pushvalue(L, -2);
                 lua_rawset(L, -5);
             }
-            lua_replace(L, -3); /* the inner table takes the place of the outer */
+            lua_replace(L, -3); /* continues with the inner table */
             lua_pop(L, 1);
             part += length + (part[length] == '.');
         }
@@ -356,7 +356,7 @@ void compat_open(lua_State *L) {
     lua_pushcclosure(L, math_seed, 1);
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "randomseed");
-    lua_call(L, 0, 0); /* the numbers start from the seed of the command line */
+    lua_call(L, 0, 0); /* random numbers start from the seed of the command line */
     lua_pop(L, 1);
 
     lua_pushinteger(L, 0);

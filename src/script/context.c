@@ -1,5 +1,6 @@
-/* Places, warnings and errors of a running script. A place is the nearest Lua function on the stack with a known line,
- * so that gr functions called through pcall or other C functions still name the script's line. */
+/* Source positions, warnings and errors of a running script. The position is that of the nearest Lua function on the
+ * stack with a known line, so that gr functions called through pcall or other C functions still name the script's line.
+ */
 #include "script/context_internal.h"
 
 #include <assert.h>
@@ -30,13 +31,13 @@ const char *function_title(const struct script_function *function, char out[96])
     return out;
 }
 
-/* "gr.sphere: TEXT (node 'eye')", one line whatever names say. */
+/* "gr.sphere: TEXT (node 'eye')", always one line, even if names contain line ends. */
 static void compose(const struct script_context *context, const char *text, char *out, size_t size) {
     char title[96] = "";
     if (context->function)
         function_title(context->function, title);
     size_t used = (size_t)snprintf(out, size, "%s%s%s", title, context->function ? ": " : "", text);
-    assert(used < size); /* there is room for a title and the longest text */
+    assert(used < size); /* large enough for a title and the longest text */
     if (context->subject)
         snprintf(out + used, size - used, " (node '%.200s')", context->subject);
     for (char *end = out; (end = strpbrk(end, "\n\r"));)
@@ -89,7 +90,7 @@ void context_raise(struct script_context *context, const char *format, ...) {
     raise_text(context, line);
 }
 
-/* The value says nothing: C functions that a script has put into __close are called with it. */
+/* The value has no meaning: C functions that a script has stored in __close are called with it. */
 void context_raise_fatal(lua_State *L) {
     lua_pushnil(L);
     lua_error(L);
@@ -115,9 +116,9 @@ void context_raise_no_memory(struct script_context *context) {
     context_raise_error(context, &error);
 }
 
-/* Handles: what a script holds of a node, material, light or texture. A userdata with a tag and a pointer into the
- * scene's arena, without finalizer: the scene outlives the Lua state. A ghost replaces what this version does not have;
- * it exists with --lenient only, is accepted everywhere and does nothing. */
+/* Handles: the Lua values for nodes, materials, lights and textures. A handle is a userdata with a tag and a pointer
+ * into the scene's arena, without finalizer: the scene outlives the Lua state. A ghost is the handle of an object that
+ * this version does not support; it exists with --lenient only, is accepted everywhere and has no effect. */
 
 #define HANDLE_NAME(type, name, words) [type] = (name),
 #define HANDLE_WORDS(type, name, words) [type] = (words),
@@ -144,7 +145,7 @@ const struct handle *handle_at(lua_State *L, int index) {
     const struct handle *handle = lua_touserdata(L, index);
     if (!handle)
         return NULL;
-    /* Scripts get no light userdata, and everybody's others have metatables. */
+    /* Scripts get no light userdata, and all other userdata have metatables. */
     bool has_metatable = lua_getmetatable(L, index);
     assert(has_metatable);
     (void)has_metatable;
@@ -183,10 +184,10 @@ const char *value_words(lua_State *L, int index) {
     }
 }
 
-/* tostring(handle): no addresses, so that what a script prints is the same every time. */
+/* tostring(handle): without an address, so that a script always prints the same. */
 static int handle_text(lua_State *L) {
     const struct handle *handle = handle_at(L, 1);
-    assert(handle); /* no script gets at the metatable */
+    assert(handle); /* scripts cannot reach the metatable */
     if (handle->type == HANDLE_NODE)
         lua_pushfstring(L, "node '%s'", ((const struct node *)handle->pointer)->name);
     else
@@ -200,7 +201,7 @@ void handles_open(lua_State *L) {
         lua_createtable(L, 0, 4);
         lua_pushstring(L, type_names[type]);
         lua_setfield(L, -2, "__name");
-        lua_pushstring(L, type_names[type]); /* what getmetatable shows; setmetatable is refused */
+        lua_pushstring(L, type_names[type]); /* the result of getmetatable; setmetatable is refused */
         lua_setfield(L, -2, "__metatable");
         lua_pushcfunction(L, handle_text);
         lua_setfield(L, -2, "__tostring");
@@ -211,7 +212,7 @@ void handles_open(lua_State *L) {
 
 /* "Did you mean": the optimal string alignment form of the Damerau-Levenshtein distance (insert, delete, replace, swap
  * of neighbours), letters compared without case. A suggestion is made when at most a third of the word, and at least
- * one letter, has to change. Words longer than WORD_LIMIT are not looked at. */
+ * one letter, has to change. Words longer than WORD_LIMIT are ignored. */
 
 enum { WORD_LIMIT = 40 };
 
@@ -251,7 +252,8 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate) {
     if (a_length > WORD_LIMIT || b_length > WORD_LIMIT)
         return;
     size_t d = distance(suggestion->word, a_length, candidate, b_length);
-    if (d < suggestion->distance) { /* the first of equals stays, so the answer depends on the order of offers alone */
+    if (d < suggestion->distance) { /* the first of equally near words is kept, so the result depends only on the order
+                                       of the candidates */
         suggestion->distance = d;
         suggestion->best = candidate;
     }

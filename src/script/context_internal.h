@@ -1,9 +1,9 @@
-/* What one run of a script carries along: the Lua state, the scene it builds, the host it talks to. Private to
- * src/script.
+/* The state of one run of a script: the Lua state, the scene it builds, the host it calls. Private to src/script.
  *
- * How errors travel. An ordinary error is a Lua error with the complete first line as its string. What a script must
- * not catch (out of memory, cancelled, os.exit) is kept in `fatal` and `ended` while nil is raised; whatever could
- * catch it (pcall, xpcall, coroutine.resume, load ...) is replaced by a version that raises it again (protect.c). */
+ * How errors are raised. An ordinary error is a Lua error with the complete first line as its string. What a script
+ * must not catch (out of memory, cancelled, os.exit) is kept in `fatal` and `ended` while nil is raised; every function
+ * that could catch it (pcall, xpcall, coroutine.resume, load ...) is replaced by a version that raises it again
+ * (protect.c). */
 #ifndef GRAY_SCRIPT_CONTEXT_INTERNAL_H
 #define GRAY_SCRIPT_CONTEXT_INTERNAL_H
 
@@ -31,30 +31,30 @@ enum { PATH_SIZE = 4096, FILE_LIMIT = 1 << 28 };
 enum handle_type { HANDLE_LIST(LIST_MEMBER) };
 enum { HANDLE_TYPES = LIST_COUNT(HANDLE_LIST) };
 
-/* What a userdata of ours holds; no finalizer. The serial gives tables with handles as keys a fixed order. */
+/* The contents of our userdata; no finalizer. The serial gives tables with handles as keys a fixed order. */
 struct handle {
     enum handle_type type;
     uint32_t serial;
     void *pointer;
 };
 
-/* Every file whose text was given to Lua, newest first: Lua shortens long names in messages, these are the full ones.
+/* Every file that Lua has loaded, newest first: Lua shortens long names in messages, these are the full ones.
  */
 struct source_name {
     const char *path;
     struct source_name *next;
 };
 
-/* What the script has used of what it was given (limits.c). */
+/* How much of its limits the script has used (limits.c). */
 struct limits {
-    struct mem_account account; /* of everything allocated for the script; a limit of 0 is none */
+    struct mem_account account; /* of everything allocated for the script; a limit of 0 means no limit */
     struct mem_account *charged_before;
     char memory_words[128];
-    const void *refused_block; /* the request that was refused last: Lua asks again after a collection */
+    const void *refused_block; /* the last request that was refused: Lua repeats it after a garbage collection */
     size_t refused_size;
-    bool memory_out;               /* something was refused: the script ends, unless it is got at once */
-    bool refused_for_good;         /* it was asked for again in vain, or something else was */
-    double time_begun, time_limit; /* seconds of this thread's processor time; a limit of 0 is none */
+    bool memory_out;               /* a request was refused: the script ends, unless its repetition succeeds at once */
+    bool refused_for_good;         /* the repetition, or another request, failed too */
+    double time_begun, time_limit; /* seconds of this thread's processor time; a limit of 0 means no limit */
     uint64_t output, output_limit; /* bytes printed and written */
 };
 
@@ -73,11 +73,11 @@ struct script_context {
     const struct path_policy *path_policy; /* what may be read and written; NULL: everything */
     const struct script_options *options;
     const struct script_host *host;
-    FILE *output, *errors; /* standard output and error of the script, where they are not those of the process */
+    FILE *output, *errors; /* standard output and error of the script, if they differ from those of the process */
     struct scene scene;
     struct arena keep;      /* lives as long as the context */
     struct arena call;      /* arguments of one call */
-    struct arena *out;      /* the caller's: the traceback goes there */
+    struct arena *out;      /* the caller's arena, for the traceback */
     const char *path;       /* the scene as the user named it */
     char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
     struct source_name *sources;
@@ -90,11 +90,11 @@ struct script_context {
     uint32_t change_count, change_room, added, owned;
     struct changed_view *views; /* the newest first */
     bool changes_reported;      /* what was left out */
-    bool number_repaired;       /* the notice about ".0" was given */
+    bool number_repaired;       /* the notice about ".0" was printed */
     struct error fatal;
-    bool ended; /* os.exit was called and all is well */
+    bool ended; /* os.exit was called with success */
     const char *traceback;
-    struct error failure; /* what the message handler made of a script error */
+    struct error failure; /* the message of a script error, made by the message handler */
 };
 
 enum { WARNED_EXTRA = 1, WARNED_OTHER = 2 };
@@ -109,20 +109,22 @@ void context_warn_once(struct script_context *context, unsigned bit, const char 
     __attribute__((format(printf, 3, 4)));
 /* "gr.sphere" or "node:scale". */
 const char *function_title(const struct script_function *function, char out[96]);
-/* The parameter that takes whatever number of nodes, or NULL; its place among the parameters. */
+/* The parameter that takes any number of nodes, or NULL; and its index. */
 const struct script_parameter *function_rest(const struct script_function *function, int *index);
-/* An unknown field is an error: the first in byte order, so that the message is the same every time. */
+/* An unknown field is an error: the first one in byte order, so that the message is always the same. */
 void context_check_fields(struct script_context *context, const struct script_function *function, int table);
 
 /* Raise "scene.lua:12: gr.sphere: TEXT (node 'x')". */
 _Noreturn void context_raise(struct script_context *context, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-/* Raises an error of the middle paragraph: script errors as above, others so that no script catches them. */
+/* Raises an error of a C function behind a gr function: script errors as above, others so that no script can catch
+ * them. */
 _Noreturn void context_raise_error(struct script_context *context, const struct error *error);
 _Noreturn void context_raise_fatal(lua_State *L);
 _Noreturn void context_raise_no_memory(struct script_context *context); /* in the call of a gr function */
 
-/* gr_changes.c: what gr.change_... has said is laid over a picture about to be made, and taken off again. */
+/* gr_changes.c: the changes by gr.change_... are applied to the scene before a picture is rendered, and undone after
+ * it. */
 bool changes_begin(struct script_context *context, struct render_request *request, struct changed_scene *changed,
                    struct error *error);
 
@@ -133,32 +135,32 @@ void *limits_allocate(void *context, void *block, size_t old_size, size_t size);
 void limits_open(lua_State *L);                                                  /* sets the hook */
 void limits_check(lua_State *L); /* raises when time or memory is used up or a stop is requested */
 _Noreturn void limits_end_for_memory(lua_State *L);
-void limits_output(lua_State *L, size_t size); /* so many bytes are about to be written; may raise */
+void limits_output(lua_State *L, size_t size); /* to be called before this many bytes are written; may raise */
 void limits_count_output(struct script_context *context,
-                         size_t size); /* the same without raising; the next check does */
-/* Around what is not the script's own work. */
+                         size_t size); /* the same without raising; the next check raises */
+/* Pause and resume the limits during work that is not the script's. */
 void limits_pause(struct script_context *context);
 void limits_resume(struct script_context *context);
 
 /* context.c */
 void handles_open(lua_State *L);
 void handle_push(lua_State *L, enum handle_type type, void *pointer);
-/* The handle at a stack index, or NULL when there is something else. */
+/* The handle at a stack index, or NULL for any other value. */
 const struct handle *handle_at(lua_State *L, int index);
 const char *handle_words(enum handle_type type);
 const void *handle_key(enum handle_type type); /* the metatable is in the registry under this pointer */
-/* The name of what stands at an index: "a number", "a material", "nothing". */
+/* The type of the value at an index, in words: "a number", "a material", "nothing". */
 const char *value_words(lua_State *L, int index);
 
 /* dispatch.c */
 void dispatch_open(lua_State *L); /* the global gr */
 
-/* arguments.c: the first paragraph; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
- * so the call is left undone. `first` is the stack index of the first argument. */
+/* arguments.c: reads the arguments; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
+ * so the call has no effect. `first` is the stack index of the first argument. */
 bool arguments_read(struct script_context *context, const struct script_function *function, int first,
                     struct script_value *args);
 
-/* context.c: the nearest of the words by Damerau-Levenshtein distance when it is near enough, else NULL. */
+/* context.c: the nearest of the words by Damerau-Levenshtein distance if the distance is small enough, else NULL. */
 struct suggestion {
     const char *word, *best;
     size_t distance;
@@ -168,32 +170,33 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate);
 
 /* files.c */
 void files_open(lua_State *L);
-/* Looks for a file the scene names; docs/language.md 12.3. */
+/* Finds a file that the scene names; docs/language.md 12.3. */
 bool files_find(struct script_context *context, const char *name, char out[PATH_SIZE]);
 /* The same with the number in its name repaired, and with an error that names the folders that were searched. */
 bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error);
-/* The templates of package.path with `file` in the place of the question marks, the first that may be read. */
+/* The templates of package.path with `file` instead of the question marks: the first file that can be read. */
 bool files_on_path(const struct script_context *context, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
 const char *files_repair_number(struct script_context *context, const char *name);
 /* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
 int files_load(lua_State *L, const char *path);
-/* The names Lua shortened are written out again at the start of a message. */
+/* File names that Lua has shortened are written in full again at the start of a message. */
 const char *files_unshorten(struct script_context *context, const char *message); /* NULL without memory */
 
-/* Others that add to a fresh state. All run protected and may raise. */
-void sandbox_open(lua_State *L); /* sandbox.c: the libraries, less what a stranger's script must not have */
-void streams_open(lua_State *L); /* streams.c: files and printing within what the scene was given */
+/* These add functions to a new state. All run protected and may raise. */
+void sandbox_open(
+    lua_State *L); /* sandbox.c: the libraries, without the functions that an untrusted script must not have */
+void streams_open(lua_State *L);                    /* streams.c: files and printing within what the scene was given */
 void streams_close(struct script_context *context); /* after the state */
 void protect_open(lua_State *L);                    /* protect.c */
-/* Puts `function` in the place of library.name; its upvalue is what was there. */
+/* Replaces library.name by `function`; the old function becomes its upvalue. */
 void wrap_function(lua_State *L, const char *library, const char *name, lua_CFunction function);
 void compat_open(lua_State *L);   /* compat.c: old Lua */
 void traverse_open(lua_State *L); /* traverse.c: pairs in a fixed order */
-void library_open(lua_State *L);  /* files.c: remembers the globals for our own modules; after all of these */
+void library_open(lua_State *L);  /* files.c: saves the globals for our own modules; called after all of these */
 void define_open(lua_State *L);   /* script.c: -D */
 
-/* files.c: the chunk on top of the stack, from the file `path`, sees the remembered globals if it is one of ours. */
+/* files.c: the chunk on top of the stack, from the file `path`, sees the saved globals if it is one of ours. */
 void library_adopt(lua_State *L, const char *path);
 
 #endif

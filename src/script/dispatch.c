@@ -1,5 +1,6 @@
 /* The one C function behind every gr function and node method: reads the arguments as the table's row says, runs the
- * row's plain C function, answers. Names that do not exist are errors with a suggestion, or with --lenient ghosts. */
+ * row's plain C function, and returns its result. Names that do not exist are errors with a suggestion, or with
+ * --lenient ghosts. */
 #include "script/context_internal.h"
 
 #include "base/version.h"
@@ -46,7 +47,7 @@ static int answer_faces(lua_State *L, const struct mesh *mesh) {
     return 2;
 }
 
-/* Each letter a table of its own: its number, its place and its contours as gr.prism takes them. */
+/* A table for each letter: its number, its position and its contours as gr.prism accepts them. */
 static int answer_glyphs(lua_State *L, const struct font_text *text) {
     lua_createtable(L, (int)text->count, 4);
     for (uint32_t i = 0; i < text->count; i++) {
@@ -134,7 +135,7 @@ static int answer_ghost(lua_State *L, const struct script_function *function) {
     return 1;
 }
 
-/* The node in front of the colon; NULL for a ghost. */
+/* The node before the colon; NULL for a ghost. */
 static struct node *self_of(struct script_context *c, const struct script_function *function) {
     const struct handle *handle = handle_at(c->lua, 1);
     if (handle && handle->type == HANDLE_GHOST)
@@ -153,7 +154,7 @@ static int dispatch(lua_State *L) {
     const struct script_function *function = lua_touserdata(L, lua_upvalueindex(1));
     struct script_context *c = context_of(L);
     struct script_value args[PARAMETER_LIMIT];
-    if (c->ended || c->fatal.kind != ERROR_NONE) /* a finalizer of the script, after its end */
+    if (c->ended || c->fatal.kind != ERROR_NONE) /* a finalizer of the script that runs after its end */
         context_raise_fatal(L);
     memset(args, 0, (size_t)function->parameter_count * sizeof *args);
     c->lua = L;
@@ -180,7 +181,7 @@ static int dispatch(lua_State *L) {
     return answer(L, function, &result);
 }
 
-/* What a name that does not exist becomes: a function that does nothing and returns a ghost. */
+/* The value of a name that does not exist: a function that does nothing and returns a ghost. */
 static int ghost_call(lua_State *L) {
     const struct handle *self = handle_at(L, 1);
     if (self && self->type == HANDLE_NODE && lua_toboolean(L, lua_upvalueindex(1)))
@@ -207,7 +208,7 @@ static void no_such_name(struct script_context *c, enum owner owner, const char 
     context_raise(c, "%s%.100s does not exist", before, name);
 }
 
-/* gr.NAME where there is none. With --lenient the ghost is kept in the table, so the warning comes once. */
+/* gr.NAME for a name that does not exist. With --lenient the ghost is stored in the table, so there is one warning. */
 static int missing_function(lua_State *L) {
     struct script_context *c = context_of(L);
     c->lua = L;
@@ -235,7 +236,7 @@ static int node_index(lua_State *L) {
     struct script_context *c = context_of(L);
     c->lua = L;
     const struct handle *handle = handle_at(L, 1);
-    assert(handle && handle->type == HANDLE_NODE); /* no script gets at the metatable */
+    assert(handle && handle->type == HANDLE_NODE); /* scripts cannot reach the metatable */
     c->subject = ((const struct node *)handle->pointer)->name;
     if (lua_type(L, 2) != LUA_TSTRING)
         return 1;

@@ -25,7 +25,7 @@ __attribute__((format(printf, 2, 3))) static void add(struct document *document,
     va_start(arguments, format);
     size_t size = (size_t)vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    assert(size < sizeof line); /* the texts of the table are what they are, and tests write them all */
+    assert(size < sizeof line); /* the texts of the table are constant, and tests write all of them */
     if (document->used + size + 1 > document->capacity) {
         size_t capacity = 2 * document->capacity + LINE_SIZE;
         char *grown = arena_alloc(document->arena, capacity);
@@ -43,7 +43,8 @@ __attribute__((format(printf, 2, 3))) static void add(struct document *document,
     document->used += size;
 }
 
-/* Words filled into lines of COLUMNS, every line but the first indented; `column` is where the first one begins. */
+/* Breaks words into lines of COLUMNS characters, every line but the first indented; `column` is the start of the first
+ * one. */
 static void add_filled(struct document *document, int indent, int column, const char *text) {
     bool first = true;
     while (*text) {
@@ -117,7 +118,7 @@ static bool has_table_form(const struct script_function *function) {
     return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
 }
 
-/* A form may go on with any number of nodes. */
+/* A form may continue with any number of nodes. */
 static bool takes_more(const struct script_function *function) {
     for (int k = 0; k < function->parameter_count; k++)
         if (function->parameters[k].flags & REST)
@@ -273,7 +274,7 @@ static void annotate_fields(struct document *document, const struct script_funct
     add(document, "\n");
 }
 
-/* ": gr.node", where a function answers something. */
+/* ": gr.node", if a function returns a value. */
 static void add_result(struct document *document, const struct script_function *function) {
     const char *result = annotation_result(function);
     if (result)

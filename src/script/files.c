@@ -1,5 +1,5 @@
 /* Files a script names: Lua files through require, dofile and loadfile, meshes and images. Everything is read through
- * base/file.h. Where a relative name is looked for (docs/language.md 12.3): the scene's folder, the working directory,
+ * base/file.h. A relative name is looked for in (docs/language.md 12.3): the scene's folder, the working directory,
  * Assets/ beside and above the scene, and the bare file name in the scene's folder. */
 #include "script/context_internal.h"
 
@@ -27,7 +27,7 @@ bool files_find(struct script_context *context, const char *name, char out[PATH_
            (slash && try_file(context, out, folder, "", slash + 1));
 }
 
-/* A digit, ".0", then no digit: how Lua 5.4 writes 3.0 where older ones wrote 3. */
+/* A digit, ".0", then no digit: Lua 5.4 writes 3.0 as "3.0", older versions as "3". */
 static bool is_tail(const char *start, const char *dot) {
     bool digits = dot > start && dot[-1] >= '0' && dot[-1] <= '9';
     return digits && dot[0] == '.' && dot[1] == '0' && !(dot[2] >= '0' && dot[2] <= '9');
@@ -60,7 +60,7 @@ const char *files_repair_number(struct script_context *context, const char *name
     return repaired;
 }
 
-/* Longer names are those of no file; the error says so, since it cannot show all of the name. */
+/* No file has a longer name; the error says so, since it cannot show the whole name. */
 static bool name_fits(const char *name, struct error *error) {
     if (strlen(name) >= PATH_MAX)
         return error_set(error, ERROR_SCENE, "cannot find '%.60s...': a path has at most %d bytes", name, PATH_MAX - 1);
@@ -97,7 +97,7 @@ bool files_require(struct script_context *context, const char *name, char out[PA
                      length - 1, folder, folder, folder);
 }
 
-/* Lua shortens a long file name to "..." and its tail, LUA_IDSIZE - 1 characters in all. */
+/* Lua shortens a long file name to "..." and its end, LUA_IDSIZE - 1 characters in total. */
 const char *files_unshorten(struct script_context *context, const char *message) {
     enum { TAIL = LUA_IDSIZE - 4 };
     if (strncmp(message, "...", 3) != 0)
@@ -112,7 +112,7 @@ const char *files_unshorten(struct script_context *context, const char *message)
     return message;
 }
 
-/* Raises an error that no gr function has made. */
+/* Raises an error that does not come from a gr function. */
 _Noreturn static void raise_outside(lua_State *L, const struct error *error) {
     struct script_context *context = context_of(L);
     context->lua = L;
@@ -121,8 +121,8 @@ _Noreturn static void raise_outside(lua_State *L, const struct error *error) {
     context_raise_error(context, error);
 }
 
-/* Pushes the chunk, or a message. Raises only before the file is mapped; nothing after that does, so it is unmapped. A
- * first line that starts with # is left out, but not its end, so that line numbers stay right. */
+/* Pushes the chunk, or a message. Raises only before the file is mapped, so the file is always unmapped. A first line
+ * that starts with # is skipped, but not its line end, so that line numbers stay correct. */
 int files_load(lua_State *L, const char *path) {
     struct script_context *context = context_of(L);
     struct source_name *source = arena_alloc(&context->keep, sizeof *source);
@@ -138,7 +138,7 @@ int files_load(lua_State *L, const char *path) {
     *source = (struct source_name){.path = name + 1, .next = context->sources};
     context->sources = source;
     struct file_bytes bytes;
-    /* The scene itself was named by the user; it may be a link to anywhere. */
+    /* The user named the scene itself; it may be a link to any file. */
     const struct path_policy *path_policy = strcmp(path, context->path) == 0 ? NULL : context->path_policy;
     if (!path_policy_map(path_policy, path, FILE_LIMIT, &bytes, &error)) {
         if (error.kind != ERROR_SCENE || error.limit)
@@ -189,8 +189,8 @@ bool files_on_path(const struct script_context *context, const char *templates, 
     return false;
 }
 
-/* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. Scripts for Lua 5.0 wrote the .lua,
- * too. */
+/* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. Scripts for Lua 5.0 also wrote the
+ * extension .lua. */
 static int search_module(lua_State *L) {
     struct script_context *context = context_of(L);
     context->lua = L;
@@ -216,7 +216,7 @@ static int search_module(lua_State *L) {
     }
     lua_getfield(L, lua_upvalueindex(1), "searchers");
     if (lua_type(L, -1) == LUA_TTABLE &&
-        lua_rawlen(L, -1) > 2) { /* the script has added its own: they are asked next */
+        lua_rawlen(L, -1) > 2) { /* the script has added its own searchers: they are called next */
         lua_pushfstring(L, "no file '%s.lua' on package.path", module);
         return 1;
     }
@@ -247,7 +247,7 @@ static int dofile_continue(lua_State *L, int status, lua_KContext base) {
 static int file_do(lua_State *L) {
     lua_settop(L, 1);
     if (load_named(L) != LUA_OK) {
-        const char *message = lua_tostring(L, -1); /* what loading answers is always text */
+        const char *message = lua_tostring(L, -1); /* the result of loading is always a string on failure */
         if (message[0] == '\'' || strncmp(message, "cannot find", 11) == 0)
             return luaL_error(L, "dofile: %s", message);
         return lua_error(L);
@@ -302,15 +302,15 @@ void files_open(lua_State *L) {
     lua_setglobal(L, "loadfile");
 }
 
-/* Scripts use names of Lua's libraries for their own things (`table = gr.node('table')`). The modules that come with
- * the program must not stumble over that: their files see the globals as they were before the script began. What such a
- * file adds (`readobj`) becomes a global of the script, and names it does not find are looked for there. Their
- * `require` finds our modules, whatever files of the same names are beside the scene. */
+/* Scripts use names of Lua's libraries for their own variables (`table = gr.node('table')`). The modules that come with
+ * the program must still work: their files see the globals as they were before the script began. What such a file adds
+ * (`readobj`) becomes a global of the script, and names that it does not find are looked up there. Their `require`
+ * finds our modules, even if files of the same names are in the folder of the scene. */
 
 static const char key = 0;    /* the table is in the registry under its address */
-static const char hidden = 0; /* likewise: our modules whose names the script's own files have taken, by name */
+static const char hidden = 0; /* likewise: our modules whose names files of the script also have, by name */
 
-/* The file of one of our modules, when `require` of the script would find another one first. */
+/* The file of one of our modules, if `require` of the script would find another file first. */
 static bool is_hidden(lua_State *L, const char *name, char file[PATH_SIZE]) {
     const struct script_context *context = context_of(L);
     const char *folder = context->options->library_folder;
@@ -387,5 +387,5 @@ void library_adopt(lua_State *L, const char *path) {
         return;
     lua_rawgetp(L, LUA_REGISTRYINDEX, &key);
     if (!lua_setupvalue(L, -2, 1))
-        lua_pop(L, 1); /* byte code, without the sandbox, may use no globals */
+        lua_pop(L, 1); /* byte code (without the sandbox) may have no globals */
 }

@@ -1,12 +1,12 @@
-/* Edits of the window, as calls: they are noted, and laid over every picture that is made afterwards.
- * Nothing of the script's own tree is changed for good. */
+/* Edits of the window, as calls: they are recorded, and applied to every picture that is rendered afterwards. The
+ * script's own tree is not changed permanently. */
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Room for one more; zeroed. */
+/* Adds an entry, set to zero. */
 static struct change *note(struct script_context *context, enum change_kind kind, const char *name, double serial,
                            struct error *error) {
     if (context->change_count == context->change_room) {
@@ -205,7 +205,7 @@ bool gr_change_exposure(struct script_context *context, const struct script_valu
     return true;
 }
 
-/* The newest of each kind counts. */
+/* The latest of each kind is used. */
 static void change_views(const struct script_context *context, struct render_request *request) {
     bool camera = false, exposure = false;
     for (const struct changed_view *view = context->views; view; view = view->next) {

@@ -61,7 +61,8 @@ bool gr_sky_gradient(struct script_context *context, const struct script_value *
     return give_sky(context, &sky, args, result, error);
 }
 
-/* The unit direction to the sun, from a direction or from time and place. `sun` points at the first of the fields. */
+/* The unit direction to the sun, from a direction or from time and geographic position. `sun` points to the first of
+ * the fields. */
 static bool find_sun(const struct script_value *sun, struct vec3 *out, struct error *error) {
     bool by_time = sun[SUN_HOUR].given || sun[SUN_DAY].given || sun[SUN_LATITUDE].given || sun[SUN_LONGITUDE].given ||
                    sun[SUN_ZONE].given;

@@ -1,4 +1,4 @@
-/* Lights of the language: what each takes, what it makes of it, and its row of the table. */
+/* Lights of the language: the parameters, the function and the table row of each. */
 #include "math/elementary.h"
 #include "script/context_internal.h"
 #include "script/table_rows_internal.h"
@@ -121,7 +121,7 @@ static const struct script_parameter disc_light_parameters[] = {
     [PANEL_ONE_SIDED] = ONE_SIDED("its normal"),
 };
 
-/* The nodes of a list, kept as long as the scene. */
+/* The nodes of a list, copied to the arena of the scene. */
 static bool keep_nodes(struct script_context *context, const struct script_value *value,
                        const struct node *const **nodes, uint32_t *count) {
     *nodes = NULL;
@@ -135,7 +135,7 @@ static bool keep_nodes(struct script_context *context, const struct script_value
     return kept != NULL;
 }
 
-/* What every light has, and the light itself into the arena of the scene. */
+/* Sets what every light has, and copies the light to the arena of the scene. */
 static bool give_light(struct script_context *context, const struct light *light, const struct script_value *args,
                        struct script_result *result, struct error *error) {
     struct scene_light *kept = arena_alloc(&context->scene.arena, sizeof *kept);
@@ -163,7 +163,7 @@ static bool set_attenuation(struct light *light, const struct script_value *args
     return true;
 }
 
-/* A light with an extent: fading as from its centre, or a lamp whose surface emits. */
+/* A light with an extent: falloff as from its centre, or a lamp whose surface emits. */
 static bool make_area_light(struct script_context *context, struct light *light, const struct script_value *args,
                             struct script_result *result, struct error *error) {
     struct script_value area_light[LIGHT_OWN];

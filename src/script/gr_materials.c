@@ -20,13 +20,13 @@ static const struct texture *number_or_texture(struct script_context *context, c
     return gr_texture_of(context, &own, error);
 }
 
-/* The inputs that a script gave textures for: the texture times the number, which is 1. */
+/* The inputs with textures: the texture times the number, which is 1. */
 static bool with_textures(struct script_context *context, struct material *m, const struct script_value *args,
                           struct error *error) {
     static const struct {
         int field;
         enum material_input input;
-        bool is_share; /* between 0 and 1, whatever the texture says */
+        bool is_share; /* between 0 and 1 for every value of the texture */
     } inputs[] = {{PHONG_KD, INPUT_KD, false},
                   {PHONG_KS, INPUT_KS, false},
                   {PHONG_SHININESS, INPUT_SHININESS, false},
@@ -138,7 +138,7 @@ struct image *gr_find_image(struct script_context *context, const struct script_
         memcpy(canonical, path, sizeof canonical);
     struct image *image = assets_image(context->scene.assets, canonical, error);
     size_t length = strlen(canonical);
-    if (!image && strncmp(error->text, canonical, length) == 0) { /* tell the path as the scene knows it */
+    if (!image && strncmp(error->text, canonical, length) == 0) { /* report the path as the scene wrote it */
         char rest[sizeof error->text];
         bool limit = error->limit;
         memcpy(rest, error->text + length, sizeof rest - length);
@@ -154,7 +154,7 @@ static void image_defaults(struct texture_image *out, const struct script_value 
     out->image = image;
 }
 
-/* `lookup` are the fields counted from LOOKUP_FILTER. */
+/* `lookup` points to the fields from LOOKUP_FILTER on. */
 static bool read_image(struct script_context *context, const struct script_value *value,
                        const struct script_value *lookup, struct texture_image *out, struct error *error) {
     struct image *image = gr_find_image(context, value, error);
@@ -182,7 +182,7 @@ static bool read_image(struct script_context *context, const struct script_value
     return true;
 }
 
-/* The image alone, as a texture. NULL and error: it cannot be read. */
+/* The image alone, as a texture. NULL with an error: it cannot be read. */
 static const struct texture *read_texture(struct script_context *context, const struct script_value *value,
                                           const struct script_value *lookup, struct error *error) {
     struct texture_image image;
@@ -191,7 +191,7 @@ static const struct texture *read_texture(struct script_context *context, const 
                : NULL;
 }
 
-/* The image over an input of the material below. */
+/* The image as a factor of an input of the material below. */
 static bool image_over(struct script_context *context, const struct texture_image *image, enum material_input input,
                        const struct material *base, struct script_result *result, struct error *error) {
     struct arena *arena = &context->scene.arena;
@@ -234,7 +234,7 @@ bool gr_image_material(struct script_context *context, const struct script_value
 }
 
 /* How an image or another texture is mapped to a surface. The amount and the kind are args[0] and args[1]; a bump map
- * keeps what its template says. */
+ * keeps the settings of its template. */
 static bool read_bump(struct script_context *context, const struct script_value *value,
                       const struct script_value *lookup, const struct script_value *args, struct bump *out,
                       struct error *error) {

@@ -1,5 +1,5 @@
-/* Meshes from tables and from files. Both are assets: the same tables, or the same file, are one mesh, so that a
- * script that builds its scene again for every picture builds no mesh again. */
+/* Meshes from tables and from files. Both are assets: equal tables, or the same file, give one mesh, so that a script
+ * that builds its scene again for every picture does not build its meshes again. */
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
 
@@ -37,7 +37,8 @@ static const struct model *model_of_file(struct script_context *context, const s
     return model;
 }
 
-/* Every index below count, every face with three corners or more. Places count from 1, as Lua does. */
+/* Checks that every index is below count, and that every face has three corners or more. Indices in messages start at
+ * 1, as in Lua. */
 static bool check_faces(const struct script_value *faces, const char *name, uint32_t count, const char *of,
                         struct error *error) {
     for (uint32_t f = 0; f < faces->count; f++) {
@@ -57,13 +58,13 @@ static bool check_faces(const struct script_value *faces, const char *name, uint
     return true;
 }
 
-/* What the indices of faces refer to. */
+/* The arrays that the indices of faces refer to. */
 struct face_targets {
     uint32_t count;
     const char *name;
 };
 
-/* The indices of the corners into normals or uvs: those of `own`, or the vertices' when there are none. */
+/* The indices of the corners into normals or uvs: those of `own`, or those of the vertices if there are none. */
 static bool corner_indices(const struct script_value *faces, const struct script_value *own, const char *own_name,
                            struct face_targets targets, const uint32_t **indices, struct error *error) {
     const struct script_value *used = own->given ? own : faces;

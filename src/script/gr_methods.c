@@ -1,4 +1,4 @@
-/* Methods of nodes. args[SELF] is the node in front of the colon. */
+/* Methods of nodes. args[SELF] is the node before the colon. */
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
 
@@ -10,7 +10,7 @@ bool gr_add_child(struct script_context *context, const struct script_value *arg
     return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);
 }
 
-/* What only shapes can have: an error on plain nodes, with --lenient a warning. */
+/* Properties that only shapes can have: an error on plain nodes, with --lenient a warning. */
 static bool is_shape(struct script_context *context, const struct node *node, const char *what, struct error *error) {
     if (node->kind == NODE_GEOMETRY || node->kind == NODE_CSG)
         return true;
@@ -20,12 +20,12 @@ static bool is_shape(struct script_context *context, const struct node *node, co
     return false;
 }
 
-/* False with no error set means: warned, nothing to do. */
+/* False without an error: a warning was printed, and the call has no effect. */
 static bool unless_warned(const struct error *error) {
     return error->kind == ERROR_NONE;
 }
 
-/* On a CSG node it is the material of the operands that have none of their own; the world sees to that. */
+/* On a CSG node it is the material of the operands that have no material; src/world applies it. */
 bool gr_set_material(struct script_context *context, const struct script_value *args, struct script_result *result,
                      struct error *error) {
     (void)result;
@@ -35,7 +35,7 @@ bool gr_set_material(struct script_context *context, const struct script_value *
     return true;
 }
 
-/* Where the image goes depends on the shape (docs/language.md 6.2); that is decided when the scene is flattened. */
+/* How the image is mapped depends on the shape (docs/language.md 6.2); that is decided when the scene is flattened. */
 bool gr_set_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
                     struct error *error) {
     (void)result;
@@ -79,7 +79,7 @@ bool gr_velocity(struct script_context *context, const struct script_value *args
     return true;
 }
 
-/* Only the other node's own transforms count, as they are when the picture is made. */
+/* Only the transforms of the other node itself are used, with their values at the time of rendering. */
 bool gr_moves_to(struct script_context *context, const struct script_value *args, struct script_result *result,
                  struct error *error) {
     (void)context, (void)result, (void)error;

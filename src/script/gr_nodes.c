@@ -1,11 +1,11 @@
-/* Nodes and primitives. A primitive is a geometry node: whatever can be placed is a node. */
+/* Nodes and primitives. A primitive is a geometry node: everything that can have a pose is a node. */
 #include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
 
 #include <string.h>
 
-/* The middle paragraphs answer true with a result, or false with an error of the callee. */
+/* These functions return true with a result, or false with an error of the called function. */
 static bool give(struct script_result *result, void *pointer) {
     result->pointer = pointer;
     return pointer != NULL;
@@ -29,7 +29,7 @@ bool gr_node(struct script_context *context, const struct script_value *args, st
     return give(result, node) && add_children(context, node, &args[GROUP_CHILDREN], error);
 }
 
-/* A list with one number for each place, or one for all; copied, since arguments end with the call. */
+/* A list with one number for each entry, or one for all; copied, since arguments live only during the call. */
 static bool keep_numbers(struct script_context *context, const struct script_value *given, const char *name,
                          const struct placements *placements, const double **out, struct error *error) {
     if (!given->given)
@@ -166,7 +166,7 @@ bool gr_geometry(struct script_context *context, const struct script_value *args
     return give(result, node);
 }
 
-/* What is open has no inside. Deeper ones are found when the world is built, which knows their instances. */
+/* An open surface has no inside. Open surfaces further below are found when the world is built. */
 static bool check_operand(const struct node *operand, struct error *error) {
     struct vec3 a, b;
     if (operand->kind == NODE_CSG && operand->operation == NODE_CLIPPED)
@@ -188,8 +188,8 @@ static bool check_operand(const struct node *operand, struct error *error) {
                      operand->name, file ? " of " : "", file ? file : "", a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
-/* With --lenient an operand may be something that does not exist yet, and what can be shown is the others, unless they
- * were to be subtracted from it: a plain node over the one that is left, or nothing. */
+/* With --lenient an operand may be a feature that does not exist yet. The result shows the other operands, unless they
+ * were to be subtracted from it: a plain node with the remaining one, or nothing. */
 static bool show_rest(struct script_context *context, const char *name, struct node *rest, struct script_result *result,
                       struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GROUP, name, error);
@@ -198,7 +198,7 @@ static bool show_rest(struct script_context *context, const char *name, struct n
     return give(result, node);
 }
 
-/* a and b where they are given (as ghosts, they are not), and those of the list, which has NULL for ghosts. */
+/* a and b if they are given (ghosts are not), and those of the list, which has NULL for ghosts. */
 static struct node **list_operands(struct script_context *context, const struct script_value *args, uint32_t *count) {
     const struct script_value *list = &args[CSG_OPERANDS];
     bool named = !list->given || list->single || args[CSG_A].given || args[CSG_B].given;

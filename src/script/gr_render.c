@@ -1,4 +1,4 @@
-/* The call that everything is for. */
+/* gr.render. */
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
@@ -22,7 +22,7 @@ static bool choose_sky(struct script_context *context, const struct script_value
     return true;
 }
 
-/* The named fields of the call win over the command line. */
+/* The named fields of the call have priority over the command line. */
 static void apply_settings(const struct script_value *args, struct settings *settings) {
     if (args[RENDER_SAMPLES].given)
         settings->samples = (int)args[RENDER_SAMPLES].number;
@@ -74,7 +74,7 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
     if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE)
         settings->denoise = DENOISER_GRAY;
-    /* Light that goes from wall to wall is computed in linear colours, which a screen shows by the sRGB curve. */
+    /* Path tracing computes in linear colours, which a screen shows by the sRGB curve. */
     if (settings->integrator == INTEGRATOR_PATH && !args[RENDER_SRGB].given)
         settings->tone.srgb = true;
 }

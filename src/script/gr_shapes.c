@@ -1,5 +1,5 @@
-/* Analytic shapes: every row of the table becomes a geometry node with one shape in it. Numbers are checked here for
- * what the table cannot say about several of them together, and for sizes beyond what the root-finders are made for. */
+/* Analytic shapes: every row of the table becomes a geometry node with one shape. Checked here are the conditions on
+ * several numbers together, which the table cannot express, and sizes that the root-finders cannot handle. */
 #include "math/range.h"
 #include "script/context_internal.h"
 #include "script/table_rows_internal.h"
@@ -48,7 +48,7 @@ static bool length_is_fine(double length, const char *name, struct error *error)
     return error_set(error, ERROR_SCENE, "%s is too %s: %g", name, length > 1 ? "large" : "small", length);
 }
 
-/* Two ends that are places, and apart. */
+/* Two end points that differ. */
 static bool ends_are_fine(struct vec3 from, struct vec3 to, struct error *error) {
     double length = vec3_length(vec3_sub(to, from));
     if (!(length > 0))
@@ -316,7 +316,7 @@ static bool give_planar(struct script_context *context, const struct script_valu
     return give_shape(node, &shape, result);
 }
 
-/* The classic square, or with a normal or a distance the plane without end. */
+/* The classic square, or with a normal or a distance the infinite plane. */
 enum { PLANE_NORMAL = SHAPE_FIRST, PLANE_DISTANCE };
 static const struct script_parameter plane_parameters[] = {
     SHAPE("plane"),
@@ -342,7 +342,7 @@ static bool gr_square(struct script_context *context, const struct script_value 
     return give_planar(context, args, "square", &planar, result, error);
 }
 
-/* Edges of a length we can use that are not parallel. */
+/* Edges that are not parallel and whose lengths are in the valid range. */
 static bool span_is_fine(struct vec3 u, struct vec3 v, const char *what, struct error *error) {
     double along = vec3_length(u), up = vec3_length(v);
     if (!(vec3_length(vec3_cross(u, v)) > 1e-12 * along * up))

@@ -1,4 +1,4 @@
-/* Shapes that are made of many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
+/* Shapes with many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
  * shape live in the arena of the scene; the builder of the shape reports their errors. */
 #include "script/context_internal.h"
 #include "script/table_rows_internal.h"
@@ -151,7 +151,7 @@ static bool gr_curve(struct script_context *context, const struct script_value *
     return shape.curve && give_node(context, args, "curve", &shape, result, error);
 }
 
-/* Heights from rows of numbers, which must be equally long. */
+/* Heights from rows of numbers, which must have equal lengths. */
 static bool heights_of_rows(const struct script_value *rows, struct height_field_input *in, struct error *error) {
     in->rows = rows->count;
     in->columns = rows->count > 0 ? rows->starts[1] : 0;
@@ -221,7 +221,7 @@ static bool gr_height_field(struct script_context *context, const struct script_
     return shape.height_field && give_node(context, args, "height field", &shape, result, error);
 }
 
-/* Row k of a list of balls or cylinders: `width` numbers and perhaps the strength. */
+/* Row k of a list of balls or cylinders: `width` numbers and optionally the strength. */
 static bool blob_rows(const struct script_value *rows, const char *name, uint32_t width, struct blob_element *out,
                       struct error *error) {
     for (uint32_t k = 0; k < rows->count; k++) {

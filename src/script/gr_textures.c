@@ -1,4 +1,5 @@
-/* Textures that are no images: patterns, and operations on other textures. A function is a binding and a row in here.
+/* Textures that are no images: patterns, and operations on other textures. Each function has its binding and its table
+ * row in this file.
  */
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
@@ -23,7 +24,7 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
     const struct script_texture *given = value->texture;
     struct vec3 v = value->vector;
     const struct texture_image *image = given ? texture_as_image(given->texture) : NULL;
-    if (image) { /* what is transparent is white */
+    if (image) { /* transparent parts are white */
         const struct texture *white = texture_keep(arena, texture_number(1), error);
         return white ? texture_keep(arena, texture_image(image, white), error) : NULL;
     }

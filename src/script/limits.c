@@ -1,11 +1,11 @@
-/* What a script may use up: memory, processor time, output. From limits_begin to limits_end an account of base/mem.h
+/* The limits of a script: memory, processor time, output. From limits_begin to limits_end an account of base/mem.h
  * counts every block of the process, as malloc rounds it: the Lua state, the scene, and whatever reads a file or makes
- * a mesh. A hook looks at the clock every few thousand steps. Lua's own C functions run without the hook, so the
- * supervisor watches the same clock from outside (host/supervisor.c): here the good message with its line, there the
- * certain end.
+ * a mesh. A hook reads the clock every few thousand steps. Lua's own C functions run without the hook, so the
+ * supervisor watches the same clock from outside (host/supervisor.c): the hook gives a good message with a line number,
+ * the supervisor ends the script in any case.
  *
- * A used-up limit is a fatal error of the context, which no script can catch. Once there is one the hook raises it
- * again at every step: handlers of to-be-closed variables get no further. */
+ * An exceeded limit is a fatal error of the context, which no script can catch. After it the hook raises it again at
+ * every step, so that handlers of to-be-closed variables end too. */
 #include "base/clock.h"
 #include "script/context_internal.h"
 
@@ -55,16 +55,16 @@ void limits_begin(struct script_context *context) {
     limits->charged_before = mem_charge(limits->account.limit > 0 ? &limits->account : NULL);
 }
 
-/* What is still held are the assets. */
+/* The memory that is still allocated belongs to the assets. */
 void limits_end(struct script_context *context) {
     int64_t left = context->limits.account.held;
     context->scene.assets->memory += left > 0 ? (uint64_t)left : 0;
     (void)mem_charge(context->limits.charged_before);
 }
 
-/* What is refused is refused for good, unless Lua asks for the same again after it has collected its garbage and gets
- * it: that comes at once, so whoever looks at `memory_out` later sees what became of it. What is asked for later, by
- * whoever handles the error, changes nothing, even if it is of the same size. */
+/* A refused request is final, unless Lua repeats it after a garbage collection and it succeeds: the repetition follows
+ * at once, so a later reader of `memory_out` sees the final state. Later requests, by the error handler, change
+ * nothing, even if they have the same size. */
 void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
     struct limits *limits = &((struct script_context *)user)->limits;
     bool grows = !block || size > old_size;

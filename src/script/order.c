@@ -1,7 +1,7 @@
-/* Evidence for the order of transforms. Facts (docs/language.md 12.4): the convention of the course changed in autumn
+/* Evidence for the order of transforms (docs/language.md 12.4): the convention of the course changed in autumn
  * 2015 together with the stock scenes. Signs of the new one: names of the project dialect, tables with named fields, an
- * explicit call, a mesh by file name, table.unpack. Signs of the old one, which count when there is none of those:
- * readobj, a bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project
+ * explicit call, a mesh by file name, table.unpack. Signs of the old one, which are used if there is no sign of the new
+ * one: readobj, a bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project
  * dialect.
  *
  * The lexer follows the Lua 5.4 manual, section 3.1, as far as comments, strings and names go. */
@@ -191,7 +191,8 @@ static bool is_material(const struct materials *materials, const struct token *t
     return false;
 }
 
-/* The call of gr.mesh being read: which argument, how deep in brackets, what its first two arguments begin with. */
+/* The call of gr.mesh being read: the number of the argument, the depth of brackets, the first tokens of its first two
+ * arguments. */
 struct mesh_call {
     int depth; /* 0: none */
     int argument, line;
@@ -227,7 +228,7 @@ static void follow_mesh_call(struct mesh_call *call, const struct token *token, 
     }
 }
 
-/* One token with those before it: w[WINDOW - 1] is the newest. */
+/* A token and those before it: w[WINDOW - 1] is the latest. */
 static void judge(const struct token *w, struct evidence *evidence, struct materials *materials,
                   struct mesh_call *call) {
     const struct token *t = &w[WINDOW - 1];
@@ -350,7 +351,7 @@ static void scan_file(struct search *search, const char *path, int depth) {
     search->visited[search->visited_count++] = copy;
     struct file_bytes bytes;
     struct error ignored;
-    /* The scene itself was named by the user; it may be a link to anywhere. */
+    /* The user named the scene itself; it may be a link to any file. */
     if (!path_policy_map(depth > 0 ? search->path_policy : NULL, path, SCENE_LIMIT, &bytes, &ignored))
         return;
     scan_text(search, (const char *)bytes.data, bytes.size, depth);
@@ -364,7 +365,7 @@ static void conclude(const struct evidence *evidence, struct order_finding *find
     snprintf(finding->reason, sizeof finding->reason, "%s", reason);
 }
 
-/* Siblings vote; the first old one is named. */
+/* The majority of the siblings decides; the message names the first old one. */
 struct siblings {
     struct search *search;
     const char *self;
@@ -373,7 +374,7 @@ struct siblings {
     char reason[400];
 };
 
-/* Whether a neighbour is a link to what is hidden beside the scene or elsewhere. */
+/* Whether a sibling is a link to a hidden file or to a file in another folder. */
 static bool is_hidden(const struct siblings *siblings, const char *path) {
     char canonical[PATHS];
     size_t same = 0;

@@ -1,5 +1,5 @@
-/* Which way transforms compose, decided from the text of a scene before it runs (docs/language.md 12.4). No Lua state
- * is involved: a lexer skips comments and strings, a few patterns of words are evidence. */
+/* The order in which transforms compose, decided from the text of a scene before it runs (docs/language.md 12.4). No
+ * Lua state is involved: a lexer skips comments and strings, a few patterns of words are evidence. */
 #ifndef GRAY_SCRIPT_ORDER_INTERNAL_H
 #define GRAY_SCRIPT_ORDER_INTERNAL_H
 
@@ -10,7 +10,7 @@
 
 struct order_finding {
     enum transform_order order;
-    char reason[400]; /* "it uses readobj (line 3)"; "" when nothing spoke for anything */
+    char reason[400]; /* "it uses readobj (line 3)"; "" without evidence */
 };
 
 struct path_policy;

@@ -1,9 +1,9 @@
-/* What could catch an error that must not be caught: pcall, xpcall, coroutine.resume and close, load. The replacements
- * do the same and then raise again when the context holds a fatal error or the script has ended.
+/* Replacements of the functions that could catch a fatal error: pcall, xpcall, coroutine.resume and close, load. They
+ * do the same and then raise the error again if the context has a fatal error or the script has ended.
  *
- * Two more ways past the limits are closed here. Lua runs the handler of xpcall with hooks off when the error came from
- * the hook: ours answers a fatal error itself. Lua runs finalizers (__gc) with hooks off always: setmetatable leaves
- * them out, so that no code of a scene runs while garbage is collected or the state is closed. */
+ * Two more ways to avoid the limits are prevented here. Lua runs the handler of xpcall without hooks if the error came
+ * from the hook: our handler returns a fatal error itself. Lua always runs finalizers (__gc) without hooks:
+ * setmetatable removes them, so that no code of a scene runs while garbage is collected or the state is closed. */
 #include "script/context_internal.h"
 
 #include <lauxlib.h>
@@ -14,7 +14,7 @@ static void pass_on_fatal(lua_State *L) {
         limits_check(L);
 }
 
-/* After the call or after a yield in it; `extra` values lie below the results. As in Lua's own lbaselib.c. */
+/* After the call or after a yield in it; `extra` values are below the results. As in Lua's own lbaselib.c. */
 static int finish_call(lua_State *L, int status, lua_KContext extra) {
     pass_on_fatal(L);
     if (status != LUA_OK && status != LUA_YIELD) {
@@ -57,8 +57,8 @@ static int protected_call_with_handler(lua_State *L) {
     return finish_call(L, status, 2);
 }
 
-/* Calls upvalue 1, Lua's own function, which gives errors back as values. A coroutine counts its steps from zero, so
- * many short ones would never meet the hook: the clock is looked at here too. */
+/* Calls upvalue 1, Lua's own function, which returns errors as values. A coroutine counts its steps from zero, so many
+ * short ones would never call the hook: the clock is also read here. */
 static int call_and_pass_on(lua_State *L) {
     limits_check(L);
     lua_pushvalue(L, lua_upvalueindex(1));
@@ -68,7 +68,7 @@ static int call_and_pass_on(lua_State *L) {
     return lua_gettop(L);
 }
 
-/* coroutine.wrap(f): as Lua's own, around our resume. Upvalue of the result: Lua's own result. */
+/* coroutine.wrap(f): as Lua's own, with our resume. Upvalue of the result: Lua's own result. */
 static int wrap_coroutine(lua_State *L) {
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);

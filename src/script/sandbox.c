@@ -1,8 +1,8 @@
-/* Which of Lua's libraries a scene gets. Scenes are written by strangers: the lists below name what is known to be
- * harmless, and whatever else a library holds (in this or a later Lua) is taken out. Nothing starts programs, loads
- * machine code or byte code, changes the locale or looks into the environment; debug shows where a script is and no
- * more. Files are in files.c and streams.c, what could catch or escape a limit in protect.c. With --no-sandbox
- * everything stays. */
+/* The Lua libraries of a scene. Scenes are untrusted: the lists below name the functions that are known to be harmless;
+ * everything else in a library (of this or a later Lua) is removed. No function starts programs, loads machine code or
+ * byte code, changes the locale or reads the environment; debug only shows the position of a script. Functions for
+ * files are in files.c and streams.c, functions that could catch or avoid a limit in protect.c. With --no-sandbox
+ * nothing is removed. */
 #include "math/elementary.h"
 #include "script/context_internal.h"
 
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* os.exit ends the script, not the program: pictures that are finished stay, the next script runs. */
+/* os.exit ends the script, not the program: finished pictures are kept, and the next script runs. */
 static int end_script(lua_State *L) {
     struct script_context *context = context_of(L);
     context->lua = L;
@@ -59,15 +59,15 @@ static int position_info(lua_State *L) {
     return 1;
 }
 
-/* The environment may hold secrets; what is meant for this program is shown. */
+/* The environment may contain secrets; only variables for this program are visible. */
 static int environment_variable(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
     lua_pushstring(L, strncmp(name, "GRAY_", 5) == 0 ? getenv(name) : NULL);
     return 1;
 }
 
-/* Generational collection has been the source of most memory errors of Lua 5.4 (lua.org/bugs.html): asked for, it
- * answers and changes nothing. Upvalue 1: Lua's own. */
+/* Generational collection has been the source of most memory errors of Lua 5.4 (lua.org/bugs.html): a request for it
+ * has a result but no effect. Upvalue 1: Lua's own function. */
 static int collect_garbage(lua_State *L) {
     const char *option = luaL_optstring(L, 1, "collect");
     if (strcmp(option, "generational") == 0 || strcmp(option, "incremental") == 0) {
@@ -153,14 +153,14 @@ void sandbox_open(lua_State *L) {
     lua_getglobal(L, "collectgarbage");
     lua_pushcclosure(L, collect_garbage, 1);
     lua_setglobal(L, "collectgarbage");
-    /* Files are userdata with finalizers; a script that could reach their metatable could put its own there. */
+    /* Files are userdata with finalizers; a script that could reach their metatable could replace the finalizer. */
     luaL_getmetatable(L, LUA_FILEHANDLE);
     lua_pushliteral(L, "file");
     lua_setfield(L, -2, "__metatable");
     lua_pop(L, 1);
 }
 
-/* Gives Lua the project's elementary functions.
+/* Makes Lua use the project's elementary functions.
  *
  * Lua's library and its ^ operator call libm, whose last bits differ between processors; scene scripts place things
  * with them, so pictures would differ too. Symbols defined by the executable come before those of shared libraries (ELF

@@ -1,6 +1,6 @@
 /* Runs one scene: a fresh Lua state on our allocator, one protected call around everything, then the state is closed
- * and after it the scene. Invariant: whatever fails, lua_close comes first, then the arenas; nothing else is owned
- * here. */
+ * and after it the scene. Invariant: after every error lua_close is called first, then the arenas are destroyed;
+ * nothing else is owned here. */
 #include "script/context_internal.h"
 
 #include "base/file.h"
@@ -68,7 +68,8 @@ void define_open(lua_State *L) {
     }
 }
 
-/* The length of the place a message begins with, "scene.lua:12: " or that of a chunk from a string; 0 when it has none.
+/* The length of the source position at the start of a message, "scene.lua:12: " or that of a chunk from a string; 0
+ * when it has none.
  */
 static size_t position_length(const struct script_context *context, const char *message) {
     size_t length = strncmp(message, "[string \"", 9) == 0 ? strcspn(message, "]") + 1 : 0;
@@ -82,8 +83,8 @@ static size_t position_length(const struct script_context *context, const char *
     return digits > 0 && end[0] == ':' && end[1] == ' ' ? (size_t)(end + 2 - message) : 0;
 }
 
-/* The message from its place on: coroutine.wrap and error put another one in front, and the innermost is the most
- * precise. Whole paths are written where Lua shortened them. NULL without memory. */
+/* The message from its innermost source position on, which is the most precise: coroutine.wrap and error add others
+ * before it. Paths that Lua has shortened are written in full. NULL without memory. */
 static const char *innermost(struct script_context *context, const char *message, bool *has_position) {
     message = files_unshorten(context, message);
     size_t outer = message ? position_length(context, message) : 0;
@@ -92,7 +93,7 @@ static const char *innermost(struct script_context *context, const char *message
     return inner && outer > 0 && position_length(context, inner) == 0 ? message : inner;
 }
 
-/* Text with every line indented, a tab counting as two more blanks. */
+/* The text with every line indented, and two blanks for a tab. */
 static const char *indent(struct arena *arena, const char *text) {
     size_t size = 3;
     for (const char *c = text; *c; c++)
@@ -113,10 +114,10 @@ static const char *indent(struct arena *arena, const char *text) {
     return out;
 }
 
-/* The message handler: makes the complete first line and the traceback while the stack is still there. */
+/* The message handler: writes the complete first line and the traceback while the stack still exists. */
 static int describe_error(lua_State *L) {
     struct script_context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE) /* the context knows the error */
+    if (context->ended || context->fatal.kind != ERROR_NONE) /* the context has the error */
         return 1;
     context->lua = L;
     char where[PATH_SIZE + 32];
@@ -137,7 +138,7 @@ static int describe_error(lua_State *L) {
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     context->traceback = indent(context->out, lua_tostring(L, -1));
-    lua_settop(L, 1); /* load runs this too, when its text nests too deep, and gives the message back */
+    lua_settop(L, 1); /* load also calls this, if its text is nested too deeply, and returns the message */
     return 1;
 }
 
@@ -161,7 +162,7 @@ static int run_scene(lua_State *L) {
     return 0;
 }
 
-/* What the protected call came to, as one error. */
+/* The result of the protected call as one error. */
 static bool conclude(struct script_context *context, int status, struct error *error) {
     if (context->fatal.kind != ERROR_NONE) {
         *error = context->fatal;
@@ -242,7 +243,7 @@ bool script_run(const char *path, const struct script_options *options, const st
     *traceback = NULL;
     scene_init(&context.scene, host->assets);
     struct path_policy path_policy = {0};
-    /* What stays where the handler of messages came to nothing. */
+    /* The message if the message handler failed. */
     error_set(&context.failure, ERROR_SCENE, "%s: an error while an error was reported", path);
     limits_begin(&context);
     bool done = prepare(&context, &path_policy, error);

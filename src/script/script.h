@@ -1,5 +1,6 @@
-/* The script layer: runs one Lua scene. It reads arguments, raises script errors, hands plain C values on. It never
- * sees a pixel and opens no file by itself (base/file.h does). The host is what the application gives it. */
+/* The script layer: runs one Lua scene. It reads arguments, raises script errors, and passes plain C values on. It does
+ * not handle pixels and opens no file by itself (base/file.h does). The host is a set of functions of the application.
+ */
 #ifndef GRAY_SCRIPT_SCRIPT_H
 #define GRAY_SCRIPT_SCRIPT_H
 
@@ -30,7 +31,7 @@ struct script_options {
     uint64_t seed; /* math.random starts from it */
     const struct script_define *defines;
     int define_count;
-    /* The sandbox: what a script may read, write and use up beside what is usual (docs/security.md). */
+    /* The sandbox: what a script may read, write and use beyond the defaults (docs/security.md). */
     bool no_sandbox;
     const char *const *allow_read, *const *allow_write; /* folders */
     int allow_read_count, allow_write_count;
@@ -40,11 +41,11 @@ struct script_options {
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
 
-/* One gr.render call, complete and checked, every default filled in. Pointers live until the call returns. */
+/* One gr.render call, complete and checked, with all defaults. Pointers live until the call returns. */
 struct render_request {
     struct scene *scene;
     struct node *root;
-    const char *file; /* as the script gave it, compatibility of numbers applied; relative to the working directory */
+    const char *file; /* as the script wrote it, with compatible number formats; relative to the working directory */
     double width, height; /* checked to be whole numbers in 1..2^20 */
     struct camera camera;
     struct vec3 ambient;
@@ -53,7 +54,7 @@ struct render_request {
     uint32_t light_count;
     struct sky sky;
     bool sky_chosen;          /* not the default */
-    struct settings settings; /* the host's settings with the call's named fields applied */
+    struct settings settings; /* the host's settings, changed by the call's named fields */
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     uint32_t owned;           /* the same of materials and gr.change_own */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
@@ -77,9 +78,9 @@ struct script_host {
     bool output_is_error;
 };
 
-/* The time limit that holds under these options; 0: none. */
+/* The time limit under these options; 0: none. */
 double script_time_limit(const struct script_options *options);
-/* Bytes that a script, its scene and a picture of it may hold together; UINT64_MAX: no limit. */
+/* Bytes that a script, its scene and a picture of it may use together; UINT64_MAX: no limit. */
 uint64_t script_picture_memory(const struct script_options *options);
 struct path_policy;
 /* Adds the folders that the script at `path` may read and write. */
@@ -91,7 +92,7 @@ bool script_path_policy(const char *path, const struct script_options *options, 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct arena *arena, const char **traceback, struct error *error);
 
-/* The table of functions as documents; text is allocated in arena. */
+/* The table of functions as documents; the text is allocated in the arena. */
 const char *script_manual(struct arena *arena);      /* for --man: plain text, 100 columns */
 const char *script_annotations(struct arena *arena); /* lua/gr.lua, LuaLS ---@meta */
 

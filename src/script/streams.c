@@ -1,8 +1,8 @@
-/* Reading, writing and printing within what the scene was given. Text for standard error goes to the host, which sees
- * to it that it is not taken for the program's: the stream behind io.stderr calls it (fopencookie(3)), and so does that
- * behind io.stdout and print where standard output is the picture's. Files are opened by base/path_policy.h: regular
- * files only, below the folders of the list. Whatever is written counts towards the limit on output, on standard output
- * too. Refusals are returned like any failure of io.open: nil, a sentence, a number. */
+/* Reading, writing and printing of scenes. Text for standard error goes to the host, which ensures that it is not
+ * mistaken for the program's: the stream behind io.stderr calls it (fopencookie(3)), and so does the stream of
+ * io.stdout and print if standard output is used for the picture. Files are opened by base/path_policy.h: regular files
+ * only, below the folders of the list. Everything written counts towards the output limit, on standard output too.
+ * Refusals are returned like any failure of io.open: nil, a sentence, a number. */
 #define _GNU_SOURCE
 #include "script/context_internal.h"
 
@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the C library takes for an open stream and its buffer. */
+/* The memory that the C library uses for an open stream and its buffer. */
 enum { STREAM_COST = 9 << 10 };
 
 static int close_stream(lua_State *L) {
@@ -42,7 +42,7 @@ static bool is_mode(const char *mode) {
     return strspn(mode, "b") == strlen(mode);
 }
 
-/* A message about a name that fills the message would not say what is wrong with it. */
+/* A message that consists of a long name would have no room for the reason. */
 static void push_failure(lua_State *L, const char *name, const char *why) {
     enum { SHOWN = 60, LONG = 512 };
     if (strlen(name) <= LONG) {
@@ -64,7 +64,7 @@ static int open_stream(lua_State *L, const char *name, const char *mode) {
     if (!write && !path_policy_is_readable(context->path_policy, name) && files_find(context, name, found))
         path = found;
     luaL_Stream *stream = lua_newuserdatauv(L, sizeof *stream, 0);
-    stream->closef = NULL; /* closed, as far as its finalizer is concerned */
+    stream->closef = NULL; /* closed, for its finalizer */
     luaL_setmetatable(L, LUA_FILEHANDLE);
     if (!mem_reserve(STREAM_COST))
         limits_end_for_memory(L);
@@ -94,7 +94,7 @@ static void open_or_raise(lua_State *L, const char *name, const char *mode) {
         luaL_error(L, "%s", lua_tostring(L, -2));
 }
 
-/* io.lines(name, ...): the lines of a stream of its own, with that stream as the value to be closed. Upvalue 1: Lua's
+/* io.lines(name, ...): the lines of a new stream, with that stream as the value to be closed. Upvalue 1: Lua's
  * own, for the default input. */
 static int io_lines(lua_State *L) {
     if (lua_isnoneornil(L, 1)) {
@@ -197,7 +197,7 @@ static int search_path(lua_State *L) {
     return 2;
 }
 
-/* Puts a function in the place of another, which becomes its upvalue 1; further upvalues are above. */
+/* Replaces a function, which becomes upvalue 1 of the new one; further upvalues are above it on the stack. */
 static void replace(lua_State *L, const char *name, lua_CFunction function, const char *mode) {
     lua_getfield(L, -1, name);
     if (mode)
@@ -212,8 +212,8 @@ static ssize_t write_to_host(void *cookie, const char *text, size_t size) {
     return (ssize_t)size;
 }
 
-/* Puts a stream to the host in the place of the process's own one of that name in the table io, which is on top. It has
- * no buffer, so that its output comes before the next message of the program. */
+/* Replaces the process's stream of that name in the table io, which is on top of the stack, by a stream to the host. It
+ * has no buffer, so that its output appears before the next message of the program. */
 static FILE *redirect(lua_State *L, const char *name) {
     struct script_context *context = context_of(L);
     FILE *stream = MAY_GIVE_NULL(fopencookie(context, "w", (cookie_io_functions_t){.write = write_to_host}));

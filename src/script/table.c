@@ -1,5 +1,5 @@
-/* The table of gr functions. One row a function; its documentation and every check of its arguments come from here. The
- * rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
+/* The table of gr functions. One row for each function; its documentation and every check of its arguments come from
+ * here. The rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
 #include "base/unreachable.h"
 #include "script/table_internal.h"
 
@@ -920,7 +920,8 @@ bool form_next(const struct script_function *function, const char **form, int *i
     *optional = word[length] == '?';
     *form = word + length + (*optional ? 1 : 0);
     for (*index = 0;; (*index)++) {
-        assert(*index < function->parameter_count); /* every name in a form is that of a parameter: a test looks */
+        assert(*index <
+               function->parameter_count); /* every name in a form is that of a parameter: a test checks this */
         const char *name = function->parameters[*index].name;
         if (strncmp(name, word, length) == 0 && name[length] == '\0')
             return true;

@@ -18,7 +18,7 @@
 
 struct script_context;
 
-/* What an argument may be. The plain C form is in struct script_value. */
+/* The kinds of arguments. The plain C form is in struct script_value. */
 enum kind {
     KIND_NUMBER,     /* number */
     KIND_WHOLE,      /* number: a float with a whole value is fine */
@@ -31,7 +31,7 @@ enum kind {
     KIND_POINT,      /* vector */
     KIND_DIRECTION,  /* vector */
     KIND_COLOUR,     /* vector */
-    KIND_TRIPLE,     /* vector: three numbers that are no place */
+    KIND_TRIPLE,     /* vector: three numbers that are not a position */
     KIND_SIZE,       /* vector: one number counts for all three */
     KIND_INTERVAL,   /* vector: x and y, two numbers, the second not below the first */
     KIND_QUATERNION, /* vector = x, y, z, number = w: four numbers, w first */
@@ -94,9 +94,9 @@ enum {
     LOW_OPEN = 2, /* value > low, not >= */
     HIGH_OPEN = 4,
     NOT_ZERO = 8,
-    OR_TEXTURE = 64,   /* a texture does as well: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
-    REST = 32,         /* takes the arguments behind a positional form, and entries without names of the table form */
-    GHOST_IS_NONE = 16 /* with --lenient: something that does not exist yet counts as left out, the call goes on */
+    OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
+    REST = 32,       /* takes the arguments after a positional form, and entries without names of the table form */
+    GHOST_IS_NONE = 16 /* with --lenient: a ghost is treated as missing, and the call continues */
 };
 
 struct script_parameter {
@@ -126,20 +126,20 @@ enum result_kind {
 };
 
 struct script_result {
-    void *pointer;           /* what the result kind says; owned by the scene or the assets */
+    void *pointer;           /* of the type of the result kind; owned by the scene or the assets */
     const struct mesh *mesh; /* RESULT_FACES, in its place */
 };
 
 enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 64 };
 
-/* `run` is the middle paragraph of a binding function: plain C that cannot raise. args[i] belongs to parameters[i]. */
+/* `run` is the C function of a row, which cannot raise. args[i] belongs to parameters[i]. */
 struct script_function {
     const char *name;
     enum owner owner;
     const struct script_parameter *parameters;
     int parameter_count;
-    /* The positional forms: parameter names in their order, separated by blanks; "name?" may be left out at the end.
-     * The form whose types fit the arguments best is taken. Parameters in no form exist in the table form only. */
+    /* The positional forms: parameter names in their order, separated by blanks; "name?" is optional at the end. The
+     * form whose types match the arguments best is used. Parameters in no form exist in the table form only. */
     const char *forms[FORM_LIMIT];
     enum result_kind result;
     bool (*run)(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -162,9 +162,9 @@ int function_index(const struct script_function *function);
 
 /* The row of that name, or NULL. */
 const struct script_function *function_find(enum owner owner, const char *name);
-/* Takes the next name off a form: false at its end. *index is its parameter. */
+/* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
-/* What a script must give: "a number", "a colour {r, g, b}". */
+/* What the script must pass: "a number", "a colour {r, g, b}". */
 const char *kind_words(enum kind kind);
 
 #endif

@@ -1,4 +1,4 @@
-/* What the files with rows of the table of gr functions share: the words of its columns. */
+/* Shared by the files with rows of the table of gr functions: the macros of its columns. */
 #ifndef GRAY_SCRIPT_TABLE_ROWS_INTERNAL_H
 #define GRAY_SCRIPT_TABLE_ROWS_INTERNAL_H
 
@@ -20,13 +20,13 @@
 #define NODE(name, parameters, result, run, help, ...)                                                                 \
     { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
 
-/* Every shape begins with these parameters; its own are counted from SHAPE_FIRST. */
+/* Every shape begins with these parameters; its own start at SHAPE_FIRST. */
 enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
 #define SHAPE(otherwise)                                                                                               \
     [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
     [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
 
-/* What every light begins with. */
+/* The first parameters of every light. */
 #define LIGHT_LISTS                                                                                                    \
     [LIGHT_INCLUDE] =                                                                                                  \
         {"include", KIND_NODES, OPTIONAL, ANY, NULL, "all", "Nodes that it lights, with their children."},             \

@@ -1,8 +1,7 @@
 /* pairs in a fixed order. Lua's own order of string keys depends on a random seed, so scenes built from tables would
- * come out differently every time. Here: 1..n in order, other numbers ascending, false, true, strings in byte order,
- * our handles by age, then what is left in Lua's order. A table that is a pure sequence costs one pass and no memory;
- * others cost a list of their keys and a heap sort. Entries removed during the traversal are skipped, as with Lua's
- * own. */
+ * differ from run to run. Here: 1..n in order, other numbers ascending, false, true, strings in byte order, our handles
+ * by age, then the rest in Lua's order. A table that is a pure sequence takes one pass and no memory; others cost a
+ * list of their keys and a heap sort. Entries removed during the traversal are skipped, as with Lua's own. */
 #include "script/context_internal.h"
 
 #include <assert.h>
@@ -11,7 +10,7 @@
 
 enum sort_rank { RANK_SEQUENCE, RANK_NUMBER, RANK_BOOLEAN, RANK_STRING, RANK_HANDLE, RANK_OTHER };
 
-/* A key, with what decides its place. `slot` is its index in the list of keys and settles ties. */
+/* A key and its order. `slot` is its index in the list of keys and decides between equal keys. */
 struct key {
     enum sort_rank rank;
     uint32_t slot;
@@ -67,7 +66,7 @@ static void sift_down(struct key *keys, size_t root, size_t count) {
     }
 }
 
-/* Heap sort (Williams 1964): no memory, no bad case. */
+/* Heap sort (Williams 1964): no memory, no slow case. */
 static void sort_keys(struct key *keys, size_t count) {
     for (size_t root = count / 2; root-- > 0;)
         sift_down(keys, root, count);
@@ -127,7 +126,7 @@ static int next_in_sequence(lua_State *L) {
     return 1;
 }
 
-/* Upvalues: the list of keys, their sorted struct keys, how many are done, how many there are. */
+/* Upvalues: the list of keys, their sorted struct keys, how many are visited, how many there are. */
 static int next_of_list(lua_State *L) {
     const struct key *keys = lua_touserdata(L, lua_upvalueindex(2));
     lua_Integer k = lua_tointeger(L, lua_upvalueindex(3)), count = lua_tointeger(L, lua_upvalueindex(4));

@@ -1,5 +1,5 @@
-/* A few words of memory that supervisor and render process share from the fork on, for what is too frequent or too
- * urgent for the channel. The supervisor uses what it reads here for display only. */
+/* Memory that supervisor and render process share from the fork on, for data that changes too often or is too urgent
+ * for the channel. The supervisor uses what it reads here for display only. */
 #ifndef GRAY_SESSION_CONTROL_H
 #define GRAY_SESSION_CONTROL_H
 
@@ -9,18 +9,18 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
-/* In a farm tiles are handed out while the picture is made; the picture ends when the gate is closed. */
+/* In a farm tiles are distributed while the picture is rendered; the picture ends when the gate is closed. */
 enum handout { HANDOUT_NONE, HANDOUT_OPEN, HANDOUT_CLOSED };
 
-enum cancel { CANCEL_NOTHING, CANCEL_ALL /* give up the picture, end the script */, CANCEL_PASS /* of a window */ };
+enum cancel { CANCEL_NOTHING, CANCEL_ALL /* cancel the picture, end the script */, CANCEL_PASS /* of a window */ };
 
 struct control {
     _Atomic int cancel;                         /* an enum cancel, set by the supervisor */
     _Atomic uint32_t tiles_done;                /* of the picture being made */
     _Atomic uint32_t tiles;                     /* 0 until its scene is built */
     _Atomic uint32_t handout;                   /* an enum handout */
-    _Atomic int drain;                          /* not 0: finish the tiles under way, begin no others */
-    struct progress_estimate progress_estimate; /* the progress of the picture, where it is wanted */
+    _Atomic int drain;                          /* not 0: finish the started tiles, begin no others */
+    struct progress_estimate progress_estimate; /* the progress of the picture, if requested */
     _Atomic uint32_t build_step;                /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done;                /* thousandths of that step */
     _Atomic uint32_t lost; /* not 0: the render process could not write all of its standard output */

@@ -94,7 +94,7 @@ void picture_film_layout(const struct picture_request *request, void *block, str
 void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *buffers) {
     struct film film = {.width = request->width, .height = request->height, .record = request->record};
     size_t pixels = (size_t)request->width * request->height;
-    film_layout_layers(&film, block, AOV_ALL); /* any mask gives the place where layers begin */
+    film_layout_layers(&film, block, AOV_ALL); /* the offset of the layers is the same for every mask */
     float *behind = film.layers[0] + pixels * aov_layers(request->layers & AOV_ALL) * 3;
     buffers->lines = (float(*)[4])(void *)behind;
     buffers->shows = (uint8_t *)(behind + 4 * pixels);
@@ -113,7 +113,7 @@ struct film pass_film(const struct picture_request *request, void *block, uint32
     return film;
 }
 
-/* Messages over SOCK_SEQPACKET: the kernel keeps one send as one receive, so a message is never read in part and
+/* Messages over SOCK_SEQPACKET: the kernel delivers each send as one receive, so a message is never read in part, and
  * threads may send without a lock. A received message is used only after message_is_valid. */
 
 bool channel_pair(struct channel ends[2], struct error *error) {
@@ -190,7 +190,7 @@ enum channel_result channel_receive(struct channel *channel, struct message *mes
         memcpy(&message->descriptor, CMSG_DATA(header), sizeof message->descriptor);
     message->kind = (enum message_kind)word;
     message->size = (size_t)got - sizeof word;
-    /* Where this process has no descriptor left, that of a film is lost; whoever needs it sees that. */
+    /* If this process has no free descriptor, that of a film is lost; the code that needs it checks this. */
     bool lost = (packet.msg_flags & MSG_CTRUNC) != 0;
     bool sound = (size_t)got >= sizeof word && (packet.msg_flags & MSG_TRUNC) == 0 &&
                  (!lost || (message->kind == MESSAGE_FILM && message->descriptor < 0)) && message_is_valid(message) &&

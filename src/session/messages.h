@@ -24,10 +24,10 @@ enum message_kind {
     MESSAGE_DONE,          /* struct picture_report; answered by MESSAGE_ANSWER */
     MESSAGE_PREVIEW_REPLY, /* struct preview_reply: a command of the window is done; answered by MESSAGE_PREVIEW_COMMAND
                             */
-    MESSAGE_ABANDON,       /* no body: the picture that was begun will not be finished; no answer */
+    MESSAGE_ABANDON,       /* no body: the picture in progress will not be finished; no answer */
     MESSAGE_SCRIPT,        /* struct message_script: a script has ended; no answer */
     MESSAGE_READ,          /* struct message_read: a file was read; no answer */
-    MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, perhaps much later, by MESSAGE_ANSWER: ok: run them
+    MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, possibly much later, by MESSAGE_ANSWER: ok: run them
                      * again
                      */
     MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
@@ -35,44 +35,44 @@ enum message_kind {
     MESSAGE_PREVIEW_COMMAND, /* struct preview_command */
 };
 
-/* What kind of line: decides whether -q or --verbose let it pass, and where it goes. */
+/* The kind of a line: decides whether -q or --verbose print it, and on which stream. */
 enum line_kind {
     LINE_ERROR,
     LINE_WARNING,
     LINE_NOTICE,
     LINE_DETAIL,
-    LINE_OUTPUT /* a piece of what was asked for: goes to standard output as it is, no newline added */
+    LINE_OUTPUT /* a piece of the requested output: printed on standard output unchanged, no newline added */
 };
 
 enum { MESSAGE_TEXT_LIMIT = 16384, MESSAGE_SIZE_LIMIT = MESSAGE_TEXT_LIMIT + 64 };
 
 struct message_line {
     enum line_kind kind;
-    char text[MESSAGE_TEXT_LIMIT]; /* sent only as long as it is, with its final NUL */
+    char text[MESSAGE_TEXT_LIMIT]; /* only the used bytes are sent, with the final NUL */
 };
 
-/* What a click has met (inspect/pick.h). */
+/* The result of a click (inspect/pick.h). */
 enum { PICK_PATH = 512, PICK_NAME = 64 };
 
 struct picked {
     bool hit;
-    char path[PICK_PATH]; /* names with their order of creation, from the root to the node */
+    char path[PICK_PATH]; /* the names and creation numbers from the root to the node */
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];
     uint64_t route;                        /* to it (viewer/view_overlay_internal.h); 0: not known */
     uint64_t solid;                        /* of an operand: the route to the solid; else 0 */
     uint32_t levels;                       /* nodes above it */
-    int32_t up;                            /* as it was asked for, but no farther than there are nodes */
-    uint32_t below;                        /* operands below it on the way to the surface that was hit */
-    uint32_t material_serial;              /* of the base, which can be changed; 0: it is plain gray */
+    int32_t up;                            /* as requested, limited by the number of nodes */
+    uint32_t below;                        /* operands below it on the path to the surface that was hit */
+    uint32_t material_serial;              /* of the base material, which can be changed; 0: the default gray */
     double inputs[MATERIAL_PART_PARTS][3]; /* of that base */
     uint32_t idle_parts; /* bit k: part k changes nothing at the point, as glTF's metalness replaces ks */
     bool can_own;        /* a shape was hit and selected: it can be given a material of its own */
     double distance;     /* from the eye */
     struct vec3 position, normal;
     bool has_box;
-    struct vec3 corners[8];          /* of a box round the node: bit 0 of the number is its first axis, and so on */
+    struct vec3 corners[8];          /* of a box around the node: bit 0 of the number is its first axis, and so on */
     struct affine world_from_parent; /* the space of the node */
 };
 
@@ -88,16 +88,16 @@ struct view_overlay_request {
 struct view_overlay {
     bool stopped; /* before they were complete */
     bool has_lines, has_outline;
-    struct film_rectangle outline; /* of the film, from 0; outside of it nothing is of the node */
+    struct film_rectangle outline; /* of the film, from 0; outside it the node is not visible */
 };
 
-/* Where they are, for a picture in a window. */
+/* Their offsets, for a picture in a window. */
 struct view_overlay_buffers {
     float (*lines)[4]; /* as overlay_lines makes them */
-    uint8_t *shows;    /* by pixel: not 0 where the node is seen */
+    uint8_t *shows;    /* by pixel: not 0 where the node is visible */
 };
 
-/* A picture about to be made. */
+/* A picture to be rendered. */
 struct picture_request {
     uint32_t full_width, full_height; /* of the whole picture */
     uint32_t x0, y0, width, height;   /* the part that is rendered */
@@ -108,18 +108,18 @@ struct picture_request {
     struct film_record record;        /* of its film */
     uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t in_window;               /* not 0: in a window */
-    uint32_t overlay;                 /* in a window: an enum overlay, the lines that are asked for */
+    uint32_t overlay;                 /* in a window: an enum overlay, the requested lines */
     struct camera camera;             /* its view a direction */
     struct lens lens;
-    uint32_t check;      /* not 0 for --check: only the names are looked at, no film is wanted */
-    struct digest files; /* of all files read so far; zero where it is not needed */
-    char file[4096];     /* as the script gave it */
+    uint32_t check;      /* not 0 for --check: only the names are checked, no film is needed */
+    struct digest files; /* of all files read so far; zero if not needed */
+    char file[4096];     /* as the script wrote it */
 };
 
-/* What a finished picture cost. */
+/* The statistics of a finished picture. */
 struct picture_report {
     struct render_statistics rays;
-    double write_seconds, write_processor_seconds; /* of the files; filled by who writes them */
+    double write_seconds, write_processor_seconds; /* of the files; filled by the process that writes them */
     uint64_t primitives, triangles;
     uint64_t node_bytes, mesh_bytes, image_bytes, primitive_bytes, search_bytes, film_bytes; /* memory by part */
     uint64_t peak_bytes;
@@ -133,21 +133,21 @@ struct picture_report {
 struct pass_view {
     struct camera camera; /* its view a direction */
     double exposure;      /* stops: it decides which pixels are sampled again */
-    uint32_t divide;      /* one pixel for so many across and down; from 1 */
+    uint32_t divide;      /* one pixel stands for a square with this side; from 1 */
     bool plain;           /* one sample a pixel, coarse soft light */
     bool own;             /* the camera, lens and motion of the script */
 };
 
-/* Lights of a scene are reported so many at a time. */
+/* Lights of a scene are reported in groups of this size. */
 enum { LIGHTS_PER_MESSAGE = 32 };
 struct light_info {
     uint32_t kind;       /* an enum light_kind, for its name */
     uint32_t properties; /* of enum light_property */
     bool has_position;   /* its position is known */
     struct vec3 position, colour;
-    struct vec3 direction, edge1, edge2; /* as in struct light, zero where it has none */
+    struct vec3 direction, edge1, edge2; /* as in struct light, zero if it has none */
     double radius, cos_outer;
-    bool moves, turns, sizes; /* what can be done with it */
+    bool moves, turns, sizes; /* the possible edits */
 };
 
 enum preview_reply_kind {
@@ -159,7 +159,7 @@ enum preview_reply_kind {
     REPLY_LIGHTS,
     REPLY_OVERLAY
 };
-/* What the render process has done for the window; it waits for a command. */
+/* The result of a command of the window; the render process waits for the next one. */
 struct preview_reply {
     enum preview_reply_kind kind;
     struct picture_report report; /* of BUILT (its bounds) and PASS */
@@ -174,8 +174,8 @@ struct preview_reply {
     uint32_t light_count; /* of BUILT, CHANGED and LIGHTS: all of them; those reported begin with first_light, from 0 */
     uint32_t first_light;
     struct light_info lights[LIGHTS_PER_MESSAGE];
-    char text[512]; /* of CHANGED: what could not be done, or empty */
-    bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass begins with it */
+    char text[512]; /* of CHANGED: why an edit failed, or empty */
+    bool unbuilt;   /* of CHANGED: the building of the world was stopped; the next pass starts it again */
 };
 
 enum preview_command_kind {
@@ -192,24 +192,24 @@ struct preview_command {
     bool quit;             /* of END: the window was closed */
     struct pass_view view; /* of PASS, PICK, PIXEL_TRACE and OVERLAY */
     struct view_overlay_request
-        overlay;          /* of PASS: made after it; of OVERLAY. After PICK the outline is made of what is picked */
+        overlay;          /* of PASS: made after it; of OVERLAY. After PICK the outline is that of the picked node */
     double x, y;          /* of PICK and PIXEL_TRACE: pixels of the whole picture */
     int32_t up;           /* of PICK: nodes above the one that is hit, or operands below it */
     uint32_t first_light; /* of CHANGE and LIGHTS: report lights from this one on, counted from 0 */
     struct change change;
-    bool present; /* of CHANGE: it is made; else it is undone */
-    bool more;    /* of CHANGE: another one follows at once */
+    bool present; /* of CHANGE: it is applied; else it is undone */
+    bool more;    /* of CHANGE: another change follows at once */
 };
 
 struct message_answer {
     bool ok;
-    bool already; /* to MESSAGE_BEGIN: there is nothing to do, no film comes along */
+    bool already; /* to MESSAGE_BEGIN: there is nothing to do, and no film is sent */
     struct error error;
 };
 
 struct message_script {
     int index;  /* into options.scripts */
-    int status; /* exit status this script alone would give */
+    int status; /* the exit status for this script alone */
 };
 
 struct message_read {

@@ -1,6 +1,6 @@
-/* Parsing goes along the table: the kind of a row says how its value is read, `offset` where it goes. The long spelling
- * of an option takes one dash or two, and '_' counts as '-'; `--name value` and `--name=value` are the same. Words that
- * are no options are scripts; after "--" everything is. */
+/* The table of options controls parsing: the kind of a row says how its value is read, `offset` where it is stored. The
+ * long spelling of an option may have one dash or two, and '_' is read as '-'; `--name value` and `--name=value` are
+ * the same. Words that are no options are scripts; after "--" all words are. */
 #include "session/options_internal.h"
 
 #include "base/error.h"
@@ -53,8 +53,8 @@ static const struct option *find_option(struct piece name) {
     return NULL;
 }
 
-/* Edits (insert, delete, replace, swap of neighbours) between a word and a short name of the table; words over 31
- * letters count as far. */
+/* Edits (insert, delete, replace, swap of neighbours) between a word and a short name of the table; words with more
+ * than 31 letters have a large distance. */
 static int name_distance(struct piece a, struct piece b) {
     enum { LIMIT = 32 };
     int rows[3][LIMIT];
@@ -85,7 +85,7 @@ static int name_distance(struct piece a, struct piece b) {
     return last[b.length];
 }
 
-/* The shown spelling of the option nearest to a misspelt name, or an empty piece when none is near. */
+/* The displayed spelling of the option nearest to a misspelt name, or an empty piece if none is near. */
 static struct piece nearest_name(struct piece name) {
     struct piece best = {"", 0};
     int best_distance = name.length < 4 ? 2 : 3;
@@ -232,7 +232,7 @@ static bool is_define(const char *text) {
     return ok;
 }
 
-/* Room for one more definition was made by options_parse. */
+/* options_parse has made room for one more definition. */
 static bool note_define(struct options *options, struct script_define *defines, const char *text, struct arena *arena,
                         struct error *error) {
     struct piece name = {text, strcspn(text, "=")};
@@ -410,9 +410,9 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
                      near.text);
 }
 
-/* Two options may change the order in which they are written, not what they are: so the values are looked at. */
+/* The meaning of two options does not depend on their order: so the values are hashed. */
 static struct digest digest_option(const struct option *option, const struct options *options, struct digest digest) {
-    assert(option->kind != OPTION_TEXT); /* of those the pointer would be looked at */
+    assert(option->kind != OPTION_TEXT); /* of strings the pointer would be hashed */
     return digest_bytes((const char *)options + option->offset, option->size, digest);
 }
 
@@ -435,7 +435,7 @@ struct digest options_digest(const struct options *options) {
             digest = digest_option(option, options, digest);
     }
     const struct settings *settings = &options->settings;
-    /* Files from before there was a choice have the key of the first. */
+    /* Files from the time before this option existed have the key of the first choice. */
     if (settings->integrator != INTEGRATOR_WHITTED)
         digest = digest_bytes(&settings->integrator, sizeof settings->integrator, digest);
     if (settings->path_samples != 0)
@@ -498,7 +498,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     bool only_scripts = false;
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
-        /* The first word of its own; `gray -- merge` is a scene of that name. */
+        /* The first word that is no option; `gray -- merge` is a scene of that name. */
         if (!only_scripts && options->action == ACTION_RENDER && options->script_count == 0 &&
             strcmp(word, "merge") == 0) {
             options->action = ACTION_MERGE;
@@ -512,7 +512,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             only_scripts = true;
             continue;
         }
-        /* The value: behind '=', or attached to a letter, or the next word. */
+        /* The value: after '=', or directly after a letter, or the next word. */
         struct piece name = without_dashes((struct piece){word, strcspn(word, "=")});
         const char *text = strchr(word, '=');
         text = text ? text + 1 : NULL;
@@ -544,7 +544,7 @@ bool options_output_is_stream(const struct options *options) {
     return options->output && strcmp(options->output, "-") == 0 && !asks;
 }
 
-/* The %d of a name pattern: its place and length, or a length of 0. Digits between % and d are a width. */
+/* The %d of a name pattern: its offset and length, or a length of 0. Digits between % and d are a width. */
 static struct piece find_number(const char *pattern) {
     for (const char *at = pattern; *at; at++) {
         if (at[0] != '%')

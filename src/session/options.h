@@ -15,7 +15,7 @@
 
 enum options_action {
     ACTION_RENDER,
-    ACTION_MERGE /* the scripts are parts of pictures */,
+    ACTION_MERGE /* the arguments are parts of pictures */,
     ACTION_HELP,
     ACTION_MANUAL,
     ACTION_VERSION,
@@ -50,31 +50,31 @@ struct options {
     struct script_options script; /* library_folder is filled in by main */
     const char *const *scripts;
     int script_count;
-    const char *output;            /* -o, or NULL: the names the scripts give */
+    const char *output;            /* -o, or NULL: the names that the scripts choose */
     bool force;                    /* --force: -o may replace a file that is no picture */
-    int width, height;             /* --size, or 0: the sizes the scripts give */
+    int width, height;             /* --size, or 0: the sizes that the scripts choose */
     const char *targets_prefix;    /* -write-aa-targets, or NULL */
     const char *first_pass_prefix; /* -write-pre-aa, or NULL */
     int threads;                   /* 0: one per processor */
     int picture_count;             /* limits on the pictures of a run; 0: 100,000 and 64 GiB, */
     uint64_t picture_bytes;        /* without the sandbox none */
     bool window;                   /* -gui */
-    bool quick, preview;           /* enum draft_level; preview is a quarter of the size, too */
+    bool quick, preview;           /* enum draft_level; preview also reduces the size to a quarter */
     bool watch;                    /* --watch */
     bool check, quiet, verbose, no_fork;
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}; these are traced instead of rendering */
     uint32_t pixel_count;
-    bool dump_scene;            /* --dump-scene: the world is listed instead of rendering */
-    bool json;                  /* both: as JSON */
-    const char *checkpoint;     /* --checkpoint: a file, or "auto", or NULL */
-    double checkpoint_every;    /* seconds */
-    bool mpi;                   /* one of several processes that make a picture together */
-    double farm_stall;          /* seconds after which a renderer of a farm that hangs is killed; 0: never */
-    double farm_silence;        /* seconds after which a rank that is not heard is regarded as lost; 0: never */
-    const char *display;        /* --display, or NULL */
-    bool partial;               /* --partial: what an interruption leaves is written beside the picture */
-    bool resume;                /* continue from the checkpoint */
-    uint32_t shard, shards;     /* --shard: this one of so many, from 1; 0 of 0: no shards */
+    bool dump_scene;         /* --dump-scene: the world is listed instead of rendering */
+    bool json;               /* both: as JSON */
+    const char *checkpoint;  /* --checkpoint: a file, or "auto", or NULL */
+    double checkpoint_every; /* seconds */
+    bool mpi;                /* one of several processes that make a picture together */
+    double farm_stall;   /* seconds after which a render process of a farm that does not respond is killed; 0: never */
+    double farm_silence; /* seconds without a message after which a rank is regarded as lost; 0: never */
+    const char *display; /* --display, or NULL */
+    bool partial;        /* --partial: an interrupted picture is written beside the complete one */
+    bool resume;         /* continue from the checkpoint */
+    uint32_t shard, shards; /* --shard: the number of this shard, from 1, and the number of shards; 0 of 0: no shards */
     uint32_t shard_of_pictures; /* --shard-pictures: the same over whole pictures */
     uint32_t shards_of_pictures;
     int isa; /* --isa: an index into options_isa_name */
@@ -84,8 +84,8 @@ struct options {
 
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
-/* Of all that can change a picture, or the number of pictures; names of files that are written, threads, ways of
- * searching and verbosity are left out. */
+/* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,
+ * acceleration structures and verbosity are not part of it. */
 struct digest options_digest(const struct options *options);
 /* Whether the scripts of a run may render a picture of this number, counted from 1. */
 bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);
@@ -102,7 +102,7 @@ void options_print_help(FILE *stream);
 bool output_name_numbered(const char *pattern);
 bool output_name(const char *pattern, unsigned number, char *out, size_t size);
 
-/* -o -: standard output is the picture's. */
+/* -o -: the picture is written to standard output. */
 bool options_output_is_stream(const struct options *options);
 
 #endif

@@ -1,4 +1,4 @@
-/* Options that exclude, need or imply one another. */
+/* Checks options that exclude, require or imply one another. */
 #include "session/options_internal.h"
 
 #include <string.h>
@@ -81,7 +81,7 @@ bool display_parse(const char *text, struct display_choice *out) {
     return false;
 }
 
-/* What --checkpoint, --resume and --shard ask of one another and of -o. */
+/* The conditions between --checkpoint, --resume, --shard and -o. */
 static bool check_parts(struct options *options, struct error *error) {
     bool pipe = options->output && strcmp(options->output, "-") == 0;
     if (options->action == ACTION_MERGE &&
@@ -135,7 +135,7 @@ static bool check_parts(struct options *options, struct error *error) {
     return true;
 }
 
-/* --time-limit: how many samples a picture has is known when it is done. */
+/* --time-limit: the number of samples of a picture is known only when it is finished. */
 static bool check_time(const struct options *options, struct error *error) {
     if (options->settings.time_limit > 0 &&
         (options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE))

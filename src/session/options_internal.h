@@ -1,4 +1,4 @@
-/* What the files of the command line share: a row of the table of options, and names in it. */
+/* Shared by the files of the command line: a row of the table of options, and its names. */
 #ifndef GRAY_SESSION_OPTIONS_INTERNAL_H
 #define GRAY_SESSION_OPTIONS_INTERNAL_H
 
@@ -38,9 +38,9 @@ enum option_group {
 
 struct option {
     enum option_group group;
-    const char *names; /* parted by '|'; the first is the one that is shown, with its dashes */
+    const char *names; /* separated by '|'; the first one is displayed, with its dashes */
     enum option_kind kind;
-    const char *value; /* what the value is called, or its choices; NULL for none */
+    const char *value; /* the name of the value, or its choices; NULL for none */
     double low, high;
     size_t offset, size;
     const char *initial; /* the default in words, or NULL */
@@ -55,10 +55,10 @@ struct piece {
     const char *text;
     size_t length;
 };
-/* The next piece of a text separated by '|'; *rest moves behind it. Empty at the end. */
+/* The next piece of a text separated by '|'; *rest moves to the end of it. Empty at the end. */
 struct piece option_next_piece(const char **rest);
 
-/* What can only be said of the options together; fills in what one of them says of another. */
+/* Checks the options together, and sets those that others imply. */
 bool options_check(struct options *options, struct error *error);
 
 #endif

@@ -1,5 +1,5 @@
-/* What the render process needs of the supervisor: it opens no file for writing and owns no terminal. The services go
- * over the channel or, with --no-fork, to the output session of the same process. */
+/* The services of the supervisor for the render process, which opens no file for writing and owns no terminal. The
+ * calls go over the channel or, with --no-fork, to the output session of the same process. */
 #ifndef GRAY_SESSION_SERVICES_H
 #define GRAY_SESSION_SERVICES_H
 
@@ -12,15 +12,15 @@
 struct host_services {
     void *context;
     struct control *control;
-    /* A film for the picture; under request->check only the answer whether it could be written. *already: the picture
-     * is written, or another process makes it; neither done nor abandon follows. */
+    /* A film for the picture; under request->check only whether it could be written. *already: the picture is written,
+     * or another process renders it; neither done nor abandon follows. */
     bool (*begin)(void *context, const struct picture_request *request, struct film *film, bool *already,
                   struct error *error);
     /* A command of the window is done: waits for the next one. False: the window is gone. */
     bool (*reply)(void *context, const struct preview_reply *reply, struct preview_command *command,
                   struct error *error);
     void (*abandon)(void *context);
-    /* The film is complete. True when the files are written. */
+    /* The film is complete. True if the files are written. */
     bool (*done)(void *context, const struct picture_report *report, struct error *error);
     void (*line)(void *context, enum line_kind kind, const char *text);
     void (*script_ended)(void *context, int index, int status);

@@ -1,8 +1,8 @@
-/* Both FILE pointers are exchanged for streams with a write function of our own (fopencookie, glibc), so that all text
- * of the program goes through it.
+/* Both FILE pointers are replaced by streams with our own write function (fopencookie, glibc), so that all text of the
+ * program uses it.
  *
- * Text of a scene is written without a buffer, at once, as io.stderr always was. A write to a pipe whose reader has
- * stopped waits, with the stream taken; the program looks whether the pipe takes text before it takes the stream. */
+ * Text of a scene is written at once, without a buffer, as by io.stderr. A write to a pipe whose reader has stopped
+ * waits, with the stream locked; the program checks that the pipe accepts text before it locks the stream. */
 #define _GNU_SOURCE
 #include "session/standard_streams.h"
 
@@ -22,7 +22,7 @@ static bool is_ending(void) {
                                          sigismember(&pending, SIGHUP) == 1);
 }
 
-/* A pipe that poll reports writable takes PIPE_BUF bytes at once. False: the stream takes no more. */
+/* A pipe that poll reports as writable accepts PIPE_BUF bytes at once. False: the stream accepts no more. */
 static bool write_piece(struct standard_stream *stream, const char *text, size_t size, size_t *done) {
     struct pollfd watched = {.fd = stream->descriptor, .events = POLLOUT};
     while (!stream->given_up) {
@@ -128,13 +128,13 @@ void error_stream_note_handled(struct error_stream *stream) {
     atomic_fetch_add(&stream->handled, 1);
 }
 
-/* A line may be handled before it is noted as sent. */
+/* A line may be handled before it is counted as sent. */
 static void wait_for_lines(const struct error_stream *stream) {
     while ((int32_t)(atomic_load(&stream->handled) - atomic_load(&stream->sent)) < 0)
         rest();
 }
 
-/* What standard error does not take is lost, as what stdio writes to it is. */
+/* Text that standard error does not accept is lost, as it is with stdio. */
 static void put(void *context, const char *text, size_t size) {
     (void)context;
     while (size > 0) {

@@ -11,8 +11,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Standard output and standard error of the supervisor. A reader that stopped reading must not keep it from its
- * signals: a write waits until the stream takes something, or until a signal that ends the run is pending. */
+/* Standard output and standard error of the supervisor. A reader that stops reading must not prevent signals from being
+ * handled: a write waits until the stream accepts data, or until a signal that ends the run is pending. */
 struct standard_stream {
     int descriptor;
     bool waits;        /* a pipe, a terminal or the like */
@@ -22,20 +22,20 @@ struct standard_stream {
 /* Zero value: not begun. */
 struct standard_streams {
     struct standard_stream out, err;
-    bool ended;      /* set when the signal has been read: from then on a stream that takes nothing is given up soon */
-    FILE *before[2]; /* stdout and stderr as they were */
+    bool ended;      /* set when the signal has been read: from then on writes wait only briefly */
+    FILE *before[2]; /* the original stdout and stderr */
 };
 
-/* From now on stdout and stderr write so. SIGINT, SIGTERM and SIGHUP must be blocked. The struct must stay until
- * standard_streams_end. Without memory nothing changes. */
+/* Replaces stdout and stderr. SIGINT, SIGTERM and SIGHUP must be blocked. The struct must stay until
+ * standard_streams_end. Without memory nothing is replaced. */
 void standard_streams_begin(struct standard_streams *streams);
-/* Writes what is buffered, and puts the streams back. Also for the process that fork has made. */
+/* Writes buffered text, and restores the streams. Also for a process created by fork. */
 void standard_streams_end(struct standard_streams *streams);
 
-/* Standard error, which the program and its scenes share. Both write to it directly, one at a time: who writes has
- * taken it. The program ends a line that a scene has left unfinished, and the scene's guard (base/terminal_text.h)
- * begins a new one after a line of the program, so that none is continued by the other. Lies in memory that both
- * processes share; the supervisor trusts nothing in it with more than a newline and a short wait. */
+/* Standard error, which the program and its scenes share. Both write to it directly, one at a time, under a lock. The
+ * program ends a line that a scene has left unfinished, and the scene's guard (base/terminal_text.h) begins a new one
+ * after a line of the program, so that none is continued by the other. Lies in memory that both processes share; the
+ * supervisor trusts nothing in it with more than a newline and a short wait. */
 enum error_stream_owner { ERROR_STREAM_FREE, ERROR_STREAM_PROGRAM, ERROR_STREAM_SCENE };
 
 /* Zero value: free, at the beginning of a line. */
@@ -48,28 +48,28 @@ struct error_stream {
     _Atomic uint32_t sent, handled;
 };
 
-/* Waits until it is free. The program waits a tenth of a second at most: a scene that is stopped, or killed, in the
- * middle of a write must not hold it. Fine to give what was not got. */
+/* Waits for the lock. The program waits a tenth of a second at most: a scene that is stopped, or killed, during a write
+ * must not block it. Releasing a lock that was not obtained is allowed. */
 void error_stream_take(struct error_stream *stream, enum error_stream_owner owner);
 void error_stream_give(struct error_stream *stream, enum error_stream_owner owner);
-/* What comes next is the program's: an unfinished line is ended. */
+/* The next text is the program's: an unfinished line is ended. */
 void error_stream_begin_line(struct error_stream *stream);
-/* The process that wrote for scenes is gone. */
+/* The process that wrote for scenes has ended. */
 void error_stream_free(struct error_stream *stream);
 void error_stream_note_sent(struct error_stream *stream);
 void error_stream_note_handled(struct error_stream *stream);
 
-/* A process that runs scenes: their text on its way. */
+/* The output of scenes in the process that runs them. */
 struct scene_writer {
     struct error_stream *stream;
     struct line_guard guard;
-    uint32_t lines;  /* of the program, when something was last written here */
-    bool unfinished; /* an earlier process has left a line unfinished */
+    uint32_t lines;  /* the count of the program at the last write here */
+    bool unfinished; /* an earlier process has not ended its last line */
 };
 void scene_writer_init(struct scene_writer *writer, struct error_stream *stream);
-/* Waits until the lines before it are shown. */
+/* Waits until the earlier lines are shown. */
 void scene_writer_take(struct scene_writer *writer, const char *text, size_t size);
-/* Writes what is held back, a beginning of "gray:"; to be called before the program says something. */
+/* Writes the text that was held back (a beginning of "gray:"); to be called before the program prints a message. */
 void scene_writer_flush(struct scene_writer *writer);
 
 #endif

@@ -1,5 +1,5 @@
-/* What prints goes character by character and writes at once, so it needs no memory and has no limit. A text_writer
- * hands its piece on when the next word does not fit. */
+/* The printing functions process one character after the other and write at once, so they need no memory and have no
+ * limit. A text_writer passes its piece on if the next word does not fit. */
 #include "session/text.h"
 
 #include "base/terminal_text.h"
@@ -95,7 +95,7 @@ void text_duration(double seconds, char *out, size_t size) {
         (void)snprintf(out, size, "%lu h %lu min", whole / 3600, whole / 60 % 60);
 }
 
-/* Of other kinds of descriptors poll may know nothing; writing to them does not wait. */
+/* poll may not support other kinds of descriptors; writing to them does not wait. */
 bool text_stderr_is_ready(void) {
     struct stat status;
     struct pollfd watched = {.fd = STDERR_FILENO, .events = POLLOUT};

@@ -1,4 +1,4 @@
-/* Texts that come from scripts and file names, made fit for a terminal or for JSON: printed to a stream, or handed on
+/* Texts that come from scripts and file names, made safe for a terminal or for JSON: printed to a stream, or passed on
  * in pieces. */
 #ifndef GRAY_SESSION_TEXT_H
 #define GRAY_SESSION_TEXT_H
@@ -11,12 +11,12 @@
 
 /* The text as one line and a newline; control characters other than tab become '?', line ends, those of the upper half
  * (U+0080 to U+009F) and the marks that change the direction of writing (U+202E and its like) too, so that a scene
- * cannot steer the terminal. */
+ * cannot control the terminal. */
 void text_print_line(FILE *stream, const char *text);
-/* The same of a line whose beginning a scene or a file has chosen, such as the name of a picture: it is not shown as a
+/* The same for a line whose beginning a scene or a file has chosen, such as the name of a picture: it is not shown as a
  * line of the program (base/terminal_text.h). */
 void text_print_scene_line(FILE *stream, const char *text);
-/* The same of an error with its traceback: line ends stay where the next line is indented by two blanks. */
+/* The same for an error with its traceback: line ends remain if the next line is indented by two blanks. */
 void text_print_lines(FILE *stream, const char *text);
 /* The text as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD, the characters above escapes. */
 void text_print_json(FILE *stream, const char *text);
@@ -26,15 +26,15 @@ void text_print_json(FILE *stream, const char *text);
 size_t text_json_piece(const char *text, char piece[8], size_t *taken);
 /* The same for a terminal: '?' for the same characters. */
 size_t text_clean_piece(const char *text, char piece[8], size_t *taken);
-/* A text of several lines of our own, cleaned like that but for its line ends. */
+/* A text of our own with several lines, in the same way but with its line ends. */
 void text_print(FILE *stream, const char *text);
 /* Seconds in words: 40 s, 3 min 20 s, 2 h 5 min. */
 void text_duration(double seconds, char *out, size_t size);
 
-/* Whether standard error takes text now: a pipe or a terminal whose reader has stopped does not. */
+/* Whether standard error accepts text now: a pipe or a terminal whose reader has stopped does not. */
 bool text_stderr_is_ready(void);
 
-/* Text of any length: gathered, and handed on in pieces. */
+/* Text of any length: collected, and passed on in pieces. */
 struct text_writer {
     void (*put)(void *context, const char *text); /* pieces of up to TEXT_WRITER_PIECE bytes; `text` ends in NUL */
     void *context;
@@ -43,13 +43,13 @@ struct text_writer {
 };
 enum { TEXT_WRITER_PIECE = sizeof(((struct text_writer *)0)->text) };
 
-/* What is formatted at once is cut at 1,000 bytes; texts of scripts go through text_writer_name or text_writer_json. */
+/* A formatted text is cut at 1,000 bytes; use text_writer_name or text_writer_json for texts of scripts. */
 void text_writer_print(struct text_writer *writer, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Control characters become '?'. */
 void text_writer_name(struct text_writer *writer, const char *text);
 /* As a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
 void text_writer_json(struct text_writer *writer, const char *text);
-/* 17 digits, so that the number is exactly this one; null for what JSON has no number for. */
+/* 17 digits, so that the number is exact; null for infinities and NaN. */
 void text_writer_json_number(struct text_writer *writer, double number);
 void text_writer_json_vector(struct text_writer *writer, struct vec3 v); /* [x,y,z] */
 void text_writer_flush(struct text_writer *writer);

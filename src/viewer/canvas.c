@@ -1,5 +1,5 @@
-/* A letter is seven rows of five dots, the leftmost dot in bit 4. Lines go in steps of at most a pixel along their
- * longer side (the digital differential analyser). */
+/* A letter is seven rows of five dots, the leftmost dot in bit 4. Lines are drawn in steps of at most one pixel along
+ * their longer axis (the digital differential analyser). */
 #include "viewer/canvas.h"
 
 #include "math/elementary.h"
@@ -140,7 +140,7 @@ void canvas_outline(const struct canvas *canvas, int x, int y, int width, int he
     canvas_box(canvas, x + width - wide, y, wide, height, colour);
 }
 
-/* The next character; bytes that go on with one of UTF-8 are passed over. NUL at the end. */
+/* The next character; continuation bytes of UTF-8 are skipped. NUL at the end. */
 static char next_letter(const char **text) {
     char c = **text;
     if (c == '\0')
@@ -172,7 +172,7 @@ int canvas_text_width(const struct canvas *canvas, const char *text) {
 }
 
 void canvas_line(const struct canvas *canvas, double x0, double y0, double x1, double y1, struct canvas_colour colour) {
-    /* What is far outside would take for ever. */
+    /* A line far outside the canvas would take too long. */
     double limit = 4.0 * (canvas->width + canvas->height);
     if (!(fabs(x0) < limit && fabs(y0) < limit && fabs(x1) < limit && fabs(y1) < limit))
         return;

@@ -1,4 +1,4 @@
-/* Drawing over a picture: letters, boxes and lines into red, green, blue, opacity. The letters are our own, 5 x 7 dots
+/* Drawing over a picture: letters, boxes and lines into red, green, blue, opacity. It has its own letters, 5 x 7 dots
  * in a cell of 6 x 10, printable ASCII. Everything is clipped at the edge of the canvas. */
 #ifndef GRAY_VIEWER_CANVAS_H
 #define GRAY_VIEWER_CANVAS_H
@@ -14,13 +14,13 @@ struct canvas_colour {
 struct canvas {
     uint8_t *rgba; /* not owned */
     int width, height;
-    int scale; /* pixels for a dot of a letter */
+    int scale; /* pixels per dot of a letter */
 };
 
 enum { CANVAS_CELL = 6, CANVAS_LINE = 10, CANVAS_LETTER = 7 }; /* dots */
 
 void canvas_clear(const struct canvas *canvas);
-/* What was there goes away: panels are opaque as far as their ink is. */
+/* Replaces earlier content: panels are as opaque as their ink. */
 void canvas_box(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour);
 void canvas_outline(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour);
 /* The text ends at NUL; other than printable ASCII becomes '?' (once for each character in UTF-8). */

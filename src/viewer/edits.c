@@ -1,5 +1,5 @@
-/* A step keeps both sides, so undoing applies its other side; the list of current changes is never computed from the
- * beginning. */
+/* A step stores the state before and after, so undoing applies the state before; the list of current changes is never
+ * computed from the beginning. */
 #include "viewer/edits.h"
 
 #include "base/mem.h"

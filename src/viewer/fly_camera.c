@@ -1,5 +1,5 @@
-/* Turns are multiplied on the camera's side (about its own axes) or, round a centre, on the world's side. After each
- * one the quaternion is made unit again, so errors do not add up. */
+/* Rotations are multiplied on the camera's side (about its own axes) or, around a centre, on the world's side. After
+ * each one the quaternion is normalised, so errors do not accumulate. */
 #include "viewer/fly_camera.h"
 
 #include "math/elementary.h"
@@ -72,7 +72,7 @@ void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds) {
     bool known = !box_is_empty(bounds) && vec3_finite(bounds->min) && vec3_finite(bounds->max);
     double size = known ? vec3_length(vec3_sub(bounds->max, bounds->min)) : 10;
-    /* A wide floor under a small scene: from where it is seen counts too. */
+    /* For a wide floor under a small scene the position of the camera is used, too. */
     fly_camera->centre = known ? vec3_scale(vec3_add(bounds->min, bounds->max), 0.5) : vec3_make(0, 0, 0);
     double away = vec3_length(vec3_sub(fly_camera->centre, fly_camera->home.position));
     fly_camera->speed = (size < 2 * away || away == 0 ? size : 2 * away) / 4;

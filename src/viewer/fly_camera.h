@@ -1,6 +1,6 @@
 /* Flying through a scene: a position and an orientation that keys and the mouse change. The orientation is a quaternion
- * (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985), so no direction is special. Knows no window:
- * times are seconds, distances of the mouse are fractions of the window's height. */
+ * (Shoemake, "Animating Rotation with Quaternion Curves", SIGGRAPH 1985), so no direction is special. Independent of
+ * the window: times are seconds, distances of the mouse are fractions of the window's height. */
 #ifndef GRAY_VIEWER_FLY_CAMERA_H
 #define GRAY_VIEWER_FLY_CAMERA_H
 
@@ -29,21 +29,22 @@ struct fly_camera {
     struct pose views[FLY_VIEWS];
 };
 
-/* camera: with a direction as its view. bounds: of the scene; a way through it takes four seconds. */
+/* camera: its view is a direction. bounds: of the scene; a flight through it takes four seconds. */
 void fly_camera_begin(struct fly_camera *fly_camera, const struct camera *camera, const struct box *bounds);
-/* Speed and centre for other bounds; the camera and kept views stay. */
+/* Sets speed and centre for other bounds; the camera and stored views do not change. */
 void fly_camera_measure(struct fly_camera *fly_camera, const struct box *bounds);
 /* The camera at its current position. */
 struct camera fly_camera_current(const struct fly_camera *fly_camera);
-/* What the held keys do in `seconds`. True: something moved. */
+/* Applies the pressed keys for `seconds`. True: the camera has moved. */
 bool fly_camera_step(struct fly_camera *fly_camera, double seconds);
-/* Looks around: a way of one turns by the angle of view. x to the right, y downwards. */
+/* Rotates the camera: a distance of one rotates by the angle of view. x to the right, y downwards. */
 void fly_camera_turn(struct fly_camera *fly_camera, double x, double y);
-/* Goes round the centre, which stays where it is in the picture. A way of one is half a turn. */
+/* Orbits the centre, which keeps its position in the picture. A distance of one is half a turn. */
 void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y);
 /* Narrows (steps > 0) or widens the angle of view, by a tenth each. */
 void fly_camera_zoom(struct fly_camera *fly_camera, double steps);
-/* Rolls to the right by degrees; fly_camera_level turns until the horizon is level (y is up), and keeps where it looks.
+/* Rolls to the right by degrees; fly_camera_level rolls until the horizon is level (y is up), and keeps the view
+ * direction.
  */
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees);
 void fly_camera_level(struct fly_camera *fly_camera);

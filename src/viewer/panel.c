@@ -1,5 +1,5 @@
-/* A part is pressed where the button goes down on it, and used where it goes up on it again. Parts are known by their
- * number in the frame; a frame with other parts in between forgets what was held, which then is not used. */
+/* A part is pressed when the mouse button goes down on it, and used when the button goes up on it again. Parts are
+ * identified by their number in the frame; if a frame in between has other parts, the press is lost. */
 #include "viewer/panel.h"
 
 static const struct canvas_colour ground = {18, 20, 24, 200}, plain = {225, 228, 232, 255}, quiet = {66, 72, 82, 235};

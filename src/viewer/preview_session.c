@@ -1,5 +1,5 @@
-/* Executes a command, replies, and waits for the next one; all decisions are the viewer's. Changes are undone and
- * applied again as a whole, so that their order is that of the list, as it is when a script makes them. */
+/* Executes a command, replies, and waits for the next one; the viewer makes all decisions. All changes are undone and
+ * applied again together, so that their order is that of the list, as in a script. */
 #include "viewer/preview_session.h"
 
 #include "inspect/inspect.h"
@@ -15,13 +15,13 @@ struct preview_state {
     struct preview_session *preview;
     struct change_list changes;
     struct changed_scene changed;
-    bool stale;    /* the world is not that of the changes, or there is none */
+    bool stale;    /* the world does not include the changes, or there is none */
     bool reported; /* the first reply about the world was sent */
     struct pass_view view;
     double build_seconds;
 };
 
-/* Settings of a pass: coarse ones have one sample a pixel, and a soft light few rays. */
+/* Settings of a pass: a coarse pass has one sample per pixel, and few rays for a soft light. */
 static void set_pass(struct render_job *job, const struct render_job *own, const struct pass_view *view,
                      const struct picture_request *asked, struct film *film, void *block) {
     *job = *own;
@@ -37,7 +37,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
         job->settings.path_samples = 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
-    if (view->divide > 1) { /* the film says which part it is */
+    if (view->divide > 1) { /* the film defines the part */
         job->settings.cropped = false;
         job->settings.keep_first = false;
     }
@@ -56,7 +56,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     }
 }
 
-/* Of everything that has an end. */
+/* The bounds of all finite objects. */
 static struct box finite_bounds(const struct world *world) {
     struct box bounds = box_empty();
     for (uint32_t i = 0; i < world->primitive_count; i++) {
@@ -93,7 +93,8 @@ static bool make_pass(struct preview_state *work, struct picture_report *report,
     return true;
 }
 
-/* The light as changed, which may not be built yet; of a mesh the world, if there is one, knows where it is. */
+/* The changed light, which may not be in the world yet; the position of a mesh light comes from the world, if there is
+ * one. */
 static void describe_light(const struct world *world, const struct light *light, uint32_t number,
                            struct light_info *out) {
     const struct light *built = world && number < world->light_count ? &world->lights[number] : light;
@@ -138,7 +139,8 @@ static bool build_again(struct preview_state *work, struct error *error) {
     return ok;
 }
 
-/* The world of the changes; where the user stops its building it stays stale, and `reply` says so. False: an error. */
+/* The world of the changes; if the user stops its building it remains stale, and `reply` reports this. False: an error.
+ */
 static bool need_world(struct preview_state *work, struct preview_reply *reply, struct error *error) {
     if (!work->stale || build_again(work, error))
         return true;
@@ -185,7 +187,7 @@ static struct render_job view_job(const struct preview_state *work, const struct
     return job;
 }
 
-/* The material is reported as it was before the changes of the window, which has these itself. */
+/* The material is reported without the changes of the window, which the viewer has itself. */
 static bool answer_click(const struct preview_state *work, const struct preview_command *command, struct picked *picked,
                          struct error *error) {
     struct render_job job = view_job(work, &command->view);
@@ -210,7 +212,7 @@ static bool send_pixel_trace(struct preview_state *work, const struct preview_co
         .file = preview->request->file, .job = &job, .root = preview->request->root, .pool = preview->pool};
     struct text_writer writer = {.put = print_piece, .context = preview};
     const uint32_t pixel[1][2] = {{(uint32_t)command->x, (uint32_t)command->y}};
-    /* The supervisor asks for pixels of the picture; others have no trace. */
+    /* The supervisor requests pixels of the picture only; others have no trace. */
     if (!(command->x >= 0 && command->y >= 0 && command->x < job.width && command->y < job.height))
         return true;
     return inspect_pixels(&picture, pixel, 1, &writer, error);
@@ -230,7 +232,7 @@ static void describe_world(struct preview_state *work, struct preview_reply *rep
     work->reported = true;
 }
 
-/* An overlay that was stopped is made later. False: an error. */
+/* A stopped overlay is made later. False: an error. */
 static bool make_overlay(struct preview_state *work, const struct pass_view *view,
                          const struct view_overlay_request *request, struct preview_reply *reply, struct error *error) {
     struct preview_session *preview = work->preview;
@@ -242,7 +244,7 @@ static bool make_overlay(struct preview_state *work, const struct pass_view *vie
     double begun = progress_clock();
     const struct view_overlay_scene scene = {&job, preview->request->root, preview->pool};
     bool ok = view_overlay_make(&scene, request, &buffers, &reply->overlay, error);
-    reply->report.rays.render_seconds += progress_clock() - begun; /* a frame is not there before its lines */
+    reply->report.rays.render_seconds += progress_clock() - begun; /* a frame exists only with its lines */
     reply->overlay.stopped = !ok && preview_was_stopped(preview->services->control, error);
     pool_reset_cancel(preview->pool);
     return ok || reply->overlay.stopped;

@@ -1,5 +1,5 @@
 /* Executes commands of the viewer in the render process: renders passes, picks and changes nodes, traces pixels. The
- * world stays as long as only the camera or a colour changes. */
+ * world is kept as long as only the camera or a colour changes. */
 #ifndef GRAY_VIEWER_PREVIEW_SESSION_H
 #define GRAY_VIEWER_PREVIEW_SESSION_H
 
@@ -14,20 +14,20 @@ struct preview_session {
     struct pool *pool;
     const struct render_request *request;
     const struct picture_request *asked;
-    struct render_job *job; /* as the script wants it; its world is the one to use */
+    struct render_job *job; /* as the script requests it; with the world to use */
     struct world *world;
     void *context; /* of the functions below */
-    /* Builds job->world again with these lights. False: there is none; its building can be stopped as a pass can. */
+    /* Builds job->world again with these lights. False: there is no world; building can be stopped like a pass. */
     bool (*build)(void *context, const struct scene_light *lights, uint32_t light_count, struct error *error);
     void (*fill)(void *context, const struct film *film, struct picture_report *report);
     void (*warn)(void *context, const char *text);
 };
 
-/* Until the picture is done. built: the world is there; else the user stopped its building and may want it later.
- * False: the window was closed, or an error. */
+/* Runs until the picture is finished. built: the world exists; else the user stopped its building and may request it
+ * later. False: the window was closed, or an error. */
 bool preview_run(struct preview_session *preview, bool built, struct picture_report *report, double build_seconds,
                  struct error *error);
-/* Whether this is the error of something that was stopped for a while. */
+/* Whether this is the error of a pass that the user has stopped. */
 bool preview_was_stopped(const struct control *control, const struct error *error);
 
 #endif

@@ -1,5 +1,5 @@
-/* Which pixels show a node is asked by one ray through the middle of each pixel of the rectangle that the boxes of the
- * node's primitives fill in the picture. What the ray meets first counts: a node behind another one has no outline
+/* One ray through the centre of each pixel determines which pixels show a node, within the rectangle around the boxes
+ * of the node's primitives in the picture. The first hit of the ray is used: a node behind another one has no outline
  * there. */
 #include "viewer/view_overlay_internal.h"
 
@@ -16,9 +16,10 @@ enum { ROWS = 8 }; /* of an item of work */
 struct node_members {
     const struct world *world;
     const struct view_overlay_request *request;
-    uint8_t *member; /* by primitive: part of the node, or of the solid that it is an operand of */
+    uint8_t *member; /* for each primitive: whether it is part of the node, or of the solid that contains the node as
+                        operand */
     struct box box;
-    uint32_t first_leaf, end_leaf; /* of that solid, by origin: those of the operand */
+    uint32_t first_leaf, end_leaf; /* for each origin in that solid: whether it belongs to the operand */
     const struct scene_step *to_solid;
     uint32_t depth;
     bool no_memory;
@@ -57,7 +58,7 @@ static bool note_members(void *context, uint32_t first, uint32_t count, const st
     return true;
 }
 
-/* Where the box is in the film; all of it where that is not easily computed. */
+/* The rectangle of the box in the film; the whole film if that is not easily computed. */
 static struct film_rectangle rectangle_of(const struct camera_frame *frame, const struct film *film,
                                           const struct box *box) {
     const struct film_rectangle all = {0, 0, film->width, film->height};
@@ -77,7 +78,7 @@ static struct film_rectangle rectangle_of(const struct camera_frame *frame, cons
             high[k] = fmax(high[k], at[k]);
         }
     }
-    /* One more, for what is rounded. */
+    /* One more pixel, because of rounding. */
     low[0] = fmin(fmax(floor(low[0]) - 1 - film->x0, 0), film->width);
     low[1] = fmin(fmax(floor(low[1]) - 1 - film->y0, 0), film->height);
     high[0] = fmin(fmax(ceil(high[0]) + 1 - film->x0, low[0]), film->width);

@@ -1,6 +1,6 @@
 /* Passes: while the camera moves, one sample for every divide x divide pixels, with divide chosen so that a pass takes
- * about a thirtieth of a second; then finer ones, and at last the picture as the script wants it. The cost of a pass
- * goes with the square of 1 / divide, from which divide follows. */
+ * about a thirtieth of a second; then finer ones, and finally the picture with the settings of the script. The cost of
+ * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
 #include "viewer/viewer_internal.h"
 
@@ -24,7 +24,7 @@ static struct pass_view current_view(const struct viewer *viewer, uint32_t divid
                               .own = !viewer->camera_moved};
 }
 
-/* The scripts ran again: a moved camera and the edits stay. */
+/* The scripts ran again: a moved camera and the edits are kept. */
 static void keep_work(struct viewer *viewer, const struct viewer *before) {
     struct pose home = viewer->fly_camera.home;
     if (before->camera_moved) {
@@ -59,7 +59,7 @@ static void close_window(struct viewer *viewer) {
     viewer->open = false;
 }
 
-/* The window with all that belongs to it. */
+/* The window and its state. */
 static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->control = before->control;
     viewer->number = before->number;
@@ -177,7 +177,7 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     if (report->stopped)
         return;
     viewer_draw_tiles(viewer);
-    /* Passes that take no time say nothing about how coarse they must be. */
+    /* Passes that take no time do not help to choose divide. */
     double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
     if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)
         viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
@@ -229,7 +229,7 @@ void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply,
     }
 }
 
-/* resume: the tiles that are done stay. */
+/* resume: finished tiles are kept. */
 static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool resume, double now) {
     if (!resume) {
         viewer->pass.view = current_view(viewer, divide, plain);
@@ -296,7 +296,7 @@ static void command_overlay(struct viewer *viewer) {
 static enum viewer_action next_command(struct viewer *viewer, double now) {
     uint32_t divide = viewer->pass.from_coarse ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
-    if (viewer->pass.halted && viewer->pass.unbuilt) /* what is asked now has no answer */
+    if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
         viewer->edit.click_waits = viewer->trace.wanted = false;
     if (viewer->edit.pending.count > 0 && !viewer->pass.halted) {
         command_change(viewer);
@@ -329,9 +329,9 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
     return VIEWER_SEND_COMMAND;
 }
 
-/* What can be done while the child works. */
+/* What can be done while the render process works. */
 static enum viewer_action step_running(struct viewer *viewer) {
-    /* A coarse pass is over soon and is worth showing; a fine one is not. */
+    /* A coarse pass ends soon and is useful to show; a fine one is stopped. */
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide >= viewer->pass.divide;
     if (viewer->pass.halted && viewer->block && viewer->pass.state != PASS_STOPPING) {
         viewer->pass.state = PASS_STOPPING;
@@ -346,7 +346,7 @@ static enum viewer_action step_running(struct viewer *viewer) {
     return VIEWER_STOP_PASS;
 }
 
-/* The picture is written with the lines of the command line, which are there if they are shown. */
+/* The picture is written with the overlay lines of the command line, which exist if they are visible. */
 static bool lines_of_script(const struct viewer *viewer) {
     return viewer->request.overlay == OVERLAY_NONE ||
            (viewer->overlay.kind == (enum overlay)viewer->request.overlay && viewer->overlay.lines_fresh &&

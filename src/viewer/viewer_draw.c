@@ -1,5 +1,5 @@
-/* The image follows the film tile by tile; the menu and the figures lie over it. The window is drawn at most every 16
- * milliseconds, and what lies over the picture only when something in it can have changed. */
+/* The image is updated from the film tile by tile; the menu and the figures are drawn over it. The window is drawn at
+ * most every 16 milliseconds, and the drawing over the picture only when it may have changed. */
 #include "base/mem.h"
 #include "image/png_write.h"
 #include "output/progress.h"
@@ -25,7 +25,7 @@ bool viewer_resize(struct viewer *viewer, int width, int height, double density)
         mem_free(canvas->rgba);
         *canvas = (struct canvas){rgba, width, height, 1};
     }
-    /* Letters of a size that can be read, and that leaves something of the picture. */
+    /* A size of letters that is readable and leaves room for the picture. */
     double scale = floor(fmin(width / (440 * density), height / (330 * density)));
     canvas->scale = (int)fmax(1, floor(density * fmax(1, fmin(scale, 2)) + 0.5));
     double fit = fmin(width / w, height / h);
@@ -97,7 +97,8 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     }
 }
 
-/* Tiles that are finished or, after a pass over the picture, have more samples than before, and in those under way the pixels that are being sampled again, in red. */
+/* Tiles that are finished or, after a pass over the picture, have more samples than before, and in those under way the
+ * pixels that are being sampled again, in red. */
 void viewer_draw_tiles(struct viewer *viewer) {
     const struct film *film = &viewer->pass.film;
     struct tone tone = tone_of(viewer);
@@ -132,8 +133,8 @@ static uint32_t building_step(const struct viewer *viewer) {
     return viewer->control ? atomic_load_explicit(&viewer->control->build_step, memory_order_relaxed) : 0;
 }
 
-/* The picture itself by its work, with the time left once it is known (render/time_estimate.h); coarse ones by
- * their tiles.
+/* The finished share: of the picture itself by its work, with the remaining time once it is known
+ * (render/time_estimate.h); coarse ones by their tiles.
  */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {
     const struct progress_estimate *progress_estimate =
@@ -175,7 +176,7 @@ static void compute_figures(const struct viewer *viewer, struct figures *figures
     double seconds = rays->render_seconds;
     double traced = (double)rays->camera_rays + (double)rays->reflected_rays + (double)rays->refracted_rays +
                     (double)rays->shadow_rays;
-    /* A hierarchy is in one voxel that contains everything. */
+    /* A hierarchy is stored in one voxel that contains everything. */
     double voxels = 1;
     for (int i = 0; i < 3; i++)
         voxels *= report->grid_cells[i] > 1 ? report->grid_cells[i] : 1;
@@ -206,7 +207,7 @@ void viewer_show(struct viewer *viewer, double now) {
     bool over = due || viewer->display.hud_dirty;
     if (over) {
         struct figures figures;
-        viewer->display.hud_dirty = false; /* what is used in the panel asks for another frame */
+        viewer->display.hud_dirty = false; /* a used part of the panel requires another frame */
         compute_figures(viewer, &figures, now);
         viewer_draw_hud(viewer, &figures);
         if (due)
@@ -227,7 +228,7 @@ void viewer_show(struct viewer *viewer, double now) {
                                    .window_height = (uint32_t)layout->height,
                                    .overlay_changed = over};
     driver->show(driver->context, &frame);
-    /* The picture that is on the screen now, coarse as it may be, is of the world that was built. */
+    /* The picture on the screen now, even a coarse one, shows the new world. */
     if (viewer->built > 0 && viewer->pass.report.threads > 0) {
         (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: on the screen %.1f ms after its world was built",
                        viewer->request.file, 1000 * (progress_clock() - viewer->built));

@@ -1,6 +1,6 @@
-/* Selecting, changing, saving. The selection is kept as it was when it was picked, with the change of its position at
- * that time; where it is now follows from the change that holds now, so undoing needs no reply of the render process.
- * All maps are made in the world and converted to the space of the node's parent. */
+/* Selecting, changing, saving. The selection is stored in its state at the time of picking, with the change of its pose
+ * at that time; its current pose follows from the current change, so undoing needs no reply of the render process. All
+ * maps are computed in world space and converted to the space of the node's parent. */
 #include "inspect/pick.h"
 #include "math/elementary.h"
 #include "viewer/viewer_internal.h"
@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { OPERANDS_BELOW = 1 << 20 }; /* farther than any operand is */
+enum { OPERANDS_BELOW = 1 << 20 }; /* deeper than any operand */
 
 /* Seeing. */
 
@@ -27,7 +27,7 @@ bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame
                           warning, &ignored);
 }
 
-/* Pixels of the window for one of the picture. */
+/* Pixels of the window per pixel of the picture. */
 static double zoom(const struct viewer *viewer) {
     return viewer->display.layout.shown_width / viewer->request.width;
 }
@@ -60,12 +60,12 @@ void viewer_undo(struct viewer *viewer, bool again) {
         return;
     (void)change_list_set(&viewer->edit.pending, &target, true);
     viewer_halt(viewer, false);
-    /* What is not there any more cannot be selected. */
+    /* A node that no longer exists cannot be selected. */
     bool gone = target.kind == CHANGE_OWN || target.kind == CHANGE_ADD || target.kind == CHANGE_GONE ||
                 target.kind == CHANGE_ADD_LIGHT || target.kind == CHANGE_DARK;
     if (gone)
         viewer->edit.selection.kind = SELECTED_NOTHING;
-    viewer->edit.selection.picked.idle_parts = 0; /* they were found before this */
+    viewer->edit.selection.picked.idle_parts = 0; /* they were computed before the change */
     viewer->display.hud_dirty = true;
 }
 
@@ -78,7 +78,7 @@ static struct vec3 three(const double *numbers) {
     return vec3_make(numbers[0], numbers[1], numbers[2]);
 }
 
-/* The change of one kind of what is selected as it holds now, or one that changes nothing. */
+/* The current change of one kind of the selection, or a change without effect. */
 static struct change node_change(const struct viewer *viewer, enum change_kind kind) {
     const struct picked *picked = &viewer->edit.selection.picked;
     struct change change = {.kind = kind, .serial = picked->serial};
@@ -98,7 +98,7 @@ static bool map_of(const struct change *change, struct transform *out) {
     return transform_from_affine(&matrix, out);
 }
 
-/* The same map in the space of the node's parent. False: that space is flat. */
+/* The same map in the space of the node's parent. False: that space has a singular matrix. */
 static bool map_to_parent(const struct viewer *viewer, const struct transform *in_world, struct transform *out) {
     struct transform world_from_parent;
     if (!transform_from_affine(&viewer->edit.selection.picked.world_from_parent, &world_from_parent))
@@ -125,14 +125,14 @@ static void apply_in_world(struct viewer *viewer, const struct transform *in_wor
     if (!map_of(&change, &before) || !map_to_parent(viewer, in_world, &by))
         return;
     struct transform after = transform_compose(&by, &before), checked;
-    if (!transform_from_affine(&after.forward, &checked)) /* made so small that it has no inverse */
+    if (!transform_from_affine(&after.forward, &checked)) /* scaled so small that it has no inverse */
         return;
     memcpy(change.numbers, after.forward.m, sizeof after.forward.m);
     viewer_make_edit(viewer, &change, true, viewer->edit.joins);
     viewer->edit.joins = true;
 }
 
-/* The middle of the box, or where it was hit. */
+/* The centre of the box, or the point that was hit. */
 static struct vec3 pivot(const struct viewer *viewer) {
     const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 sum = {0, 0, 0};
@@ -156,7 +156,7 @@ static struct vec3 selection_position(const struct viewer *viewer) {
     return pivot(viewer);
 }
 
-/* About a point: there, the linear part, and back. */
+/* The linear part about a point. */
 static struct transform about(struct vec3 point, const struct transform *linear) {
     struct transform there = transform_translate(vec3_negate(point)), back = transform_translate(point);
     struct transform half = transform_compose(linear, &there);
@@ -178,7 +178,7 @@ void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
     }
     struct transform map;
     if (viewer->edit.tool == TOOL_TURN) {
-        /* As a ball under the mouse: about the axis in the film's plane that is across the way. */
+        /* Like a ball under the mouse: about the axis in the film plane perpendicular to the motion. */
         struct vec3 axis = vec3_add_scaled(vec3_scale(frame.unit_right, -dy), frame.unit_down, dx);
         double length = vec3_length(axis);
         if (!(length > 0))
@@ -205,7 +205,7 @@ void viewer_push_selection(struct viewer *viewer, double steps) {
 
 /* Selecting. */
 
-/* From pixels of the window to those of the whole picture. False: beside it. */
+/* From pixels of the window to those of the whole picture. False: outside it. */
 static bool pixel_at(const struct viewer *viewer, double x, double y, double *u, double *v) {
     *u = floor((x - viewer->display.layout.left) / zoom(viewer));
     *v = floor((y - viewer->display.layout.top) / zoom(viewer));
@@ -286,7 +286,7 @@ static uint32_t count_of(const struct viewer *viewer, enum change_kind kind) {
     return count;
 }
 
-/* Where new nodes go: where the user clicked last, or before the camera. */
+/* The position of new nodes: the last clicked point, or in front of the camera. */
 struct vec3 viewer_new_position(const struct viewer *viewer) {
     if (viewer->edit.selection.kind == SELECTED_NODE)
         return viewer_moved_point(viewer, viewer->edit.selection.picked.position);
@@ -294,7 +294,7 @@ struct vec3 viewer_new_position(const struct viewer *viewer) {
     return vec3_add_scaled(eye, forward, vec3_length(vec3_sub(viewer->fly_camera.centre, eye)));
 }
 
-/* What the child would say of a new ball or cube under the root. */
+/* What the render process would report for a new ball or cube under the root. */
 static struct picked new_picked(const struct viewer *viewer, const struct change *change, struct vec3 layout,
                                 double size) {
     struct picked picked = {.hit = true,
@@ -371,7 +371,7 @@ void viewer_add_node(struct viewer *viewer, enum added_kind kind) {
     if (!(size > 0))
         size = 1;
     viewer_make_edit(viewer, &change, true, false);
-    /* From the size of 1 at the origin of the root's space to its place in the world. */
+    /* From a shape of size 1 at the origin of the root's space to its pose in the world. */
     struct picked picked = new_picked(viewer, &change, vec3_make(0, 0, 0), 1);
     for (int i = 0; i < 8; i++)
         picked.corners[i] = affine_point(&viewer->scene.world_from_root, picked.corners[i]);
@@ -408,14 +408,14 @@ void viewer_set_material(struct viewer *viewer, enum material_part part, const d
     if (change.serial == 0)
         return;
     memcpy(change.numbers, numbers, 3 * sizeof *numbers);
-    /* Other parts may have an effect now. */
+    /* Other material inputs may have an effect now. */
     if (!(viewer->edit.selection.picked.idle_parts >> part & 1))
         viewer->edit.selection.picked.idle_parts = 0;
     viewer_make_edit(viewer, &change, true, viewer->edit.joins);
     viewer->edit.joins = true;
 }
 
-/* The copy is made of the script's material; what was changed of that is changed of the copy, too. */
+/* The copy is made of the script's material; the changes of that are applied to the copy, too. */
 void viewer_make_own_material(struct viewer *viewer) {
     struct picked *picked = &viewer->edit.selection.picked;
     struct change held[MATERIAL_PART_PARTS];
@@ -448,7 +448,7 @@ void viewer_set_exposure(struct viewer *viewer, double stops) {
     viewer->display.hud_dirty = true;
 }
 
-/* Saving: nothing that is there is ever overwritten. */
+/* Saving: existing files are never overwritten. */
 
 enum { NAME = 4096, NUMBERS = 10000 };
 

@@ -1,5 +1,5 @@
-/* What lies over the picture: the outline of the selection, markers of the lights, the menu, the figures, and the
- * selection's properties. Everything is drawn again for every frame; a click takes effect at once. */
+/* Draws over the picture: the outline of the selection, markers of the lights, the menu, the figures, and the
+ * selection's properties. Everything is drawn again for every frame; a click has its effect immediately. */
 #include "inspect/inspect.h"
 #include "viewer/viewer_internal.h"
 
@@ -19,7 +19,7 @@ static void draw_selection(struct viewer *viewer, const struct camera_frame *fra
     double x, y;
     if (viewer_project(viewer, frame, viewer_moved_point(viewer, picked->position), &x, &y))
         canvas_ring(&viewer->display.panel.canvas, x, y, 3 * viewer->display.panel.canvas.scale, outline);
-    /* Of an operand much may not be seen at all: its box shows where it is. */
+    /* Large parts of an operand may be invisible: its box shows its position. */
     if (viewer_draw_outline(viewer, outline) && picked->solid == 0)
         return;
     for (int i = 0; i < 8 && picked->has_box; i++)
@@ -131,7 +131,7 @@ static int draw_figures(struct viewer *viewer, const struct figures *figures, in
     return top + height;
 }
 
-/* The trace of a pixel, from the line on that was scrolled to; after its end it begins again. */
+/* The trace of a pixel, from the scrolled line on; after the end it starts again. */
 static void draw_pixel_trace(struct viewer *viewer, int top) {
     struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale;
@@ -154,7 +154,7 @@ static void draw_pixel_trace(struct viewer *viewer, int top) {
     }
 }
 
-/* The error, broken into lines at the bottom. */
+/* The error, broken into lines, at the bottom. */
 static void draw_message(struct viewer *viewer) {
     struct panel *panel = &viewer->display.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel);

@@ -33,12 +33,12 @@ static void grab(struct viewer *viewer, bool on) {
     viewer->driver->grab(viewer->driver->context, on);
 }
 
-/* Keys that are held. True: it was one. */
+/* Keys with an effect while they are pressed. True: it was one. */
 static bool handle_held_key(struct viewer *viewer, int key, bool down) {
     static const struct {
         int key;
         enum fly_camera_key fly_camera;
-        bool only_grabbed; /* the letter is a command otherwise */
+        bool only_grabbed; /* otherwise the letter is a command */
     } keys[] = {{WINDOW_ARROW_UP, FLY_FORWARD, false},
                 {WINDOW_ARROW_DOWN, FLY_BACK, false},
                 {WINDOW_ARROW_LEFT, FLY_LEFT, false},
@@ -129,7 +129,7 @@ static void choose_tool(struct viewer *viewer, enum edit_tool tool) {
     viewer->display.hud_dirty = true;
 }
 
-/* Esc, while the mouse is free: ends the selection, and where there is none, stops the pass. */
+/* Esc, while the mouse is not grabbed: ends the selection; without a selection, stops the pass. */
 static void clear_selection(struct viewer *viewer) {
     bool something = viewer->edit.selection.kind != SELECTED_NOTHING || viewer->edit.tool != TOOL_NONE ||
                      viewer->trace.text[0] != '\0';
@@ -224,7 +224,7 @@ static void handle_key(struct viewer *viewer, const struct window_event *event) 
     }
 }
 
-/* A short distance is still a click. */
+/* A movement over a short distance is still a click. */
 static bool is_drag(struct viewer *viewer) {
     double x = viewer->display.panel.mouse_x - viewer->input.press_x,
            y = viewer->display.panel.mouse_y - viewer->input.press_y;

@@ -1,4 +1,4 @@
-/* What the files of the viewer share. */
+/* Shared by the files of the viewer. */
 #ifndef GRAY_VIEWER_VIEWER_INTERNAL_H
 #define GRAY_VIEWER_VIEWER_INTERNAL_H
 
@@ -12,67 +12,67 @@ void viewer_note_stop(struct viewer *viewer, double seconds);
 /* viewer_input.c */
 void viewer_handle_event(struct viewer *viewer, const struct window_event *event);
 void viewer_change_view(struct viewer *viewer); /* the camera was moved */
-/* Nothing is rendered or built any more, and what is shown stays; or it goes on. */
+/* Stops rendering and building, and keeps the image; or continues. */
 void viewer_halt(struct viewer *viewer, bool on);
-void viewer_render(struct viewer *viewer); /* again, from coarse to fine */
+void viewer_render(struct viewer *viewer); /* renders renders again, from coarse to fine */
 
 /* viewer_edit.c */
-/* A click on the picture, at pixels of the window: a light that shows there is selected, else the child is asked.
- * operand: of a combined solid that one is selected whose surface is there. */
+/* A click on the picture, at pixels of the window: a visible light mark there is selected, else the render process is
+ * asked. operand: selects the operand of a combined solid whose surface is there. */
 void viewer_click(struct viewer *viewer, double x, double y, bool operand);
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y);
 void viewer_take_picked(struct viewer *viewer, const struct picked *picked);
 void viewer_select_up(struct viewer *viewer, bool down);                 /* the node above, or the operand below */
 void viewer_drag_selection(struct viewer *viewer, double dx, double dy); /* with the tool, by pixels of the window */
 void viewer_push_selection(struct viewer *viewer,
-                           double steps); /* what is selected goes away from the camera, or nearer */
+                           double steps); /* moves the selection away from the camera, or nearer */
 void viewer_make_edit(struct viewer *viewer, const struct change *change, bool present, bool join);
 void viewer_undo(struct viewer *viewer, bool again);
 void viewer_delete_selection(struct viewer *viewer);
 void viewer_add_node(struct viewer *viewer, enum added_kind kind);
 void viewer_set_material(struct viewer *viewer, enum material_part part,
                          const double numbers[3]);    /* of the material that was hit */
-void viewer_make_own_material(struct viewer *viewer); /* gives what is selected a material of its own */
+void viewer_make_own_material(struct viewer *viewer); /* gives the selection its own material */
 void viewer_set_exposure(struct viewer *viewer, double stops);
-/* All edits are sent again. */
+/* Sends all edits again. */
 void viewer_resend_edits(struct viewer *viewer);
 /* What holds now. */
 void viewer_material_now(const struct viewer *viewer, enum material_part part, double numbers[3]);
-/* A place on what is selected, as it was when it was picked: where it is now. */
+/* The current position of a point on the selection, given its position at the time of picking. */
 struct vec3 viewer_moved_point(const struct viewer *viewer, struct vec3 point);
-/* The camera of the last pass; false: it cannot be. */
+/* The camera of the last pass; false: it is invalid. */
 bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame);
-/* Where new nodes go: where the user clicked last, or before the camera. */
+/* The position of new nodes: the last clicked point, or in front of the camera. */
 struct vec3 viewer_new_position(const struct viewer *viewer);
-/* From a place in the world to pixels of the window; false: it is not to be seen. */
+/* From a position in the world to pixels of the window; false: it is not visible. */
 bool viewer_project(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
                     double *y);
 
 /* viewer_lights.c; lights are numbered from 1 */
 void viewer_take_lights(struct viewer *viewer, const struct preview_reply *reply);
-const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number); /* NULL: nothing is known of it */
-/* Where it is marked, pixels of the window; *seen: it is there, and not only at the border on the way to it. False:
- * nowhere. */
+const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number); /* NULL: it was not reported */
+/* The position of its mark, in pixels of the window; *seen: the mark is at the light, and not at the border in its
+ * direction. False: no mark. */
 bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
                          double *y, bool *seen);
 bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number);
 void viewer_select_light(struct viewer *viewer, uint32_t number);
 void viewer_next_light(struct viewer *viewer, bool back);
-/* Of the one that is selected; what it cannot do changes nothing. */
+/* Edits of the selected light; those that it does not support have no effect. */
 void viewer_light_move(struct viewer *viewer, struct vec3 route);
 void viewer_light_turn(struct viewer *viewer, const struct transform *map,
-                       bool sizes); /* turned by the map, or sized */
+                       bool sizes); /* rotated by the map, or scaled */
 void viewer_light_delete(struct viewer *viewer);
 void viewer_add_light(struct viewer *viewer);
 void viewer_copy_light(struct viewer *viewer);
-void viewer_brighten_light(struct viewer *viewer, double stops); /* to so many above the script's */
+void viewer_brighten_light(struct viewer *viewer, double stops); /* to this number of lights above the script's */
 double viewer_light_stops_now(const struct viewer *viewer);
 struct vec3 viewer_light_colour_now(const struct viewer *viewer); /* before it is brightened */
 void viewer_light_colour(struct viewer *viewer, struct vec3 colour);
 
 /* viewer_overlay.c */
-void viewer_choose_overlay(struct viewer *viewer, enum overlay overlay); /* or none, where it is shown already */
-void viewer_invalidate_overlay(struct viewer *viewer);                   /* the view or the scene is another one */
+void viewer_choose_overlay(struct viewer *viewer, enum overlay overlay); /* or none, if it is already shown */
+void viewer_invalidate_overlay(struct viewer *viewer);                   /* the view or the scene has changed */
 bool viewer_needs_overlay(const struct viewer *viewer);
 struct view_overlay_request viewer_overlay_request(const struct viewer *viewer, bool walking);
 void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_request *asked,
@@ -87,20 +87,20 @@ struct figures {
     double share; /* of the work */
 };
 void viewer_draw_tiles(struct viewer *viewer);               /* film to canvas */
-void viewer_redraw(struct viewer *viewer);                   /* the canvas, in another exposure */
+void viewer_redraw(struct viewer *viewer);                   /* the canvas, with another exposure */
 void viewer_draw_again(struct viewer *viewer, size_t pixel); /* one pixel of it */
 void viewer_show(struct viewer *viewer, double now);
-/* Where the picture goes when the window has so many pixels. False: no memory for what is drawn over it. */
+/* Positions the picture in a window of this size. False: no memory for the drawing over it. */
 bool viewer_resize(struct viewer *viewer, int width, int height, double density);
 
 /* viewer_panel.c */
 void viewer_draw_edge(struct viewer *viewer, const struct camera_frame *frame, struct vec3 a, struct vec3 b,
                       struct canvas_colour colour);
 void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame);
-void viewer_draw_light_list(struct viewer *viewer, int top); /* the list, where it is wanted */
+void viewer_draw_light_list(struct viewer *viewer, int top); /* the list, if it is open */
 void viewer_draw_selection_panel(struct viewer *viewer, int top);
 
-/* viewer_hud.c: what is drawn over the picture, and its buttons. */
+/* viewer_hud.c: the drawing over the picture, and its buttons. */
 void viewer_draw_hud(struct viewer *viewer, const struct figures *figures);
 
 #endif

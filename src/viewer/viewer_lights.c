@@ -1,7 +1,6 @@
-/* Lights in the window: what the render process has reported of them, where they are marked on the picture, and
- * changing them. Lights without a position (directional ones, skies) are marked in the direction that they come from,
- * at the border of the picture where that is not in view. A change made here counts until the render process reports
- * the same. */
+/* Lights in the window: the data that the render process has reported, their marks on the picture, and changing them.
+ * Lights without a position (directional ones, skies) are marked in the direction of their light, at the border of the
+ * picture if that is not in view. A change made here is used until the render process reports the same. */
 #include "base/mem.h"
 #include "math/elementary.h"
 #include "viewer/viewer_internal.h"
@@ -9,9 +8,10 @@
 #include <math.h>
 #include <string.h>
 
-/* How near a click must be to a light, and how far its mark is kept from the border: dots of letters. */
+/* The largest distance of a click from a light, and the smallest distance of its mark from the border, in dots of
+ * letters. */
 enum { MARKER = 8, MARGIN = 12 };
-enum { LIGHT_LIMIT = 4096 }; /* further ones are not known in the window */
+enum { LIGHT_LIMIT = 4096 }; /* the window ignores further ones */
 
 /* What is known. */
 
@@ -58,7 +58,7 @@ static double largest(struct vec3 v) {
 
 /* Markers. */
 
-/* What is left of the picture beside the menu and the margin. */
+/* The part of the picture beside the menu and within the margin. */
 static bool free_part(const struct viewer *viewer, double *left, double *top, double *right, double *bottom) {
     const struct window_layout *layout = &viewer->display.layout;
     int scale = viewer->display.panel.canvas.scale;
@@ -71,7 +71,7 @@ static bool free_part(const struct viewer *viewer, double *left, double *top, do
     return *left < *right && *top < *bottom;
 }
 
-/* Where that point is, or at the border on the way there. */
+/* The position of that point, or the point at the border in its direction. */
 static bool marker_point(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
                          double *y, bool *seen) {
     double left, top, right, bottom;
@@ -94,7 +94,7 @@ static bool marker_point(const struct viewer *viewer, const struct camera_frame 
 bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame *frame, uint32_t number, double *x,
                          double *y, bool *seen) {
     const struct light_info *light = viewer_light(viewer, number);
-    if (!light || !(largest(light->colour) > 0)) /* one that was taken away is black */
+    if (!light || !(largest(light->colour) > 0)) /* a removed light is black */
         return false;
     if (light->has_position)
         return marker_point(viewer, frame, light->position, x, y, seen);
@@ -180,7 +180,7 @@ void viewer_light_turn(struct viewer *viewer, const struct transform *map, bool 
     if (!light || !(sizes ? light->sizes : light->turns))
         return;
     struct affine turn = map->forward;
-    if (light->properties & LIGHT_IS_ENVIRONMENT) { /* it is turned about the y axis alone */
+    if (light->properties & LIGHT_IS_ENVIRONMENT) { /* it is rotated about the y axis only */
         double linear[TURN_NUMBERS], sine, cosine;
         for (int i = 0; i < TURN_NUMBERS; i++)
             linear[i] = turn.m[i / 3][i % 3];
@@ -192,7 +192,7 @@ void viewer_light_turn(struct viewer *viewer, const struct transform *map, bool 
         before.m[i / 3][i % 3] = change.numbers[TURN_AT + i];
     struct affine after = affine_compose(&turn, &before);
     struct transform checked;
-    if (!transform_from_affine(&after, &checked)) /* made so small that it has no inverse */
+    if (!transform_from_affine(&after, &checked)) /* scaled so small that it has no inverse */
         return;
     change.turns = true;
     for (int i = 0; i < TURN_NUMBERS; i++)
@@ -243,14 +243,14 @@ void viewer_light_delete(struct viewer *viewer) {
     viewer_make_edit(viewer, &change, true, false);
 }
 
-/* Whether there is a number for one more. */
+/* Whether another light can be added. */
 static bool room_for_one(struct viewer *viewer) {
     if (viewer->lights.count >= LIGHT_LIMIT)
         viewer_show_message(viewer, "gray: the window shows at most 4,096 lights");
     return viewer->lights.count < LIGHT_LIMIT && viewer->lights.count == viewer->lights.known;
 }
 
-/* The next one that is added; its values hold until the render process reports them. */
+/* Adds a light; its values are used until the render process reports them. */
 static struct change new_light(struct viewer *viewer) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < viewer->edit.steps.now.count; i++)

@@ -1,5 +1,5 @@
-/* The overlay in the window: lines are part of the image that is shown and saved, the outline of the selection lies
- * over it. While the camera moves, lines are few and their depth is coarse, and the outline is a box; both are made
+/* The overlay in the window: lines are part of the image that is shown and saved, the outline of the selection is drawn
+ * over it. While the camera moves, there are fewer lines with coarse depth, and the outline is a box; both are made
  * again before the finest pass continues. */
 #include "base/mem.h"
 #include "viewer/viewer_internal.h"
@@ -69,7 +69,7 @@ static bool add_side(struct viewer *viewer, uint32_t x, uint32_t y, bool upright
     return true;
 }
 
-/* Sides between a pixel that shows the node and one that does not. At the borders of the picture there are none. */
+/* Edges between a pixel that shows the node and one that does not. There are none at the borders of the picture. */
 static void take_outline(struct viewer *viewer, const struct view_overlay_buffers *buffers,
                          struct film_rectangle area) {
     uint32_t width = viewer->request.width, height = viewer->request.height;
@@ -86,7 +86,7 @@ static void take_outline(struct viewer *viewer, const struct view_overlay_buffer
             if (ok && y > 0 && above != (row[x] != 0))
                 ok = add_side(viewer, x, y, false);
         }
-        /* Beyond the last pixel of the area nothing is of the node. */
+        /* The node is not visible beyond the last pixel of the area. */
         if (ok && area.x1 < width && area.x1 > area.x0 && row[area.x1 - 1])
             ok = add_side(viewer, area.x1, y, true);
     }

@@ -48,7 +48,7 @@ static void draw_circle(struct viewer *viewer, const struct camera_frame *frame,
     }
 }
 
-/* What the selected light is like: its extent, and where it shines to. */
+/* Draws the selected light: its extent and direction. */
 static void draw_form(struct viewer *viewer, const struct camera_frame *frame, const struct light_info *light) {
     struct vec3 at = light->position, a = vec3_scale(light->edge1, 0.5), b = vec3_scale(light->edge2, 0.5);
     double extent = 0.2 * vec3_length(vec3_sub(at, frame->eye));
@@ -136,7 +136,7 @@ struct column {
     int x, y, columns;
 };
 
-/* Broken into lines; of long texts the end is what counts. */
+/* Broken into lines; long texts keep their end. */
 static void draw_text(struct viewer *viewer, struct column *column, const char *text) {
     enum { LINES = 4 };
     int length = (int)strlen(text), room = LINES * column->columns;
@@ -165,7 +165,7 @@ static void draw_point(struct viewer *viewer, struct column *column, const char 
     X(BUTTON_DELETE, "Delete")
 enum tool_button { TOOL_BUTTONS(LIST_MEMBER) };
 
-/* Whether it can be done with what is selected. */
+/* Whether the selection supports it. */
 static bool can_use(const struct viewer *viewer, enum tool_button button) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
     bool node = viewer->edit.selection.kind == SELECTED_NODE;
@@ -259,7 +259,7 @@ static bool draw_sliders(struct viewer *viewer, struct column *column, double to
     return changed;
 }
 
-/* One slider for a number that is no share: its logarithm, or from 1 on. */
+/* One slider for a number that is no share: logarithmic, or from 1 on. */
 static bool draw_number(struct viewer *viewer, struct column *column, enum material_part part, double *number) {
     struct panel *panel = &viewer->display.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
@@ -370,7 +370,7 @@ static void draw_light(struct viewer *viewer, struct column *column) {
         viewer_light_colour(viewer, colour);
 }
 
-/* In a small window one line has to do. */
+/* In a small window there is only one line. */
 static void draw_shortly(struct viewer *viewer) {
     struct panel *panel = &viewer->display.panel;
     const struct picked *picked = &viewer->edit.selection.picked;
@@ -403,7 +403,7 @@ void viewer_draw_selection_panel(struct viewer *viewer, int top) {
         draw_node(viewer, &column);
     else
         draw_light(viewer, &column);
-    /* How high it must be is known now: the next frame has it right. */
+    /* The necessary height is known now: the next frame uses it. */
     viewer->display.hud_dirty = viewer->display.hud_dirty || viewer->display.panel_height != column.y - top;
     viewer->display.panel_height = column.y - top;
 }

@@ -1,5 +1,5 @@
-/* A window as the program needs one: it shows a picture with something drawn over it, and reports input. The driver
- * decides on the library (SDL 2 in main_gui.c); tests have a driver of their own. All positions are pixels of the
+/* The interface to a window: it shows a picture with a drawing over it, and reports input. The driver
+ * decides on the library (SDL 2 in main_gui.c); tests have their own driver. All positions are pixels of the
  * screen, from the upper left corner of the window. */
 #ifndef GRAY_VIEWER_WINDOW_H
 #define GRAY_VIEWER_WINDOW_H
@@ -12,12 +12,12 @@
 enum window_event_kind {
     WINDOW_CLOSE,
     WINDOW_KEY,     /* key; down or up; repeats are left out */
-    WINDOW_MOVE,    /* x, y: where the mouse is; dx, dy: its way, which goes on when it is grabbed */
+    WINDOW_MOVE,    /* x, y: position of the mouse; dx, dy: its motion, also while it is grabbed */
     WINDOW_WHEEL,   /* y: steps away from the user */
     WINDOW_PRESS,   /* button at x, y */
     WINDOW_RELEASE, /* the same */
-    WINDOW_LEAVE,   /* the window has lost the keyboard: no key is held */
-    WINDOW_SIZE,    /* x, y: how many pixels the window has now; density: how many of them make a dot of a letter */
+    WINDOW_LEAVE,   /* the window has lost the keyboard: no key is pressed */
+    WINDOW_SIZE,    /* x, y: the size of the window in pixels; density: pixels per dot of a letter */
 };
 
 /* Letters and digits are their own small ASCII codes. */
@@ -46,7 +46,7 @@ struct window_event {
 };
 
 struct window_content {
-    const uint8_t *picture; /* 3 bytes a pixel, rows from the top */
+    const uint8_t *picture; /* 3 bytes per pixel, rows from the top */
     uint32_t width, height;
     bool picture_changed;
     int left, top, shown_width, shown_height; /* where the picture goes */
@@ -57,12 +57,12 @@ struct window_content {
 
 struct window_driver {
     void *context;
-    /* For a picture of this size; its first event is a WINDOW_SIZE. */
+    /* Opens a window for a picture of this size; its first event is a WINDOW_SIZE. */
     bool (*open)(void *context, uint32_t width, uint32_t height, const char *title, struct error *error);
     void (*show)(void *context, const struct window_content *frame);
     bool (*poll)(void *context, struct window_event *event); /* false: nothing happened */
     void (*title)(void *context, const char *text);
-    void (*grab)(void *context, bool on); /* the mouse looks around: hidden and kept inside */
+    void (*grab)(void *context, bool on); /* the mouse is hidden and kept inside the window */
     void (*full_screen)(void *context);   /* on, or off again */
     void (*close)(void *context);
 };
