@@ -1,5 +1,5 @@
-/* The record of a path-traced pixel. A sum is two floats, the nearest one and what it leaves: 48 bits, so 2^24 samples
- * add up without a visible loss. See path_film_internal.h. */
+/* The record of a path-traced pixel. A sum is two floats, the nearest float and the remainder: 48 bits, so 2^24 samples
+ * can be added without a visible loss. See path_film_internal.h. */
 #include "render/path_film_internal.h"
 
 #include <float.h>
@@ -8,7 +8,7 @@
 
 enum {
     RECORD_SUMS,                         /* of each half three channels */
-    RECORD_RESTS = RECORD_SUMS + 6,      /* what the floats of RECORD_SUMS leave */
+    RECORD_RESTS = RECORD_SUMS + 6,      /* the remainders of the floats of RECORD_SUMS */
     RECORD_WEIGHTS = RECORD_RESTS + 6,   /* of each half */
     RECORD_SAMPLES = RECORD_WEIGHTS + 2, /* at most PATH_SAMPLES_MAX = 2^24: a float holds it */
     RECORD_SQUARES = RECORD_SAMPLES + 1, /* three channels */
@@ -40,7 +40,7 @@ static double in_range(double x) {
     return x > (double)FLT_MAX ? (double)FLT_MAX : x < -(double)FLT_MAX ? -(double)FLT_MAX : x;
 }
 
-/* To the nearest number that two floats hold as path_film_store does. */
+/* Rounds to the nearest number that two floats can represent, as path_film_store does. */
 static double rounded_sum(double x) {
     double near = (double)(float)in_range(x), rest = in_range(x) - near;
     return near + (double)(float)rest;
@@ -159,7 +159,7 @@ struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_gro
     return over(pixel->light[group], pixel->weights[0] + pixel->weights[1]);
 }
 
-/* The mean of both halves has half the variance of one of them, and their difference twice that. */
+/* The mean of both halves has half the variance of one of them, and their difference has twice that of one. */
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel) {
     if (pixel->samples < 2)
         return vec3_all(0);
@@ -177,7 +177,7 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
 }
 
 double path_pixel_noise(const struct path_pixel *pixel) {
-    const double dark = 0.01; /* the square of what counts as black */
+    const double dark = 0.01; /* the square of the value regarded as black */
     struct vec3 mean = path_pixel_mean(pixel), variance = path_pixel_variance_of_halves(pixel);
     return (variance.x / (mean.x * mean.x + dark) + variance.y / (mean.y * mean.y + dark) +
             variance.z / (mean.z * mean.z + dark)) /

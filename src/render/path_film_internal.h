@@ -1,9 +1,10 @@
-/* What the film records of a path-traced pixel: sums over its samples, so that more samples can be added later and the
+/* The record of a path-traced pixel in the film: sums over its samples, so that more samples can be added later and the
  * error can be estimated.
  *
  * Even and odd samples are two halves whose random numbers are scrambled independently (render/sampler.h): the
- * difference of their means measures the error of the pixel, correlations within a half included. Sums are rounded to
- * what the record holds after every sample, so a pixel has the same bytes however its samples are cut into passes. */
+ * difference of their means measures the error of the pixel, including correlations within a half. Sums are rounded to
+ * the precision of the record after every sample, so a pixel has the same bytes for any division of its samples into
+ * passes. */
 #ifndef GRAY_RENDER_PATH_FILM_INTERNAL_H
 #define GRAY_RENDER_PATH_FILM_INTERNAL_H
 
@@ -34,20 +35,20 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
 void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight);
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight);
 
-/* The mean of all samples, and of one half (black while it has none). */
+/* The mean of all samples, and of one half (black if it has none). */
 struct vec3 path_pixel_mean(const struct path_pixel *pixel);
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
 /* The mean of a feature over one half, and of a group of light over all samples; 0 where the record has none. */
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature);
 struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group);
 /* The variance of path_pixel_mean by channel: from the difference of the halves, unbiased with one degree of freedom;
- * and from the samples as if they were independent, which is smoother and too large where their strata help. 0 with
+ * and from the samples as if they were independent, which is smoother, and too large where stratification helps. 0 with
  * less than two samples. */
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
 struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
 
-/* What a pixel adds to the noise of its tile: the mean over the channels of Var / (mean^2 + .01), Var from the halves.
- * The noise of a tile is the square root of the mean over its pixels, an estimate of its relative error. */
+/* The contribution of a pixel to the noise of its tile: the mean over the channels of Var / (mean^2 + .01), Var from
+ * the halves. The noise of a tile is the square root of the mean over its pixels, an estimate of its relative error. */
 double path_pixel_noise(const struct path_pixel *pixel);
 
 #endif

@@ -1,7 +1,7 @@
-/* The path tracer: light goes from wall to wall (J. Kajiya, "The Rendering Equation", SIGGRAPH 1986). Next-event
- * estimation at every vertex and BSDF sampling are combined by multiple importance sampling with the power heuristic,
- * and Russian roulette ends paths (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997,
- * chapters 9 and 10). The vocabulary is that of pbrt-v4.
+/* The path tracer: surfaces also receive the light that other surfaces reflect (J. Kajiya, "The Rendering Equation",
+ * SIGGRAPH 1986). Next-event estimation at every vertex and BSDF sampling are combined by multiple importance sampling
+ * with the power heuristic, and Russian roulette ends paths (E. Veach, "Robust Monte Carlo Methods for Light Transport
+ * Simulation", 1997, chapters 9 and 10). The vocabulary is that of pbrt-v4.
  *
  * path.c: pixels and their samples. path_trace.c: one path. path_light.c: the light that reaches a vertex. */
 #ifndef GRAY_RENDER_PATH_INTERNAL_H
@@ -19,11 +19,11 @@ struct path_tracer {
     int max_depth;    /* scattering events of a path: 0 emission, 1 direct light */
     enum path_strategy strategy;
     struct filter filter;
-    double noise; /* a tile with that is done; 0: all samples */
-    double clamp; /* largest component of a sample; 0: any */
-    bool built;   /* the lights are there */
-    /* With --caustics: photons bring the light of these lights (by number) that traced lobes throw onto classic ones,
-     * and paths leave it out. NULL: paths bring it. */
+    double noise; /* a tile with this noise is finished; 0: take all samples */
+    double clamp; /* the limit on components of a sample; 0: no limit */
+    bool built;   /* the lights are prepared */
+    /* With --caustics: light from these lights (by number) that reaches classic lobes through traced lobes comes from
+     * photons, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;
     struct photon_map caustics;
     struct arena arena;
@@ -41,11 +41,11 @@ void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *rende
                         int64_t y);
 void path_tracer_warn(const struct render_job *job, world_warning *warn, void *context);
 
-/* path_trace.c. The radiance that a camera ray brings, clamped to the range of float; key: the random key of the ray.
+/* path_trace.c. The radiance along a camera ray, clamped to the range of float; key: the random key of the ray.
  */
 struct vec3 path_trace(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                        uint64_t key);
-/* The same for a ray that went with a packet: what it has met, or NULL. */
+/* The same for a ray of a packet: its hit, or NULL. */
 struct vec3 path_trace_met(const struct path_tracer *tracer, struct integrator_state *state, const struct ray *ray,
                            const struct packet_answer *met, uint64_t key);
 
@@ -53,13 +53,13 @@ struct vec3 path_trace_met(const struct path_tracer *tracer, struct integrator_s
 
 /* A vertex whose BSDF is known. */
 struct path_vertex {
-    const struct ray *ray; /* that met it */
+    const struct ray *ray; /* that hit it */
     const struct hit *hit;
     const struct bsdf *bsdf;
     struct light_receiver receiver;
     uint32_t lobes;             /* that scatter */
-    uint32_t substitute;        /* highlights that stand for the mirror image of lights which no mirror shows */
-    struct vec3 thrown;         /* share of the path's weight that photons bring, if traced lobes scatter here */
+    uint32_t substitute;        /* highlights that represent the mirror image of lights which no mirror shows */
+    struct vec3 thrown;         /* share of the path's weight that photons represent, if traced lobes scatter here */
     struct vec3 *direct_shares; /* or NULL; path_direct sets what path_shares says about the light that it finds */
 };
 
@@ -67,11 +67,11 @@ struct path_vertex {
 struct path_segment {
     const struct ray *ray;
     const struct light_receiver *receiver;
-    double pdf;         /* of its direction by solid angle; 0: it had no other one */
-    struct vec3 thrown; /* share of the path's weight that photons bring, where they bring the light that it meets */
+    double pdf;         /* of its direction by solid angle; 0: the only possible direction */
+    struct vec3 thrown; /* share of the path's weight that photons represent, for lights that send photons */
 };
 
-/* Light that comes straight from one light of the scene: `choice` chooses it, `xi` lies on it. */
+/* Light that comes directly from one light of the scene: `choice` chooses the light, `xi` a point on it. */
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
                         const struct path_vertex *vertex, double choice, struct sample2 xi);
 /* How much of the light that these lobes of the vertex scatter from wi belongs to each kind of scattering, by channel;
@@ -79,13 +79,13 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]);
 /* A kind alone: that of a lobe with these flags. */
 void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]);
-/* What scattered rays bring, weighted against path_direct: of a surface whose material emits `emission` at the hit; of
- * the lamps that the ray meets before t_max; of skies where it meets nothing. */
+/* The light along scattered rays, weighted against path_direct: of a surface whose material emits `emission` at the
+ * hit; of the area lights that the ray crosses before t_max; of skies if it hits nothing. */
 struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
                           struct vec3 emission);
 struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max);
 struct vec3 path_environment(const struct path_tracer *tracer, const struct path_segment *segment);
-/* The nearest lamp that shows itself on a line of sight before t_max, and where. */
+/* The nearest visible area light on a line of sight before t_max, and its distance. */
 bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
                           struct vec3 *radiance);
 

@@ -1,9 +1,10 @@
-/* The light that reaches a vertex of a path straight from the lights of the scene. Light that a ray can meet is found
- * in two ways, by sampling the light and by scattered rays that meet it; each sample counts by the power heuristic of
- * multiple importance sampling (Veach 1997, equation 9.14). Other light is found by sampling alone.
+/* The light that reaches a vertex of a path directly from the lights of the scene. Lights that a ray can hit are
+ * sampled in two ways, by sampling the light and by scattered rays that hit it; each sample is weighted by the power
+ * heuristic of multiple importance sampling (Veach 1997, equation 9.14). Other lights are sampled in the first way
+ * only.
  *
- * Lamps have no body for shadow rays, so a scattered ray takes the light of every lamp on its way and goes on: both
- * ways find the same light. */
+ * Area lights do not block shadow rays, so a scattered ray adds the light of every area light that it crosses and
+ * continues: both ways give the same light. */
 #include "render/path_internal.h"
 
 #include "material/medium.h"
@@ -19,8 +20,8 @@ static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
-/* What is left of light that meets a path, of whose weight that share is left to photons where these bring the light of
- * its source. */
+/* The part of a light's radiance that the path adds; the share `photons` of the path's weight is left to the photon map
+ * if photons come from this light. */
 static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t light, struct vec3 thrown,
                                   struct vec3 radiance) {
     if (!tracer->photon_lights || light == LIGHT_NONE || !tracer->photon_lights[light])
@@ -30,7 +31,7 @@ static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t lig
 
 /* --- sampling a light --- */
 
-/* f |cos| of a set of lobes. Classic lobes answer no light from behind the geometric surface. */
+/* f |cos| of a set of lobes. Classic lobes do not reflect light from behind the geometric surface. */
 static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
     const struct bsdf *bsdf = vertex->bsdf;
     if (!(vec3_dot(wi, bsdf->geometric_side) > 0))
@@ -38,7 +39,8 @@ static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, s
     return lobes ? bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi) : vec3_all(0);
 }
 
-/* The ray to a sample, from the side of the surface where the light is. media: of that side; `crossed` may hold them.
+/* The ray to a sample, from the side of the surface on which the light is. media: of that side; `crossed` is storage
+ * for them.
  */
 static struct ray shadow_ray(const struct path_vertex *vertex, const struct world_light_sample *sample,
                              struct medium_stack *crossed) {
@@ -57,7 +59,7 @@ static struct ray shadow_ray(const struct path_vertex *vertex, const struct worl
     return shadow;
 }
 
-/* What arrives of a sample, dimmed by the medium on the way; black where something is in the way. */
+/* The light that arrives from a sample, reduced by the media on its path; black if an object blocks it. */
 static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_state *state,
                             const struct path_vertex *vertex, const struct world_light_sample *sample) {
     const struct world_lights *lights = &tracer->lights;
@@ -170,7 +172,7 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
 
 /* --- rays that meet lights --- */
 
-/* Of a scattered ray that meets a light, which samples find with that density. */
+/* The weight of a scattered ray that hits a light, which light sampling would find with that density. */
 static double met_weight(const struct path_tracer *tracer, const struct path_segment *segment, double pdf) {
     return segment->pdf == 0 ? 1 : weight_of(tracer, PATH_STRATEGY_BSDF, segment->pdf, pdf);
 }

@@ -1,9 +1,9 @@
-/* One path, from the camera on, vertex by vertex. What it carries is a weight (throughput) and the radiance found so
- * far; what ends it is the sky, the depth, roulette, or a lamp that is seen.
+/* One path, from the camera on, vertex by vertex. Its state is a weight (throughput) and the radiance so far; it ends
+ * at the sky, at the maximum depth, by Russian roulette, or at a visible area light.
  *
- * A *line of sight* is a camera ray, with all that smooth surfaces make of it and what holes let through. Lines of
- * sight see what the scene shows: the background, lamps that are visible, fog. Other rays are scattered: they take the
- * light that a surface receives, weighted against what path_direct has found there. */
+ * A *line of sight* is a camera ray, with its continuations by smooth surfaces and through holes. Lines of sight show
+ * the background, visible area lights and fog. Other rays are scattered: they add the light that a surface receives,
+ * weighted against the samples of path_direct. */
 #include "render/path_internal.h"
 
 #include "material/medium.h"
@@ -19,17 +19,17 @@ struct path {
     struct ray ray;
     struct vec3 weight, light;
     double
-        radiance_scale; /* what refraction has done to the weight so far: products of eta^2, which roulette ignores */
+        radiance_scale; /* the factor of refraction in the weight so far: a product of eta^2, which roulette ignores */
     struct path_parts *parts; /* or NULL */
     double travelled;         /* along the line of sight so far; only with parts */
-    double pdf;               /* of the ray's direction, by solid angle; 0: it had no other one */
+    double pdf;               /* of the ray's direction, by solid angle; 0: the only possible direction */
     /* Shares of the weight, with photons: the last scattering was that of a lobe that photons light; after such a one
      * the path was scattered by traced lobes only. */
     struct vec3 received, thrown;
     bool sight;
     int depth, holes;              /* scattering events, holes so far */
-    uint32_t dimension;            /* of the sampler: the first one of the next vertex */
-    struct light_receiver scatter; /* where the ray comes from; not of a line of sight */
+    uint32_t dimension;            /* of the sampler: the first dimension of the next vertex */
+    struct light_receiver scatter; /* the surface from which a scattered ray comes */
     struct medium_stack media;
 };
 
@@ -118,7 +118,8 @@ static void meet_features(struct path *path, const struct hit *hit, const struct
 
 /* --- one ray --- */
 
-/* What lies between the origin of the ray and what it meets: lamps, fog, absorption. False: the path ends at a lamp. */
+/* Applies everything between the origin of the ray and its hit: area lights, fog, absorption. False: the path ends at
+ * an area light. */
 static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                    const struct hit *hit) {
     double end = hit ? hit->t : path->ray.t_max;
@@ -155,8 +156,8 @@ static void leave_scene(const struct path_tracer *tracer, const struct integrato
     }
 }
 
-/* Which lobes scatter. A highlight stands for the mirror image of lights: where smooth traced lobes show that image, it
- * answers only lights that no ray meets, and where rough ones do, which answer all lights, it is left out. */
+/* Which lobes scatter. A highlight represents the mirror image of lights: if smooth traced lobes show that image, it
+ * reflects only lights that no ray can hit, and if rough ones do, which reflect all lights, it is omitted. */
 static void choose_lobes(struct path_vertex *vertex) {
     const struct bsdf *bsdf = vertex->bsdf;
     uint32_t highlights = 0, others = 0;
@@ -176,7 +177,7 @@ static void choose_lobes(struct path_vertex *vertex) {
     vertex->substitute = traced && bsdf->alpha == 0 ? highlights : 0;
 }
 
-/* False: the path ends here. Weights above 1 do not keep it alive for ever. */
+/* False: the path ends here. Paths with weights above 1 can end, too. */
 static bool survives(struct path *path, double u) {
     double chance = vec3_max_abs(path->weight) / path->radiance_scale;
     chance = chance < survival ? chance : survival;
@@ -188,7 +189,7 @@ static bool survives(struct path *path, double u) {
 
 /* --- photons --- */
 
-/* Lobes that photons light; none where no photon lands (photon_trace.c). */
+/* The lobes that receive photons; none on surfaces that store no photons (photon_trace.c). */
 static uint32_t receiving_lobes(const struct bsdf *bsdf) {
     double diffuse = 0;
     for (int i = 0; i < bsdf->count; i++)
@@ -197,7 +198,7 @@ static uint32_t receiving_lobes(const struct bsdf *bsdf) {
     return diffuse > 0 && !bsdf->dark ? bsdf_lobes_with(bsdf, BSDF_CLASSIC) : 0;
 }
 
-/* The light that photons have brought to the vertex. */
+/* The light of the photon map at the vertex. */
 static void add_photons(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                         const struct path_vertex *vertex) {
     struct bsdf bsdf = *vertex->bsdf;
@@ -231,8 +232,8 @@ static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lob
     return vec3_make(share_of(part.x, all.x), share_of(part.y, all.y), share_of(part.z, all.z));
 }
 
-/* Photons bring light from a light by traced lobes to a lobe that receives them: what a path finds behind such a lobe
- * and traced ones is the same light. */
+/* Photons carry light from a light source through traced lobes to a lobe that receives them: a path that continues from
+ * such a lobe through traced lobes would find the same light again. */
 static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
     uint32_t traced = vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED);
     uint32_t receiving = vertex->lobes & receiving_lobes(vertex->bsdf);
@@ -242,7 +243,7 @@ static void count_shares(struct path *path, const struct path_vertex *vertex, co
     path->received = delta ? vec3_all(0) : share_of_lobes(vertex, receiving, sample->direction);
 }
 
-/* Goes on in a direction of the BSDF. */
+/* Continues in a direction of the BSDF. */
 static bool scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                     const struct path_vertex *vertex, struct sample2 u, double u_roulette) {
     const struct hit *hit = vertex->hit;
@@ -319,7 +320,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
 }
 
-/* --clamp: with its colour kept. This takes light away from the picture wherever samples differ much. */
+/* --clamp: the colour is kept. This darkens the picture where samples differ much. */
 static struct vec3 limited(struct vec3 colour, double limit) {
     double largest = vec3_max_abs(colour);
     return limit > 0 && largest > limit ? vec3_scale(colour, limit / largest) : colour;
@@ -344,7 +345,7 @@ static void finish_parts(struct integrator_state *state, struct path_parts *part
     parts->features[PATH_GLOW + 2] = (float)glow->z;
 }
 
-/* hit: what the camera ray has met, or NULL; the hits of later rays go into it, too. */
+/* hit: the hit of the camera ray, or NULL; the hits of later rays are stored in it, too. */
 static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                           struct sampler *sampler, struct hit *hit, bool met) {
     const struct vec3 none = {0, 0, 0};

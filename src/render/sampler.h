@@ -1,10 +1,10 @@
 /* The random numbers of a picture. Each is a function of the seed, the pixel, the number of the sample within the pixel
- * and the place in the tree of rays where it is used (the dimension), never of thread, order or time.
+ * and the position in the tree of rays where it is used (the dimension), never of thread, order or time.
  *
- * Keys form a tree (base/random.h): seed, pixel, sample, ray, and below a ray its lights and the rays that it sends. A
- * key makes jitter. The strata make the samples of one pixel cover a light, a lens, the shutter or the facets of a
- * rough surface together: what one sample asks for in n x n cells, the N x N samples of a pixel ask for in parts of
- * these cells, each sample in another part. */
+ * Keys form a tree (base/random.h): seed, pixel, sample, ray, and below a ray its lights and its child rays. A key
+ * gives jitter. The strata distribute the samples of one pixel together over a light, a lens, the shutter or the facets
+ * of a rough surface: if one sample uses n x n cells, each of the N x N samples of a pixel uses another part of these
+ * cells. */
 #ifndef GRAY_RENDER_SAMPLER_H
 #define GRAY_RENDER_SAMPLER_H
 
@@ -13,11 +13,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Points of the unit square that fill it evenly: the first two dimensions of Sobol's sequence (S. Joe and F. Kuo,
- * "Constructing Sobol Sequences with Better Two-Dimensional Projections", 2008), scrambled after Owen by a hash
+/* Points that are evenly distributed in the unit square: the first two dimensions of Sobol's sequence (S. Joe and F.
+ * Kuo, "Constructing Sobol Sequences with Better Two-Dimensional Projections", 2008), scrambled after Owen by a hash
  * (B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020; the hash in the style of S. Laine and T. Karras).
  *
- * Every seed makes a scrambled (0,2)-sequence of its own, in an order of its own: of its first 2^m points each
+ * Every seed gives another scrambled (0,2)-sequence, in another order: of its first 2^m points each
  * elementary interval of area 2^-m holds one, and a mean over them is unbiased. So a sample takes one pair for each of
  * its decisions, with the seed of that decision ("padding"), and all decisions are independent of one another. */
 
@@ -67,15 +67,15 @@ struct pixel_sample {
     double weight;   /* of the reconstruction filter (render/filter_internal.h): 1 or -1 */
 };
 
-/* How the samples of a pixel are spread. STRATA: as parts of cells, of N x N samples. SOBOL: as points of sequences
- * (render/sampler.h), of any number of samples; each decision of a sample has a dimension. */
+/* How the samples of a pixel are distributed. STRATA: in parts of cells, for N x N samples. SOBOL: as points of
+ * sequences, for any number of samples; each decision of a sample has a dimension. */
 enum sampler_kind { SAMPLER_STRATA, SAMPLER_SOBOL };
 
 /* The numbers of one sample. */
 struct sampler {
     enum sampler_kind kind;
     uint64_t key;       /* of the sample: the root of the keys of its rays */
-    uint64_t pixel_key; /* of the strata; of the sequences of the sample's half */
+    uint64_t pixel_key; /* of the strata; or of the sequences of the sample's half */
     uint32_t cell;      /* of `side` x `side` samples of the pixel; SOBOL: number of the sample in its half */
     uint32_t side;      /* 1: the sample is alone */
 };
@@ -94,8 +94,8 @@ static inline struct sampler sampler_make(uint64_t seed, uint64_t pixel, uint64_
                             .side = number > 0 ? side : 1};
 }
 
-/* Sample `number` of a pixel for paths. Even and odd samples are two halves with sequences of their own: each half is
- * an estimate of the pixel that does not depend on the other one. */
+/* Sample `number` of a pixel for paths. Even and odd samples are two halves with different sequences: each half is an
+ * estimate of the pixel that is independent of the other one. */
 static inline struct sampler sampler_make_sobol(uint64_t seed, uint64_t pixel, uint64_t number) {
     uint64_t key = random_combine(random_combine(seed, 2), pixel);
     return (struct sampler){.kind = SAMPLER_SOBOL,
@@ -109,8 +109,8 @@ static inline struct sample2 sampler_point(const struct sampler *sampler, uint32
     return sobol_point(sampler->cell, random_combine(sampler->pixel_key, dimension));
 }
 
-/* A place of the unit square on the lens, and a moment of the shutter from 0 to 1: one of as many cells as the pixel
- * has samples, in an order of the pixel's own. */
+/* A point of the unit square for the lens, and a time from 0 to 1 for the shutter: one of as many cells as the pixel
+ * has samples, in an order that depends on the pixel. */
 struct sample2 sampler_lens(const struct sampler *sampler);
 double sampler_time(const struct sampler *sampler);
 /* The key of the same sample for the right eye of a stereo pair; sampler->key is that of the left one. */
@@ -118,7 +118,7 @@ static inline uint64_t sampler_right_eye(const struct sampler *sampler) {
     return random_combine(sampler->key, UINT64_MAX);
 }
 
-/* Keys below that of a ray: what it sends on, and the lights that it is lit by. The facets of a rough surface have keys
+/* Keys below that of a ray: for its child rays, and for the lights at its hit. The facets of a rough surface have keys
  * below SAMPLER_ROUGH. */
 enum sampler_branch { SAMPLER_REFLECTED, SAMPLER_REFRACTED, SAMPLER_ROUGH, SAMPLER_HOLE };
 static inline uint64_t sampler_branch(uint64_t ray_key, enum sampler_branch branch) {
@@ -134,8 +134,8 @@ static inline uint64_t sampler_facet(uint64_t rough_key, uint32_t facet) {
 /* Points of the unit square, one in each of side x side cells. */
 enum sample_set_kind {
     SAMPLE_SET_JITTERED, /* anywhere in the cell */
-    SAMPLE_SET_PARTS,    /* in the part of the cell that is the sample's own among those of the pixel */
-    SAMPLE_SET_MULTI     /* the same, and with the other samples of the pixel one multi-jittered set */
+    SAMPLE_SET_PARTS,    /* in the part of the cell that belongs to the sample */
+    SAMPLE_SET_MULTI     /* the same, and multi-jittered together with the other samples of the pixel */
 };
 struct sample_set {
     enum sample_set_kind kind;
