@@ -16,7 +16,7 @@
 #include "render/aov.h"
 #include "render/denoise.h"
 #include "render/overlay.h"
-#include "render/path_film_internal.h"
+#include "render/path_film.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "session/text.h"

@@ -1,7 +1,7 @@
-/* See oidn.h. The supervisor starts the program, never the process that runs scenes. PATH is that of the user; an entry
- * that is not absolute leads into the folder of the three files, where no program is. */
+/* See oidn_internal.h. The supervisor starts the program, never the process that runs scenes. PATH is that of the user;
+ * an entry that is not absolute leads into the folder of the three files, where no program is. */
 #define _GNU_SOURCE
-#include "output/oidn.h"
+#include "output/oidn_internal.h"
 
 #include "base/file.h"
 #include "base/mem.h"

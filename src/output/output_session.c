@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "image/exr.h"
 #include "output/layers_internal.h"
-#include "output/picture_shown.h"
+#include "output/picture_shown_internal.h"
 #include "output/statistics_internal.h"
 #include "render/aov.h"
 #include "session/text.h"

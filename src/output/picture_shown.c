@@ -1,13 +1,13 @@
 /* The film of a crop that is denoised has a rim that its files do not show (DENOISE_RIM). Denoising happens here, where
  * the picture is written, so that merged parts and resumed pictures are denoised as a whole. The film is shared with
  * the render process, whose numbers are not trusted: whatever they are, denoising them is safe. */
-#include "output/picture_shown.h"
+#include "output/picture_shown_internal.h"
 
 #include "base/mem.h"
-#include "output/oidn.h"
+#include "output/oidn_internal.h"
 #include "render/aov.h"
 #include "render/denoise.h"
-#include "render/path_film_internal.h"
+#include "render/path_film.h"
 
 #include <string.h>
 

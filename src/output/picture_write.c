@@ -5,8 +5,8 @@
 #include "image/float_write.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
-#include "output/picture_shown.h"
-#include "render/path_film_internal.h"
+#include "output/picture_shown_internal.h"
+#include "render/path_film.h"
 
 #include <string.h>
 #include <strings.h>

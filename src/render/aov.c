@@ -10,7 +10,7 @@
 #include "math/elementary.h"
 #include "math/range.h"
 #include "render/integrator_internal.h"
-#include "render/path_film_internal.h"
+#include "render/path_film.h"
 
 #include <string.h>
 

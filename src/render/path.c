@@ -4,7 +4,7 @@
 
 #include "render/aov.h"
 #include "render/integrator_internal.h"
-#include "render/path_film_internal.h"
+#include "render/path_film.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* The record of a path-traced pixel. A sum is two floats, the nearest float and the remainder: 48 bits, so 2^24 samples
- * can be added without a visible loss. See path_film_internal.h. */
-#include "render/path_film_internal.h"
+ * can be added without a visible loss. See path_film.h. */
+#include "render/path_film.h"
 
 #include <float.h>
 #include <math.h>

@@ -462,7 +462,7 @@ void settings_set_draft(struct settings *settings, enum draft_level draft_level)
 }
 
 /* Passes over the picture: every pass adds samples to all pixels, so that something is to be seen soon, and the time
- * can decide how many samples there will be. A pixel's samples are numbered and added in order (path_film_internal.h):
+ * can decide how many samples there will be. A pixel's samples are numbered and added in order (path_film.h):
  * the picture has the bytes of one that got them all in one go.
  *
  * The first pass has one sample, and each further one at most as many as all before it. */

@@ -1,5 +1,5 @@
 /* Samples that come in passes, until a time is over or a tile has little enough noise. */
-#include "render/path_film_internal.h"
+#include "render/path_film.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

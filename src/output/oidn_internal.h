@@ -1,6 +1,6 @@
 /* Denoising by Intel's Open Image Denoise: the program oidnDenoise, found on PATH. */
-#ifndef GRAY_OUTPUT_OIDN_H
-#define GRAY_OUTPUT_OIDN_H
+#ifndef GRAY_OUTPUT_OIDN_INTERNAL_H
+#define GRAY_OUTPUT_OIDN_INTERNAL_H
 
 #include "base/error.h"
 #include "render/denoise.h"

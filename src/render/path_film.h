@@ -5,8 +5,8 @@
  * difference of their means measures the error of the pixel, including correlations within a half. Sums are rounded to
  * the precision of the record after every sample, so a pixel has the same bytes for any division of its samples into
  * passes. */
-#ifndef GRAY_RENDER_PATH_FILM_INTERNAL_H
-#define GRAY_RENDER_PATH_FILM_INTERNAL_H
+#ifndef GRAY_RENDER_PATH_FILM_H
+#define GRAY_RENDER_PATH_FILM_H
 
 #include "math/vec3.h"
 #include "render/film.h"

@@ -1,6 +1,6 @@
 /* What the files of a picture show of its film: the part that was asked for, denoised if the film has features. */
-#ifndef GRAY_OUTPUT_PICTURE_SHOWN_H
-#define GRAY_OUTPUT_PICTURE_SHOWN_H
+#ifndef GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
+#define GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 
 #include "base/pool.h"
 #include "output/picture_write.h"
