@@ -11,7 +11,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/random.h"
 #include "math/elementary.h"
+#include "math/exact_internal.h"
 
 static const double pi = 0x1.921fb54442d18p+1;
 
@@ -123,4 +125,57 @@ double noise_marble(struct vec3 p, double factor, double multiplier, double vein
     }
     double vein = el_cos(vein_frequency * p.y + multiplier * sum);
     return share(noise_cosine_mix((1.0 + vein) / 2.0, 0.0, 1.0));
+}
+
+/* --- points in cells --- */
+
+static uint64_t hash_of_point(double x, double y, double z) {
+    return random_combine(random_combine(to_bits(x + 0.0), to_bits(y + 0.0)), to_bits(z + 0.0));
+}
+
+double noise_hash(double x, double y, double z) {
+    return random_unit(hash_of_point(x, y, z));
+}
+
+/* The squared distance from a position in a cell (0 to 1) to the cell that is `step` cells further. */
+static double gap(double position, int step) {
+    double d = step > 0 ? step - position : step < 0 ? position - (step + 1) : 0;
+    return d * d;
+}
+
+/* The second nearest point is nearer than 2: one cell of the neighbours touches the place or is within 1/2 of it, and
+ * the far corner of both is at most sqrt(3) away. So cells two steps further suffice, and most of these are skipped. */
+struct noise_cells noise_cells(double x, double y, double z) {
+    static const int steps[5] = {0, -1, 1, -2, 2};
+    struct noise_cells out = {0, 0, 0};
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z))
+        return out;
+    double cx = floor(x), cy = floor(y), cz = floor(z), px = x - cx, py = y - cy, pz = z - cz;
+    double first = INFINITY, second = INFINITY;
+    uint64_t nearest = 0;
+    for (int i = 0; i < 5; i++) {
+        for (int j = 0; j < 5; j++) {
+            double across = gap(px, steps[i]) + gap(py, steps[j]);
+            for (int k = 0; k < 5 && across < second; k++) {
+                if (across + gap(pz, steps[k]) >= second)
+                    continue;
+                uint64_t key = hash_of_point(cx + steps[i], cy + steps[j], cz + steps[k]);
+                double dx = steps[i] + random_unit(random_combine(key, 0)) - px;
+                double dy = steps[j] + random_unit(random_combine(key, 1)) - py;
+                double dz = steps[k] + random_unit(random_combine(key, 2)) - pz;
+                double distance = dx * dx + dy * dy + dz * dz;
+                if (distance < first) {
+                    second = first;
+                    first = distance;
+                    nearest = key;
+                } else if (distance < second) {
+                    second = distance;
+                }
+            }
+        }
+    }
+    out.nearest = sqrt(first);
+    out.second = sqrt(second);
+    out.id = random_unit(random_combine(nearest, 3));
+    return out;
 }

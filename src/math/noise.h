@@ -17,4 +17,15 @@ double noise_perlin(double x, double y, double z, int interpolation);
 double noise_wood(double x, double y, double z, double factor, double density, int interpolation);
 double noise_marble(struct vec3 p, double factor, double multiplier, double vein_frequency, int interpolation);
 
+/* A number in [0, 1), another one for each point; equal points (-0 is 0) have equal numbers. */
+double noise_hash(double x, double y, double z);
+
+/* Distances from the nearest and the second nearest of points that are spread at random, one in each cell of the
+ * lattice of integers, and the nearest one's number in [0, 1). S. Worley, "A Cellular Texture Basis Function", SIGGRAPH
+ * 1996. The search is exact, so nothing jumps at the borders of cells. All 0 where a coordinate is not finite. */
+struct noise_cells {
+    double nearest, second, id;
+};
+struct noise_cells noise_cells(double x, double y, double z);
+
 #endif
