@@ -22,7 +22,7 @@ Q = $(if $(V),,@)
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 
-MODULES = base math expr image accel geometry mesh shape csg material light scene formats world render script session inspect output viewer host
+MODULES = base math image expr accel geometry mesh shape csg material light scene formats world render script session inspect output viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum
@@ -138,7 +138,7 @@ $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Benchmarks that are programs of their own.
-$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
+$(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights $(BUILD)/bench/expr: $(BUILD)/bench/%: $(BUILD)/bench/%.o $(OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
@@ -147,6 +147,8 @@ $(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights: $(BUILD
 # needed first would wait for the others.
 $(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma -mpopcnt -fno-tree-slp-vectorize
 $(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mpopcnt -fno-tree-slp-vectorize
+$(BUILD)/src/expr/%_avx2.o: override CFLAGS += -mavx2
+$(BUILD)/src/expr/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
 $(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
 

@@ -1,0 +1,99 @@
+/* Any bytes as an expression: four bytes are an operation on nodes that exist, of the types that it takes. Its program
+ * gives the same bits at one point, in a batch of every instruction set, and where the inputs are constants and the
+ * graph folds to one. */
+#include "base/isa.h"
+#include "base/mem.h"
+#include "expr/expr_program.h"
+#include "math/exact_internal.h"
+
+#include <stdlib.h>
+
+enum { FUZZ_NODES = 4096 };
+
+/* Nodes by type, the newest last; each list begins with one that is always there. */
+struct nodes {
+    struct expr_graph graph;
+    uint32_t of_type[3][FUZZ_NODES];
+    uint32_t count[3];
+};
+
+static const double inputs[EXPR_INPUT_COUNT] = {1.5,   -0.0, 1e300, 0.25, 3, -1, 0x1p62, 1e-310,
+                                                -7.75, 100,  2,     0,    4, 5,  6};
+
+static void add_node(struct nodes *nodes, uint32_t node) {
+    enum expr_type type = nodes->graph.nodes[node].type;
+    if (nodes->count[type] < FUZZ_NODES)
+        nodes->of_type[type][nodes->count[type]++] = node;
+}
+
+static uint32_t build(struct nodes *nodes, const uint8_t *data, size_t size, bool folded) {
+    struct expr_graph *graph = &nodes->graph;
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+        add_node(nodes, folded ? expr_float(graph, inputs[k]) : expr_input(graph, (enum expr_input)k));
+    add_node(nodes, expr_integer(graph, INT64_MIN));
+    add_node(nodes, expr_integer(graph, 3));
+    add_node(nodes, expr_truth(graph, true));
+    for (; size >= 4; data += 4, size -= 4) {
+        enum expr_operation operation =
+            (enum expr_operation)(EXPR_INPUT + 1 + data[0] % (EXPR_OPERATION_COUNT - EXPR_INPUT - 1));
+        uint32_t operands[3] = {EXPR_NONE, EXPR_NONE, EXPR_NONE};
+        for (int k = 0; k < expr_operand_count(operation); k++) {
+            enum expr_type type = expr_operand_type(operation, k);
+            operands[k] = nodes->of_type[type][nodes->count[type] - 1 - data[1 + k] % nodes->count[type]];
+        }
+        add_node(nodes, expr_operation(graph, operation, operands[0], operands[1], operands[2]));
+    }
+    return nodes->of_type[EXPR_TYPE_F][nodes->count[EXPR_TYPE_F] - 1];
+}
+
+static void check_same(double a, double b) {
+    if (to_bits(a) != to_bits(b) && (a == a || b == b))
+        abort();
+}
+
+static void check_program(const struct expr_program *program, double wanted) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    double one[EXPR_OUTPUTS], columns[EXPR_INPUT_COUNT][EXPR_BATCH], results[EXPR_BATCH];
+    const double *in[EXPR_INPUT_COUNT];
+    double *out[EXPR_OUTPUTS] = {results, NULL, NULL, NULL};
+    expr_evaluate(program, inputs, one);
+    check_same(one[0], wanted);
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++) {
+        for (int i = 0; i < EXPR_BATCH; i++)
+            columns[k][i] = inputs[k];
+        in[k] = columns[k];
+    }
+    void *rows = mem_alloc_aligned(64, expr_batch_size(program));
+    for (size_t set = 0; rows && set < sizeof sets / sizeof sets[0]; set++) {
+        if (!cpu_select_isa(sets[set]))
+            continue;
+        expr_evaluate_batch(program, EXPR_BATCH - 1, in, out, rows);
+        for (int i = 0; i < EXPR_BATCH - 1; i++)
+            check_same(results[i], wanted);
+    }
+    mem_free(rows);
+    (void)cpu_select_isa("auto");
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+/* The two graphs differ in shape as soon as one folds, so the folded one is built with the choices of the other: both
+ * have a node for each operation, in the same order of the same types. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static struct nodes recorded, folded;
+    struct arena arena = {0};
+    struct error error = {0};
+    struct expr_program program;
+    recorded = folded = (struct nodes){.count = {0, 0, 0}};
+    size = size > 4 * (FUZZ_NODES - 64) ? 4 * (FUZZ_NODES - 64) : size;
+    uint32_t result = build(&recorded, data, size, false), constant = build(&folded, data, size, true);
+    const union expr_value *wanted = expr_constant(&folded.graph, constant);
+    if (!wanted)
+        abort();
+    if (expr_compile(&recorded.graph, &result, 1, &arena, &program, &error))
+        check_program(&program, wanted->f);
+    arena_destroy(&arena);
+    expr_graph_destroy(&recorded.graph);
+    expr_graph_destroy(&folded.graph);
+    return 0;
+}
