@@ -9,6 +9,7 @@
 ---@class gr.texture
 ---@class gr.fog
 ---@class gr.sky
+---@class gr.vector: number[] x, y, z and the methods dot, cross, length, normalize, mix, clamp
 ---@class gr.node
 local node = {}
 
@@ -772,6 +773,15 @@ function gr.curve(material, points, widths, spline) end
 ---@overload fun(fields: gr.patch.fields): gr.node
 function gr.patch(material, points, patches) end
 
+---@class gr.fn.fields
+---@field f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.
+
+---A Lua function as a texture; wherever a texture is taken, one may stand.
+---@param f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.
+---@return gr.texture
+---@overload fun(fields: gr.fn.fields): gr.texture
+function gr.fn(f) end
+
 ---@class gr.marble_texture.fields
 ---@field f number f (a number): Factor of the point before the noise.
 ---@field multiplier number multiplier (a number): Strength of the noise in the veins.
@@ -801,79 +811,79 @@ function gr.marble_texture(f, multiplier, vein_frequency, interp) end
 function gr.wood_texture(f, density, interp) end
 
 ---@class gr.mix_texture.fields
----@field a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): Value where ratio is 1: a number, a colour or a texture.
----@field b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): Value where ratio is 0.
----@field ratio? number|gr.texture ratio (a number or a texture; default 0.5): Weight of a: the result is a * ratio + b * (1 - ratio).
+---@field a number|gr.triple|gr.texture|function a (a number or a table of 3 numbers or a texture): Value where ratio is 1: a number, a colour or a texture.
+---@field b number|gr.triple|gr.texture|function b (a number or a table of 3 numbers or a texture): Value where ratio is 0.
+---@field ratio? number|gr.texture|function ratio (a number or a texture; default 0.5): Weight of a: the result is a * ratio + b * (1 - ratio).
 
 ---A mix of two textures or colours.
----@param a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): Value where ratio is 1: a number, a colour or a texture.
----@param b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): Value where ratio is 0.
----@param ratio? number|gr.texture ratio (a number or a texture; default 0.5): Weight of a: the result is a * ratio + b * (1 - ratio).
+---@param a number|gr.triple|gr.texture|function a (a number or a table of 3 numbers or a texture): Value where ratio is 1: a number, a colour or a texture.
+---@param b number|gr.triple|gr.texture|function b (a number or a table of 3 numbers or a texture): Value where ratio is 0.
+---@param ratio? number|gr.texture|function ratio (a number or a texture; default 0.5): Weight of a: the result is a * ratio + b * (1 - ratio).
 ---@return gr.texture
 ---@overload fun(fields: gr.mix_texture.fields): gr.texture
 function gr.mix_texture(a, b, ratio) end
 
 ---@class gr.multiply_texture.fields
----@field a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): One factor: a number, a colour or a texture.
----@field b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): The other factor.
+---@field a number|gr.triple|gr.texture|function a (a number or a table of 3 numbers or a texture): One factor: a number, a colour or a texture.
+---@field b number|gr.triple|gr.texture|function b (a number or a table of 3 numbers or a texture): The other factor.
 
 ---The product of two textures or colours.
----@param a number|gr.triple|gr.texture a (a number or a table of 3 numbers or a texture): One factor: a number, a colour or a texture.
----@param b number|gr.triple|gr.texture b (a number or a table of 3 numbers or a texture): The other factor.
+---@param a number|gr.triple|gr.texture|function a (a number or a table of 3 numbers or a texture): One factor: a number, a colour or a texture.
+---@param b number|gr.triple|gr.texture|function b (a number or a table of 3 numbers or a texture): The other factor.
 ---@return gr.texture
 ---@overload fun(fields: gr.multiply_texture.fields): gr.texture
 function gr.multiply_texture(a, b) end
 
 ---@class gr.material.fields
----@field kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@field ks? gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
----@field shininess? number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
----@field reflect? number|gr.texture reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
----@field refract? number|gr.texture refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
+---@field kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@field ks? gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@field shininess? number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@field reflect? number|gr.texture|function reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
+---@field refract? number|gr.texture|function refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
 ---@field ior? number ior (a number, >= 1; default none): Index of refraction inside the solid.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit, too.
 ---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): Formula of the highlight.
 ---@field lit? boolean lit (true or false; default true): Whether light affects it; false: it shows kd unchanged.
----@field emission? gr.triple|gr.texture emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
----@field roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Roughness of reflection and refraction; 0 is polished.
+---@field emission? gr.triple|gr.texture|function emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness of reflection and refraction; 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from a rough surface; after the first rough surface of a path, one ray.
 ---@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Absorption inside the solid: factor exp(-absorption * distance).
----@field opacity? number|gr.texture opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
----@field metalness? number|gr.texture metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
----@field bump? string|gr.texture bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
+---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
+---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
+---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
 
 ---A Phong material.
----@param kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@param ks gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
----@param shininess number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@param kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@param ks gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@param shininess number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@return gr.material
 ---@overload fun(fields: gr.material.fields): gr.material
 function gr.material(kd, ks, shininess) end
 
 ---@class gr.rr_material.fields
----@field kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@field ks? gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
----@field shininess? number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
----@field reflect? number|gr.texture reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
----@field refract? number|gr.texture refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
+---@field kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@field ks? gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@field shininess? number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@field reflect? number|gr.texture|function reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
+---@field refract? number|gr.texture|function refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
 ---@field ior? number ior (a number, >= 1; default 1): Index of refraction inside the solid.
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit, too.
 ---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): Formula of the highlight.
 ---@field lit? boolean lit (true or false; default true): Whether light affects it; false: it shows kd unchanged.
----@field emission? gr.triple|gr.texture emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
----@field roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Roughness of reflection and refraction; 0 is polished.
+---@field emission? gr.triple|gr.texture|function emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness of reflection and refraction; 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from a rough surface; after the first rough surface of a path, one ray.
 ---@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Absorption inside the solid: factor exp(-absorption * distance).
----@field opacity? number|gr.texture opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
----@field metalness? number|gr.texture metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
----@field bump? string|gr.texture bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
+---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
+---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
+---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
 
 ---A Phong material that reflects and refracts.
----@param kd gr.triple|gr.texture kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@param ks gr.triple|gr.texture ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
----@param shininess number|gr.texture shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
----@param reflect number|gr.texture reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
----@param refract number|gr.texture refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
+---@param kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@param ks gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@param shininess number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@param reflect number|gr.texture|function reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
+---@param refract number|gr.texture|function refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
 ---@param ior number ior (a number, >= 1; default 1): Index of refraction inside the solid.
 ---@return gr.material
 ---@overload fun(fields: gr.rr_material.fields): gr.material
@@ -974,7 +984,7 @@ function gr.difresneld_material(material) end
 function gr.texture(file) end
 
 ---@class gr.bump.fields
----@field file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
+---@field file string|gr.texture|function file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -984,7 +994,7 @@ function gr.texture(file) end
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
 ---A bump map or normal map for node:set_bump.
----@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
+---@param file string|gr.texture|function file (the name of a picture file or a texture): A PNG or JPEG file, or any texture.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@return gr.texture
 ---@overload fun(fields: gr.bump.fields): gr.texture
@@ -1009,7 +1019,7 @@ function gr.image_material(material, image) end
 
 ---@class gr.bump_material.fields
 ---@field material gr.material material (a material): The base material.
----@field image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
+---@field image string|gr.texture|function image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field wrap? 'clamp'|'repeat'|'mirror' wrap ('clamp'|'repeat'|'mirror'; default 'repeat'): Lookup outside of the image.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
@@ -1020,7 +1030,7 @@ function gr.image_material(material, image) end
 
 ---A bump map or normal map over another material.
 ---@param material gr.material material (a material): The base material.
----@param image string|gr.texture image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
+---@param image string|gr.texture|function image (the name of a picture file or a texture): A PNG or JPEG file, or a result of gr.bump.
 ---@param height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@return gr.material
 ---@overload fun(fields: gr.bump_material.fields): gr.material
@@ -1038,17 +1048,17 @@ function gr.bump_material(material, image, height) end
 function gr.glyphs(font, text) end
 
 ---@class gr.openpbr_material.fields
----@field base_weight? number|gr.texture base_weight (a number or a texture, 0 to 1; default 1): Factor of base_color.
----@field base_color? gr.triple|gr.texture base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
----@field base_diffuse_roughness? number|gr.texture base_diffuse_roughness (a number or a texture, 0 to 1; default 0): Roughness of the diffuse base; 0 is Lambert's.
----@field base_metalness? number|gr.texture base_metalness (a number or a texture, 0 to 1; default 0): Share of the base that is metal.
----@field specular_weight? number|gr.texture specular_weight (a number or a texture, >= 0; default 1): Factor of the reflectance head on (by the index), and of metal's reflection.
----@field specular_color? gr.triple|gr.texture specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the gloss; of metals the tint at 82 degrees.
----@field specular_roughness? number|gr.texture specular_roughness (a number or a texture, 0 to 1; default 0.3): Roughness of gloss, metal and glass; 0 is polished.
----@field specular_roughness_anisotropy? number|gr.texture specular_roughness_anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
----@field specular_ior? number|gr.texture specular_ior (a number or a texture, > 0; default 1.5): Index of refraction of the base.
----@field transmission_weight? number|gr.texture transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that light passes.
----@field transmission_color? gr.triple|gr.texture transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the surface, or transmission_depth.
+---@field base_weight? number|gr.texture|function base_weight (a number or a texture, 0 to 1; default 1): Factor of base_color.
+---@field base_color? gr.triple|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@field base_diffuse_roughness? number|gr.texture|function base_diffuse_roughness (a number or a texture, 0 to 1; default 0): Roughness of the diffuse base; 0 is Lambert's.
+---@field base_metalness? number|gr.texture|function base_metalness (a number or a texture, 0 to 1; default 0): Share of the base that is metal.
+---@field specular_weight? number|gr.texture|function specular_weight (a number or a texture, >= 0; default 1): Factor of the reflectance head on (by the index), and of metal's reflection.
+---@field specular_color? gr.triple|gr.texture|function specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the gloss; of metals the tint at 82 degrees.
+---@field specular_roughness? number|gr.texture|function specular_roughness (a number or a texture, 0 to 1; default 0.3): Roughness of gloss, metal and glass; 0 is polished.
+---@field specular_roughness_anisotropy? number|gr.texture|function specular_roughness_anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
+---@field specular_ior? number|gr.texture|function specular_ior (a number or a texture, > 0; default 1.5): Index of refraction of the base.
+---@field transmission_weight? number|gr.texture|function transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that light passes.
+---@field transmission_color? gr.triple|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the surface, or transmission_depth.
 ---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Length of the way inside after which white light has transmission_color; 0: any.
 ---@field transmission_scatter? gr.triple transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside: not there yet, but for black.
 ---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Without effect while transmission_scatter is black.
@@ -1059,45 +1069,45 @@ function gr.glyphs(font, text) end
 ---@field subsurface_radius? number subsurface_radius (a number, >= 0; default 1): Not there yet.
 ---@field subsurface_radius_scale? gr.triple subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Not there yet.
 ---@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Not there yet.
----@field coat_weight? number|gr.texture coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
----@field coat_color? gr.triple|gr.texture coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
----@field coat_roughness? number|gr.texture coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
----@field coat_roughness_anisotropy? number|gr.texture coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): Likewise for the coat.
----@field coat_ior? number|gr.texture coat_ior (a number or a texture, > 0; default 1.6): Index of refraction of the coat.
----@field coat_darkening? number|gr.texture coat_darkening (a number or a texture, 0 to 1; default 1): How much the coat darkens the base by reflections inside.
----@field fuzz_weight? number|gr.texture fuzz_weight (a number or a texture, 0 to 1; default 0): Share of the surface with fuzz.
----@field fuzz_color? gr.triple|gr.texture fuzz_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the fuzz.
----@field fuzz_roughness? number|gr.texture fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz: how far it shows from the rim inwards.
----@field emission_luminance? number|gr.texture emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 is the radiance 1.
----@field emission_color? gr.triple|gr.texture emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
+---@field coat_weight? number|gr.texture|function coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
+---@field coat_color? gr.triple|gr.texture|function coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
+---@field coat_roughness? number|gr.texture|function coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
+---@field coat_roughness_anisotropy? number|gr.texture|function coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): Likewise for the coat.
+---@field coat_ior? number|gr.texture|function coat_ior (a number or a texture, > 0; default 1.6): Index of refraction of the coat.
+---@field coat_darkening? number|gr.texture|function coat_darkening (a number or a texture, 0 to 1; default 1): How much the coat darkens the base by reflections inside.
+---@field fuzz_weight? number|gr.texture|function fuzz_weight (a number or a texture, 0 to 1; default 0): Share of the surface with fuzz.
+---@field fuzz_color? gr.triple|gr.texture|function fuzz_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the fuzz.
+---@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz: how far it shows from the rim inwards.
+---@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 is the radiance 1.
+---@field emission_color? gr.triple|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
 ---@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not there yet.
 ---@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not there yet.
 ---@field thin_film_ior? number thin_film_ior (a number, >= 0; default 1.4): Not there yet.
----@field geometry_opacity? number|gr.texture geometry_opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
+---@field geometry_opacity? number|gr.texture|function geometry_opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field geometry_thin_walled? boolean geometry_thin_walled (true or false; default false): Whether the surface is a wall without thickness: nothing is inside.
----@field geometry_normal? string|gr.texture geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
+---@field geometry_normal? string|gr.texture|function geometry_normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
 ---@field geometry_tangent? gr.triple geometry_tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
----@field geometry_coat_normal? string|gr.texture geometry_coat_normal (the name of a picture file or a texture; default none): Not there yet.
+---@field geometry_coat_normal? string|gr.texture|function geometry_coat_normal (the name of a picture file or a texture; default none): Not there yet.
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
 
 ---Layers of metal, glass, gloss over a diffuse base, clear coat and fuzz: OpenPBR Surface 1.1.
----@param base_color? gr.triple|gr.texture base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@param base_color? gr.triple|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
 ---@return gr.material
 ---@overload fun(fields: gr.openpbr_material.fields): gr.material
 function gr.openpbr_material(base_color) end
 
 ---@class gr.metal_material.fields
 ---@field metal 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'): Its name.
----@field roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
----@field anisotropy? number|gr.texture anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
+---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@field anisotropy? number|gr.texture|function anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
 ---@field tangent? gr.triple tangent (a direction {x, y, z}; default along u): Direction along which the facets of an anisotropic surface are smooth, in the world.
----@field normal? string|gr.texture normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
+---@field normal? string|gr.texture|function normal (the name of a picture file or a texture; default none): A normal map or bump map: a result of gr.bump, or the file of a normal map.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
 
 ---A metal with its measured reflectance.
 ---@param metal 'aluminium'|'brass'|'chromium'|'cobalt'|'copper'|'gold'|'iron'|'manganese'|'nickel'|'palladium'|'platinum'|'silver'|'titanium'|'tungsten'|'vanadium'|'zinc' metal ('aluminium', 'brass', 'chromium', 'cobalt', 'copper', 'gold', 'iron', 'manganese', 'nickel', 'palladium', 'platinum', 'silver', 'titanium', 'tungsten', 'vanadium', 'zinc'): Its name.
----@param roughness? number|gr.texture roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
+---@param roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness; 0 is polished.
 ---@return gr.material
 ---@overload fun(fields: gr.metal_material.fields): gr.material
 function gr.metal_material(metal, roughness) end
@@ -1744,7 +1754,7 @@ function node:set_material(material) end
 function node:set_texture(texture) end
 
 ---Sets the bump map of a shape.
----@param bump string|gr.texture bump (the name of a picture file or a texture): A result of gr.bump, or the name of a PNG or JPEG file.
+---@param bump string|gr.texture|function bump (the name of a picture file or a texture): A result of gr.bump, or the name of a PNG or JPEG file.
 ---@return gr.node
 function node:set_bump(bump) end
 
@@ -1810,4 +1820,58 @@ function node:translate(x, y, z) end
 ---@param lights gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(self: gr.node, fields: gr.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
+
+---A vector: a table {x, y, z} with operators; of one number, three times that.
+function gr.vec(x, y, z) end
+
+---The scalar product of two vectors.
+function gr.dot(a, b) end
+
+---The vector product of two vectors.
+function gr.cross(a, b) end
+
+---The length of a vector.
+function gr.length(v) end
+
+---The vector divided by its length.
+function gr.normalize(v) end
+
+---a + (b - a) * t, of numbers or vectors.
+function gr.mix(a, b, t) end
+
+---x, at least low and at most high; of vectors by components.
+function gr.clamp(x, low, high) end
+
+---0 below low, 1 above high, smooth between them.
+function gr.smoothstep(low, high, x) end
+
+---0 where x < edge, else 1.
+function gr.step(edge, x) end
+
+---The least of numbers or vectors, by components.
+function gr.min(...) end
+
+---The greatest of numbers or vectors, by components.
+function gr.max(...) end
+
+---a where x > 0, else b: a choice without a branch.
+function gr.where(x, a, b) end
+
+---Entry i of a table of numbers or vectors, i rounded down and kept between 1 and #t.
+function gr.lookup(t, i) end
+
+---Replaces the state s1, s2, ... by f(i, s1, s2, ...) for i = 1 to n while s1 > 0; f is last.
+function gr.loop(n, ...) end
+
+---Perlin noise of a point, or of x, y, z: in about -1..1.
+function gr.noise(p) end
+
+---The sum of |noise(2^k p)| / 2^k for octaves (4) values of k from 0 on.
+function gr.turbulence(p, octaves) end
+
+---Distances from the nearest and the second nearest of random points, and a number of the nearest.
+function gr.cells(p) end
+
+---A random number in 0..1 for each point.
+function gr.hash(p) end
 

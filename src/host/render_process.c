@@ -184,9 +184,9 @@ static void report_world(const struct render_process *process, const char *file,
     report_scene(process, LINE_DETAIL, line);
 }
 
-/* --pixel and --dump-scene: the scene is built, no picture is made. */
+/* --pixel, --dump-scene and --dump-expr: the scene is built, no picture is made. */
 static bool is_asked(const struct options *options) {
-    return options->pixel_count > 0 || options->dump_scene;
+    return options->pixel_count > 0 || options->dump_scene || options->dump_expr;
 }
 
 /* Not through the supervisor, so that later output of the script follows it. */
@@ -203,6 +203,8 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
                                 .pool = work->process->pool,
                                 .json = options->json};
     struct text_writer writer = {.put = print_piece};
+    if (options->dump_expr)
+        inspect_functions(&picture, &writer);
     return (!options->dump_scene || inspect_world(&picture, &writer, error)) &&
            (options->pixel_count == 0 ||
             inspect_pixels(&picture, options->pixels, options->pixel_count, &writer, error));

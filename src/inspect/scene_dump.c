@@ -188,3 +188,68 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
     text_writer_flush(writer);
     return ok;
 }
+
+/* --- functions of textures --- */
+
+/* Its instructions, one a line, between the inputs that stand in registers and the registers of the results. */
+static void dump_program(struct text_writer *writer, const struct expr_program *program, bool json) {
+    const char *before = json ? "\"" : "    ", *after = json ? "\"," : "\n";
+    char line[256];
+    for (int i = 0; i < program->input_count; i++)
+        text_writer_print(writer, "%sr%u = %s%s", before,
+                          (unsigned)(program->inputs[i].value - program->constant_count),
+                          expr_input_name((enum expr_input)program->inputs[i].input), after);
+    for (uint32_t i = 0; i < program->count; i++) {
+        expr_describe(program, i, line, sizeof line);
+        text_writer_print(writer, "%s%s%s", before, line, after);
+    }
+    text_writer_print(writer, "%sresult", before);
+    for (int i = 0; i < program->output_count; i++) {
+        uint16_t value = program->outputs[i];
+        if (value < program->constant_count)
+            text_writer_print(writer, " %.17g", program->constants[value].f);
+        else
+            text_writer_print(writer, " r%u", (unsigned)(value - program->constant_count));
+    }
+    text_writer_print(writer, json ? "\"" : "\n");
+}
+
+/* A function on shapes of several layouts is in the table of the world more than once. */
+static bool is_first(const struct world *world, uint32_t texture) {
+    const struct expr_program *program = world->textures[texture].recorded.program;
+    for (uint32_t i = 0; i < texture; i++)
+        if (world->textures[i].kind == TEXTURE_FUNCTION && world->textures[i].recorded.program == program)
+            return false;
+    return true;
+}
+
+void inspect_functions(const struct inspected *picture, struct text_writer *writer) {
+    const struct world *world = picture->job->world;
+    bool json = picture->json, has_one = false;
+    if (json) {
+        text_writer_print(writer, "{\"picture\":");
+        text_writer_json(writer, picture->file);
+        text_writer_print(writer, ",\"functions\":[");
+    } else {
+        text_writer_name(writer, picture->file);
+        text_writer_print(writer, ": functions of textures\n");
+    }
+    for (uint32_t i = 0; i < world->texture_count; i++) {
+        const struct texture *texture = &world->textures[i];
+        if (texture->kind != TEXTURE_FUNCTION || !is_first(world, i))
+            continue;
+        const struct expr_program *program = texture->recorded.program;
+        text_writer_print(writer, json && has_one ? "," : "");
+        text_writer_print(writer, json ? "{\"source\":" : "  ");
+        json ? text_writer_json(writer, texture->recorded.source) : text_writer_name(writer, texture->recorded.source);
+        text_writer_print(writer,
+                          json ? ",\"operations\":%u,\"constants\":%u,\"registers\":%u,\"code\":["
+                               : ": %u operations, %u constants, %u registers\n",
+                          program->count, program->constant_count, program->register_count);
+        dump_program(writer, program, json);
+        text_writer_print(writer, json ? "]}" : "");
+        has_one = true;
+    }
+    text_writer_print(writer, json ? "]}\n" : has_one ? "" : "  none\n");
+    text_writer_flush(writer);
+}

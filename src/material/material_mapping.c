@@ -61,6 +61,10 @@ static const struct texture *texture_on(struct material_mapping *mapping, const 
         own.image.lookup.mapping = texture_mapping_on(own.image.lookup.mapping, layout);
         changed = own.image.lookup.mapping != texture->image.lookup.mapping;
     }
+    if (own.kind == TEXTURE_FUNCTION) {
+        own.recorded.mapping = texture_mapping_on(own.recorded.mapping, layout);
+        changed = own.recorded.mapping != texture->recorded.mapping;
+    }
     for (int i = texture_parts(&own, parts); i-- > 0;) {
         if (!parts[i]->authored)
             continue;

@@ -75,6 +75,14 @@ struct texture texture_map(const struct texture *of, enum texture_function funct
     return out;
 }
 
+struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
+                                struct vec3 largest) {
+    return (struct texture){.kind = TEXTURE_FUNCTION,
+                            .size = 1,
+                            .has_image = has_coordinates,
+                            .recorded = {program, "", MAPPING_BY_SHAPE, average, largest}};
+}
+
 const struct texture *texture_parameter(enum material_input input) {
 #define PARAMETER(input, name) [input] = {.kind = TEXTURE_PARAMETER, .size = 1, .parameter = (input)},
     static const struct texture parameters[] = {MATERIAL_INPUTS(PARAMETER)};
@@ -103,6 +111,7 @@ int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PART
     case TEXTURE_VERTEX_COLOUR:
     case TEXTURE_MARBLE:
     case TEXTURE_WOOD:
+    case TEXTURE_FUNCTION:
         return 0;
     case TEXTURE_IMAGE:
         parts[0] = &texture->image.below;
@@ -240,6 +249,28 @@ static bool takes_component(enum texture_function function, struct vec3 colour, 
     return function == FUNCTION_RED || function == FUNCTION_GREEN || function == FUNCTION_BLUE;
 }
 
+static double not_nan(double x) {
+    return x == x ? x : 0;
+}
+
+/* The function at the hit; a number counts for all three components. u and v are those of images, v from below. */
+static struct vec3 function_at(const struct texture *texture, const struct hit *hit) {
+    const struct vec3 *p = &hit->pattern_point, *n = &hit->normal, *v = &hit->view, *w = &hit->point;
+    double inputs[EXPR_INPUT_COUNT] = {p->x, p->y, p->z, 0,    0,    n->x, n->y,     n->z,
+                                       v->x, v->y, v->z, w->x, w->y, w->z, hit->time};
+    double out[EXPR_OUTPUTS];
+    const struct texture_image image = {.mapping = texture->recorded.mapping, .wrap = IMAGE_REPEAT};
+    struct texcoord at;
+    if (texture->has_image && texture_coordinates(&image, hit, &at)) {
+        inputs[EXPR_U] = at.u;
+        inputs[EXPR_V] = 1 - at.v;
+    }
+    expr_evaluate(texture->recorded.program, inputs, out);
+    if (texture->recorded.program->output_count == 1)
+        return vec3_all(not_nan(out[0]));
+    return vec3_make(not_nan(out[0]), not_nan(out[1]), not_nan(out[2]));
+}
+
 /* --- trees --- */
 
 static struct vec3 part_colour(union texture_ref part, struct texture_reader *reader) {
@@ -289,6 +320,8 @@ static struct vec3 evaluate_colour(const struct texture *texture, struct texture
         return vec3_make(function_of(function, amount, of.x), function_of(function, amount, of.y),
                          function_of(function, amount, of.z));
     }
+    case TEXTURE_FUNCTION:
+        return function_at(texture, reader->hit);
     }
     return vec3_all(0);
 }
@@ -329,6 +362,10 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
             return component;
         }
         return function_of(function, texture->map.amount, part_scalar(texture->map.of, reader));
+    }
+    case TEXTURE_FUNCTION: {
+        struct vec3 colour = function_at(texture, reader->hit);
+        return texture->recorded.program->output_count == 1 ? colour.x : mean(colour);
     }
     }
     return 0;
@@ -439,6 +476,8 @@ struct vec3 texture_estimate(const struct texture *texture, const struct texture
         return vec3_make(function_of(function, amount, of.x), function_of(function, amount, of.y),
                          function_of(function, amount, of.z));
     }
+    case TEXTURE_FUNCTION:
+        return largest ? texture->recorded.largest : texture->recorded.average;
     }
     return vec3_all(0);
 }

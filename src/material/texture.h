@@ -13,6 +13,7 @@
 #include "base/arena.h"
 #include "base/error.h"
 #include "base/list.h"
+#include "expr/expr_program.h"
 #include "geometry/hit.h"
 #include "image/image.h"
 #include "math/vec3.h"
@@ -25,7 +26,7 @@ enum { TEXTURE_SIZE = 16384 };
 /* PARAMETER: the number that a material has for one of its inputs; white outside of materials. VERTEX_COLOUR: the
  * colours of a mesh's vertices, interpolated; white where there are none. MARBLE, WOOD: patterns between 0 and 1 of the
  * point in object space, so that they stick to the object. MIX: a * ratio + b * (1 - ratio). MULTIPLY: a * b, by
- * components. MAP: a function of another texture, by components. */
+ * components. MAP: a function of another texture, by components. FUNCTION: a recorded function of the hit. */
 #define TEXTURE_KINDS(X)                                                                                               \
     X(TEXTURE_CONSTANT)                                                                                                \
     X(TEXTURE_PARAMETER)                                                                                               \
@@ -35,7 +36,8 @@ enum { TEXTURE_SIZE = 16384 };
     X(TEXTURE_WOOD)                                                                                                    \
     X(TEXTURE_MIX)                                                                                                     \
     X(TEXTURE_MULTIPLY)                                                                                                \
-    X(TEXTURE_MAP)
+    X(TEXTURE_MAP)                                                                                                     \
+    X(TEXTURE_FUNCTION)
 enum texture_kind { TEXTURE_KINDS(LIST_MEMBER) };
 enum { TEXTURE_KIND_COUNT = LIST_COUNT(TEXTURE_KINDS) };
 
@@ -175,6 +177,12 @@ struct texture {
             enum texture_function function;
             double amount;
         } map;
+        struct {
+            const struct expr_program *program; /* one output or three; of the script's arena */
+            const char *source;                 /* "scene.lua:12", or "" */
+            enum texture_mapping mapping;       /* of u and v */
+            struct vec3 average, largest;       /* of some points: estimates */
+        } recorded;
     };
 };
 
@@ -195,6 +203,10 @@ struct texture texture_image(const struct texture_image *image, const struct tex
 struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio);
 struct texture texture_multiply(const struct texture *a, const struct texture *b);
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
+/* A function of what EXPR_INPUTS lists, with one output or three; NaN is read as 0. has_coordinates: it reads u or v.
+ * The estimates are what texture_estimate says. */
+struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
+                                struct vec3 largest);
 /* The number of that input of the evaluated material. */
 const struct texture *texture_parameter(enum material_input input);
 /* The image if the texture is only an image; else NULL. */

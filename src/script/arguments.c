@@ -4,7 +4,7 @@
 #include "base/unreachable.h"
 #include "math/range.h"
 #include "render/settings.h"
-#include "script/context_internal.h"
+#include "script/record_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -476,8 +476,9 @@ static bool read_value(struct script_context *c, int index, const struct script_
     char words[128];
     value->given = true;
     const struct handle *handle = p->flags & OR_TEXTURE ? handle_at(L, index) : NULL;
-    if (handle && handle->type == HANDLE_TEXTURE) {
-        value->texture = handle->pointer;
+    bool is_function = (p->flags & OR_TEXTURE) && lua_type(L, index) == LUA_TFUNCTION;
+    if (is_function || (handle && handle->type == HANDLE_TEXTURE)) {
+        value->texture = is_function ? record_texture(c, index, p->name) : handle->pointer;
         value->image = image_of(value->texture);
         value->number = 1;
         value->vector = vec3_all(1);
@@ -644,6 +645,7 @@ enum {
     LIKE_BOOLEAN = LIKE_NUMBER << 1,
     LIKE_TEXT = LIKE_NUMBER << 2,
     LIKE_TABLE = LIKE_NUMBER << 3,
+    LIKE_FUNCTION = LIKE_NUMBER << 4,
     LIKE_HANDLE = LIKE_NUMBER - 1, /* bit `type` for each type of handle */
 };
 
@@ -652,7 +654,8 @@ static int kinds_of(lua_State *L, int index) {
     if (handle)
         return handle->type == HANDLE_GHOST ? LIKE_HANDLE : 1 << handle->type;
     return (lua_isnumber(L, index) ? LIKE_NUMBER : 0) | (lua_isboolean(L, index) ? LIKE_BOOLEAN : 0) |
-           (lua_isstring(L, index) ? LIKE_TEXT : 0) | (lua_istable(L, index) ? LIKE_TABLE : 0);
+           (lua_isstring(L, index) ? LIKE_TEXT : 0) | (lua_istable(L, index) ? LIKE_TABLE : 0) |
+           (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
 static bool resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
@@ -691,7 +694,7 @@ static bool resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
         [KIND_CURVES] = LIKE_TABLE,
     };
     assert(wanted[kind]); /* every kind has a case */
-    int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE : 0);
+    int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }
 

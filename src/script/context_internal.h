@@ -67,6 +67,8 @@ struct changed_view {
     struct changed_view *next;
 };
 
+struct recorder;
+
 struct script_context {
     lua_State *lua; /* the thread that called last */
     struct limits limits;
@@ -92,7 +94,8 @@ struct script_context {
     bool changes_reported;      /* what was left out */
     bool number_repaired;       /* the notice about ".0" was printed */
     struct error fatal;
-    bool ended; /* os.exit was called with success */
+    struct recorder *recorder; /* record_internal.h */
+    bool ended;                /* os.exit was called with success */
     const char *traceback;
     struct error failure; /* the message of a script error, made by the message handler */
 };

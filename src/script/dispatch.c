@@ -5,6 +5,7 @@
 
 #include "base/version.h"
 #include "formats/font.h"
+#include "script/record_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -156,8 +157,12 @@ static int dispatch(lua_State *L) {
     struct script_value args[PARAMETER_LIMIT];
     if (c->ended || c->fatal.kind != ERROR_NONE) /* a finalizer of the script that runs after its end */
         context_raise_fatal(L);
-    memset(args, 0, (size_t)function->parameter_count * sizeof *args);
     c->lua = L;
+    if (c->recorder->busy) {
+        char title[96];
+        luaL_error(L, "%s cannot be called by a function that is recorded", function_title(function, title));
+    }
+    memset(args, 0, (size_t)function->parameter_count * sizeof *args);
     c->function = function;
     c->subject = NULL;
     arena_reset(&c->call);
@@ -203,6 +208,8 @@ static void no_such_name(struct script_context *c, enum owner owner, const char 
     for (int k = 0; k < function_count(); k++)
         if (function_at(k)->owner == owner)
             suggest_offer(&suggestion, function_at(k)->name);
+    for (size_t k = 0; owner == OWNER_GR && value_function_at(k); k++)
+        suggest_offer(&suggestion, value_function_at(k)->name);
     if (suggestion.best)
         context_raise(c, "%s%.100s does not exist; did you mean %s%s?", before, name, before, suggestion.best);
     context_raise(c, "%s%.100s does not exist", before, name);

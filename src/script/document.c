@@ -157,6 +157,12 @@ const char *script_manual(struct arena *arena) {
     struct document document = {.arena = arena};
     for (int k = 0; k < function_count(); k++)
         write_function(&document, function_at(k));
+    for (size_t k = 0; value_function_at(k); k++) {
+        const struct value_function *function = value_function_at(k);
+        add(&document, "gr.%s(%s)\n    ", function->name, function->parameters);
+        add_filled(&document, 4, 4, function->help);
+        add(&document, "\n");
+    }
     return document.failed ? NULL : document.text;
 }
 
@@ -196,7 +202,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     case KIND_MATERIAL:
         return "gr.material";
     case KIND_IMAGE:
-        return "string|gr.texture";
+        return p->flags & OR_TEXTURE ? "string|gr.texture|function" : "string|gr.texture";
     case KIND_BACKGROUND:
         return "gr.triple|gr.sky|'gradient'";
     case KIND_FOG:
@@ -231,7 +237,7 @@ static const char *annotation_type(const struct script_parameter *p, char out[CH
     const char *type = annotation_kind(p, out);
     if (!(p->flags & OR_TEXTURE) || p->kind == KIND_IMAGE)
         return type;
-    snprintf(out, 200, "%s|gr.texture", type);
+    snprintf(out, 200, "%s|gr.texture|function", type);
     return out;
 }
 
@@ -342,13 +348,19 @@ const char *script_annotations(struct arena *arena) {
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
         "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
         "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class "
-        "gr.sky\n---@class gr.node\n"
+        "gr.sky\n"
+        "---@class gr.vector: number[] x, y, z and the methods dot, cross, length, normalize, mix, clamp\n"
+        "---@class gr.node\n"
         "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count(); k++) {
         const struct script_function *function = function_at(k);
         if (function->owner == OWNER_GR)
             annotate_fields(&document, function);
         annotate_function(&document, function);
+    }
+    for (size_t k = 0; value_function_at(k); k++) {
+        const struct value_function *function = value_function_at(k);
+        add(&document, "---%s\nfunction gr.%s(%s) end\n\n", function->help, function->name, function->parameters);
     }
     return document.failed ? NULL : document.text;
 }

@@ -107,7 +107,20 @@ static bool multiply(struct script_context *context, const struct script_value *
     return b && give(context, texture_multiply(a, b), result, error);
 }
 
+enum { FN_F };
+static const struct script_parameter fn_parameters[] = {
+    [FN_F] = PART("f", "A Lua function f(p, s) of the point, or anything else that is a texture."),
+};
+
+static bool fn(struct script_context *context, const struct script_value *args, struct script_result *result,
+               struct error *error) {
+    const struct texture *texture = gr_texture_of(context, &args[FN_F], error);
+    return texture && give(context, *texture, result, error);
+}
+
 static const struct script_function rows[] = {
+    GR("fn", fn_parameters, RESULT_TEXTURE, fn,
+       "A Lua function as a texture; wherever a texture is taken, one may stand.", "f"),
     GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
        "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
     GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,

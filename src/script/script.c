@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "script/order_internal.h"
+#include "script/record_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -152,6 +153,7 @@ static int run_scene(lua_State *L) {
     compat_open(L);
     handles_open(L);
     dispatch_open(L);
+    record_open(L);
     library_open(L);
     define_open(L);
     lua_settop(L, 0);
@@ -260,6 +262,7 @@ bool script_run(const char *path, const struct script_options *options, const st
         *traceback = done || error->kind != ERROR_SCENE ? NULL : context.traceback;
         lua_close(L);
     }
+    recorder_destroy(context.recorder);
     streams_close(&context);
     path_policy_destroy(&path_policy);
     scene_destroy(&context.scene);

@@ -160,6 +160,13 @@ int function_count(void);
 const struct script_function *function_at(int index);
 int function_index(const struct script_function *function);
 
+/* The functions of gr on numbers and vectors (vector.c). They take values of Lua as they are and have no rows in the
+ * table: what they are called with, and what they do, in words. NULL behind the last. */
+struct value_function {
+    const char *name, *parameters, *help;
+};
+const struct value_function *value_function_at(size_t index);
+
 /* The row of that name, or NULL. */
 const struct script_function *function_find(enum owner owner, const char *name);
 /* Reads the next name of a form: false at its end. *index is its parameter. */

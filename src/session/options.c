@@ -540,7 +540,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
 }
 
 bool options_output_is_stream(const struct options *options) {
-    bool asks = options->pixel_count > 0 || options->dump_scene; /* then there is no picture */
+    bool asks = options->pixel_count > 0 || options->dump_scene || options->dump_expr; /* then there is no picture */
     return options->output && strcmp(options->output, "-") == 0 && !asks;
 }
 

@@ -65,7 +65,8 @@ struct options {
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}; these are traced instead of rendering */
     uint32_t pixel_count;
     bool dump_scene;         /* --dump-scene: the world is listed instead of rendering */
-    bool json;               /* both: as JSON */
+    bool dump_expr;          /* --dump-expr: so are the functions of textures */
+    bool json;               /* all three: as JSON */
     const char *checkpoint;  /* --checkpoint: a file, or "auto", or NULL */
     double checkpoint_every; /* seconds */
     bool mpi;                /* one of several processes that make a picture together */

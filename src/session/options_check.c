@@ -27,11 +27,11 @@ static bool check_together(const struct options *options, struct error *error) {
     return true;
 }
 
-/* --pixel and --dump-scene. */
+/* --pixel, --dump-scene and --dump-expr. */
 static bool check_questions(const struct options *options, struct error *error) {
-    const char *asked = options->pixel_count > 0 ? "--pixel" : "--dump-scene";
-    if (options->pixel_count == 0 && !options->dump_scene)
-        return !options->json || error_set(error, ERROR_USAGE, "--json is for --pixel and --dump-scene");
+    const char *asked = options->pixel_count > 0 ? "--pixel" : options->dump_scene ? "--dump-scene" : "--dump-expr";
+    if (options->pixel_count == 0 && !options->dump_scene && !options->dump_expr)
+        return !options->json || error_set(error, ERROR_USAGE, "--json is for --pixel, --dump-scene and --dump-expr");
     if (options->window || options->check || options->shards || options->shards_of_pictures || options->mpi ||
         options->checkpoint || options->resume || options->action == ACTION_MERGE)
         return error_set(error, ERROR_USAGE,

@@ -80,6 +80,18 @@ static bool same(struct vec3 a, struct vec3 b) {
 
 /* --- every kind --- */
 
+/* {0.5 + 0.1 * p.x, s.v, s.normal.z} */
+static const struct expr_program *program(struct palette *p) {
+    struct expr_graph graph = {.count = 0};
+    struct expr_program *out = arena_alloc(&p->arena, sizeof *out);
+    uint32_t x = expr_operation(&graph, EXPR_MULTIPLY, expr_float(&graph, 0.1), expr_input(&graph, EXPR_POINT_X), 0);
+    const uint32_t outputs[3] = {expr_operation(&graph, EXPR_ADD, expr_float(&graph, 0.5), x, 0),
+                                 expr_input(&graph, EXPR_V), expr_input(&graph, EXPR_NORMAL_Z)};
+    CHECK(out && expr_compile(&graph, outputs, 3, &p->arena, out, &p->error));
+    expr_graph_destroy(&graph);
+    return out;
+}
+
 /* One texture of the kind, and its value at the hit by definition. */
 static const struct texture *make(struct palette *p, enum texture_kind kind, const struct hit *hit,
                                   struct vec3 *wanted) {
@@ -115,6 +127,9 @@ static const struct texture *make(struct palette *p, enum texture_kind kind, con
     case TEXTURE_MAP:
         *wanted = vec3_make(0.9, 0.8, 0.3);
         return keep(p, texture_map(colour(p, 0.1, 0.2, 0.7), FUNCTION_COMPLEMENT, 0));
+    case TEXTURE_FUNCTION:
+        *wanted = vec3_make(0.5 + 0.1 * at.x, hit->v, hit->normal.z);
+        return keep(p, texture_function(program(p), true, vec3_all(0.5), vec3_all(1)));
     }
     return NULL;
 }
@@ -679,6 +694,8 @@ static const char *in_words(enum texture_kind kind) {
         return "gr.mix_texture(1, {0, 1, 0}, .25)";
     case TEXTURE_MULTIPLY:
         return "gr.multiply_texture(.5, {0, 1, 0})";
+    case TEXTURE_FUNCTION:
+        return "gr.fn(function(p) return math.sin(3 * p.x) end)";
     }
     return NULL;
 }

@@ -1,0 +1,411 @@
+/* The paths of a function, one call each, depth first: `decisions` is the path; after a call the last answer that is
+ * still `true` becomes `false`. The result of the paths under an answer `true` waits in its decision for that of the
+ * paths under `false`, and both become one selection. So the selections nest as the branches of the function do.
+ *
+ * What was recorded is compared with what Lua gives at RECORD_POINTS points, so that a function which reads more than
+ * its arguments is found out. */
+#include "script/record_internal.h"
+
+#include "base/mem.h"
+#include "base/random.h"
+#include "math/exact_internal.h"
+
+#include <assert.h>
+#include <lauxlib.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { RECORD_POINTS = 1000 };
+
+void record_open(lua_State *L) {
+    struct script_context *context = context_of(L);
+    context->recorder = arena_alloc(&context->keep, sizeof *context->recorder);
+    if (!context->recorder)
+        context_raise_no_memory(context);
+    symbols_open(L);
+    vectors_open(L);
+}
+
+void recorder_destroy(struct recorder *recorder) {
+    if (!recorder)
+        return;
+    expr_graph_destroy(&recorder->graph);
+    mem_free(recorder->decisions);
+    mem_free(recorder->answers);
+    recorder->decisions = NULL;
+    recorder->answers = NULL;
+    recorder->active = recorder->busy = false;
+}
+
+/* --- calls --- */
+
+/* Pushes {u =, v =, normal =, view =, world =, time =} of fifteen values below, in the order of EXPR_INPUTS, and before
+ * it the point; they stay. */
+static void push_arguments(lua_State *L, int first) {
+    for (int k = 0; k < 3; k++)
+        lua_pushvalue(L, first + EXPR_POINT_X + k);
+    push_vector(L);
+    lua_createtable(L, 0, 6);
+    lua_pushvalue(L, first + EXPR_U);
+    lua_setfield(L, -2, "u");
+    lua_pushvalue(L, first + EXPR_V);
+    lua_setfield(L, -2, "v");
+    static const struct {
+        const char *name;
+        int input;
+    } vectors[] = {{"normal", EXPR_NORMAL_X}, {"view", EXPR_VIEW_X}, {"world", EXPR_WORLD_X}};
+    for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
+        for (int k = 0; k < 3; k++)
+            lua_pushvalue(L, first + vectors[i].input + k);
+        push_vector(L);
+        lua_setfield(L, -2, vectors[i].name);
+    }
+    lua_pushvalue(L, first + EXPR_TIME);
+    lua_setfield(L, -2, "time");
+}
+
+/* Errors get their position while the stack is there. */
+static int add_position(lua_State *L) {
+    struct script_context *context = context_of(L);
+    char where[PATH_SIZE + 32];
+    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+        return 1;
+    const char *text = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : NULL;
+    if (!text) {
+        lua_pushfstring(L, "the function raised %s", value_words(L, 1));
+        text = lua_tostring(L, -1);
+    } else if (strstr(text, ":") && strspn(strstr(text, ":") + 1, "0123456789") > 0) {
+        return 1;
+    }
+    context->lua = L;
+    context_where(context, where, sizeof where);
+    lua_pushfstring(L, "%s%s", where, text);
+    return 1;
+}
+
+/* Calls the function at `function` with the values from `first` on. Pushes its first result, or the error. */
+static bool call_function(lua_State *L, int function, int first) {
+    struct script_context *context = context_of(L);
+    lua_pushcfunction(L, add_position);
+    int handler = lua_gettop(L);
+    lua_pushvalue(L, function);
+    push_arguments(L, first);
+    int status = lua_pcall(L, 2, LUA_MULTRET, handler);
+    context->lua = L;
+    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+        limits_check(L);
+    int results = lua_gettop(L) - handler;
+    if (status == LUA_OK && results != 1) {
+        lua_settop(L, handler - 1);
+        lua_pushfstring(L, "the function returns %d values, not a number or a colour {r, g, b}", results);
+        return false;
+    }
+    lua_remove(L, handler);
+    return status == LUA_OK;
+}
+
+/* Whether the value on top is a number, a symbol or three of them; how many. Replaces it by a sentence else. */
+static bool is_result(lua_State *L, int *count) {
+    int top = lua_gettop(L);
+    if (is_symbol(L, top) && !context_of(L)->recorder->active) {
+        lua_pushliteral(L, "a number of a recorded function is used outside of it");
+        lua_replace(L, top);
+        return false;
+    }
+    *count = 1;
+    if (lua_type(L, top) == LUA_TNUMBER || is_symbol(L, top))
+        return true;
+    *count = 3;
+    if (lua_type(L, top) == LUA_TTABLE && lua_rawlen(L, top) == 3) {
+        bool fine = true;
+        for (int k = 1; k <= 3; k++) {
+            lua_rawgeti(L, top, k);
+            fine = fine && (lua_type(L, -1) == LUA_TNUMBER || is_symbol(L, -1));
+        }
+        lua_settop(L, top);
+        if (fine)
+            return true;
+    }
+    const char *words = value_words(L, top);
+    lua_pushfstring(L, "the function must return a number or a colour {r, g, b}, not %s", words);
+    lua_replace(L, top);
+    return false;
+}
+
+/* --- paths --- */
+
+/* The node of output `k` of a result, NaN of an error. */
+static uint32_t output_of(lua_State *L, const struct path_result *result, int k) {
+    if (result->count == 0) {
+        lua_pushnumber(L, (double)NAN);
+        uint32_t node = number_at(L, -1).node;
+        lua_pop(L, 1);
+        return node;
+    }
+    return result->nodes[result->count == 1 ? 0 : k];
+}
+
+static struct path_result join(lua_State *L, const struct decision *decision, const struct path_result *if_false) {
+    const struct path_result *if_true = &decision->if_true;
+    struct path_result out = {.count = if_true->count > if_false->count ? if_true->count : if_false->count};
+    for (int k = 0; k < out.count; k++)
+        out.nodes[k] =
+            record_operation(L, EXPR_SELECT, decision->condition, output_of(L, if_true, k), output_of(L, if_false, k));
+    return out;
+}
+
+/* One call; the first error of all stays at the index `error`. */
+static struct path_result record_path(lua_State *L, int function, int first, int error) {
+    struct recorder *recorder = context_of(L)->recorder;
+    struct path_result result = {.count = 0};
+    int top = lua_gettop(L);
+    recorder->taken = 0;
+    recorder->path++;
+    bool fine = call_function(L, function, first) && is_result(L, &result.count);
+    if (recorder->gave_up) /* whatever the function made of the error */
+        fine = false;
+    if (!fine) {
+        result.count = 0;
+        if (lua_isnil(L, error))
+            lua_copy(L, top + 1, error);
+        lua_settop(L, top);
+        return result;
+    }
+    for (int k = 0; k < result.count; k++) {
+        if (result.count == 3)
+            lua_rawgeti(L, top + 1, k + 1);
+        else
+            lua_pushvalue(L, top + 1);
+        result.nodes[k] = record_node(L, number_float(recorder, number_at(L, -1)));
+        lua_pop(L, 1);
+    }
+    lua_settop(L, top);
+    return result;
+}
+
+/* Raises the text at an index. It names its position itself. */
+_Noreturn static void raise_text(lua_State *L, int index) {
+    const char *text = lua_tostring(L, index);
+    /* t[x] of a symbol is nil */
+    bool hint = strstr(text, "a nil value (field '?')") || strstr(text, "index is");
+    lua_pushfstring(L, "%s%s", text,
+                    hint ? "; a table cannot be indexed by a number of the recorded function, gr.lookup(t, i) can"
+                         : "");
+    lua_error(L);
+    __builtin_unreachable();
+}
+
+static struct path_result record_paths(lua_State *L, int function, int first) {
+    struct recorder *recorder = context_of(L)->recorder;
+    lua_pushnil(L);
+    int error = lua_gettop(L);
+    for (recorder->depth = 0;;) {
+        struct path_result result = record_path(L, function, first, error);
+        if (recorder->gave_up) {
+            lua_pushstring(L, recorder->error);
+            lua_error(L);
+        }
+        while (recorder->depth > 0 && !recorder->decisions[recorder->depth - 1].answer)
+            result = join(L, &recorder->decisions[--recorder->depth], &result);
+        if (recorder->depth == 0) {
+            if (result.count == 0)
+                raise_text(L, error);
+            lua_settop(L, error - 1);
+            return result;
+        }
+        struct decision *last = &recorder->decisions[recorder->depth - 1];
+        last->if_true = result;
+        last->answer = false;
+        if (recorder->path == RECORD_PATHS)
+            record_give_up(L,
+                           "the function has more than %d paths; gr.where(x, a, b), gr.step, gr.min and gr.max choose "
+                           "without a path each, and gr.loop(n, state, f) repeats",
+                           RECORD_PATHS);
+    }
+}
+
+/* --- comparison --- */
+
+/* Of point `i`: numbers of all sizes up to 100, whole and half ones, zeros of both signs, equal coordinates; u, v and
+ * time between 0 and 1, unit vectors. */
+static void test_point(uint32_t i, double out[EXPR_INPUT_COUNT]) {
+    uint64_t key = random_combine(18, i);
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++) {
+        uint64_t bits = random_combine(key, (uint64_t)k);
+        double x = 2 * random_unit(bits) - 1, scale = i % 4 == 0 ? 100 : i % 4 == 1 ? 10 : 1;
+        out[k] = i % 5 == 4 ? floor(scale * x * 2 + 0.5) / 2 : scale * x;
+        if (i % 29 == 28 && k % 3 != (int)(i % 3))
+            out[k] = i % 2 ? 0.0 : -0.0;
+        if (i % 31 == 30 && k > 0)
+            out[k] = out[k - 1];
+    }
+    static const int units[] = {EXPR_U, EXPR_V, EXPR_TIME}, directions[] = {EXPR_NORMAL_X, EXPR_VIEW_X};
+    for (size_t n = 0; n < sizeof units / sizeof units[0]; n++)
+        out[units[n]] = random_unit(random_combine(key, 100 + n));
+    for (size_t n = 0; n < sizeof directions / sizeof directions[0]; n++) {
+        double *d = &out[directions[n]];
+        double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], length = sqrt(square);
+        for (int k = 0; k < 3; k++)
+            d[k] = square > 0 ? d[k] / length : k == 2;
+    }
+}
+
+static bool same_number(double a, double b) {
+    return to_bits(a) == to_bits(b) || (a != a && b != b);
+}
+
+static void describe_outputs(const double *values, int count, char *out, size_t size) {
+    if (count == 1)
+        (void)snprintf(out, size, "%.17g", values[0]);
+    else
+        (void)snprintf(out, size, "{%.17g, %.17g, %.17g}", values[0], values[1], values[2]);
+}
+
+struct comparison {
+    const struct expr_program *program;
+    double sum[3], largest[3];
+};
+
+static void compare_point(lua_State *L, int function, uint32_t i, struct comparison *comparison) {
+    double inputs[EXPR_INPUT_COUNT], recorded[EXPR_OUTPUTS], called[3];
+    int top = lua_gettop(L), count = 0, outputs = comparison->program->output_count;
+    test_point(i, inputs);
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+        lua_pushnumber(L, inputs[k]);
+    if (!call_function(L, function, top + 1) || !is_result(L, &count))
+        raise_text(L, lua_gettop(L));
+    expr_evaluate(comparison->program, inputs, recorded);
+    int result = lua_gettop(L);
+    bool same = true;
+    for (int k = 0; k < outputs; k++) {
+        if (count == 3)
+            lua_rawgeti(L, result, k + 1);
+        else
+            lua_pushvalue(L, result);
+        called[k] = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+        same = same && same_number(called[k], recorded[k]);
+        comparison->sum[k] += isfinite(recorded[k]) ? recorded[k] : 0;
+        comparison->largest[k] = recorded[k] > comparison->largest[k] ? recorded[k] : comparison->largest[k];
+    }
+    lua_settop(L, top);
+    if (same && count <= outputs)
+        return;
+    char a[128], b[128];
+    describe_outputs(called, outputs, a, sizeof a);
+    describe_outputs(recorded, outputs, b, sizeof b);
+    lua_Debug where;
+    lua_pushvalue(L, function);
+    (void)lua_getinfo(L, ">S", &where);
+    char text[RECORD_ERROR];
+    (void)snprintf(text, sizeof text,
+                   "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded %s; "
+                   "it must depend on its arguments alone, and x == 0 is not seen (write x >= 0 and x <= 0)",
+                   where.linedefined, inputs[0], inputs[1], inputs[2], a, b);
+    lua_pushstring(L, text);
+    lua_error(L);
+}
+
+/* --- all of it --- */
+
+static void begin(lua_State *L) {
+    struct script_context *context = context_of(L);
+    struct recorder *recorder = context->recorder;
+    expr_graph_destroy(&recorder->graph);
+    if (!recorder->decisions)
+        recorder->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *recorder->decisions);
+    if (!recorder->answers)
+        recorder->answers = mem_alloc_zero(EXPR_NODES, sizeof *recorder->answers);
+    if (!recorder->decisions || !recorder->answers)
+        context_raise_no_memory(context);
+    memset(recorder->answers, 0, EXPR_NODES * sizeof *recorder->answers);
+    recorder->serial++;
+    recorder->path = 0;
+    recorder->gave_up = false;
+    recorder->active = true;
+}
+
+/* What a recording came to. */
+struct recording {
+    struct expr_program *program;
+    const char *source;
+    struct comparison comparison;
+};
+
+static void compile(lua_State *L, const struct path_result *result, struct recording *recording) {
+    struct script_context *context = context_of(L);
+    struct arena *arena = &context->scene.arena;
+    struct error error = {0};
+    lua_Debug where;
+    lua_pushvalue(L, 1);
+    (void)lua_getinfo(L, ">S", &where);
+    recording->source = arena_format(arena, "%s:%d", where.short_src, where.linedefined);
+    recording->program = arena_alloc(arena, sizeof *recording->program);
+    if (!recording->source || !recording->program)
+        context_raise_no_memory(context);
+    if (!expr_compile(&context->recorder->graph, result->nodes, result->count, arena, recording->program, &error))
+        context_raise_error(context, &error);
+}
+
+/* Arguments: the function, and the struct recording. */
+static int record_protected(lua_State *L) {
+    struct recorder *recorder = context_of(L)->recorder;
+    struct recording *recording = lua_touserdata(L, 2);
+    begin(L);
+    luaL_checkstack(L, 2 * EXPR_INPUT_COUNT + 20, "a function");
+    int first = lua_gettop(L) + 1;
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+        push_symbol(L, (struct number){NUMBER_FLOAT, expr_input(&recorder->graph, (enum expr_input)k), EXPR_NONE});
+    struct path_result result = record_paths(L, 1, first);
+    recorder->active = false;
+    lua_settop(L, 2);
+    compile(L, &result, recording);
+    recording->comparison = (struct comparison){.program = recording->program, .largest = {1, 1, 1}};
+    for (uint32_t i = 0; i < RECORD_POINTS; i++)
+        compare_point(L, 1, i, &recording->comparison);
+    return 0;
+}
+
+static bool reads_coordinates(const struct expr_program *program) {
+    for (int k = 0; k < program->input_count; k++)
+        if (program->inputs[k].input == EXPR_U || program->inputs[k].input == EXPR_V)
+            return true;
+    return false;
+}
+
+/* The mean and the largest value at the points of the comparison stand for the function where no hit is known. */
+static struct texture texture_of(const struct recording *recording) {
+    const struct comparison *comparison = &recording->comparison;
+    int last = recording->program->output_count - 1;
+    struct vec3 sum = vec3_make(comparison->sum[0], comparison->sum[last / 2], comparison->sum[last]);
+    struct vec3 largest = vec3_make(comparison->largest[0], comparison->largest[last / 2], comparison->largest[last]);
+    struct texture out = texture_function(recording->program, reads_coordinates(recording->program),
+                                          vec3_scale(sum, 1.0 / RECORD_POINTS), largest);
+    out.recorded.source = recording->source;
+    return out;
+}
+
+const struct script_texture *record_texture(struct script_context *context, int index, const char *name) {
+    lua_State *L = context->lua;
+    struct recorder *recorder = context->recorder;
+    struct recording recording = {.program = NULL};
+    struct error error = {0};
+    recorder->busy = true;
+    lua_pushcfunction(L, record_protected);
+    lua_pushvalue(L, index);
+    lua_pushlightuserdata(L, &recording);
+    int status = lua_pcall(L, 2, 0, 0);
+    recorder->active = recorder->busy = false;
+    expr_graph_destroy(&recorder->graph);
+    context->lua = L;
+    if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
+        context_raise(context, "%s: %s", name, lua_tostring(L, -1));
+    if (status != LUA_OK)
+        lua_error(L); /* a fatal one, which the context knows */
+    struct script_texture out = {.texture = texture_keep(&context->scene.arena, texture_of(&recording), &error)};
+    const struct script_texture *kept = out.texture ? gr_keep_texture(context, &out, &error) : NULL;
+    if (!kept)
+        context_raise_error(context, &error);
+    return kept;
+}

@@ -1,0 +1,86 @@
+/* Recording Lua functions as expressions. A function is called with symbols in the place of numbers: userdata whose
+ * operators, and those of math and gr, add an operation to a graph (expr/expr_graph.h) in the place of computing. A
+ * comparison of symbols is answered `true`; then the function is called again with the last answer turned to `false`,
+ * until all paths are known, and their results are joined by selections on the comparisons. Private to src/script.
+ *
+ * The technique: A. Griewank and A. Walther, "Evaluating Derivatives", 2nd edition 2008, section 6.1 (recording by
+ * overloading); J. King, "Symbolic Execution and Program Testing", 1976 (paths and their conditions). */
+#ifndef GRAY_SCRIPT_RECORD_INTERNAL_H
+#define GRAY_SCRIPT_RECORD_INTERNAL_H
+
+#include "expr/expr_program.h"
+#include "script/bindings_internal.h"
+#include "script/context_internal.h"
+
+enum { RECORD_PATHS = 4096, RECORD_LOOP = 10000, RECORD_ERROR = PATH_SIZE + 512 };
+
+/* What a value of Lua is in a recording. The node of an integer is an integer; that of the others a float. EITHER:
+ * math.max(x, 0) gives an integer or a float; its node is the float of it, is_integer the node that says which. */
+enum number_type { NUMBER_FLOAT, NUMBER_INTEGER, NUMBER_EITHER };
+struct number {
+    enum number_type type;
+    uint32_t node, is_integer;
+};
+
+/* What a path came to: one number or three, or an error, where every number is NaN. */
+struct path_result {
+    int count; /* 1 or 3; 0: an error */
+    uint32_t nodes[3];
+};
+
+struct decision {
+    uint32_t condition;
+    bool answer;
+    struct path_result if_true; /* where the answer is false: of the paths with the other one */
+};
+
+/* Of a script. Owner: the context; recorder_destroy gives back what a script that ended within a recording left. */
+struct recorder {
+    struct expr_graph graph;
+    struct decision *decisions; /* of the path, RECORD_PATHS of them */
+    uint32_t *answers;          /* of each node: 2 * path + answer, where `path` has decided it; EXPR_NODES of them */
+    uint32_t depth, taken;      /* decisions of the path, and those that the call has come to */
+    uint32_t path;              /* number of the call, from 1 */
+    uint32_t serial;            /* of the recording: symbols of others are refused */
+    bool active;                /* symbols may be used */
+    bool busy;                  /* a function is recorded or compared: no other function of gr may run */
+    bool gave_up;               /* at a limit; `error` says where and at which */
+    char error[RECORD_ERROR];
+    const void *symbol_metatable, *vector_metatable;
+};
+
+/* symbol.c: symbols, and the functions of math and type that know them. */
+void symbols_open(lua_State *L);
+bool is_symbol(lua_State *L, int index);
+void push_symbol(lua_State *L, struct number number);
+/* The number at a stack index as part of the recording. Raises an error where there is none. */
+struct number number_at(lua_State *L, int index);
+/* Its node as a float. */
+uint32_t number_float(struct recorder *recorder, struct number number);
+/* The node; raises an error where it is EXPR_NONE: the graph is at its limit. */
+uint32_t record_node(lua_State *L, uint32_t node);
+uint32_t record_operation(lua_State *L, enum expr_operation operation, uint32_t a, uint32_t b, uint32_t c);
+/* a where the condition holds, else b. */
+struct number record_select(lua_State *L, uint32_t condition, struct number a, struct number b);
+/* The answer of the path to a condition. */
+bool record_decide(lua_State *L, uint32_t condition);
+/* Replaces the two values on top by the smaller or the larger, as math.min and math.max choose. */
+void push_extreme(lua_State *L, bool larger);
+_Noreturn void record_give_up(lua_State *L, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* vector.c: gr.vec and the functions of gr on numbers and vectors. */
+void vectors_open(lua_State *L);
+bool is_vector(lua_State *L, int index);
+/* Makes a vector of the three values on top, in their place. */
+void push_vector(lua_State *L);
+/* An operator (LUA_OPADD ...) on the components of its arguments, which are vectors, tables or numbers. */
+int vector_arithmetic(lua_State *L, int operator);
+
+/* record.c */
+void record_open(lua_State *L);
+void recorder_destroy(struct recorder *recorder);
+/* The texture of the Lua function at an absolute index, kept by the scene. Raises every error, with the name of the
+ * argument in front. */
+const struct script_texture *record_texture(struct script_context *context, int index, const char *name);
+
+#endif

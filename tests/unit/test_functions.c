@@ -1,0 +1,308 @@
+/* Lua functions as textures: recording, its errors and limits, pictures. Whatever is recorded is compared with Lua at
+ * 1,000 points before it is used, so a function that is taken is equal there. */
+#include "tests/harness.h"
+#include "tests/unit/script_host.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char preparation[] = "local fn, vec, sin, floor = gr.fn, gr.vec, math.sin, math.floor ";
+
+static void runs(const char *text) {
+    check_corner(preparation, &(struct corner){text, NULL}, NULL);
+}
+
+static void fails(const char *text, const char *words) {
+    check_corner(preparation, &(struct corner){text, words}, NULL);
+}
+
+TEST(functions_of_arithmetic_are_recorded_as_lua_computes_them) {
+    runs("fn(function(p) return p.x + p.y * p.z - p[1] / 3 end)");
+    runs("fn(function(p, s) return {s.u, s.v, s.time} end)");
+    runs("fn(function(p, s) return s.normal + s.view * 2 - s.world / 3 end)");
+    runs("fn(function(p) return p.x // 0.3 + p.y % 0.7 - (-p.z) ^ 3 + p.x ^ 2 + 2 ^ p.y + p.x ^ p.y end)");
+    runs("fn(function(p) return 1 end) fn(function() return {0, 0.5, 1} end)");
+    runs("fn(function(p) return floor(p.x) * 3 // 2 % 5 + (floor(p.y) & 7 | 8 ~ floor(p.z)) end)");
+    runs("fn(function(p) return (floor(p.x) << 3 >> 1) + ~floor(p.y) - (-floor(p.z)) end)");
+    runs("fn(function(p) local i = floor(p.x * 1e6) * 1103515245 + 12345 return (i >> 16 & 0x7fff) / 32768 end)");
+    runs("fn(function(p) return floor(p.x) / 3 + floor(p.y) ^ 2 + -math.max(p.x, 0) + math.min(1, p.y, p.z) * 2 end)");
+    runs("fn(function(p) return math.max(p.x, 0) // 2 + math.max(1, p.y) % 3 end)");
+    runs("fn(function(p) return math.abs(floor(p.x)) + math.abs(p.y) + math.ceil(p.z) - math.fmod(p.x, 3) end)");
+    runs("fn(function(p) return math.fmod(floor(p.x), 3) + math.fmod(floor(p.y) * 2 + 1, floor(p.z) * 2 + 1) end)");
+    runs("fn(function(p) local a, b = math.modf(p.x) return a * 10 + b end)");
+    runs("fn(function(p) return math.sqrt(p.x) + sin(p.y) + math.cos(p.z) + math.tan(p.x) + math.atan(p.y) end)");
+    runs("fn(function(p) return math.atan(p.x, p.y) + math.exp(p.z) + math.log(p.x) + math.log(p.y, 2) end)");
+    runs("fn(function(p) return math.log(p.x, 10) + math.log(p.y, 3) + math.log(p.x, p.z) + math.pow(p.x, 2) end)");
+    runs("fn(function(p, s) return math.asin(s.u) + math.acos(s.v) + math.deg(p.x) + math.rad(p.y) end)");
+    runs("fn(function(p) return type(p.x) == 'number' and math.type(p.x) == 'float' and"
+         " math.type(floor(p.x)) == 'integer' and 1 or nil end)");
+    runs("fn(function(p) return math.tointeger(floor(p.x)) + (math.tointeger(p.y) or 0.5) end)");
+    runs("fn(function(p) return math.ult(floor(p.x), floor(p.y)) and 1 or 2 end)");
+}
+
+TEST(branches_and_loops_are_recorded_as_selections) {
+    runs("fn(function(p) if p.x < 0 then return 1 elseif p.x <= 0.5 then return p.y else return p.z end end)");
+    runs("fn(function(p) return p.x < p.y and p.x or p.y end)");
+    runs("fn(function(p) return not (p.x > 0) and 1 or 0 end)");
+    runs("fn(function(p) local sum = 0 for i = 1, 8 do if p.x * i > p.y then sum = sum + i end end return sum end)");
+    runs("fn(function(p) local n = 0 while n < 5 and p.x > n do n = n + 1 end return n end)");
+    runs("fn(function(p) if floor(p.x) % 2 < 1 then return {1, 0, 0} end return 0.25 end)");
+    runs("fn(function(p) if p.x == p.y then return 1 end return 0 end)");
+    runs("fn(function(p) if floor(p.x) < floor(p.y) or floor(p.x) * 1000003 > p.z then return 1 end return 0 end)");
+    runs(
+        "local t = {0.1, 0.5, 0.9} fn(function(p) local s = 0 for i, v in ipairs(t) do s = s + v * p.x ^ i end return s"
+        " end)");
+    runs("local function f(x, n) if n == 0 then return x end return f(x * x - 1, n - 1) end"
+         " fn(function(p) return f(p.x, 6) end)");
+    /* decided once, and what follows from it */
+    runs("fn(function(p) local n = 0 for i = 1, 100 do if p.x < p.y then n = n + 1 end"
+         " if p.y < p.x then n = n + 2 end if p.y <= p.x then n = n + 3 end end return n end)");
+}
+
+TEST(an_error_on_a_path_counts_only_where_a_point_gets) {
+    runs("fn(function(p) if p.x > 1000 then error('far') end return p.x end)");
+    fails("fn(function(p) if p.x > 0 then error('far') end return p.x end)", "scene.lua:1: far");
+    runs("fn(function(p) return 7 // (floor(p.x * 0) + 2) end)");
+    fails("fn(function(p) return 7 // floor(p.x) end)", "attempt to ");
+    fails("fn(function(p) return 7 & p.x end)", "has no integer representation");
+}
+
+TEST(vectors_are_numbers_by_three) {
+    runs("local v = vec(1, 2, 3) assert(v.x == 1 and v[2] == 2 and v.b == 3 and v == vec{1, 2, 3} and #v == 3)"
+         " assert(tostring(-v * 2) == '{-2, -4, -6}' and v:dot(v) == 14 and vec(3, 4, 0):length() == 5)"
+         " assert(vec(1, 0, 0):cross{0, 1, 0} == vec(0, 0, 1) and vec(0, 3, 0):normalize() == vec(0, 1, 0))"
+         " assert(gr.mix(1, 3, 0.25) == 1.5 and gr.mix(v, vec(3), 0.5) == vec(2, 2.5, 3))"
+         " assert(gr.clamp(5, 0, 1) == 1 and gr.clamp(vec(-1, 0.5, 9), 0, 1) == vec(0, 0.5, 1))"
+         " assert(gr.smoothstep(0, 2, 1) == 0.5 and gr.smoothstep(0, 1, -3) == 0 and gr.step(1, 1) == 1)"
+         " assert(gr.min(3, 1, 2) == 1 and gr.max(vec(1, 5, 2), 3) == vec(3, 5, 3))"
+         " assert(gr.where(1, 'a', 'b') == 'a' and gr.where(0, 1, 2) == 2 and gr.where(vec(1).x, 1, 2.5) == 1.0)"
+         " assert(gr.lookup({5, 6, 7}, 2.9) == 6 and gr.lookup({5, 6, 7}, -1) == 5 and gr.lookup({5, 6}, 1e9) == 6)"
+         " assert(gr.loop(10, 1, function(i, s) return s * 2 end) == 1024)"
+         " assert(select(2, gr.loop(10, 5, 0, function(i, s, n) return s - 1, n + i end)) == 15)");
+    runs("fn(function(p, s) return p:dot(s.normal) * p:length() end)");
+    runs("fn(function(p, s) return p:cross(s.view):normalize() * 0.5 + 0.5 end)");
+    runs("fn(function(p) return gr.smoothstep(-1, 1, p.x) * gr.mix(vec(1, 0, 0), {0, 1, 0}, gr.step(0, p.y)) end)");
+    runs("fn(function(p) return gr.clamp(p, -1, 1) + gr.min(p, 0.5) * gr.max(p.x, p.y, 0) end)");
+    runs("fn(function(p) return gr.where(p.x, p, {1, 2, 3}) + gr.where(p.y, 1, 2) end)");
+    runs("fn(function(p) return gr.lookup({{1, 0, 0}, {0, 1, 0}, vec(0, 0, 1), {1, 1, 1}}, p.x * 4) end)");
+    runs("fn(function(p) return gr.lookup({3, 1, 4, 1, 5, 9, 2, 6}, floor(p.x)) end)");
+    runs("fn(function(p) local n, x = gr.loop(30, 1, 0, function(i, n, x) return 4 - x * x, x * x + p.x end)"
+         " return n + x end)");
+    runs("fn(function(p) return gr.noise(p) + gr.noise(p.x * 2, p.y, 0.5) + gr.turbulence(p, 5) + gr.hash(p) end)");
+    runs("fn(function(p) local f1, f2, id = gr.cells(p * 3) return {f1, f2 - f1, id} end)");
+    fails("vec(1, 2)", "a number or a vector is needed");
+    fails("gr.lookup({}, 1)", "a table of 1 to 10000 entries is needed");
+    fails("gr.loop(20000, 1, function() end)", "a constant number of steps up to 10000 is needed");
+    fails("fn(function(p) return gr.loop(3, p.x, function() end) end)", "must return 1 numbers or vectors");
+    fails("vec(1, 2, 3).w = 1", "a vector has no field that could be set");
+}
+
+TEST(a_function_that_is_not_pure_is_an_error_that_names_the_difference) {
+    fails("local n = 0 fn(function(p) n = n + 1 return n end)", "the function of line 1 cannot be recorded: at p = ");
+    fails("fn(function(p) return p.x * math.random() end)", "it must depend on its arguments alone");
+    fails("fn(function(p) if floor(p.x) == 0 then return 1 end return 0 end)", "x == 0 is not seen");
+    fails("local n = 0 fn(function(p) n = n + 1 if p.x * n < 1 then return 1 end return p.y > n and 1 or 2 end)",
+          "another way");
+    fails("local kept fn(function(p) kept = kept or p.x return kept end)", "outside of it");
+}
+
+TEST(errors_of_recording_name_the_line_and_the_way_out) {
+    fails("fn(function(p)\n return p.x + nil end)", "scene.lua:2: ");
+    fails("fn(function(p) return 'red' end)", "the function must return a number or a colour {r, g, b}, not a string");
+    fails("fn(function(p) return {1, 2} end)", "the function must return a number or a colour {r, g, b}, not a table");
+    fails("fn(function(p) return 1, 2 end)", "the function returns 2 values, not a number or a colour");
+    fails("fn(function(p) end)", "the function returns 0 values");
+    fails("fn(function(p) return ({1, 2})[p.x] * 2 end)", "gr.lookup(t, i) can");
+    fails("fn(function(p) return gr.sphere('x') end)", "gr.sphere cannot be called by a function that is recorded");
+    fails("fn(function(p) return math.frexp(p.x) end)", "math.frexp cannot be recorded");
+    fails("fn(function(p) for i = 1, p.x do end return 1 end)", "'for' limit");
+    fails("fn(function(p) return p.x + '1' end)", "a number is needed");
+    fails("local kept fn(function(p) kept = kept or p.x return 1 end) print(kept + 1)", "is used outside of it");
+    fails("fn(7, 8, 9) fn('x')", "");
+    fails("fn(function(p) error{} end)", "the function raised a table");
+}
+
+TEST(recordings_beyond_the_limits_end_with_one_line) {
+    fails("fn(function(p) local n = 0 for i = 1, 13 do if p.x > i then n = n + 2 ^ i end"
+          " if p.y * p.x > i then n = n - 3 ^ i end end return n end)",
+          "the function has more than 4096 paths; gr.where(x, a, b)");
+    fails("fn(function(p) local x = p.x while x > 0 do x = x - 1 end return x end)",
+          "a call of the function decides more than 4096 times");
+    fails("fn(function(p) local x = p.x for i = 1, 1e6 do x = x * x + p.y end return x end)",
+          "the function has more than 100000 operations");
+    fails("local function f(x) return f(x + 1) end fn(function(p) return f(p.x) end)", "more than 100000 operations");
+    fails("local function f(x) return f(x) + 1 end fn(function(p) return f(p.x) end)", "stack overflow");
+    fails("fn(function(p) while true do pcall(function() local x = p.x while x > 0 do x = x - 1 end end)"
+          " if p.x > 0 then return 1 end end end)",
+          "more than 4096 times");
+    const struct script_options hasty = {.library_folder = "lua", .time_limit = 0.5};
+    check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
+}
+
+/* A function of random statements: locals, branches, loops, tables, closures. */
+static const char generator[] =
+    "local function pick(...) return (select(math.random(select('#', ...)), ...)) end\n"
+    "local function generate()\n"
+    "  local names, paths = {'p.x', 'p.y', 'p.z', 's.u', 's.normal.x', 'p[2]'}, 1\n"
+    "  local lines, count = {}, 0\n"
+    "  local function value(depth)\n"
+    "    if depth == 0 or math.random() < 0.2 then\n"
+    "      return pick(names[math.random(#names)], names[math.random(#names)], tostring(math.random(-4, 4)),\n"
+    "        string.format('%.3f', math.random() * 4 - 2))\n"
+    "    end\n"
+    "    local a, b = value(depth - 1), value(depth - 1)\n"
+    "    return pick('(' .. a .. ' + ' .. b .. ')', '(' .. a .. ' - ' .. b .. ')', '(' .. a .. ' * ' .. b .. ')',\n"
+    "      '(' .. a .. ' / ' .. b .. ')', '(' .. a .. ' % ' .. b .. ')', '(' .. a .. ' // ' .. b .. ')',\n"
+    "      '(- ' .. a .. ')', 'math.floor(' .. a .. ')', 'math.min(' .. a .. ', ' .. b .. ')',\n"
+    "      'math.max(' .. a .. ', ' .. b .. ')', 'math.abs(' .. a .. ')', 'math.sin(' .. a .. ')',\n"
+    "      'gr.where(' .. a .. ', ' .. b .. ', ' .. value(0) .. ')', 'gr.noise(' .. a .. ', ' .. b .. ', 1)',\n"
+    "      'gr.step(' .. a .. ', ' .. b .. ')', 'twice(' .. a .. ')', 'list[' .. math.random(3) .. '](' .. a .. ')')\n"
+    "  end\n"
+    "  local function condition()\n"
+    "    paths = paths * 2\n"
+    "    return value(1) .. pick(' < ', ' <= ', ' > ', ' >= ') .. value(1)\n"
+    "  end\n"
+    "  local function statement(depth)\n"
+    "    local kind = math.random(5)\n"
+    "    if kind == 1 or #names < 8 then\n"
+    "      count = count + 1\n"
+    "      lines[#lines + 1] = 'local v' .. count .. ' = ' .. value(2)\n"
+    "      names[#names + 1] = 'v' .. count\n"
+    "      return\n"
+    "    end\n"
+    "    local target = names[math.random(7, #names)]\n"
+    "    if kind == 2 and paths < 16 and depth > 0 then\n"
+    "      lines[#lines + 1] = 'if ' .. condition() .. ' then'\n"
+    "      local known = #names\n"
+    "      statement(depth - 1)\n"
+    "      while #names > known do names[#names] = nil end\n"
+    "      lines[#lines + 1] = 'else'\n"
+    "      statement(depth - 1)\n"
+    "      while #names > known do names[#names] = nil end\n"
+    "      lines[#lines + 1] = 'end'\n"
+    "    elseif kind == 3 then\n"
+    "      lines[#lines + 1] = 'for i = 1, ' .. math.random(4) .. ' do ' .. target .. ' = ' .. target .. ' * 0.5 + i * "
+    "'\n"
+    "        .. value(1) .. ' end'\n"
+    "    elseif kind == 4 and paths < 16 then\n"
+    "      lines[#lines + 1] = target .. ' = ' .. condition() .. ' and ' .. value(1) .. ' or ' .. value(1)\n"
+    "    else\n"
+    "      lines[#lines + 1] = target .. ' = ' .. value(2)\n"
+    "    end\n"
+    "  end\n"
+    "  for _ = 1, math.random(3, 8) do statement(2) end\n"
+    "  local result = pick(value(2), '{' .. value(1) .. ', ' .. value(1) .. ', ' .. value(0) .. '}')\n"
+    "  return 'local function twice(x) return x * 2 end local list = {twice, math.cos, function(x) return x - 1 "
+    "end}\\n'\n"
+    "    .. 'return function(p, s)\\n' .. table.concat(lines, '\\n') .. '\\nreturn ' .. result .. '\\nend'\n"
+    "end\n";
+
+static void check_generated(int count, int seed) {
+    char text[8192];
+    (void)snprintf(text, sizeof text,
+                   "%smath.randomseed(%d)\n"
+                   "for i = 1, %d do\n"
+                   "  local source = generate()\n"
+                   "  local good, why = pcall(gr.fn, assert(load(source))())\n"
+                   "  why = not good and tostring(why)\n"
+                   "  local known = why and (why:find('divide by zero', 1, true) or why:find(\"'n%%0'\", 1, true)\n"
+                   "    or why:find('more than 4096 paths', 1, true))\n"
+                   "  assert(good or known, tostring(why) .. source:gsub('\\n', ' '))\n"
+                   "  if good then taken = (taken or 0) + 1 end\n"
+                   "end\n"
+                   "assert(taken > %d * 0.8, taken)\n",
+                   generator, seed, count, count);
+    struct listener listener = {.renders = 0};
+    struct error error = {0};
+    const struct script_options options = {.library_folder = "lua", .no_sandbox = true};
+    if (!listen_to_text(&listener, text, &options, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+}
+
+TEST(generated_functions_are_recorded_as_lua_computes_them) {
+    check_generated(150, 1);
+}
+
+TEST_LONG(a_hundred_thousand_generated_functions_are_recorded_as_lua_computes_them) {
+    for (int seed = 2; seed < 102; seed++)
+        check_generated(1000, seed);
+}
+
+static const char stage[] = "local ball = gr.sphere('ball'):set_material(gr.material{%s})\n"
+                            "gr.render{node = ball, file = '%s', width = 60, height = 60, eye = {0, 0, 5},"
+                            " view = {0, 0, -1}, up = {0, 1, 0}, fov = 25, ambient = {1, 1, 1}}\n";
+
+static void picture_of(const char *fields, const char *name, const char *options, char **bytes, size_t *size) {
+    char text[2048], line[256];
+    (void)snprintf(text, sizeof text, stage, fields, name);
+    (void)snprintf(line, sizeof line, "-q %s scene.lua", options);
+    struct test_result result = test_gray_scene(text, line, NULL);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s: %s", fields, result.err);
+    free(result.out);
+    free(result.err);
+    *bytes = test_read_file(test_path(name), size);
+}
+
+static void check_equal(const char *a, const char *b, const char *options_b) {
+    char *bytes_a, *bytes_b;
+    size_t size_a = 0, size_b = 0;
+    picture_of(a, "a.png", "", &bytes_a, &size_a);
+    picture_of(b, "b.png", options_b, &bytes_b, &size_b);
+    if (!bytes_a || !bytes_b || size_a != size_b || memcmp(bytes_a, bytes_b, size_a) != 0)
+        test_fail(__FILE__, __LINE__, "%s is not the picture of %s", a, b);
+    free(bytes_a);
+    free(bytes_b);
+}
+
+#define LUA_MARBLE                                                                                                     \
+    "function(p) local sum, scale = 0, 1 for _ = 1, 4 do local f = 2 * scale"                                          \
+    " sum = sum + gr.noise(f * p) / scale scale = scale * 4 end"                                                       \
+    " local vein = math.cos(4 * p.y + 3 * sum) local t = (1 + vein) / 2"                                               \
+    " return (1 - math.cos(math.pi * t)) / 2 end"
+
+TEST(marble_written_in_lua_is_the_picture_of_the_built_in_marble) {
+    check_equal("kd = " LUA_MARBLE, "kd = gr.marble_texture(2, 3, 4)", "");
+    check_equal("kd = {0.5, 0.5, 0.5}, bump = gr.bump(" LUA_MARBLE ", 0.1)",
+                "kd = {0.5, 0.5, 0.5}, bump = gr.bump(gr.marble_texture(2, 3, 4), 0.1)", "");
+}
+
+TEST(every_input_of_a_material_takes_a_function) {
+    check_equal("kd = function() return {.5, .25, 1} end, ks = function() return .5 end, emission = function() return"
+                " {.125, .25, 0} end, reflect = function() return .5 end, shininess = function() return 8 end,"
+                " roughness = function() return .25 end, opacity = function() return .5 end",
+                "kd = {.5, .25, 1}, ks = {.5, .5, .5}, emission = {.125, .25, 0}, reflect = .5, shininess = 8,"
+                " roughness = .25, opacity = .5",
+                "");
+}
+
+TEST(pictures_of_functions_have_one_hash_for_threads_and_instruction_sets) {
+    static const char fields[] = "kd = function(p, s) return gr.cells(p * 5) * gr.vec(s.u, s.v, gr.noise(p * 3)) end";
+    check_equal(fields, fields, "-j 1 --isa base");
+}
+
+TEST(a_value_that_is_not_a_number_is_black) {
+    check_equal("kd = function(p) return {0 * p.x / 0, 1, p.x * 0} end", "kd = {0, 1, 0}", "");
+}
+
+TEST(the_operations_of_functions_are_listed) {
+    char text[2048];
+    (void)snprintf(text, sizeof text, stage, "kd = function(p) return p.x * 2 + 1 end", "a.png");
+    struct test_result result = test_gray_scene(text, "--dump-expr scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.out, "a.png: functions of textures\n"
+                           "  scene.lua:1: 2 operations, 2 constants, 1 registers\n"
+                           "    r0 = p.x\n"
+                           "    r0 = multiply r0 2\n"
+                           "    r0 = add r0 1\n"
+                           "    result r0\n");
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene(text, "--dump-expr --json scene.lua", NULL);
+    CHECK_TEXT(result.out, "{\"picture\":\"a.png\",\"functions\":[{\"source\":\"scene.lua:1\",\"operations\":2,"
+                           "\"constants\":2,\"registers\":1,\"code\":[\"r0 = p.x\",\"r0 = multiply r0 2\","
+                           "\"r0 = add r0 1\",\"result r0\"]}]}\n");
+    free(result.out);
+    free(result.err);
+}
