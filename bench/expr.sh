@@ -1,0 +1,5 @@
+#!/bin/sh
+# Expressions that are recorded from Lua functions: time of an operation, and against Lua.
+# Usage: bench/expr.sh
+cd "$(dirname "$0")/.." || exit 1
+make -s build/release/bench/expr && build/release/bench/expr
