@@ -10,9 +10,15 @@
 #include <string.h>
 #include <strings.h>
 
-static bool ends_in(const char *name, const char *extension) {
-    size_t length = strlen(name), wanted = strlen(extension);
-    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
+enum picture_format picture_format(const char *name) {
+    static const char *const extensions[] = {
+        [PICTURE_PNG] = ".png", [PICTURE_PFM] = ".pfm", [PICTURE_HDR] = ".hdr", [PICTURE_EXR] = ".exr"};
+    const char *dot = strrchr(name, '.');
+    for (int i = 0; dot && i < PICTURE_OTHER; i++) {
+        if (strcasecmp(dot, extensions[i]) == 0)
+            return (enum picture_format)i;
+    }
+    return PICTURE_OTHER;
 }
 
 bool layers_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error) {
@@ -78,11 +84,12 @@ bool layers_write_exr(const struct file_target *target, const struct film *film,
 }
 
 bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error) {
+    enum picture_format format = picture_format(picture->path);
     size_t pixels = (size_t)film->width * film->height;
     char name[LAYER_NAME_LIMIT];
     const struct file_target target = {.path = name, .rules = picture->rules};
     for (int i = 0; i < AOV_COUNT; i++) {
-        if (!(film->layer_mask >> i & 1) || ends_in(picture->path, ".exr"))
+        if (!(film->layer_mask >> i & 1) || format == PICTURE_EXR)
             continue;
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
@@ -90,8 +97,8 @@ bool layers_write(const struct file_target *picture, const struct film *film, bo
         if (!layers_name(picture->path, aov_name(rows.aov), name, error))
             return false;
         bool deep = deep_picture || rows.aov == AOV_DEPTH;
-        bool ok = ends_in(name, ".pfm") ? pfm_write(&target, film->width, film->height, layer_row_linear, &rows, error)
-                  : ends_in(name, ".hdr")
+        bool ok = format == PICTURE_PFM ? pfm_write(&target, film->width, film->height, layer_row_linear, &rows, error)
+                  : format == PICTURE_HDR
                       ? hdr_write(&target, film->width, film->height, layer_row_linear, &rows, error)
                   : deep ? png_write_16(&target, film->width, film->height, layer_row_16, &rows, error)
                          : png_write(&target, film->width, film->height, layer_row, &rows, error);

@@ -5,6 +5,10 @@
 #include "base/file_output.h"
 #include "render/film.h"
 
+/* The format of a picture by the extension of its name, in upper or lower case. PICTURE_OTHER: none of these. */
+enum picture_format { PICTURE_PNG, PICTURE_PFM, PICTURE_HDR, PICTURE_EXR, PICTURE_OTHER };
+enum picture_format picture_format(const char *name);
+
 /* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. An EXR picture
  * contains them (layers_write_exr), so that there is nothing to do. Depth is always written with 16 bits, the others
  * with the bit depth of the picture. */

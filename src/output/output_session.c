@@ -245,7 +245,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!choose_name(output, request->file, picture->name, error) ||
         !picture_files_written(&output->files, picture->name, written, error))
         return false;
-    if (picture_name_ends_in(written, ".exr") && !exr_can_write())
+    if (picture_format(written) == PICTURE_EXR && !exr_can_write())
         return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, and this build was made without it",
                          written);
     picture->request = *request;

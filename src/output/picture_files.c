@@ -92,14 +92,11 @@ enum ending { ENDING_PICTURE, ENDING_NONE, ENDING_OTHER };
 
 /* Old scenes have names such as "frame" and "frame.001": no extension. */
 static enum ending ending_of(const char *name) {
-    static const char *const known[] = {".png", ".pfm", ".hdr", ".exr"};
     const char *dot = strrchr(last_part(name), '.');
     if (!dot)
         return ENDING_NONE;
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        if (strcasecmp(dot, known[i]) == 0)
-            return ENDING_PICTURE;
-    }
+    if (picture_format(name) != PICTURE_OTHER)
+        return ENDING_PICTURE;
     bool digits = dot[1] != '\0' && dot[1 + strspn(dot + 1, "0123456789")] == '\0';
     return digits ? ENDING_NONE : ENDING_OTHER;
 }
@@ -206,8 +203,7 @@ static bool name_file(const struct picture_files *files, const char *name, uint3
         return picture_files_prefixed(name, prefixes[number - 1], file->path, error);
     if (number == 3 && options->partial)
         return layers_name(name, "partial", file->path, error);
-    bool inside = strlen(name) >= 4 && strcasecmp(name + strlen(name) - 4, ".exr") == 0;
-    if (number >= 4 && !inside && (layers >> (number - 4) & 1))
+    if (number >= 4 && picture_format(name) != PICTURE_EXR && (layers >> (number - 4) & 1))
         return layers_name(name, aov_name((enum aov)(number - 4)), file->path, error);
     file->rules = NULL;
     return true;

@@ -9,13 +9,7 @@
 #include "render/path_film.h"
 
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
-
-bool picture_name_ends_in(const char *name, const char *extension) {
-    size_t length = strlen(name), wanted = strlen(extension);
-    return length >= wanted && strcasecmp(name + length - wanted, extension) == 0;
-}
 
 struct tone picture_tone(const struct picture_request *request) {
     return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
@@ -86,14 +80,14 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
     struct rows rows = {&picture->film, view, &tone};
-    const char *name = target->path;
-    if (picture_name_ends_in(name, ".pfm"))
+    enum picture_format format = picture_format(target->path);
+    if (format == PICTURE_PFM)
         return pfm_write(target, request->width, request->height, row_linear, &rows, error);
-    if (picture_name_ends_in(name, ".hdr"))
+    if (format == PICTURE_HDR)
         return hdr_write(target, request->width, request->height, row_linear, &rows, error);
-    if (picture_name_ends_in(name, ".exr") && view == FILM_FINAL && picture->film.layer_mask)
+    if (format == PICTURE_EXR && view == FILM_FINAL && picture->film.layer_mask)
         return layers_write_exr(target, &picture->film, error);
-    if (picture_name_ends_in(name, ".exr"))
+    if (format == PICTURE_EXR)
         return exr_write(target, request->width, request->height, row_linear, &rows, error);
     struct png_source source = {.width = request->width, .height = request->height, .context = &rows};
     if (request->deep)

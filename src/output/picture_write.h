@@ -23,9 +23,6 @@ struct picture {
 };
 
 struct tone picture_tone(const struct picture_request *request);
-/* Upper and lower case are equal. */
-bool picture_name_ends_in(const char *name, const char *extension);
-
 /* One file. The extension of the target selects the format; every extension but .pfm, .hdr and .exr means PNG. The tone
  * is for PNG alone: the others contain light. pool: or NULL, for this thread alone. */
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
