@@ -37,7 +37,7 @@ enum bsdf_flags {
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
     X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
-    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets that reflect totally turn it back */   \
+    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */    \
     /* Of layered materials; rough_lobes.c has the formulas. */                                                        \
     X(LOBE_OREN_NAYAR, "rough diffuse", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                     \
     X(LOBE_OREN_NAYAR_MULTIPLE, "rough diffuse, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                  \
@@ -54,15 +54,15 @@ enum { LOBE_KINDS = LIST_COUNT(LOBES) };
 
 struct lobe {
     enum lobe_kind kind;
-    int facets; /* of rough lobes of layered materials: which of the BSDF's */
+    int facets; /* of rough lobes of layered materials: index in the BSDF's facets */
     struct vec3 weight;
     double exponent; /* of OREN_NAYAR and FUZZ: the roughness, in [0, 1] */
-    double share;    /* about what it gives of its weight, to choose it by; 0: not stated */
+    double share;    /* the approximate share of its weight that it contributes, for choosing it; 0: unknown */
 };
 
-/* What the facets of a rough surface do with light. BOUNDARY: that between two dielectrics. METAL: Fresnel's shares by
- * F82 (N. Hoffman, "Fresnel Equations Considered Harmful", 2019; OpenPBR Surface 1.1): F0 + (1 - F0) (1 - c)^5 - edge c
- * (1 - c)^6. PANE: the two sides of a thin wall together, with all reflections between them. */
+/* The reflection and transmission by the facets of a rough surface. BOUNDARY: that between two dielectrics. METAL:
+ * Fresnel's shares by F82 (N. Hoffman, "Fresnel Equations Considered Harmful", 2019; OpenPBR Surface 1.1): F0 + (1 -
+ * F0) (1 - c)^5 - edge c (1 - c)^6. PANE: the two sides of a thin wall together, with all reflections between them. */
 enum facet_kind { FACETS_BOUNDARY, FACETS_METAL, FACETS_PANE };
 
 struct bsdf_facets {
@@ -71,9 +71,9 @@ struct bsdf_facets {
     double eta; /* index on the ray's side over that behind; 1 for metals */
     struct vec3 f0, edge;
     /* Light that meets more than one facet (rough_lobes_internal.h). */
-    double roughness;         /* of a surface that is as wide in all directions */
+    double roughness;         /* for an isotropic surface */
     double lack, lack_behind; /* 1 - mean albedo, on the ray's side and behind */
-    double through;           /* the share of that light that goes through */
+    double through;           /* the share of that light that is transmitted */
 };
 
 enum { BSDF_LOBES = 12, BSDF_FACETS = 4, BSDF_ALL = (1 << BSDF_LOBES) - 1 };

@@ -89,7 +89,7 @@ void material_inputs_observe(const struct material *material, const struct hit *
         material_inputs_at(material, hit, out);
 }
 
-/* Anisotropy asks for the tangents, too. */
+/* Anisotropy needs the tangents, too. */
 bool material_has_bump(const struct material *material) {
     const struct openpbr *openpbr = material->openpbr;
     bool turned = openpbr && (openpbr->specular_anisotropy > 0 || openpbr->coat_anisotropy > 0 ||
@@ -144,7 +144,8 @@ struct vec3 material_emission_bound(const struct material *material) {
     return emission_of(material, TEXTURE_LARGEST);
 }
 
-/* What is unlit shows its colour as emission, too (material_eval); coats and fuzz dim it by the direction. */
+/* The colour of an unlit material is also emission (material_eval); coats and fuzz reduce it, depending on the
+ * direction. */
 bool material_emission_varies(const struct material *material) {
     const struct openpbr *openpbr = material->openpbr;
     return material_texture(material, INPUT_EMISSION) || numbers_of(material)->unlit ||

@@ -37,8 +37,8 @@ double dielectric_fresnel(double cos_view, double eta) {
 }
 
 /* In closed form by J. Walsh, "The Reflection Factor of a Polished Glass Surface for Diffused Light", Department of
- * Scientific and Industrial Research, Illumination Research, Technical Paper 2, 1926. What light from inside meets
- * follows from the reciprocity of transmission. Next to 1 the terms cancel, and there is next to nothing. */
+ * Scientific and Industrial Research, Illumination Research, Technical Paper 2, 1926. The value for light from inside
+ * follows from the reciprocity of transmission. Near 1 the terms cancel, and the result is almost 0. */
 double dielectric_fresnel_average(double eta) {
     double n = eta < 1 ? 1 / eta : eta, n2 = n * n, n4 = n2 * n2, sum = n2 + 1, square = n4 - 1;
     if (n < 1 + 1e-4)

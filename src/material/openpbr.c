@@ -1,4 +1,4 @@
-/* Layers, from the top: fuzz, coat, then metal beside dielectric, which is glossy over diffuse or lets light through.
+/* Layers, from the top: fuzz, coat, then metal beside dielectric, which is glossy over diffuse or transmits light.
  * What a layer does not reflect of light from the view goes to those below it ("albedo scaling"), so the sum is not
  * reciprocal, but nothing is lost: white layers send back or on all light. Albedos are those of albedo_internal.h,
  * those of smooth layers Fresnel's formula.
@@ -16,7 +16,7 @@
 
 #include <stddef.h>
 
-/* Less than this is smooth. */
+/* Roughness below this is smooth. */
 static const double smooth_roughness = 0x1p-10;
 
 struct openpbr openpbr_defaults(void) {
@@ -78,7 +78,7 @@ static void read_textures(const struct material *material, const struct hit *hit
 
 /* --- layers --- */
 
-/* What goes down, layer by layer. */
+/* The light that passes down through the layers. */
 struct layering {
     const struct openpbr *values;
     const struct surface_inputs *inputs;
@@ -90,7 +90,7 @@ struct layering {
     double outside; /* index of the medium around */
     bool inside;    /* of a solid that light passes */
     int facets;     /* used of bsdf->facets */
-    /* What the coat does to light from below: its share, its reflectance of the view, and from inside on average. */
+    /* The effect of the coat on light from below: its share, its reflectance for the view, and the mean from inside. */
     double coated, coat_sees, coat_inside;
 };
 
@@ -165,7 +165,7 @@ static struct vec3 darken(const struct layering *l, struct vec3 colour, struct v
     return vec3_mul(colour, vec3_make(darkened(l, albedo.x, k), darkened(l, albedo.y, k), darkened(l, albedo.z, k)));
 }
 
-/* A rough coat spreads what comes from below. */
+/* A rough coat blurs the light from below. */
 static double roughness_below(const struct layering *l) {
     double own = l->inputs->roughness, coat = l->values->coat_roughness;
     own = own > 0 ? own < 1 ? own : 1 : 0;
@@ -210,7 +210,7 @@ static void add_diffuse(struct layering *l, struct vec3 left) {
     add_matt(l, LOBE_OREN_NAYAR_MULTIPLE, vec3_mul(left, multiple), v->base_diffuse_roughness);
 }
 
-/* Light through a smooth surface: `transmits` is what it does not reflect. */
+/* Light through a smooth surface: it transmits what it does not reflect. */
 static void add_smooth_passage(struct layering *l, const struct hit *hit, struct vec3 left) {
     struct bsdf *bsdf = l->bsdf;
     bsdf->transmits = l->values->thin_walled || bsdf_refract(bsdf, hit->view, &bsdf->through);
@@ -220,7 +220,7 @@ static void add_smooth_passage(struct layering *l, const struct hit *hit, struct
         add(l, LOBE_REFRACTION, left, 1);
 }
 
-/* A wall without thickness: both of its sides together. */
+/* An infinitely thin wall: both of its sides together. */
 static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left, double eta, double roughness) {
     struct vec3 tint = vec3_mul(left, l->values->transmission_colour);
     struct vec3 reflects = vec3_mul(left, l->inputs->ks);
@@ -239,7 +239,7 @@ static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left
     add(l, LOBE_FACETS_THROUGH, tint, lack * facets->through);
 }
 
-/* The share of the surface that light passes, and the rest, which is diffuse below the gloss. */
+/* The share of the surface that transmits light, and the rest, which is diffuse below the gloss. */
 static void add_dielectric(struct layering *l, const struct hit *hit, double eta, double roughness) {
     const struct openpbr *v = l->values;
     struct vec3 all = vec3_scale(l->left, 1 - v->base_metalness);
@@ -276,8 +276,8 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
         add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
 }
 
-/* Of a base that light does not enter: to the medium around, or to the coat. A coat that is denser than the base would
- * reflect totally; as the specification has it, it counts as if it were the other way. */
+/* Of an opaque base: to the medium around, or to the coat. A coat that is denser than the base would
+ * reflect totally; as in the specification, the ratio of indices is then inverted. */
 static double relative_index(const struct layering *l) {
     double base = l->values->specular_ior, bare = base / l->outside, below = base / l->values->coat_ior;
     below = below < 1 ? 1 / below : below;

@@ -86,7 +86,7 @@ struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets) {
 
 /* --- directions of a hemisphere --- */
 
-/* On the side of the view, of the shading normal as well as of the surface; else on the other side of both. */
+/* On the side of the view, for both the shading and the geometric normal; else on the other side of both. */
 static double cosine_on(const struct bsdf *bsdf, bool behind, struct vec3 wi) {
     double n_l = vec3_dot(bsdf->side, wi), height = vec3_dot(bsdf->geometric_side, wi);
     if (behind)
@@ -160,7 +160,7 @@ static double fuzz(double roughness, double n_o, double n_i, struct vec3 normal,
 
 /* --- facets --- */
 
-/* As it would be mirrored to the other side of the surface. */
+/* The direction mirrored to the other side of the surface. */
 static struct vec3 across_surface(const struct bsdf *bsdf, struct vec3 w) {
     return vec3_add_scaled(w, bsdf->side, -2 * vec3_dot(bsdf->side, w));
 }
@@ -178,7 +178,7 @@ static double reflected_share(const struct bsdf_facets *facets, double towards) 
     return 1;
 }
 
-/* The density of a direction by way of its facet, and what Fresnel and masking leave of it. */
+/* The density of a direction through its facet, and its factor by Fresnel and masking. */
 struct facet_path {
     double pdf, share;
 };
@@ -199,7 +199,7 @@ static struct facet_path mirrored(const struct bsdf_facets *facets, struct vec3 
     return path_by(facets, wo, wi, half, 1 / (4 * v_h), reflected_share(facets, v_h));
 }
 
-/* Light that leaves a thin wall leaves as if it were mirrored, on the other side. */
+/* Light that a thin wall transmits leaves in the mirrored direction, on the other side. */
 static struct facet_path through_pane(const struct bsdf *bsdf, const struct bsdf_facets *facets, struct vec3 wo,
                                       struct vec3 wi) {
     struct vec3 above = across_surface(bsdf, wi), half = vec3_normalize(vec3_add(wo, above));
@@ -248,7 +248,7 @@ static bool facet_sample(const struct bsdf *bsdf, const struct lobe *lobe, struc
     return cosine_on(bsdf, *transmits, *direction) > 0;
 }
 
-/* What facets do not send on at once, of light from one direction. */
+/* The share of light from one direction that facets do not reflect or transmit at the first facet. */
 static double facets_lack(const struct bsdf_facets *facets, double cosine, bool behind) {
     double eta = behind ? 1 / facets->eta : facets->eta;
     return 1 - (facets->kind == FACETS_BOUNDARY ? albedo_boundary(cosine, facets->roughness, eta)
@@ -263,7 +263,7 @@ static double facets_multiple(const struct bsdf *bsdf, const struct lobe *lobe, 
     return mean > 0 ? share * facets_lack(facets, n_o, false) * facets_lack(facets, n_i, behind) / mean : 0;
 }
 
-/* --- the four questions --- */
+/* --- the four functions of lobes --- */
 
 double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
     double n_i = cosine_on(bsdf, lobe_flags(lobe->kind) & BSDF_TRANSMITS, wi), n_o = vec3_dot(bsdf->side, wo);

@@ -1,5 +1,5 @@
 /* The lobes of layered materials, which bsdf.h lists: rough diffuse surfaces, fuzz, gloss, metal, glass and thin walls
- * with facets, and the light that meets more than one facet. bsdf.c asks them. */
+ * with facets, and the light that meets more than one facet. bsdf.c calls them. */
 #ifndef GRAY_MATERIAL_ROUGH_LOBES_INTERNAL_H
 #define GRAY_MATERIAL_ROUGH_LOBES_INTERNAL_H
 
@@ -15,8 +15,8 @@ bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct 
                        struct vec3 *direction, bool *transmits);
 
 /* Facets of a roughness between 0 and 1 (not 0) and an anisotropy in [0, 1] (0: none; OpenPBR Surface 1.1) about a
- * frame; `along` has any length and is turned into the surface: 0 for any tangent. Then one of the three below says
- * what they do with light. */
+ * frame; `along` has any length and is turned into the surface: 0 for any tangent. One of the three functions below
+ * then sets how they reflect and transmit. */
 void bsdf_facets_shape(struct bsdf_facets *facets, struct vec3 normal, struct vec3 along, double roughness,
                        double anisotropy);
 void bsdf_facets_boundary(struct bsdf_facets *facets, double eta);
