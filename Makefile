@@ -2,7 +2,7 @@
 #   all (default)  ./gray and the link ./rt        help        this list
 #   test           the tests, at most 8 minutes    test-long   the rest, restartable by name (ONLY="name ...")
 #   check-clang    clang reads all sources; its warnings are errors
-#   layers         includes against the order of modules; names (tools/names.list)
+#   layers         includes against the order of modules; names (tools/names.list); sizes of files, parameters
 #   format         clang-format over all sources
 #   coverage       lines and branches that the tests reach, in build/coverage (clang; COVERAGE="word ..." for some tests)
 #   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang's libFuzzer; FUZZ="name ..." for some)
@@ -208,7 +208,7 @@ test-long:
 coverage:
 	@tools/coverage.sh $(COVERAGE)
 layers:
-	@tools/layers.sh && tools/names.sh
+	@tools/layers.sh && tools/names.sh && tools/sizes.sh
 FUZZ_SECONDS ?= 60
 FUZZ ?= $(patsubst tests/fuzz/fuzz_%.c,%,$(FUZZ_SOURCES))
 ifneq ($(filter $(config),fuzz afl),)

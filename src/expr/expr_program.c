@@ -110,11 +110,10 @@ static bool write_code(const struct expr_graph *graph, struct allocation *alloca
     return true;
 }
 
-static bool compile(const struct expr_graph *graph, const uint32_t *outputs, int output_count, struct arena *arena,
-                    struct allocation *allocations, struct registers *registers, struct expr_program *program,
-                    struct error *error) {
+/* The code of what is marked as needed. */
+static bool compile(const struct expr_graph *graph, struct arena *arena, struct allocation *allocations,
+                    struct registers *registers, struct expr_program *program, struct error *error) {
     uint32_t count = 0;
-    mark(graph, outputs, output_count, allocations);
     for (uint32_t n = 0; n < graph->count; n++)
         count += allocations[n].needed;
     struct expr_instruction *code = arena_alloc_array(arena, (size_t)count + 1, sizeof *code);
@@ -128,9 +127,6 @@ static bool compile(const struct expr_graph *graph, const uint32_t *outputs, int
         !write_code(graph, allocations, registers, code, program, error))
         return false;
     program->register_count = registers->count;
-    for (int i = 0; i < output_count; i++)
-        program->outputs[i] = allocations[outputs[i]].value;
-    program->output_count = output_count;
     return true;
 }
 
@@ -142,7 +138,13 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
     bool ok = allocations && registers;
     if (!ok)
         (void)error_no_memory(error, "a function");
-    ok = ok && compile(graph, outputs, output_count, arena, allocations, registers, program, error);
+    if (ok)
+        mark(graph, outputs, output_count, allocations);
+    ok = ok && compile(graph, arena, allocations, registers, program, error);
+    for (int i = 0; ok && i < output_count; i++)
+        program->outputs[i] = allocations[outputs[i]].value;
+    if (ok)
+        program->output_count = output_count;
     mem_free(allocations);
     mem_free(registers);
     return ok;
