@@ -11,7 +11,7 @@
  *    is a pair; then polynomials on [-pi/4, pi/4].
  *  - atan: nearest i/64, atan(a) = atan(c) + atan((a - c) / (1 + a c)), and a few terms of the series.
  *  - asin, acos: a polynomial below 1/2, the half-angle formula with a corrected square root above (as in fdlibm).
- *  - products and sums whose error matters are Dekker's (1971) with Veltkamp's splitting (exact_internal.h); there is
+ *  - products and sums whose error matters are Dekker's (1971) with Veltkamp's splitting (exact.h); there is
  * no fma.
  *
  * The algebraic ones (cube root, hypotenuse, remainder) are in elementary.c.
@@ -26,7 +26,7 @@
 #include <stdint.h>
 
 #include "math/elementary_tables_internal.h"
-#include "math/exact_internal.h"
+#include "math/exact.h"
 
 #ifdef __FAST_MATH__
 #error "elementary functions need strict floating-point arithmetic"

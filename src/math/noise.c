@@ -13,7 +13,7 @@
 
 #include "base/random.h"
 #include "math/elementary.h"
-#include "math/exact_internal.h"
+#include "math/exact.h"
 
 static const double pi = 0x1.921fb54442d18p+1;
 

@@ -24,7 +24,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "math/exact_internal.h"
+#include "math/exact.h"
 
 static int exponent_of(double x) {
     int exponent;

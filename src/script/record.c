@@ -8,7 +8,7 @@
 
 #include "base/mem.h"
 #include "base/random.h"
-#include "math/exact_internal.h"
+#include "math/exact.h"
 
 #include <assert.h>
 #include <lauxlib.h>

@@ -4,7 +4,7 @@
 #include "base/isa.h"
 #include "base/mem.h"
 #include "expr/expr_program.h"
-#include "math/exact_internal.h"
+#include "math/exact.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
 #include "base/mem.h"
 #include "base/random.h"
 #include "expr/expr_program.h"
-#include "math/exact_internal.h"
+#include "math/exact.h"
 #include "tests/harness.h"
 
 #include <lauxlib.h>

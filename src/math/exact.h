@@ -2,8 +2,8 @@
  * Sums and products of two doubles without error, as unevaluated pairs: the exact value is hi + lo, hi the nearest
  * double. T. J. Dekker, "A floating-point technique for extending the available precision", 1971; Knuth's sum; no fma.
  */
-#ifndef GRAY_MATH_EXACT_INTERNAL_H
-#define GRAY_MATH_EXACT_INTERNAL_H
+#ifndef GRAY_MATH_EXACT_H
+#define GRAY_MATH_EXACT_H
 
 #include <stdint.h>
 #include <string.h>
