@@ -1,6 +1,6 @@
--- TITLE: Lamps in four plates
+-- TITLE: Lamps in plates
 -- OPTIONS: --spp 48
--- Four plates of metal, from polished to rough, show four lamps, from small and bright to large and dim, after the
+-- Three plates of metal, from polished to rough, show four lamps, from small and bright to large and dim, after the
 -- picture by which Veach and Guibas compared ways of sampling ("Optimally Combining Sampling Techniques for Monte Carlo
 -- Rendering", 1995). The lamps have the same power: small ones are found by sampling lights, large ones in polished
 -- plates by sampling the BSDF, and multiple importance sampling needs no choice.
@@ -18,7 +18,7 @@ local function unit(v)
 end
 local function towards(from, to) return unit { to[1] - from[1], to[2] - from[2], to[3] - from[3] } end
 
-for i, roughness in ipairs { .08, .2, .32, .46 } do
+for i, roughness in ipairs { .08, .2, .32 } do
     local middle = { 0, 2.1 - 1.15 * i, -2.6 + 1.75 * i }
     local a, b = towards(middle, eye), towards(middle, lamps)
     local normal = unit { 0, a[2] + b[2], a[3] + b[3] }

@@ -1,6 +1,6 @@
 -- TITLE: A street with a thousand lamps
--- OPTIONS: --spp 32
--- Everything that shines here lights the street: 640 bulbs on strings from house to house, 300 windows, signs and
+-- OPTIONS: --spp 48
+-- Everything that shines here lights the street: 880 bulbs on strings from house to house, lit windows, signs and
 -- lanterns. The light sampler finds those that matter at each place by a hierarchy with powers, bounds and cones (Conty
 -- and Kulla 2018).
 local random = require 'random'
@@ -59,16 +59,14 @@ end
 
 -- Strings of bulbs across the street.
 local string_of_bulbs = matte(.02, .02, .02)
-for row = 0, 19 do
-    local z, colour = 2 - row * 2.9, bulbs[row % #bulbs + 1]
-    for i = 0, 31 do
-        local t = (i + .5) / 32
+for row = 0, 21 do
+    local z, colour = 2 - row * 2.7, bulbs[row % #bulbs + 1]
+    for i = 0, 39 do
+        local t = (i + .5) / 40
         local sag = .9 * 4 * t * (1 - t)
         street:add_child(gr.sphere { centre = { -4.6 + 9.2 * t, 5.3 - sag, z }, radius = .035, material = colour })
         count = count + 1
     end
-    local points = {}
-    for i = 0, 8 do points[i + 1] = { -4.6 + 1.15 * i, 5.36 - .9 * 4 * (i / 8) * (1 - i / 8), z, .008 } end
 end
 
 -- Lanterns on the kerbs.
