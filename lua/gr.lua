@@ -976,6 +976,7 @@ function gr.difresneld_material(material) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
+---@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
 
 ---An image texture for node:set_texture and for inputs of gr.material.
 ---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
@@ -990,6 +991,7 @@ function gr.texture(file) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
+---@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
@@ -1008,6 +1010,7 @@ function gr.bump(file, height) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
+---@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
 ---@field channel? 'kd'|'ks'|'emission'|'opacity' channel ('kd'|'ks'|'emission'|'opacity'; default 'kd'): The input that the image replaces; where opacity is below 1, the surface has holes.
 
 ---An image mapped by the texture coordinates of the shape, over another material.
@@ -1025,6 +1028,7 @@ function gr.image_material(material, image) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
+---@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
@@ -1614,6 +1618,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with paths.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
@@ -1687,6 +1692,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with paths.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.

@@ -75,7 +75,8 @@ bool stage_build(struct stage *s, struct node *root, enum accel_kind accel) {
                                       .shutter = s->settings.shutter,
                                       .accel = accel,
                                       .warn = count_warning,
-                                      .warn_context = s};
+                                      .warn_context = s,
+                                      .linear_colours = settings_linear(&s->settings)};
     return world_build(&s->world, &input, &s->arena, s->pool, &s->error);
 }
 

@@ -193,6 +193,39 @@ struct image *image_create(const char *name, uint32_t width, uint32_t height, in
     return image;
 }
 
+static uint16_t decoded(uint32_t units) {
+    double c = units / 65535.0, light = c <= 0.04045 ? c / 12.92 : el_pow((c + 0.055) / 1.055, 2.4);
+    return (uint16_t)(65535 * light + 0.5);
+}
+
+struct image *image_linear(struct image *image, struct error *error) {
+    if (image->bits == 32 || image->linear)
+        return image->bits == 32 ? image : image->linear;
+    const struct image_level *from = &image->levels[0];
+    size_t count = (size_t)from->width * from->height * 4;
+    struct image *out = image_allocate(image->name, from->width, from->height, 16, error);
+    if (!out)
+        return NULL;
+    const uint8_t *bytes = from->texels;
+    const uint16_t *words = from->texels;
+    uint16_t *texels = out->levels[0].texels, of_byte[256];
+    for (uint32_t i = 0; i < 256; i++)
+        of_byte[i] = decoded(i * 257);
+    for (size_t i = 0; i < count; i++) {
+        bool alpha = i % 4 == 3;
+        if (image->bits == 8)
+            texels[i] = alpha ? (uint16_t)(bytes[i] * 257) : of_byte[bytes[i]];
+        else
+            texels[i] = alpha ? words[i] : decoded(words[i]);
+    }
+    if (!image_build_levels(out, error)) {
+        image_release(out);
+        return NULL;
+    }
+    image->linear = out;
+    return out;
+}
+
 struct image *image_share(struct image *image) {
     atomic_fetch_add_explicit(&image->owners, 1, memory_order_relaxed);
     return image;
@@ -201,6 +234,7 @@ struct image *image_share(struct image *image) {
 void image_release(struct image *image) {
     if (!image || atomic_fetch_sub_explicit(&image->owners, 1, memory_order_acq_rel) != 1)
         return;
+    image_release(image->linear);
     mem_free(image->block);
     mem_free(image->name);
     mem_free(image);
@@ -219,7 +253,8 @@ int image_bits(const struct image *image) {
 }
 
 size_t image_memory(const struct image *image) {
-    return sizeof *image + image->block_size + strlen(image->name) + 1;
+    size_t linear = image->linear ? image_memory(image->linear) : 0;
+    return sizeof *image + image->block_size + strlen(image->name) + 1 + linear;
 }
 
 const char *image_name(const struct image *image) {

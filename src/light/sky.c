@@ -376,6 +376,32 @@ void sky_turn(struct sky *sky, double sine, double cosine) {
     sky->turn_cosine = c * cosine - s * sine;
 }
 
+static bool decode(struct image **image, struct error *error) {
+    if (!*image || image_bits(*image) != 8)
+        return true;
+    *image = image_linear(*image, error);
+    return *image != NULL;
+}
+
+bool sky_decode(struct sky *sky, struct error *error) {
+    bool ok = true;
+    switch (sky->kind) {
+    case SKY_CROSS:
+    case SKY_MAP:
+        return decode(&sky->image, error);
+    case SKY_FACES:
+        for (int i = 0; i < 6; i++)
+            ok = ok && decode(&sky->faces[i], error);
+        return ok;
+    case SKY_GRADIENT:
+    case SKY_CONSTANT:
+    case SKY_STOPS:
+    case SKY_CLEAR:
+        break;
+    }
+    return true;
+}
+
 bool sky_same(const struct sky *a, const struct sky *b) {
     bool adjusted = a->adjusted &&
                     (a->turn_sine != b->turn_sine || a->turn_cosine != b->turn_cosine || a->intensity != b->intensity);

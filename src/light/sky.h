@@ -49,6 +49,8 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
 /* Rotates it further about the y axis: light from +x then comes from (cosine, 0, -sine). */
 void sky_turn(struct sky *sky, double sine, double cosine);
+/* Its 8-bit images are decoded from sRGB (image_linear). False: no memory. */
+bool sky_decode(struct sky *sky, struct error *error);
 /* Whether they are the same function, of the same images and stops. */
 bool sky_same(const struct sky *a, const struct sky *b);
 /* A bound of the largest component of its colours. */

@@ -62,6 +62,13 @@ enum texture_alpha {
     ALPHA_ONLY      /* the value is alpha */
 };
 
+/* What the numbers of an image mean in linear colours. AUTO: sRGB where 8 bits are read as a colour, else light. */
+#define TEXTURE_ENCODINGS(X)                                                                                           \
+    X(ENCODING_AUTO, "auto")                                                                                           \
+    X(ENCODING_SRGB, "srgb")                                                                                           \
+    X(ENCODING_LINEAR, "linear")
+enum texture_encoding { TEXTURE_ENCODINGS(LIST_MEMBER) };
+
 /* The mapping and lookup of an image; zero: MAPPING_SPHERE, the nearest texel. */
 struct texture_image {
     struct image *image;
@@ -75,6 +82,7 @@ struct texture_image {
     double scale[2], offset[2];
     struct vec3 tint;
     enum texture_alpha alpha;
+    enum texture_encoding encoding;
 };
 
 /* RED, GREEN, BLUE: one component, as a number. COMPLEMENT: 1 - x. SATURATE: between 0 and 1. STEP: 1 from `amount` on,

@@ -57,6 +57,13 @@ struct caustics {
 };
 enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
 
+/* What colours mean (docs/colour.md). AUTO: linear with the path tracer, else classic. */
+#define COLOUR_PIPELINES(X)                                                                                            \
+    X(COLOUR_AUTO, "auto")                                                                                             \
+    X(COLOUR_CLASSIC, "classic") /* numbers as they are */                                                             \
+    X(COLOUR_LINEAR, "linear")   /* light: pictures are decoded, PNG files encoded */
+enum colour_pipeline { COLOUR_PIPELINES(LIST_MEMBER) };
+
 /* How light becomes a picture; render/integrator.c switches over them. */
 #define INTEGRATORS(X)                                                                                                 \
     X(INTEGRATOR_WHITTED, "whitted")                                                                                   \
@@ -101,6 +108,7 @@ enum path_strategy { PATH_STRATEGY_MIS, PATH_STRATEGY_LIGHTS, PATH_STRATEGY_BSDF
 
 struct settings {
     enum integrator_kind integrator;
+    enum colour_pipeline colour;
     enum path_strategy path_strategy;
     struct caustics caustics;
     struct lens lens;
@@ -150,5 +158,10 @@ struct camera {
         up;     /* view: direction, or point with view_is_target; nothing needs to be unit or at right angles */
     double fov; /* full vertical angle, degrees, in (0, 180) */
 };
+
+static inline bool settings_linear(const struct settings *settings) {
+    return settings->colour == COLOUR_LINEAR ||
+           (settings->colour == COLOUR_AUTO && settings->integrator == INTEGRATOR_PATH);
+}
 
 #endif

@@ -168,6 +168,8 @@ static bool read_image(struct script_context *context, const struct script_value
         out->wrap = out->wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
     if (lookup[LOOKUP_FLIP_U].given)
         out->flip_u = lookup[LOOKUP_FLIP_U].boolean;
+    if (lookup[LOOKUP_ENCODING].given)
+        out->encoding = (enum texture_encoding)lookup[LOOKUP_ENCODING].choice;
     const struct script_value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
     if ((tiles->given || offset->given) && !out->apart) {
         out->apart = true;

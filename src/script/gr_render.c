@@ -74,8 +74,10 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
     if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE)
         settings->denoise = DENOISER_GRAY;
-    /* Path tracing computes in linear colours, which a screen shows by the sRGB curve. */
-    if (settings->integrator == INTEGRATOR_PATH && !args[RENDER_SRGB].given)
+    if (args[RENDER_COLOUR].given)
+        settings->colour = (enum colour_pipeline)args[RENDER_COLOUR].choice;
+    /* Linear colours are shown by the sRGB curve. */
+    if (settings_linear(settings) && !args[RENDER_SRGB].given)
         settings->tone.srgb = true;
 }
 

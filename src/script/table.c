@@ -441,9 +441,14 @@ static const struct script_parameter image_parameters[] = {
     { "tiles", KIND_PAIR, OPTIONAL, ANY, NULL, "1", "Number of repetitions: one number, or {across, up}." }
 #define OFFSET                                                                                                         \
     { "offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "Shift in units of the image: one number, or {across, up}." }
+#define ENCODING                                                                                                       \
+    {                                                                                                                  \
+        "encoding", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TEXTURE_ENCODINGS), NULL, "'auto'",                       \
+            "What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour."                 \
+    }
 #define LOOKUP_FIELDS(first)                                                                                           \
     [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
-             [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET
+             [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET, [first + LOOKUP_ENCODING] = ENCODING
 
 static const struct script_parameter texture_parameters[] = {
     [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
@@ -667,6 +672,8 @@ static const struct script_parameter render_parameters[] = {
                      "Tone curve that maps bright light into the range of a PNG file."},
     [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
                      "Whether PNG files are encoded with the sRGB transfer function."},
+    [RENDER_COLOUR] = {"colour", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(COLOUR_PIPELINES), NULL, "--colour",
+                       "Whether colours are linear light or the numbers of files; auto: linear with paths."},
     [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep",
                      "Whether PNG files have 16 bits per channel."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",

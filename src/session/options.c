@@ -430,6 +430,7 @@ struct digest options_digest(const struct options *options) {
                     option->offset == offsetof(struct options, settings.noise) ||
                     option->offset == offsetof(struct options, settings.time_limit) ||
                     option->offset == offsetof(struct options, settings.clamp) ||
+                    option->offset == offsetof(struct options, settings.colour) ||
                     option->offset == offsetof(struct options, settings.filter);
         if (picture && option->size > 0 && !search && !path)
             digest = digest_option(option, options, digest);
@@ -442,6 +443,8 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->path_samples, sizeof settings->path_samples, digest);
     if (settings->max_depth != DEPTH_DEFAULT)
         digest = digest_bytes(&settings->max_depth, sizeof settings->max_depth, digest);
+    if (settings->colour != COLOUR_AUTO)
+        digest = digest_bytes(&settings->colour, sizeof settings->colour, digest);
     if (settings->filter != FILTER_BOX)
         digest = digest_bytes(&settings->filter, sizeof settings->filter, digest);
     if (settings->noise > 0 || settings->clamp > 0) {

@@ -93,6 +93,10 @@ const struct option option_table[] = {
      "none", "tone curve that maps bright light into the range of a PNG file"},
     {OPTION_GROUP_SHADING, "--srgb", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.tone.srgb), NULL,
      "encode PNG files with the sRGB transfer function; without it, values are linear"},
+    {OPTION_GROUP_SHADING, "--colour", OPTION_CHOICE, LIST_BARS(COLOUR_PIPELINES), NO_RANGE, FIELD(settings.colour),
+     "auto",
+     "linear: decode colour pictures from sRGB and encode PNG files so; classic: numbers as they are; auto: "
+     "linear with --integrator path"},
     {OPTION_GROUP_SHADING, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
      "16 bits per channel in PNG files"},
 

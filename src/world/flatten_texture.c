@@ -122,7 +122,92 @@ static void refer(struct world *world, const struct numbering *textures, const s
     }
 }
 
-bool flatten_textures(struct world *world, struct arena *arena, struct error *error) {
+/* --- linear colours --- */
+
+/* Whether the input is a colour; the numbers of others mean themselves. */
+static bool is_colour(enum material_input input) {
+    switch (input) {
+    case INPUT_KD:
+    case INPUT_KS:
+    case INPUT_EMISSION:
+    case INPUT_TRANSMISSION_COLOUR:
+    case INPUT_COAT_COLOUR:
+    case INPUT_FUZZ_COLOUR:
+        return true;
+    case INPUT_SHININESS:
+    case INPUT_REFLECT:
+    case INPUT_REFRACT:
+    case INPUT_ROUGHNESS:
+    case INPUT_OPACITY:
+    case INPUT_BASE_WEIGHT:
+    case INPUT_DIFFUSE_ROUGHNESS:
+    case INPUT_METALNESS:
+    case INPUT_SPECULAR_WEIGHT:
+    case INPUT_SPECULAR_ANISOTROPY:
+    case INPUT_SPECULAR_IOR:
+    case INPUT_COAT_WEIGHT:
+    case INPUT_COAT_ROUGHNESS:
+    case INPUT_COAT_ANISOTROPY:
+    case INPUT_COAT_IOR:
+    case INPUT_COAT_DARKENING:
+    case INPUT_FUZZ_WEIGHT:
+    case INPUT_FUZZ_ROUGHNESS:
+        break;
+    }
+    return false;
+}
+
+/* The parts of a texture that are read as colours: not the ratio of a mix, and not what a function is of. */
+static void mark_colours(const struct texture *table, union texture_ref ref, bool *is_read) {
+    if (ref.index == TEXTURE_NONE || is_read[ref.index])
+        return;
+    const struct texture *texture = &table[ref.index];
+    is_read[ref.index] = true;
+    switch (texture->kind) {
+    case TEXTURE_IMAGE:
+        mark_colours(table, texture->image.below, is_read);
+        return;
+    case TEXTURE_MIX:
+        mark_colours(table, texture->mix.a, is_read);
+        mark_colours(table, texture->mix.b, is_read);
+        return;
+    case TEXTURE_MULTIPLY:
+        mark_colours(table, texture->multiply.a, is_read);
+        mark_colours(table, texture->multiply.b, is_read);
+        return;
+    case TEXTURE_CONSTANT:
+    case TEXTURE_PARAMETER:
+    case TEXTURE_VERTEX_COLOUR:
+    case TEXTURE_MARBLE:
+    case TEXTURE_WOOD:
+    case TEXTURE_FUNCTION:
+    case TEXTURE_MAP:
+        return;
+    }
+}
+
+/* Images that a colour is read of become linear, and those that say that they are sRGB. */
+static bool decode_colours(const struct world *world, struct texture *table, struct error *error) {
+    bool *is_read = mem_alloc_zero((size_t)world->texture_count + 1, sizeof *is_read), ok = is_read != NULL;
+    for (uint32_t i = 0; ok && i < world->material_count; i++)
+        for (int k = 0; k < INPUT_COUNT; k++)
+            if (is_colour((enum material_input)k))
+                mark_colours(table, world->materials[i].inputs[k], is_read);
+    for (uint32_t i = 0; ok && i < world->texture_count; i++) {
+        struct texture_image *lookup = &table[i].image.lookup;
+        if (table[i].kind != TEXTURE_IMAGE)
+            continue;
+        bool as_colour = lookup->encoding == ENCODING_AUTO && is_read[i] && image_bits(lookup->image) == 8;
+        if (!as_colour && lookup->encoding != ENCODING_SRGB)
+            continue;
+        lookup->image = image_linear(lookup->image, error);
+        ok = lookup->image != NULL;
+    }
+    mem_free(is_read);
+    return ok;
+}
+
+bool flatten_textures(struct world *world, bool linear_colours, struct arena *arena, struct error *error) {
     struct numbering textures = {.count = 0}, bumps = {.count = 0};
     bool ok = number_all(world, &textures, &bumps);
     struct texture *texture_table =
@@ -137,6 +222,7 @@ bool flatten_textures(struct world *world, struct arena *arena, struct error *er
         world->texture_count = textures.count;
         world->bump_count = bumps.count;
         refer(world, &textures, &bumps);
+        ok = !linear_colours || decode_colours(world, texture_table, error);
     }
     mem_free(textures.entries);
     mem_free(bumps.entries);

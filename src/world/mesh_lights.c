@@ -139,6 +139,16 @@ static bool turn_sky(struct world *world, const struct sky *behind, const struct
     return true;
 }
 
+/* Likewise in linear colours. */
+static bool decode_sky(struct light *light, struct arena *arena, struct error *error) {
+    struct sky *decoded = arena_alloc(arena, sizeof *decoded);
+    if (!decoded)
+        return error_no_memory(error, "a sky");
+    *decoded = *light->sky;
+    light->sky = decoded;
+    return sky_decode(decoded, error);
+}
+
 bool mesh_lights_resolve(struct flattening *f, const struct scene_light *authored, struct light *lights,
                          const struct node *root) {
     const struct sky behind = f->world->sky;
@@ -146,6 +156,8 @@ bool mesh_lights_resolve(struct flattening *f, const struct scene_light *authore
         struct light *light = &lights[i];
         const struct sky_turn *turn = &authored[i].sky_turn;
         if (turn->turned && !turn_sky(f->world, &behind, turn, light, f->arena, f->error))
+            return false;
+        if (f->linear_colours && light->sky && !decode_sky(light, f->arena, f->error))
             return false;
         if (authored[i].node && !resolve_mesh(f, authored[i].node, light, root))
             return false;

@@ -119,6 +119,7 @@ struct world_input {
     const struct sky *sky;
     struct shutter shutter;
     enum accel_kind accel; /* of the world and of the meshes */
+    bool linear_colours;   /* pictures that are read as colours are decoded from sRGB (docs/colour.md) */
     world_warning *warn;   /* or NULL */
     void *warn_context;
 };

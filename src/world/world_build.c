@@ -17,7 +17,7 @@ void world_update_materials(struct world *world) {
 }
 
 /* The tables of materials and of the media inside. */
-static bool make_materials(struct world *world, struct arena *arena, struct error *error) {
+static bool make_materials(struct world *world, bool linear_colours, struct arena *arena, struct error *error) {
     uint32_t count = world->material_count;
     world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
@@ -29,7 +29,7 @@ static bool make_materials(struct world *world, struct arena *arena, struct erro
         return error_no_memory(error, "the materials of the scene");
     for (uint32_t i = 0; i < count; i++)
         world->materials[i] = material_flatten(world->authored.materials[i]);
-    if (!flatten_textures(world, arena, error))
+    if (!flatten_textures(world, linear_colours, arena, error))
         return false;
     for (uint32_t i = 0; i < count; i++) {
         const struct material *material = &world->materials[i];
@@ -60,6 +60,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
                                     .scene = input->scene,
                                     .world = world,
                                     .pool = pool,
+                                    .linear_colours = input->linear_colours,
                                     .warn = input->warn,
                                     .warn_context = input->warn_context,
                                     .error = error};
@@ -70,7 +71,10 @@ static bool build(struct world *world, const struct world_input *input, struct a
     world->boxes = arena_alloc_array(arena, world->primitive_count, sizeof *world->boxes);
     if (!world->boxes)
         return error_no_memory(error, "the boxes of the scene");
-    if (!make_materials(world, arena, error) || !world_primitive_boxes(world, flattening.limits, pool, error))
+    if (input->linear_colours && !sky_decode(&world->sky, error))
+        return false;
+    if (!make_materials(world, input->linear_colours, arena, error) ||
+        !world_primitive_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);
     return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error);
