@@ -21,8 +21,11 @@ enum { RECORD_POINTS = 1000 };
 void record_open(lua_State *L) {
     struct script_context *context = context_of(L);
     context->recorder = arena_alloc(&context->keep, sizeof *context->recorder);
-    if (!context->recorder)
-        context_raise_no_memory(context);
+    if (!context->recorder) {
+        struct error error;
+        (void)error_no_memory(&error, "the script");
+        context_raise_error(context, &error);
+    }
     symbols_open(L);
     vectors_open(L);
 }

@@ -70,8 +70,10 @@ uint32_t record_node(lua_State *L, uint32_t node) {
     const struct recorder *recorder = recorder_of(L);
     if (node != EXPR_NONE)
         return node;
-    if (recorder->graph.out_of_memory)
-        limits_end_for_memory(L);
+    if (recorder->graph.out_of_memory) {
+        context_of(L)->lua = L;
+        context_raise_no_memory(context_of(L));
+    }
     record_give_up(L,
                    "the function has more than %d operations; gr.where, gr.step, gr.min and gr.max need one where "
                    "branches need many",
