@@ -1,0 +1,72 @@
+/* One picture of paths, however the program makes it. */
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char scene[] =
+    "local function matte(r, g, b) return gr.material {kd={r, g, b}, two_sided=true} end\n"
+    "local room = gr.node 'room'\n"
+    "room:add_child(gr.nh_sphere(matte(.7, .3, .2), {-.9, 0, 0}, 1))\n"
+    "room:add_child(gr.nh_sphere(gr.material {kd={0, 0, 0}, ks={.9, .9, .9}, refract=1, ior=1.5}, {1.2, .2, .5}, .8))\n"
+    "room:add_child(gr.box(matte(.6, .6, .6), {-4, -2, -4}, {4, -1, 4}))\n"
+    "local lamp = gr.area_light {corner={-.5, 4, 2}, v1={1, 0, 0}, v2={0, 0, 1}, emission={8, 7, 6}}\n"
+    "gr.render {node=room, file='out.pfm', width=100, height=70, integrator='path', spp=9, seed=3, eye={0, 1, 7},\n"
+    "           view={0, -.1, -1}, fov=45, background={.1, .2, .4}, lights={lamp}}\n";
+
+static char *picture(size_t *size) {
+    char path[600];
+    (void)snprintf(path, sizeof path, "%s/out.pfm", test_folder());
+    char *bytes = test_read_file(path, size);
+    (void)remove(path);
+    return bytes;
+}
+
+static void run(const char *arguments) {
+    struct test_result result = test_gray_scene(scene, arguments, NULL);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s: %s", arguments, result.err);
+    free(result.out);
+    free(result.err);
+}
+
+static void check_same(const char *arguments, const char *whole, size_t size) {
+    size_t now = 0;
+    char *bytes = picture(&now);
+    if (!bytes || now != size || memcmp(bytes, whole, size) != 0)
+        test_fail(__FILE__, __LINE__, "%s makes another picture", arguments);
+    free(bytes);
+}
+
+static void check_ways(const char *common, const char *const ways[], size_t count) {
+    char line[300];
+    size_t size = 0;
+    (void)snprintf(line, sizeof line, "-q -j 1 %s scene.lua", common);
+    run(line);
+    char *whole = picture(&size);
+    CHECK(whole && size > (size_t)100 * 70 * 12);
+    for (size_t i = 0; i < count; i++) {
+        (void)snprintf(line, sizeof line, "-q %s %s scene.lua", common, ways[i]);
+        run(line);
+        check_same(line, whole, size);
+    }
+    (void)snprintf(line, sizeof line, "-q %s --shard 1/2 scene.lua", common);
+    run(line);
+    (void)snprintf(line, sizeof line, "-q %s --shard 2/2 scene.lua", common);
+    run(line);
+    run("-q merge out.pfm.1-of-2.part out.pfm.2-of-2.part");
+    check_same("merge", whole, size);
+    free(whole);
+}
+
+TEST(a_picture_of_paths_is_the_same_by_threads_instruction_sets_displays_checkpoints_and_shards) {
+    static const char *const ways[] = {"-j 3", "-j 2 --isa base", "-j 2 --display term:blocks",
+                                       "-j 2 --checkpoint c.tiles", "--accel grid"};
+    check_ways("", ways, sizeof ways / sizeof *ways);
+}
+
+TEST(a_picture_of_paths_with_a_noise_and_a_filter_is_the_same_by_threads_displays_and_shards) {
+    static const char *const ways[] = {"-j 3", "-j 2 --display term:blocks"};
+    check_ways("--noise 0.1 --spp 64 --filter mitchell --caustics 2000", ways, sizeof ways / sizeof *ways);
+}
