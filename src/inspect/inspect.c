@@ -92,8 +92,9 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
                     struct text_writer *writer, struct error *error) {
     const struct render_job *job = picture->job;
     struct trace_context trace_context = {picture, writer};
-    if (job->settings.integrator != INTEGRATOR_WHITTED)
-        return error_set(error, ERROR_USAGE, "--pixel explains pictures of --integrator whitted only");
+    /* How many samples the pixel has is known when its tile, or the picture, is done. */
+    if (job->settings.integrator == INTEGRATOR_PATH && (job->settings.noise > 0 || job->settings.time_limit > 0))
+        return error_set(error, ERROR_USAGE, "--pixel takes no --noise or --time-limit; --spp N gives the samples");
     for (uint32_t i = 0; i < count; i++) {
         if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],

@@ -4,6 +4,8 @@
 #include "inspect/inspect.h"
 #include "material/texture_mapping.h"
 
+#include <math.h>
+
 struct text_state {
     const struct trace_report *report;
     struct text_writer *writer;
@@ -262,6 +264,56 @@ static const char *direction(int x, int y) {
     return names[1 + y][1 + x];
 }
 
+static void print_sample(struct text_state *t, const struct pixel_trace_sample *sample) {
+    text_writer_print(t->writer, "\nsample %u at %.6f, %.6f%s\n", (unsigned)sample->number, sample->x, sample->y,
+                      sample->counts ? "" : " (only to find out whether the pixel is sampled again)");
+    t->depth = 1;
+    for (const struct pixel_trace_ray *ray = sample->first; ray; ray = ray->next)
+        print_ray(t, ray);
+    triple(t, "  colour ", sample->colour);
+    text_writer_print(t->writer, "\n");
+}
+
+/* Of two samples the one with more light, or the first one. */
+static bool is_before(const struct pixel_trace_sample *a, const struct pixel_trace_sample *b) {
+    double of_a = a->colour.x + a->colour.y + a->colour.z, of_b = b->colour.x + b->colour.y + b->colour.z;
+    return of_a > of_b || (of_a == of_b && a->number < b->number);
+}
+
+/* Of a path-traced pixel: the standard error of its mean, as if the samples were independent, and the brightest paths
+ * with their vertices. */
+static void print_paths(struct text_state *t) {
+    enum { BRIGHTEST = 8 };
+    const struct pixel_trace *pixel_trace = t->report->pixel_trace;
+    struct vec3 sum = {0, 0, 0}, squares = {0, 0, 0}, error = {0, 0, 0};
+    double count = 0;
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next, count++) {
+        sum = vec3_add(sum, sample->colour);
+        squares = vec3_add(squares, vec3_mul(sample->colour, sample->colour));
+    }
+    if (count > 1) {
+        struct vec3 mean = vec3_scale(sum, 1 / count);
+        struct vec3 variance = vec3_max(vec3_sub(vec3_scale(squares, 1 / count), vec3_mul(mean, mean)), vec3_all(0));
+        error = vec3_scale(variance, 1 / (count - 1));
+        error = vec3_make(sqrt(error.x), sqrt(error.y), sqrt(error.z));
+    }
+    triple(t, "mean ",
+           vec3_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]));
+    triple(t, ", standard error ", error);
+    text_writer_print(t->writer, ", of %.0f samples; the brightest paths:\n", count);
+    const struct pixel_trace_sample *last = NULL;
+    for (int i = 0; i < BRIGHTEST; i++) {
+        const struct pixel_trace_sample *next = NULL;
+        for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
+            if ((!last || is_before(last, sample)) && (!next || is_before(sample, next)))
+                next = sample;
+        if (!next)
+            break;
+        print_sample(t, next);
+        last = next;
+    }
+}
+
 static void print_samples(struct text_state *t) {
     const struct pixel_trace *pixel_trace = t->report->pixel_trace;
     text_writer_print(t->writer, "%s",
@@ -274,15 +326,8 @@ static void print_samples(struct text_state *t) {
                           pixel_trace->samples, pixel_trace->samples,
                           direction(pixel_trace->mark_x, pixel_trace->mark_y), pixel_trace->mark_distance,
                           pixel_trace->mark_tolerance);
-    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
-        text_writer_print(t->writer, "\nsample %u at %.6f, %.6f%s\n", (unsigned)sample->number, sample->x, sample->y,
-                          sample->counts ? "" : " (only to find out whether the pixel is sampled again)");
-        t->depth = 1;
-        for (const struct pixel_trace_ray *ray = sample->first; ray; ray = ray->next)
-            print_ray(t, ray);
-        triple(t, "  colour ", sample->colour);
-        text_writer_print(t->writer, "\n");
-    }
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
+        print_sample(t, sample);
     if (pixel_trace->omitted > 0)
         text_writer_print(t->writer, "\n%u more rays are not shown\n", pixel_trace->omitted);
 }
@@ -319,6 +364,13 @@ void pixel_trace_print(const struct trace_report *report, struct text_writer *wr
     text_writer_name(writer, report->picture->file);
     text_writer_print(writer, ", pixel %u,%u of %u x %u: ", report->pixel_trace->x, report->pixel_trace->y, job->width,
                       job->height);
-    print_samples(&t);
+    switch (t.report->picture->job->settings.integrator) {
+    case INTEGRATOR_WHITTED:
+        print_samples(&t);
+        break;
+    case INTEGRATOR_PATH:
+        print_paths(&t);
+        break;
+    }
     print_sum(&t);
 }

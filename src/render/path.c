@@ -100,7 +100,8 @@ static size_t pixel_index(const struct film *film, int64_t x, int64_t y) {
 static void finish_pixel(struct film *film, const struct worker *worker, int64_t x, int64_t y,
                          const struct path_pixel *pixel) {
     path_film_store(film, pixel_index(film, x, y), pixel);
-    observe_pixel(worker->state.observer, &(struct observed_pixel){.colour = path_pixel_mean(pixel), .full = true});
+    observe_pixel(worker->state.observer,
+                  &(struct observed_pixel){.colour = path_pixel_mean(pixel), .full = true, .first_counts = true});
 }
 
 /* The pixel's sums before a pass: those of the film, unless it is the first one. */

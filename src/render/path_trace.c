@@ -26,6 +26,7 @@ struct path {
     /* Shares of the weight, with photons: the last scattering was that of a lobe that photons light; after such a one
      * the path was scattered by traced lobes only. */
     struct vec3 received, thrown;
+    enum ray_kind kind; /* of the ray, for observers */
     bool sight;
     int depth, holes;              /* scattering events, holes so far */
     uint32_t dimension;            /* of the sampler: the first dimension of the next vertex */
@@ -272,6 +273,7 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     path->sight = path->sight && delta;
     path->scatter = vertex->receiver;
     path->ray = hit_ray(hit, &path->ray, sample.direction, &path->media);
+    path->kind = transmits ? RAY_REFRACTED : RAY_REFLECTED;
     if (transmits) {
         medium_stack_cross(&path->media, &bsdf->boundary);
         state->refracted_rays++;
@@ -294,6 +296,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     material_eval(&world->materials[hit->material], hit, path->ray.media, &context, &bsdf);
     if (bsdf.opacity < 1 && !(random_unit(random_combine(sampler->key, dimension)) < bsdf.opacity)) {
         path->ray = hit_ray(hit, &path->ray, vec3_negate(hit->view), &path->media);
+        path->kind = RAY_HOLE;
         return path->holes++ < HOLE_LIMIT;
     }
     if (path->parts && path->sight)
@@ -345,24 +348,59 @@ static void finish_parts(struct integrator_state *state, struct path_parts *part
     parts->features[PATH_GLOW + 2] = (float)glow->z;
 }
 
+/* What observers are told of a path: its rays, each sent by the one before. Of a longer path the first ones. */
+struct observed_path {
+    struct vec3 weights[64], lights[64]; /* of the path where each ray began */
+    int count;
+};
+
+static struct vec3 quotient(struct vec3 a, struct vec3 b) {
+    return vec3_make(share_of(a.x, b.x), share_of(a.y, b.y), share_of(a.z, b.z));
+}
+
+static void observe_next(struct observed_path *observed, const struct integrator_state *state, const struct path *path,
+                         const struct hit *hit) {
+    enum { LIMIT = sizeof observed->weights / sizeof *observed->weights };
+    if (!state->observer || observed->count == LIMIT)
+        return;
+    double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
+    if (observed->count > 0)
+        observe_ray_sent(state->observer, path->kind, quotient(path->weight, observed->weights[observed->count - 1]),
+                         RAY_FOLLOWED);
+    observed->weights[observed->count] = path->weight;
+    observed->lights[observed->count++] = path->light;
+    const struct ray ray = path->ray;
+    observe_ray_begin(state->observer, &ray, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1));
+}
+
+/* light: of the sample. */
+static void observe_end(const struct observed_path *observed, const struct integrator_state *state,
+                        const struct path *path, struct vec3 light) {
+    for (int i = observed->count - 1; i >= 0; i--) {
+        struct vec3 gain = quotient(vec3_sub(path->light, observed->lights[i]), observed->weights[i]);
+        struct vec3 brings = i == 0 ? light : gain;
+        observe_ray_end(state->observer, &(struct observed_end){true, brings, vec3_all(1), vec3_all(0), brings});
+    }
+}
+
 /* hit: the hit of the camera ray, or NULL; the hits of later rays are stored in it, too. */
 static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                           struct sampler *sampler, struct hit *hit, bool met) {
-    const struct vec3 none = {0, 0, 0};
-    double distance = met ? hit->t * vec3_length(path->ray.direction) : INFINITY;
-    struct ray first = path->ray;
-    observe_ray_begin(state->observer, &first, met ? hit : NULL, NULL, distance, 1);
+    struct observed_path observed;
+    observed.count = 0;
+    observe_next(&observed, state, path, met ? hit : NULL);
     while (travel(tracer, state, path, met ? hit : NULL)) {
         if (!met)
             leave_scene(tracer, state, path);
         if (!met || !meet_surface(tracer, state, path, sampler, hit) || integrator_cancelled(state))
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
+        observe_next(&observed, state, path, met ? hit : NULL);
     }
     struct vec3 found = clamp_light(state, path->light), light = limited(found, tracer->clamp);
     if (path->parts)
         finish_parts(state, path->parts, vec3_max_abs(found), vec3_max_abs(light));
-    observe_ray_end(state->observer, &(struct observed_end){true, light, vec3_all(1), none, light});
+    observe_end(&observed, state, path, light);
     return light;
 }
 

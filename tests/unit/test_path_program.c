@@ -1,6 +1,7 @@
 /* One picture of paths, however the program makes it. */
 #include "tests/harness.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,4 +70,30 @@ TEST(a_picture_of_paths_is_the_same_by_threads_instruction_sets_displays_checkpo
 TEST(a_picture_of_paths_with_a_noise_and_a_filter_is_the_same_by_threads_displays_and_shards) {
     static const char *const ways[] = {"-j 3", "-j 2 --display term:blocks"};
     check_ways("--noise 0.1 --spp 64 --filter mitchell --caustics 2000", ways, sizeof ways / sizeof *ways);
+}
+
+/* The brightest paths come first, each with the surfaces that it met. */
+TEST(a_path_traced_pixel_is_explained_by_its_mean_its_error_and_its_brightest_paths) {
+    struct test_result result = test_gray_scene(scene, "--pixel 30,38 --spp 32 scene.lua", NULL);
+    double before = INFINITY, colour;
+    int count = 0, vertices = 0;
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.out, "standard error") && strstr(result.out, "of 32 samples"));
+    for (const char *at = result.out; (at = strstr(at, "\n  colour (")) != NULL; at++, count++) {
+        double r = 0, g = 0, b = 0;
+        CHECK_EQ_INT(sscanf(at, "\n  colour (%lf, %lf, %lf)", &r, &g, &b), 3);
+        colour = r + g + b;
+        CHECK(colour <= before * (1 + 1e-5));
+        before = colour;
+    }
+    for (const char *at = result.out; (at = strstr(at, ", reflected, weight ")) != NULL; at++)
+        vertices++;
+    CHECK_EQ_INT(count, 8);
+    CHECK(vertices >= 8);
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene(scene, "--pixel 30,38 --noise 0.1 scene.lua", NULL);
+    CHECK(result.status == 2 && strstr(result.err, "--pixel takes no --noise"));
+    free(result.out);
+    free(result.err);
 }
