@@ -40,7 +40,7 @@ static void check_same(const char *arguments, const char *whole, size_t size) {
     free(bytes);
 }
 
-static void check_ways(const char *common, const char *const ways[], size_t count) {
+static void check_runs(const char *common, const char *const runs[], size_t count) {
     char line[300];
     size_t size = 0;
     (void)snprintf(line, sizeof line, "-q -j 1 %s scene.lua", common);
@@ -48,7 +48,7 @@ static void check_ways(const char *common, const char *const ways[], size_t coun
     char *whole = picture(&size);
     CHECK(whole && size > (size_t)100 * 70 * 12);
     for (size_t i = 0; i < count; i++) {
-        (void)snprintf(line, sizeof line, "-q %s %s scene.lua", common, ways[i]);
+        (void)snprintf(line, sizeof line, "-q %s %s scene.lua", common, runs[i]);
         run(line);
         check_same(line, whole, size);
     }
@@ -62,14 +62,14 @@ static void check_ways(const char *common, const char *const ways[], size_t coun
 }
 
 TEST(a_picture_of_paths_is_the_same_by_threads_instruction_sets_displays_checkpoints_and_shards) {
-    static const char *const ways[] = {"-j 3", "-j 2 --isa base", "-j 2 --display term:blocks",
+    static const char *const runs[] = {"-j 3", "-j 2 --isa base", "-j 2 --display term:blocks",
                                        "-j 2 --checkpoint c.tiles", "--accel grid"};
-    check_ways("", ways, sizeof ways / sizeof *ways);
+    check_runs("", runs, sizeof runs / sizeof *runs);
 }
 
 TEST(a_picture_of_paths_with_a_noise_and_a_filter_is_the_same_by_threads_displays_and_shards) {
-    static const char *const ways[] = {"-j 3", "-j 2 --display term:blocks"};
-    check_ways("--noise 0.1 --spp 64 --filter mitchell --caustics 2000", ways, sizeof ways / sizeof *ways);
+    static const char *const runs[] = {"-j 3", "-j 2 --display term:blocks"};
+    check_runs("--noise 0.1 --spp 64 --filter mitchell --caustics 2000", runs, sizeof runs / sizeof *runs);
 }
 
 /* The brightest paths come first, each with the surfaces that it met. */
