@@ -363,8 +363,7 @@ static bool is_heavy(const char *name) {
     return false;
 }
 
-/* The scenes of data/; some take seconds even for the smallest picture. dining.lua is denoised: its trace has the pixel
- * as it was before. */
+/* The scenes of data/; some take seconds even for the smallest picture. */
 static void print_demos(uint32_t width, uint32_t height, int count, const char *options, bool heavy) {
     char *names[100];
     int found = 0;
@@ -372,7 +371,7 @@ static void print_demos(uint32_t width, uint32_t height, int count, const char *
     for (struct dirent *entry; folder && (entry = readdir(folder)) && found < 100;) {
         size_t length = strlen(entry->d_name);
         if (length > 4 && strcmp(entry->d_name + length - 4, ".lua") == 0 && strcmp(entry->d_name, "stage.lua") != 0 &&
-            strcmp(entry->d_name, "room.lua") != 0 && strcmp(entry->d_name, "dining.lua") != 0)
+            strcmp(entry->d_name, "room.lua") != 0)
             names[found++] = strdup(entry->d_name);
     }
     if (folder)
