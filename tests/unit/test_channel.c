@@ -20,7 +20,8 @@ static enum channel_result receive(struct message *message) {
 }
 
 static struct picture_request sound_request(void) {
-    struct picture_request request = {.full_width = 100, .full_height = 80, .width = 100, .height = 80};
+    struct picture_request request = {
+        .full_width = 100, .full_height = 80, .width = 100, .height = 80, .shown = {0, 0, 100, 80}};
     memcpy(request.file, "a.png", 6);
     return request;
 }
@@ -121,6 +122,13 @@ TEST(requests_for_impossible_pictures_are_refused) {
     request = sound_request();
     request.full_height = UINT32_MAX;
     broken_request(request);
+    static const struct film_rectangle not_in_it[] = {{0, 0, 101, 80},  {0, 0, 100, 81}, {100, 0, 100, 80},
+                                                      {0, 80, 100, 80}, {0, 0, 0, 0},    {UINT32_MAX, 0, 5, 5}};
+    for (size_t i = 0; i < sizeof not_in_it / sizeof *not_in_it; i++) {
+        request = sound_request();
+        request.shown = not_in_it[i];
+        broken_request(request);
+    }
     for (int side = -1; side <= 1; side += 2) {
         request = sound_request();
         request.exposure = 101 * side;

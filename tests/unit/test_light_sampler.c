@@ -233,14 +233,19 @@ TEST(a_thousand_lamps_in_a_corridor_have_a_tenth_of_the_variance_of_uniform_choi
                                         .attenuation = ATTENUATION_INVERSE_SQUARE,
                                         .intensity = 1};
         }
-        struct lights uniform = tree;
-        lights_sampler(&tree, LIGHT_CHOICE_TREE);
-        lights_sampler(&uniform, LIGHT_CHOICE_UNIFORM);
-        for (int i = 0; i < 10; i++) {
-            struct vec3 point = {0.25 * (i % 5) - 0.5, 0, 10 + 19.3 * i}, normal = {0, 1, 0};
-            if (i % 3 == 1)
-                point = vec3_make(-1.5, 1.2, point.z), normal = vec3_make(1, 0, 0);
-            CHECK(10 * relative_variance(&tree, point, normal) < relative_variance(&uniform, point, normal));
+        double of_tree[10];
+        for (int run = 0; run < 2; run++) {
+            lights_sampler(&tree, run == 0 ? LIGHT_CHOICE_TREE : LIGHT_CHOICE_UNIFORM);
+            for (int i = 0; i < 10; i++) {
+                struct vec3 point = {0.25 * (i % 5) - 0.5, 0, 10 + 19.3 * i}, normal = {0, 1, 0};
+                if (i % 3 == 1)
+                    point = vec3_make(-1.5, 1.2, point.z), normal = vec3_make(1, 0, 0);
+                double variance = relative_variance(&tree, point, normal);
+                if (run == 0)
+                    of_tree[i] = variance;
+                else
+                    CHECK(10 * of_tree[i] < variance);
+            }
         }
         arena_destroy(&tree.arena);
     }
