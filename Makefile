@@ -155,7 +155,7 @@ $(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
 # Tests of the release build are optimized less: they compile in half the time, and what they test is optimized as ever.
 $(TEST_OBJECTS): private override CFLAGS := $(CFLAGS:-O3=-O1)
 # Kernels in plain C are so long that gcc gives up telling a debugger where variables are, and says so.
-$(BUILD)/tests/unit/test_portable_kernel.o: override CFLAGS += -g0
+$(BUILD)/tests/unit/test_portable_kernel.o: private override CFLAGS += -g0
 
 # A change of compiler or flags rebuilds everything. WERROR=1 (the tests) makes warnings errors; it is not one of the
 # flags, so that make and make test share their objects. Without it a warning is shown and kept in a file beside the
