@@ -57,6 +57,7 @@ if [ "$1" = --long ]; then
     shift
 fi
 jobs=$(nproc 2>/dev/null || echo 2)
+tests=$((jobs + 2)) # at once: many wait for the disk
 passed=0 failed=0 skipped=0
 
 build() {
@@ -72,7 +73,7 @@ run() {
     rm -f "$log"
     ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
         TSAN_OPTIONS=halt_on_error=1 GRAY_TEST_BINARY="build/$config/gray" \
-        "build/$config/tests/run" --log "$log" -j "$jobs" "$@"
+        "build/$config/tests/run" --log "$log" -j "$tests" "$@"
     status=$?
     counts=$(tail -n 1 "$log" 2>/dev/null)
     case $counts in
