@@ -41,17 +41,20 @@ TEST(hostile_pictures_never_replace_what_the_run_has_read) {
          .before = "png d.png",
          .scene = "assert(pcall(io.input, 'd.png')) p'd.png'",
          .status = 1},
+#ifdef HAVE_FREETYPE
         {.name = "a font that is none",
          .before = "png f.png",
          .scene = "assert(not pcall(gr.glyphs, 'f.png', 'x')) p'f.png'",
          .status = 1,
          .says = "f.png"},
+#endif
         {.name = "a mesh that is none",
          .before = "png m.png",
          .scene = "pcall(gr.mesh, 'm', 'm.png') p'm.png'",
          .status = ATTACK_ANY,
          .after = "maybe m.png"},
         {.name = "Lua run by dofile", .before = "poly m.hdr", .scene = "dofile('m.hdr') p'm.hdr'", .status = 1},
+#ifdef HAVE_EXR
         {.name = "a sky in EXR",
          .before = "scene make.lua",
          .second = "p's.exr'",
@@ -60,6 +63,7 @@ TEST(hostile_pictures_never_replace_what_the_run_has_read) {
          .status = 1,
          .says = "s.exr",
          .after = "picture s.exr"},
+#endif
         {.name = "Lua loaded by loadfile", .before = "polyp m.pfm", .scene = "loadfile('m.pfm') p'm.pfm'", .status = 1},
         {.name = "a module by package.path",
          .before = "poly m.hdr",
@@ -77,6 +81,7 @@ TEST(hostile_pictures_never_replace_what_the_run_has_read) {
          .scene = "gr.mesh('m', 'm.obj') p't.png'",
          .status = 1,
          .says = "t.png"},
+#ifdef HAVE_JANSSON
         {.name = "a buffer of a glTF file",
          .before =
              "bytes b.png %89PNG%0d%0a%1a%0a0123456789012345678901234567; bytes m.gltf "
@@ -87,6 +92,7 @@ TEST(hostile_pictures_never_replace_what_the_run_has_read) {
          .scene = "pcall(gr.mesh, 'm', 'm.gltf') p'b.png'",
          .status = 1,
          .says = "b.png"},
+#endif
         {.name = "a texture, caught, and the next picture is made",
          .before = "png t.png",
          .scene = "t't.png' assert(not pcall(p, 't.png')) p'x.png'",
