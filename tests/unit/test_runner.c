@@ -266,6 +266,34 @@ TEST(a_runner_ends_what_its_tests_leave_running) {
     expect_nothing_left(0, "after tests that left processes");
 }
 
+/* Sends a signal to the children of a process whose command line holds a word, as pkill does, which is not installed
+ * everywhere. True: there was one. */
+static bool signal_children(pid_t parent, const char *word, int number) {
+    bool found = false;
+    DIR *stream = opendir("/proc");
+    for (struct dirent *entry; stream && (entry = readdir(stream)) != NULL;) {
+        char path[64];
+        size_t size = 0;
+        int of = 0;
+        if (entry->d_name[0] < '1' || entry->d_name[0] > '9')
+            continue;
+        (void)snprintf(path, sizeof path, "/proc/%.20s/stat", entry->d_name);
+        char *stat = test_read_file(path, NULL), *after = stat ? strrchr(stat, ')') : NULL;
+        bool child = after && sscanf(after, ") %*c %d", &of) == 1 && of == (int)parent;
+        free(stat);
+        if (!child)
+            continue;
+        (void)snprintf(path, sizeof path, "/proc/%.20s/cmdline", entry->d_name);
+        char *words = test_read_file(path, &size);
+        if (words && memmem(words, size, word, strlen(word)) && kill((pid_t)atoi(entry->d_name), number) == 0)
+            found = true;
+        free(words);
+    }
+    if (stream)
+        (void)closedir(stream);
+    return found;
+}
+
 static void end_runner(int number, bool reaper) {
     char when[64], *ready = strdup(test_path("ready"));
     (void)snprintf(when, sizeof when, "signal %d%s", number, reaper ? " to reapers" : "");
@@ -274,9 +302,7 @@ static void end_runner(int number, bool reaper) {
     pid_t runner = start("exec $run --examples -j 3 example_waits example_crashes");
     expect(await_file(ready) && marked_processes() >= 8, "the processes did not start", when);
     if (reaper) { /* the runner continues without them */
-        char line[64];
-        (void)snprintf(line, sizeof line, "pkill -KILL -P %d", (int)runner);
-        CHECK(system(line) == 0);
+        CHECK(signal_children(runner, "", SIGKILL));
         CHECK_EQ_INT(wait_for(runner), 1);
     } else {
         CHECK(kill(runner, number) == 0);
@@ -422,8 +448,7 @@ static void end_make_test(const char *command, bool builds, int number, bool gro
     pid_t run = start(line);
     expect(await_file(ready), "did not begin", when);
     if (script) {
-        (void)snprintf(line, sizeof line, "pkill -%d -P %d -f tools/test.sh", number, (int)run);
-        CHECK(system(line) == 0);
+        CHECK(signal_children(run, "tools/test.sh", number));
     } else {
         CHECK(kill(group ? -run : run, number) == 0);
     }
