@@ -47,7 +47,7 @@ void *mem_share(size_t size);
 void mem_unshare(void *block, size_t size);
 
 /* Fault injection: from now on allocation number `number` (1 is the next) fails once; 0 turns it off. A no-op in builds
- * without GRAY_FAULTS. mem_allocations counts the allocations asked for so far (0 without GRAY_FAULTS). */
+ * without GRAY_FAULTS. mem_allocations counts the requested allocations so far (0 without GRAY_FAULTS). */
 void mem_fail_at(uint64_t number);
 uint64_t mem_allocations(void);
 

@@ -301,8 +301,8 @@ static void choose_probes(struct csg_plan *plan) {
     }
 }
 
-/* Leaves that a ray is asked for first: the solid is a part of each of them. Cheap ones before lists, small ones before
- * large ones. */
+/* Leaves that a ray is tested with first: the solid is a part of each of them. Cheap ones before lists, small ones
+ * before large ones. */
 static bool needed_before(const struct csg *csg, const struct csg_plan *plan, uint32_t a, uint32_t b) {
     bool a_listed = shape_is_listed(&csg->leaves[a].shape), b_listed = shape_is_listed(&csg->leaves[b].shape);
     if (a_listed != b_listed)

@@ -98,7 +98,7 @@ static inline double expr_modulo(double a, double b) {
     return (m > 0 ? b < 0 : m < 0 && b > 0) ? m + b : m;
 }
 
-/* The rounded quotient; of a division by 0 it is 0, as the recorder lets nobody see. */
+/* The rounded quotient. A division by 0 gives 0; the recorder makes an error of it before that. */
 static inline int64_t expr_integer_divide(int64_t a, int64_t b) {
     if ((uint64_t)b + 1 <= 1) /* 0 and -1 */
         return b ? (int64_t)(0 - (uint64_t)a) : 0;

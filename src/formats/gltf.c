@@ -599,8 +599,8 @@ static void *json_memory(size_t size) {
 static bool parse_json(struct gltf *g, const char *text, size_t size) {
     if (!check_json(g, text, size))
         return false;
-    /* Its memory comes from our room, its hash from the file: a file cannot choose names that collide, and no random
-     * numbers are asked for. */
+    /* Its memory comes from our room, its hash from the file: a file cannot choose names that collide, and the
+     * library needs no random numbers. */
     json_set_alloc_funcs(json_memory, mem_free);
     json_object_seed((size_t)hash_bytes(text, size, 1) | 1);
     json_error_t error;

@@ -39,8 +39,8 @@ struct image *image_create(const char *name, uint32_t width, uint32_t height, in
  */
 struct image *image_read_png(const char *path, struct error *error);
 /* The picture with its 8 or 16 bits decoded from sRGB (IEC 61966-2-1), 16 bits a channel; alpha stays. Pictures of
- * light are linear: themselves. Made when it is asked for the first time, which is not thread-safe, and owned by the
- * image. NULL: no memory. */
+ * light are linear: themselves. The first call makes it and is not thread-safe; the image owns it.
+ * NULL: no memory. */
 struct image *image_linear(struct image *image, struct error *error);
 struct image *image_share(struct image *image);
 void image_release(struct image *image);

@@ -31,7 +31,7 @@ struct image {
     void *block;
     size_t block_size;
     char *name;
-    struct image *linear; /* image_linear, or NULL until it is asked for; owned */
+    struct image *linear; /* of image_linear, or NULL before its first call; owned */
 };
 
 /* All levels allocated, texels not yet set: fill level 0, then call image_build_levels. NULL without memory or when the

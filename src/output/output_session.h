@@ -43,7 +43,7 @@ bool output_write(struct output_session *output, struct error *error);
 /* The film is complete: the files are written. The picture is closed in any case. */
 bool output_done(struct output_session *output, const struct picture_report *report, struct error *error);
 void output_abandon(struct output_session *output); /* fine when no picture is open */
-/* Writes the checkpoint now and says so; or says that none was asked for. */
+/* Writes the checkpoint now and prints a line; or prints that no checkpoint was requested. */
 void output_write_checkpoint(struct output_session *output);
 /* Draws how far the picture is, writes the checkpoint when it is time, and talks with the farm. */
 void output_show_progress(struct output_session *output);

@@ -1,4 +1,4 @@
-/* What the files of a picture show of its film: the part that was asked for, denoised if the film has features. */
+/* What the files of a picture show of its film: the requested part, denoised if the film has features. */
 #ifndef GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 #define GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 

@@ -348,7 +348,7 @@ static void finish_parts(struct integrator_state *state, struct path_parts *part
     parts->features[PATH_GLOW + 2] = (float)glow->z;
 }
 
-/* What observers are told of a path: its rays, each sent by the one before. Of a longer path the first ones. */
+/* The rays of a path that observers receive, in order. Only the first ones of a longer path. */
 struct observed_path {
     struct vec3 weights[64], lights[64]; /* of the path where each ray began */
     int count;

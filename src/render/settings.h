@@ -122,7 +122,7 @@ struct settings {
     double side_tolerance, corner_tolerance; /* squared RGB distance, >= 0 */
     bool use_tir;
     int area_samples; /* -al-samples: N x N shadow rays; 1..64 */
-    int path_samples; /* --spp: samples of a pixel; 0: nobody chose, PATH_SAMPLES_DEFAULT */
+    int path_samples; /* --spp: samples of a pixel; 0: not set, PATH_SAMPLES_DEFAULT */
     int max_depth;    /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
     enum filter_kind filter;
     double noise;          /* --noise: a tile whose relative standard error is not larger is done; 0: all samples */

@@ -16,7 +16,7 @@ enum { TILE_FILE_NAME = 4096, TILE_FILE_VERSION_TEXT = 32 };
 struct tile_key {
     char version[TILE_FILE_VERSION_TEXT]; /* of the program, with its final NUL */
     struct digest options;                /* those that can change a picture */
-    struct digest files;                  /* the script and everything it read before it asked for the picture */
+    struct digest files;                  /* the script and all files that it read before this picture */
 };
 
 /* A picture that has tiles in the file. */

@@ -64,9 +64,9 @@ struct progress_estimate {
     _Atomic uint64_t pace;  /* thousandths of the clock's time that a second of work took, 0: not known yet */
     _Atomic uint64_t begun; /* when the first tile began, by that clock; or: */
 };
-#define PROGRESS_ESTIMATE_WANTED UINT64_MAX /* before the render: somebody will ask */
+#define PROGRESS_ESTIMATE_WANTED UINT64_MAX /* before the render: the estimate is needed */
 
-/* Nothing is known; somebody will ask, or nobody. */
+/* No measurement yet; `wanted` or not. */
 void progress_estimate_reset(struct progress_estimate *progress_estimate, bool wanted);
 /* Whether an estimate was requested before the render. */
 bool progress_estimate_is_wanted(const struct progress_estimate *progress_estimate);

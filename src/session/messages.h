@@ -215,7 +215,7 @@ struct message_script {
 struct message_read {
     struct file_version version;
     bool written;    /* a script opened it for writing */
-    char path[4096]; /* as it was asked for: relative to the working directory, which both processes share */
+    char path[4096]; /* as it was requested: relative to the working directory, which both processes share */
 };
 
 /* A message as it was received: `size` bytes of body. */

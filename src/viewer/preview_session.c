@@ -239,7 +239,7 @@ static bool make_overlay(struct preview_state *work, const struct pass_view *vie
     struct render_job job = view_job(work, view);
     struct view_overlay_buffers buffers;
     view_overlay_buffers(preview->asked, job.film->pixels, &buffers);
-    if (request->lines.limit == 0 || request->lines.cell == 0) /* nothing is asked for */
+    if (request->lines.limit == 0 || request->lines.cell == 0) /* no lines are requested */
         return true;
     double begun = progress_clock();
     const struct view_overlay_scene scene = {&job, preview->request->root, preview->pool};

@@ -86,7 +86,7 @@ struct world {
     uint32_t light_count;
     struct sky sky;
     struct scene_accel accel;
-    enum accel_kind mesh_accel; /* of the meshes: as asked for */
+    enum accel_kind mesh_accel; /* of the meshes: as requested */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */
     size_t mesh_memory; /* bytes of the distinct meshes */

@@ -49,7 +49,7 @@ static bool receiver_begin(struct receiver *r, int max) {
     return ok && pthread_create(&r->thread, NULL, receive, r) == 0;
 }
 
-/* If nobody has connected, the thread still waits: connect from here. */
+/* Without a client the thread still waits: connect from here. */
 static void receiver_end(struct receiver *r) {
     struct sockaddr_in address = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)r->port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
@@ -164,7 +164,7 @@ TEST(a_viewer_that_goes_away_or_is_not_there_is_done_without) {
     free(r.bytes);
     free(result.out);
     free(result.err);
-    /* A port that was freed: nobody listens there. */
+    /* A free port: no program listens there. */
     (void)snprintf(arguments, sizeof arguments, "--display tev:127.0.0.1:%u scene.lua", r.port);
     result = test_gray_scene(NULL, arguments, NULL);
     CHECK_EQ_INT(result.status, 0);

@@ -199,7 +199,7 @@ static const char *const probes =
     "  '.hid/../in.txt', 'hiddir/../in.txt', 'gone/../link', 'link/../in.txt', 'link/x/y', TOP .. '/out/x', TOP .. "
     "'/out/../a/s/in.txt',\n"
     "  TOP .. '/a/s/link', TOP .. '/a/.hid/x', '//' .. TOP .. '/out/x', '/nowhere/x', '/etc/passwd', '/etc/no', "
-    "'/root/x'}\n"
+    "'/opt/x'}\n"
     "local function show(way, name, ...)\n"
     "  io.write(way, ' ', name, ':')\n"
     "  for i = 1, select('#', ...) do\n"
