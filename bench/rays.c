@@ -54,7 +54,7 @@ struct options {
     int wanted_count;
 };
 
-struct result {
+struct timing {
     char name[64];
     uint32_t triangles;
     double build[2], memory[2]; /* gray, Embree: seconds and bytes */
@@ -514,7 +514,7 @@ static void trace_batches(struct batches *b, const struct bench_ray *source, uin
 }
 
 static void measure_batches(struct mesh *mesh, const struct bench_ray *rays, uint64_t count, int reps,
-                            struct result *result) {
+                            struct timing *result) {
     double seconds[2][MAX_REPS], ratio[MAX_REPS];
     struct batches batches;
     batches_begin(&batches, mesh);
@@ -531,8 +531,8 @@ static void measure_batches(struct mesh *mesh, const struct bench_ray *rays, uin
         result->world_speed[k] = 1e-6 * (double)count / median(seconds[k], reps);
 }
 
-static void measure(const struct bench_scene *scene, const struct options *options, struct result *result) {
-    *result = (struct result){.triangles = scene->triangle_count};
+static void measure(const struct bench_scene *scene, const struct options *options, struct timing *result) {
+    *result = (struct timing){.triangles = scene->triangle_count};
     snprintf(result->name, sizeof result->name, "%s", scene->name);
     int threads = options->threads;
     struct share shares[MAX_THREADS];
@@ -622,7 +622,7 @@ static void measure(const struct bench_scene *scene, const struct options *optio
 #endif
 }
 
-static void print_row(const struct result *r) {
+static void print_row(const struct timing *r) {
     printf("%-18s %8u | %7.1f %5.2f | %6.1f %5.2f |", r->name, r->triangles, 1e3 * r->build[0],
            r->build[0] / r->build[1], r->memory[0] / r->triangles, r->memory[0] / r->memory[1]);
     for (int k = 0; k < KINDS; k++)
@@ -636,10 +636,10 @@ static void print_row(const struct result *r) {
     fflush(stdout);
 }
 
-static void print_json(const struct result *results, int count) {
+static void print_json(const struct timing *results, int count) {
     printf("[\n");
     for (int i = 0; i < count; i++) {
-        const struct result *r = &results[i];
+        const struct timing *r = &results[i];
         printf("  {\"scene\": \"%s\", \"triangles\": %u, \"build_seconds\": [%.6f, %.6f], \"bytes\": [%.0f, %.0f]",
                r->name, r->triangles, r->build[0], r->build[1], r->memory[0], r->memory[1]);
         for (int k = 0; k < KINDS; k++)
@@ -654,12 +654,12 @@ static void print_json(const struct result *results, int count) {
     printf("]\n");
 }
 
-static void print_summary(const struct result *results, int count) {
+static void print_summary(const struct timing *results, int count) {
     double log_sum[KINDS + 3] = {0}, worst[KINDS + 3];
     for (int k = 0; k < KINDS + 3; k++)
         worst[k] = k < KINDS + 1 ? INFINITY : 0;
     for (int i = 0; i < count; i++) {
-        const struct result *r = &results[i];
+        const struct timing *r = &results[i];
         double value[KINDS + 3] = {r->ratio[0],
                                    r->ratio[1],
                                    r->ratio[2],
@@ -680,7 +680,7 @@ static void print_summary(const struct result *results, int count) {
 
 struct bench {
     struct options options;
-    struct result results[MAX_SCENES];
+    struct timing results[MAX_SCENES];
     int count;
 };
 
@@ -692,7 +692,7 @@ static bool wanted(const struct bench *bench, const char *name) {
 }
 
 static void run_scene(struct bench *bench, struct bench_scene *scene) {
-    struct result *result = &bench->results[bench->count++];
+    struct timing *result = &bench->results[bench->count++];
     measure(scene, &bench->options, result);
     if (!bench->options.json)
         print_row(result);

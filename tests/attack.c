@@ -147,7 +147,7 @@ uid_t attack_user(void) {
 }
 
 /* One run of the program. */
-struct run {
+struct program_run {
     int status; /* -1: it had to be killed */
     char *out, *err;
 };
@@ -202,7 +202,7 @@ static int wait_up_to(pid_t program, double seconds) {
     return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
 }
 
-static struct run run_attack(struct attack_setup *setup) {
+static struct program_run run_attack(struct attack_setup *setup) {
     int out = memfd_create("out", 0), err = memfd_create("err", 0);
     fflush(stdout);
     pid_t child = fork();
@@ -222,7 +222,7 @@ static struct run run_attack(struct attack_setup *setup) {
         execute(setup->attack);
     }
     (void)setpgid(child, child);
-    struct run run = {.status = wait_up_to(child, SECONDS)};
+    struct program_run run = {.status = wait_up_to(child, SECONDS)};
     run.out = bytes_of_descriptor(out);
     run.err = bytes_of_descriptor(err);
     return run;
@@ -255,7 +255,7 @@ void attack_report(const char *name, uid_t user, const char *reason) {
     }
 }
 
-static const char *line_of_interest(const struct run *run) {
+static const char *line_of_interest(const struct program_run *run) {
     const char *line = run->err;
     while (run->status != 0 && *line) {
         size_t length = strcspn(line, "\n");
@@ -269,7 +269,7 @@ static const char *line_of_interest(const struct run *run) {
     return line;
 }
 
-static void check_words(struct attack_setup *setup, const struct run *run) {
+static void check_words(struct attack_setup *setup, const struct program_run *run) {
     const char *line = line_of_interest(run);
     char *first = strndup(line, strcspn(line, "\n"));
     char *copy = strdup(setup->attack->says ? setup->attack->says : ""), *rest = NULL;
@@ -292,7 +292,7 @@ static void check_words(struct attack_setup *setup, const struct run *run) {
     free(first);
 }
 
-static void check_status(struct attack_setup *setup, const struct run *run) {
+static void check_status(struct attack_setup *setup, const struct program_run *run) {
     int wanted = setup->attack->status;
     if (run->status < 0)
         blame(setup, "does not end within %d s", SECONDS);
@@ -451,7 +451,7 @@ static bool run_as(const struct attack *attack, uid_t user) {
     struct attack_tree old = attack_tree(setup.root);
     int watcher = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     watch_special(&setup, &old, watcher);
-    struct run run = run_attack(&setup);
+    struct program_run run = run_attack(&setup);
     check_status(&setup, &run);
     check_words(&setup, &run);
     check_files(&setup, &old);

@@ -578,11 +578,11 @@ static inline void search_start(struct search *s, simd4 origin, simd4 direction,
     s->best = s->ray->t_max;
 }
 
-enum beginning { RAY_INSIDE, RAY_MISSES, RAY_UNUSABLE };
+enum ray_start { RAY_INSIDE, RAY_MISSES, RAY_UNUSABLE };
 
 /* In double precision, for rays that start far away or have odd directions. Rays that are not finite, or so far away
  * that the tolerance would exceed the mesh, use brute force. */
-static __attribute__((noinline)) enum beginning search_begin_far(struct search *s, wide4 o, wide4 d) {
+static __attribute__((noinline)) enum ray_start search_begin_far(struct search *s, wide4 o, wide4 d) {
     const struct triangle_index *index = s->index;
     /* A zero becomes so small that any distance along it is negligible. */
     wide4 d_size = wide4_size(d), r = wide4_div(wide4_all(1), wide4_signed(wide4_max(d_size, wide4_all(0x1p-980)), d));
@@ -621,7 +621,7 @@ static __attribute__((noinline)) enum beginning search_begin_far(struct search *
 
 /* Most rays start near the mesh and at t = 0. They are not moved, and are in single precision from here on: the first
  * node does not wait for the entry into the frame, and their t is the local one. */
-static inline __attribute__((always_inline)) enum beginning search_begin(struct search *s) {
+static inline __attribute__((always_inline)) enum ray_start search_begin(struct search *s) {
     const struct triangle_index *index = s->index;
     const struct ray *ray = s->ray;
     wide4 scale = wide4_all(index->scale);
@@ -661,9 +661,9 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     s.ray = ray;
     s.kind = TRIANGLE_NEAREST;
     s.hit = hit;
-    enum beginning beginning = search_begin(&s);
-    if (beginning != RAY_INSIDE)
-        return beginning == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
+    enum ray_start start_case = search_begin(&s);
+    if (start_case != RAY_INSIDE)
+        return start_case == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
     if (s.moved)
         fly_camera_nearest_apart(&s);
     else if (set->count > MANY_TRIANGLES)
@@ -681,9 +681,9 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     s.set = set;
     s.ray = ray;
     s.kind = TRIANGLE_ANY;
-    enum beginning beginning = search_begin(&s);
-    if (beginning != RAY_INSIDE)
-        return beginning == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
+    enum ray_start start_case = search_begin(&s);
+    if (start_case != RAY_INSIDE)
+        return start_case == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
     return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false);
 }
 
@@ -700,10 +700,10 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
     s.kind = TRIANGLE_ALL;
     s.visit = visit;
     s.context = context;
-    enum beginning beginning = search_begin(&s);
-    if (beginning == RAY_UNUSABLE)
+    enum ray_start start_case = search_begin(&s);
+    if (start_case == RAY_UNUSABLE)
         triangle_brute_all(set, &line, visit, context, cost);
-    if (beginning != RAY_INSIDE)
+    if (start_case != RAY_INSIDE)
         return;
     traversal(&s, TRIANGLE_ALL);
 }

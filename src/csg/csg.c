@@ -80,7 +80,7 @@ static void sort_crossings(struct crossing *items, uint32_t sorted, uint32_t cou
  * when the sweep arrives there; the nearest surface is usually found before all are tested. If there are more leaves
  * than this, all are tested at once. */
 enum { WAITING_MAX = 16 };
-struct waiting {
+struct pending_leaves {
     double enter[WAITING_MAX];
     uint32_t leaf[WAITING_MAX];
     uint32_t count;
@@ -93,14 +93,14 @@ struct sweep {
     struct crossing *items; /* the crossings of the leaves asked so far, by t; on top of the scratch */
     uint32_t count, next;
     struct geom_scratch *scratch;
-    struct waiting *waiting;  /* NULL: all leaves have been tested */
-    struct ray *leaf_ray;     /* a copy of the ray, for the leaves' spaces */
-    uint32_t first_clip_leaf; /* leaves of the clip come after those of the solid */
-    uint32_t *counts;         /* true children of each node */
-    uint32_t *inside;         /* one bit per leaf */
-    bool in, shown;           /* the line is inside the solid, inside the clip */
-    double from, to;          /* surfaces are looked for between; what is before from has happened */
-    double coarse;            /* the part of the coarse distance that does not grow with t */
+    struct pending_leaves *waiting; /* NULL: all leaves have been tested */
+    struct ray *leaf_ray;           /* a copy of the ray, for the leaves' spaces */
+    uint32_t first_clip_leaf;       /* leaves of the clip come after those of the solid */
+    uint32_t *counts;               /* true children of each node */
+    uint32_t *inside;               /* one bit per leaf */
+    bool in, shown;                 /* the line is inside the solid, inside the clip */
+    double from, to;                /* surfaces are looked for between; what is before from has happened */
+    double coarse;                  /* the part of the coarse distance that does not grow with t */
 };
 
 static bool leaf_is_inside(const struct sweep *s, uint32_t leaf) {
@@ -287,7 +287,7 @@ static void take_in(struct sweep *s) {
 
 /* Tests the leaves that are entered before `until`; false: scratch overflow. */
 static bool ask_waiting(struct sweep *s, double until) {
-    struct waiting *w = s->waiting;
+    struct pending_leaves *w = s->waiting;
     for (uint32_t i = 0; i < w->count;) {
         if (!(w->enter[i] <= until)) {
             i++;
@@ -379,7 +379,7 @@ static bool clip(const struct box_probe *probe, const struct box *b, double *fro
 
 /* A leaf whose box the line meets. False: scratch overflow. */
 static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
-    struct waiting *w = s->waiting;
+    struct pending_leaves *w = s->waiting;
     if (!w)
         return ask_leaf(s, leaf);
     if (w->count < WAITING_MAX) {
@@ -398,7 +398,7 @@ static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
  * sweep's until the caller pops it. The caller lends leaf_ray, a copy of the ray, and `waiting`; without that all
  * crossings are collected at once. False: nothing can be there, or scratch overflow. */
 static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, struct ray *leaf_ray,
-                        struct waiting *waiting, struct geom_scratch *scratch) {
+                        struct pending_leaves *waiting, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
     double speed = vec3_max_abs(ray->direction), t_from = ray->t_min, t_to = ray->t_max;
     struct box_probe probe = box_probe_make(ray);
@@ -468,7 +468,7 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
 bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out) {
     uint32_t used = scratch->used;
     struct sweep s;
-    struct waiting waiting;
+    struct pending_leaves waiting;
     struct ray leaf_ray = *ray;
     bool found = false;
     if (sweep_begin(&s, csg, ray, &leaf_ray, &waiting, scratch)) {

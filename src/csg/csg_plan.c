@@ -162,14 +162,14 @@ static struct box box_less(struct box a, struct box b) {
 }
 
 /* The box of a node while it is worked out. */
-struct live {
+struct open_box {
     struct box decided;  /* the common part of the children whose start truth decides the node's */
     struct box joined;   /* around all children */
     bool decides;        /* there are deciding children */
     uint32_t first_trim; /* leaves that may take something off the end */
 };
 
-static void add_live(struct live *parent, bool decides, struct box box) {
+static void add_child_box(struct open_box *parent, bool decides, struct box box) {
     parent->joined = box_join(parent->joined, box);
     if (decides)
         parent->decided = box_tidy(box_meet(parent->decided, box));
@@ -178,23 +178,23 @@ static void add_live(struct live *parent, bool decides, struct box box) {
 
 /* Where the truth of each node may differ from that at the start, bottom up; then what of it the nodes above leave, top
  * down; then the same for the leaves, in plan->boxes, which come in as the leaves' own. */
-static void viewer_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_all, struct live *live,
+static void narrow_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_all, struct open_box *open_boxes,
                          uint32_t *trims) {
     for (uint32_t i = 0; i < plan->node_count; i++)
-        live[i] = (struct live){.decided = box_all(), .joined = box_empty(), .first_trim = CSG_NONE};
+        open_boxes[i] = (struct open_box){.decided = box_all(), .joined = box_empty(), .first_trim = CSG_NONE};
     for (uint32_t i = csg->leaf_count; i-- > 0;) {
         const struct csg_literal *literal = &plan->literals[i];
         if (literal->parent == CSG_NONE)
             continue;
-        struct live *parent = &live[literal->parent];
+        struct open_box *parent = &open_boxes[literal->parent];
         bool decides = literal->negated != is_all[literal->parent];
-        add_live(parent, decides, plan->boxes[i]);
+        add_child_box(parent, decides, plan->boxes[i]);
         trims[i] = parent->first_trim;
         if (!decides)
             parent->first_trim = i;
     }
     for (uint32_t i = plan->node_count; i-- > 0;) {
-        struct live *own = &live[i];
+        struct open_box *own = &open_boxes[i];
         struct box box = own->decides ? own->decided : own->joined, inner;
         for (uint32_t leaf = own->first_trim; own->decides && leaf != CSG_NONE; leaf = trims[leaf])
             if (shape_inner_box(&csg->leaves[leaf].shape, &csg->leaves[leaf].csg_from_leaf.forward, &inner) &&
@@ -204,20 +204,22 @@ static void viewer_boxes(struct csg *csg, struct csg_plan *plan, const bool *is_
         uint32_t parent = plan->nodes[i].parent;
         bool truth = plan->start_counts[i] >= plan->nodes[i].threshold;
         if (parent != CSG_NONE)
-            add_live(&live[parent], truth != is_all[parent], box);
+            add_child_box(&open_boxes[parent], truth != is_all[parent], box);
     }
     /* The surface is where both the solid may change and the clip may be true. */
-    struct box solid = csg->open ? plan->boxes[csg->program[0].leaf] : live[0].decided;
+    struct box solid = csg->open ? plan->boxes[csg->program[0].leaf] : open_boxes[0].decided;
     csg->bounds = solid;
     if (csg->clipped && !plan->starts_shown)
-        csg->bounds = box_tidy(box_meet(solid, live[plan->clip_root].decided));
+        csg->bounds = box_tidy(box_meet(solid, open_boxes[plan->clip_root].decided));
     for (uint32_t i = 0; i < plan->node_count; i++) {
         uint32_t parent = plan->nodes[i].parent;
-        live[i].decided = box_meet(live[i].decided, parent == CSG_NONE ? csg->bounds : live[parent].decided);
+        open_boxes[i].decided =
+            box_meet(open_boxes[i].decided, parent == CSG_NONE ? csg->bounds : open_boxes[parent].decided);
     }
     for (uint32_t i = 0; i < csg->leaf_count; i++) {
         uint32_t parent = plan->literals[i].parent;
-        plan->boxes[i] = box_tidy(box_meet(plan->boxes[i], parent == CSG_NONE ? csg->bounds : live[parent].decided));
+        plan->boxes[i] =
+            box_tidy(box_meet(plan->boxes[i], parent == CSG_NONE ? csg->bounds : open_boxes[parent].decided));
     }
 }
 
@@ -331,10 +333,10 @@ static void choose_needed(struct csg *csg, struct csg_plan *plan, const bool *is
 static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *error) {
     uint32_t length = csg->program_length, leaf_count = csg->leaf_count;
     bool *flags = mem_alloc_zero(length, sizeof *flags);
-    struct live *live = mem_alloc_zero(leaf_count, sizeof *live);
+    struct open_box *open_boxes = mem_alloc_zero(leaf_count, sizeof *open_boxes);
     uint32_t *trims = mem_alloc_zero(leaf_count, sizeof *trims);
     struct pending *pending = mem_alloc_zero(length + 1, sizeof *pending);
-    bool ok = flags && live && trims && pending;
+    bool ok = flags && open_boxes && trims && pending;
     if (!ok)
         error_no_memory(error, "CSG");
     else if (!program_is_well_formed(csg, flags, &csg->stack_depth))
@@ -365,7 +367,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
         plan->clip_root = csg->clipped ? build_nodes(csg, plan, csg->solid_length, length, pending, flags) : CSG_NONE;
         start_truth(csg, plan, flags);
         csg->inside_out = plan->starts_in;
-        viewer_boxes(csg, plan, flags, live, trims);
+        narrow_boxes(csg, plan, flags, open_boxes, trims);
         build_bounds(plan, 0, leaf_count, leaf_count <= FEW_LEAVES ? FEW_LEAVES : LEAVES_PER_BOUND);
         choose_probes(plan);
         choose_needed(csg, plan, flags);
@@ -379,7 +381,7 @@ static bool fill_plan(struct csg *csg, struct csg_plan *plan, struct error *erro
     }
     mem_free(pending);
     mem_free(trims);
-    mem_free(live);
+    mem_free(open_boxes);
     mem_free(flags);
     return ok;
 }

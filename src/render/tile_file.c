@@ -58,79 +58,79 @@ static uint32_t format_of(const struct tile_picture *picture) {
 
 /* Numbers as bytes. */
 
-struct pen {
+struct byte_writer {
     uint8_t *at;
 };
 
-static void put(struct pen *pen, const void *bytes, size_t size) {
-    memcpy(pen->at, bytes, size);
-    pen->at += size;
+static void put(struct byte_writer *output, const void *bytes, size_t size) {
+    memcpy(output->at, bytes, size);
+    output->at += size;
 }
 
-static void put_u32(struct pen *pen, uint32_t value) {
+static void put_u32(struct byte_writer *output, uint32_t value) {
     for (int i = 0; i < 4; i++)
-        *pen->at++ = (uint8_t)(value >> (8 * i));
+        *output->at++ = (uint8_t)(value >> (8 * i));
 }
 
-static void put_u64(struct pen *pen, uint64_t value) {
-    put_u32(pen, (uint32_t)value);
-    put_u32(pen, (uint32_t)(value >> 32));
+static void put_u64(struct byte_writer *output, uint64_t value) {
+    put_u32(output, (uint32_t)value);
+    put_u32(output, (uint32_t)(value >> 32));
 }
 
-static void put_digest(struct pen *pen, struct digest digest) {
-    put_u64(pen, digest.a);
-    put_u64(pen, digest.b);
+static void put_digest(struct byte_writer *output, struct digest digest) {
+    put_u64(output, digest.a);
+    put_u64(output, digest.b);
 }
 
-static void put_key(struct pen *pen, const struct tile_key *key) {
-    put(pen, key->version, sizeof key->version);
-    put_digest(pen, key->options);
-    put_digest(pen, key->files);
+static void put_key(struct byte_writer *output, const struct tile_key *key) {
+    put(output, key->version, sizeof key->version);
+    put_digest(output, key->options);
+    put_digest(output, key->files);
 }
 
-struct eye {
+struct byte_reader {
     const uint8_t *at;
 };
 
-static void get(struct eye *eye, void *out, size_t size) {
-    memcpy(out, eye->at, size);
-    eye->at += size;
+static void get(struct byte_reader *input, void *out, size_t size) {
+    memcpy(out, input->at, size);
+    input->at += size;
 }
 
-static uint32_t get_u32(struct eye *eye) {
+static uint32_t get_u32(struct byte_reader *input) {
     uint32_t value = 0;
     for (int i = 0; i < 4; i++)
-        value |= (uint32_t)*eye->at++ << (8 * i);
+        value |= (uint32_t)*input->at++ << (8 * i);
     return value;
 }
 
-static uint64_t get_u64(struct eye *eye) {
-    uint64_t low = get_u32(eye);
-    return low | (uint64_t)get_u32(eye) << 32;
+static uint64_t get_u64(struct byte_reader *input) {
+    uint64_t low = get_u32(input);
+    return low | (uint64_t)get_u32(input) << 32;
 }
 
-static struct digest get_digest(struct eye *eye) {
-    uint64_t a = get_u64(eye);
-    return (struct digest){a, get_u64(eye)};
+static struct digest get_digest(struct byte_reader *input) {
+    uint64_t a = get_u64(input);
+    return (struct digest){a, get_u64(input)};
 }
 
-static struct tile_key get_key(struct eye *eye) {
+static struct tile_key get_key(struct byte_reader *input) {
     struct tile_key key;
-    get(eye, key.version, sizeof key.version);
+    get(input, key.version, sizeof key.version);
     key.version[sizeof key.version - 1] = '\0';
-    key.options = get_digest(eye);
-    key.files = get_digest(eye);
+    key.options = get_digest(input);
+    key.files = get_digest(input);
     return key;
 }
 
-static struct film_record get_film_record(struct eye *eye) {
-    uint32_t floats = get_u32(eye);
-    return (struct film_record){floats, get_u32(eye)};
+static struct film_record get_film_record(struct byte_reader *input) {
+    uint32_t floats = get_u32(input);
+    return (struct film_record){floats, get_u32(input)};
 }
 
-static struct film_rectangle get_rectangle(struct eye *eye) {
-    uint32_t x0 = get_u32(eye), y0 = get_u32(eye), x1 = get_u32(eye);
-    return (struct film_rectangle){x0, y0, x1, get_u32(eye)};
+static struct film_rectangle get_rectangle(struct byte_reader *input) {
+    uint32_t x0 = get_u32(input), y0 = get_u32(input), x1 = get_u32(input);
+    return (struct film_rectangle){x0, y0, x1, get_u32(input)};
 }
 
 static uint64_t check_of(uint64_t position, uint32_t kind, const uint8_t *payload, size_t size) {
@@ -146,64 +146,64 @@ struct text_writer {
 };
 
 static bool write_record(struct text_writer *writer, uint32_t kind, size_t size, struct error *error) {
-    struct pen pen = {writer->buffer};
-    put_u32(&pen, kind);
-    put_u32(&pen, 0);
-    put_u64(&pen, size);
-    pen.at += size;
-    put_u64(&pen, check_of(writer->records++, kind, writer->buffer + RECORD_HEAD, size));
+    struct byte_writer output = {writer->buffer};
+    put_u32(&output, kind);
+    put_u32(&output, 0);
+    put_u64(&output, size);
+    output.at += size;
+    put_u64(&output, check_of(writer->records++, kind, writer->buffer + RECORD_HEAD, size));
     return file_output_write(&writer->file, writer->buffer, RECORD_HEAD + size + RECORD_CHECK, error);
 }
 
 static bool write_done(struct text_writer *writer, const struct tile_done *done, struct error *error) {
-    struct pen pen = {writer->buffer + RECORD_HEAD};
-    put_u32(&pen, done->number);
-    put_key(&pen, &done->key);
-    put_digest(&pen, done->written);
-    put(&pen, done->name, strlen(done->name));
-    return write_record(writer, RECORD_DONE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
+    struct byte_writer output = {writer->buffer + RECORD_HEAD};
+    put_u32(&output, done->number);
+    put_key(&output, &done->key);
+    put_digest(&output, done->written);
+    put(&output, done->name, strlen(done->name));
+    return write_record(writer, RECORD_DONE, (size_t)(output.at - writer->buffer) - RECORD_HEAD, error);
 }
 
 static bool write_picture(struct text_writer *writer, const struct tile_picture *picture, struct error *error) {
-    struct pen pen = {writer->buffer + RECORD_HEAD};
+    struct byte_writer output = {writer->buffer + RECORD_HEAD};
     uint64_t exposure;
     memcpy(&exposure, &picture->tone.exposure, sizeof exposure);
-    put_u32(&pen, picture->number);
-    put_key(&pen, &picture->key);
-    put_u32(&pen, picture->full_width);
-    put_u32(&pen, picture->full_height);
-    put_u32(&pen, picture->x0);
-    put_u32(&pen, picture->y0);
-    put_u32(&pen, picture->width);
-    put_u32(&pen, picture->height);
-    put_u64(&pen, exposure);
-    put_u32(&pen, (uint32_t)picture->tone.curve);
-    put_u32(&pen, picture->tone.srgb);
-    put_u32(&pen, picture->deep);
-    put_u32(&pen, picture->shard);
-    put_u32(&pen, picture->shards);
-    put_u32(&pen, picture->whole);
+    put_u32(&output, picture->number);
+    put_key(&output, &picture->key);
+    put_u32(&output, picture->full_width);
+    put_u32(&output, picture->full_height);
+    put_u32(&output, picture->x0);
+    put_u32(&output, picture->y0);
+    put_u32(&output, picture->width);
+    put_u32(&output, picture->height);
+    put_u64(&output, exposure);
+    put_u32(&output, (uint32_t)picture->tone.curve);
+    put_u32(&output, picture->tone.srgb);
+    put_u32(&output, picture->deep);
+    put_u32(&output, picture->shard);
+    put_u32(&output, picture->shards);
+    put_u32(&output, picture->whole);
     if (format_of(picture) != FORMAT) {
-        put_u32(&pen, picture->record.floats);
-        put_u32(&pen, picture->record.marks);
+        put_u32(&output, picture->record.floats);
+        put_u32(&output, picture->record.marks);
     }
     if (format_of(picture) == FORMAT_SHOWN) {
-        put_u32(&pen, picture->shown.x0);
-        put_u32(&pen, picture->shown.y0);
-        put_u32(&pen, picture->shown.x1);
-        put_u32(&pen, picture->shown.y1);
+        put_u32(&output, picture->shown.x0);
+        put_u32(&output, picture->shown.y0);
+        put_u32(&output, picture->shown.x1);
+        put_u32(&output, picture->shown.y1);
     }
-    put(&pen, picture->name, strlen(picture->name));
-    return write_record(writer, RECORD_PICTURE, (size_t)(pen.at - writer->buffer) - RECORD_HEAD, error);
+    put(&output, picture->name, strlen(picture->name));
+    return write_record(writer, RECORD_PICTURE, (size_t)(output.at - writer->buffer) - RECORD_HEAD, error);
 }
 
 static bool write_tiles(struct text_writer *writer, const struct film *film, struct error *error) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) != FILM_TILE_DONE)
             continue;
-        struct pen pen = {writer->buffer + RECORD_HEAD};
-        put_u32(&pen, tile);
-        size_t size = film_tile_pack(film, tile, pen.at);
+        struct byte_writer output = {writer->buffer + RECORD_HEAD};
+        put_u32(&output, tile);
+        size_t size = film_tile_pack(film, tile, output.at);
         if (!write_record(writer, RECORD_TILE, 4 + size, error))
             return false;
     }
@@ -212,16 +212,16 @@ static bool write_tiles(struct text_writer *writer, const struct film *film, str
 
 static bool write_all(struct text_writer *writer, const struct tile_done *done, size_t done_count,
                       const struct tile_picture *picture, const struct film *film, struct error *error) {
-    struct pen pen = {writer->buffer};
-    put(&pen, magic, sizeof magic);
-    put_u32(&pen, format_of(picture));
-    put_u32(&pen, FILM_TILE);
+    struct byte_writer output = {writer->buffer};
+    put(&output, magic, sizeof magic);
+    put_u32(&output, format_of(picture));
+    put_u32(&output, FILM_TILE);
     bool ok = file_output_write(&writer->file, writer->buffer, sizeof magic + 8, error);
     for (size_t i = 0; ok && i < done_count; i++)
         ok = write_done(writer, &done[i], error);
     ok = ok && (!picture || (write_picture(writer, picture, error) && write_tiles(writer, film, error)));
-    pen.at = writer->buffer + RECORD_HEAD;
-    put_u64(&pen, writer->records);
+    output.at = writer->buffer + RECORD_HEAD;
+    put_u64(&output, writer->records);
     return ok && write_record(writer, RECORD_END, 8, error);
 }
 
@@ -275,12 +275,12 @@ static const uint8_t *fetch(const struct reader *reader, size_t size) {
 
 static bool next_record(struct reader *reader, struct record *out, struct error *error) {
     uint64_t left = reader->size - reader->at;
-    struct eye eye = {left < RECORD_HEAD + RECORD_CHECK ? NULL : fetch(reader, RECORD_HEAD)};
-    if (!eye.at)
+    struct byte_reader input = {left < RECORD_HEAD + RECORD_CHECK ? NULL : fetch(reader, RECORD_HEAD)};
+    if (!input.at)
         return wrong(reader, error, "it ends too early");
-    out->kind = get_u32(&eye);
-    uint32_t reserved = get_u32(&eye);
-    uint64_t size = get_u64(&eye);
+    out->kind = get_u32(&input);
+    uint32_t reserved = get_u32(&input);
+    uint64_t size = get_u64(&input);
     if (size > PAYLOAD_LIMIT || reserved != 0)
         return wrong(reader, error, "a record has an impossible size");
     const uint8_t *whole =
@@ -289,32 +289,32 @@ static bool next_record(struct reader *reader, struct record *out, struct error 
         return wrong(reader, error, "it ends too early");
     out->size = (size_t)size;
     out->payload = whole + RECORD_HEAD;
-    eye.at = out->payload + size;
-    if (get_u64(&eye) != check_of(reader->records, out->kind, out->payload, out->size))
+    input.at = out->payload + size;
+    if (get_u64(&input) != check_of(reader->records, out->kind, out->payload, out->size))
         return wrong(reader, error, "the checksum of a record is wrong");
     reader->at += RECORD_HEAD + out->size + RECORD_CHECK;
     reader->records++;
     return true;
 }
 
-static bool get_name(struct eye *eye, const uint8_t *end, char name[TILE_FILE_NAME]) {
-    size_t length = (size_t)(end - eye->at);
-    if (length == 0 || length >= TILE_FILE_NAME || memchr(eye->at, '\0', length))
+static bool get_name(struct byte_reader *input, const uint8_t *end, char name[TILE_FILE_NAME]) {
+    size_t length = (size_t)(end - input->at);
+    if (length == 0 || length >= TILE_FILE_NAME || memchr(input->at, '\0', length))
         return false;
-    get(eye, name, length);
+    get(input, name, length);
     name[length] = '\0';
     return true;
 }
 
 static bool read_done(const struct reader *reader, const struct record *record, struct tile_done *out,
                       struct error *error) {
-    struct eye eye = {record->payload};
+    struct byte_reader input = {record->payload};
     if (record->size < DONE_FIXED)
         return wrong(reader, error, "a finished picture is too short");
-    out->number = get_u32(&eye);
-    out->key = get_key(&eye);
-    out->written = get_digest(&eye);
-    return get_name(&eye, record->payload + record->size, out->name) ||
+    out->number = get_u32(&input);
+    out->key = get_key(&input);
+    out->written = get_digest(&input);
+    return get_name(&input, record->payload + record->size, out->name) ||
            wrong(reader, error, "a finished picture has an invalid name");
 }
 
@@ -325,29 +325,29 @@ static bool is_part(const struct film_rectangle *part, const struct tile_picture
 
 static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
                          struct error *error) {
-    struct eye eye = {record->payload};
+    struct byte_reader input = {record->payload};
     bool stated = reader->file->format != FORMAT, cut = reader->file->format == FORMAT_SHOWN;
     if (record->size < (size_t)PICTURE_FIXED + (stated ? RECORD_FIELDS : 0) + (cut ? SHOWN_FIELDS : 0))
         return wrong(reader, error, "the description of the picture is too short");
-    out->number = get_u32(&eye);
-    out->key = get_key(&eye);
-    out->full_width = get_u32(&eye);
-    out->full_height = get_u32(&eye);
-    out->x0 = get_u32(&eye);
-    out->y0 = get_u32(&eye);
-    out->width = get_u32(&eye);
-    out->height = get_u32(&eye);
-    uint64_t exposure = get_u64(&eye);
+    out->number = get_u32(&input);
+    out->key = get_key(&input);
+    out->full_width = get_u32(&input);
+    out->full_height = get_u32(&input);
+    out->x0 = get_u32(&input);
+    out->y0 = get_u32(&input);
+    out->width = get_u32(&input);
+    out->height = get_u32(&input);
+    uint64_t exposure = get_u64(&input);
     memcpy(&out->tone.exposure, &exposure, sizeof exposure);
-    uint32_t curve = get_u32(&eye), srgb = get_u32(&eye), deep = get_u32(&eye);
+    uint32_t curve = get_u32(&input), srgb = get_u32(&input), deep = get_u32(&input);
     out->tone.curve = (enum tone_curve)curve;
     out->tone.srgb = srgb != 0;
     out->deep = deep != 0;
-    out->shard = get_u32(&eye);
-    out->shards = get_u32(&eye);
-    out->whole = get_u32(&eye) != 0;
-    out->record = stated ? get_film_record(&eye) : format_1;
-    out->shown = cut ? get_rectangle(&eye) : whole_of(out);
+    out->shard = get_u32(&input);
+    out->shards = get_u32(&input);
+    out->whole = get_u32(&input) != 0;
+    out->record = stated ? get_film_record(&input) : format_1;
+    out->shown = cut ? get_rectangle(&input) : whole_of(out);
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
@@ -357,7 +357,7 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     if (!fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 || out->shard == 0 ||
         out->shard > out->shards)
         return wrong(reader, error, "the description of the picture is invalid");
-    return get_name(&eye, record->payload + record->size, out->name) ||
+    return get_name(&input, record->payload + record->size, out->name) ||
            wrong(reader, error, "the picture has an invalid name");
 }
 
@@ -376,14 +376,14 @@ static bool check_tile(const struct reader *reader, const struct tile_file *file
                        int64_t *last, struct error *error) {
     if (!file->has_picture)
         return wrong(reader, error, "a tile comes before its picture");
-    struct eye eye = {record->payload};
+    struct byte_reader input = {record->payload};
     struct film film = outline(&file->picture);
     if (record->size < 4)
         return wrong(reader, error, "a tile is too short");
-    uint32_t tile = get_u32(&eye);
+    uint32_t tile = get_u32(&input);
     if (tile >= film_tile_count(&film) || (int64_t)tile <= *last)
         return wrong(reader, error, "a tile is out of order");
-    if (!film_tile_fits(&film, tile, eye.at, record->size - 4))
+    if (!film_tile_fits(&film, tile, input.at, record->size - 4))
         return wrong(reader, error, "a tile has a wrong size, or a colour that is not finite");
     *last = tile;
     return true;
@@ -428,8 +428,8 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
             file->tiles++;
             break;
         case RECORD_END: {
-            struct eye eye = {record.payload};
-            if (record.size != 8 || get_u64(&eye) != reader->records - 1)
+            struct byte_reader input = {record.payload};
+            if (record.size != 8 || get_u64(&input) != reader->records - 1)
                 return wrong(reader, error, "records are missing");
             if (reader->at != reader->size)
                 return wrong(reader, error, "data follow its end");
@@ -447,12 +447,12 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
 /* What there is of `out` stays when that fails. */
 static bool read_file(const char *path, uint64_t size, struct tile_file *out, struct error *error) {
     struct reader reader = {.path = path, .file = out, .size = size};
-    struct eye eye = {size < sizeof magic + 8 ? NULL : fetch(&reader, sizeof magic + 8)};
-    if (!eye.at || memcmp(eye.at, magic, sizeof magic) != 0)
+    struct byte_reader input = {size < sizeof magic + 8 ? NULL : fetch(&reader, sizeof magic + 8)};
+    if (!input.at || memcmp(input.at, magic, sizeof magic) != 0)
         return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
-    eye.at += sizeof magic;
-    out->format = get_u32(&eye);
-    if (out->format < FORMAT || out->format > FORMAT_SHOWN || get_u32(&eye) != FILM_TILE)
+    input.at += sizeof magic;
+    out->format = get_u32(&input);
+    if (out->format < FORMAT || out->format > FORMAT_SHOWN || get_u32(&input) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;
@@ -496,12 +496,12 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
         if (!next_record(&reader, &record, &changed) || record.kind != RECORD_TILE ||
             !check_tile(&reader, file, &record, &last, &changed))
             return;
-        struct eye eye = {record.payload};
-        uint32_t tile = get_u32(&eye);
+        struct byte_reader input = {record.payload};
+        uint32_t tile = get_u32(&input);
         if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
             ++*twice;
         else
-            *restored += film_tile_unpack(film, tile, eye.at, record.size - 4);
+            *restored += film_tile_unpack(film, tile, input.at, record.size - 4);
     }
 }
 

@@ -168,7 +168,7 @@ uint32_t height_field_scratch_need(const struct height_field *f) {
 
 /* ---- the line ---- */
 
-struct walk {
+struct cell_traversal {
     const struct height_field *field;
     struct line line;
     double x, z, dx, dz; /* in cells */
@@ -178,7 +178,7 @@ struct walk {
     bool known, below; /* the side of the ground on which the line is, once known */
 };
 
-static bool cross(struct walk *w, double s, uint32_t part) {
+static bool cross(struct cell_traversal *w, double s, uint32_t part) {
     w->below = !w->below;
     return geom_scratch_push(w->scratch, (struct crossing){.t = s, .part = part, .enter = w->below});
 }
@@ -193,7 +193,7 @@ static struct triangle_plane triangle_plane(const struct height_field *f, uint32
     return (struct triangle_plane){h00, upper ? h11 - h : h - h00, upper ? h - h00 : h11 - h};
 }
 
-static double phi(const struct walk *w, double s, uint32_t column, uint32_t row, bool upper) {
+static double phi(const struct cell_traversal *w, double s, uint32_t column, uint32_t row, bool upper) {
     struct triangle_plane plane = triangle_plane(w->field, column, row, upper);
     return (w->y + s * w->dy) - (plane.h0 + plane.a * (w->x + s * w->dx - column) + plane.b * (w->z + s * w->dz - row));
 }
@@ -208,7 +208,8 @@ static inline double greater(double a, double b) {
 }
 
 /* The line over one triangle, from s = from to s = to. */
-static bool fly_camera_triangle(struct walk *w, uint32_t column, uint32_t row, bool upper, double from, double to) {
+static bool fly_camera_triangle(struct cell_traversal *w, uint32_t column, uint32_t row, bool upper, double from,
+                                double to) {
     double start = phi(w, from, column, row, upper), end = phi(w, to, column, row, upper);
     if (!w->known) {
         w->known = true;
@@ -223,7 +224,7 @@ static bool fly_camera_triangle(struct walk *w, uint32_t column, uint32_t row, b
     return cross(w, lesser(greater(s, from), to), part);
 }
 
-static bool fly_camera_cell(struct walk *w, uint32_t column, uint32_t row, double from, double to) {
+static bool fly_camera_cell(struct cell_traversal *w, uint32_t column, uint32_t row, double from, double to) {
     double before = (w->z + from * w->dz - row) - (w->x + from * w->dx - column);
     double after = (w->z + to * w->dz - row) - (w->x + to * w->dx - column);
     if ((before > 0) == (after > 0))
@@ -234,7 +235,7 @@ static bool fly_camera_cell(struct walk *w, uint32_t column, uint32_t row, doubl
 }
 
 /* The line over or under a whole block. */
-static bool pass(struct walk *w, bool below, double from, uint32_t column, uint32_t row) {
+static bool pass(struct cell_traversal *w, bool below, double from, uint32_t column, uint32_t row) {
     if (!w->known) {
         w->known = true;
         w->below = below;
@@ -252,7 +253,7 @@ struct block {
 };
 
 /* Divides a block: pushes the parts of the line over its children, the last one first. */
-static int divide(const struct walk *w, const struct block *block, struct block *stack, int depth) {
+static int divide(const struct cell_traversal *w, const struct block *block, struct block *stack, int depth) {
     double edge = (double)((uint32_t)1 << (block->level - 1));
     double x_middle = (2.0 * block->column + 1) * edge, z_middle = (2.0 * block->row + 1) * edge;
     double sx = w->dx != 0 ? (x_middle - w->x) / w->dx : INFINITY,
@@ -295,7 +296,7 @@ static bool clip(double o, double d, struct slab slab, struct end *enter, struct
 /* All crossings, or, given an interval, at least those up to the first inside it (then *stopped may be set). */
 static bool collect(const struct height_field *f, const struct ray *ray, bool nearest, struct geom_scratch *scratch,
                     struct line *line, bool *stopped) {
-    struct walk w = {.field = f, .scratch = scratch, .first = scratch->used};
+    struct cell_traversal w = {.field = f, .scratch = scratch, .first = scratch->used};
     *stopped = false;
     if (!line_init(&w.line, ray, vec3_make(0.5, f->floor / 2 + f->hi / 2, 0.5))) {
         *line = w.line;

@@ -24,7 +24,7 @@ struct csg_draft {
 };
 
 /* The state from the ancestors of an operand. */
-struct above {
+struct inherited_state {
     struct transform csg_from_parent;
     const struct material *inherited;
     const struct box *limit; /* in CSG space, or NULL */
@@ -67,7 +67,7 @@ static bool report_open(struct flattening *f, const struct node *node) {
 }
 
 static bool add_leaf(struct flattening *f, struct csg_draft *draft, const struct node *node,
-                     const struct transform *csg_from_node, const struct above *above) {
+                     const struct transform *csg_from_node, const struct inherited_state *above) {
     if (draft->leaf_count == CSG_LEAVES)
         return error_set(f->error, ERROR_SCENE, "a CSG solid has more than %d operands", CSG_LEAVES);
     if (draft->leaf_count == draft->leaf_capacity) {
@@ -115,10 +115,11 @@ static bool join(struct flattening *f, struct csg_draft *draft, enum csg_operati
 }
 
 static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
-                      const struct above *above, bool inside, enum content *content);
+                      const struct inherited_state *above, bool inside, enum content *content);
 
 /* The box around a solid whose pose is given by its ancestors; infinite if unknown. */
-static bool box_of_solid(struct flattening *f, const struct node *solid, const struct above *above, struct box *out) {
+static bool box_of_solid(struct flattening *f, const struct node *solid, const struct inherited_state *above,
+                         struct box *out) {
     struct csg_draft draft = {.unseen = true};
     enum content content = NOTHING;
     *out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
@@ -137,7 +138,7 @@ static bool box_of_solid(struct flattening *f, const struct node *solid, const s
 
 bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
                    struct box *limit) {
-    struct above above = {.csg_from_parent = transform_identity()};
+    struct inherited_state above = {.csg_from_parent = transform_identity()};
     struct box own;
     if (!box_of_solid(f, solid, &above, &own))
         return false;
@@ -149,7 +150,7 @@ bool flatten_limit(struct flattening *f, const struct node *solid, const struct 
 /* The box that the operand of a bounded node is known to lie in; NULL without memory or for an error. */
 static const struct box *bound_of(struct flattening *f, const struct node *node, const struct operand_frame *frame,
                                   uint32_t nesting) {
-    struct above above = {frame->csg_from_node, frame->inherited_operands, frame->limit, nesting};
+    struct inherited_state above = {frame->csg_from_node, frame->inherited_operands, frame->limit, nesting};
     struct box *limit = arena_alloc(f->arena, sizeof *limit);
     if (!limit) {
         error_no_memory(f->error, "the operands of a CSG solid");
@@ -181,7 +182,7 @@ static bool begin_operation(struct flattening *f, const struct node *node, struc
 
 /* A node that was just entered: its own surface. `skip`: nothing is under it. */
 static bool enter_operand(struct flattening *f, struct csg_draft *draft, const struct node *node,
-                          const struct above *above, struct operand_frame *frame, bool *skip) {
+                          const struct inherited_state *above, struct operand_frame *frame, bool *skip) {
     frame->content = NOTHING;
     frame->start = draft->length;
     frame->leaves = draft->leaf_count;
@@ -263,16 +264,16 @@ static bool leave_operand(struct flattening *f, struct csg_draft *draft, const s
 }
 
 /* The state that the parent gives the node just entered. */
-static struct above above_of(const struct scene_traversal *t, uint32_t nesting) {
+static struct inherited_state above_of(const struct scene_traversal *t, uint32_t nesting) {
     const struct operand_frame *frame = scene_traversal_frame(t, 1);
     nesting += t->depth - 1;
     if (scene_traversal_operand(t) == SCENE_CHILD)
-        return (struct above){frame->of_children, frame->inherited, frame->limit, nesting};
-    return (struct above){frame->csg_from_node, frame->inherited_operands, frame->limit_operands, nesting};
+        return (struct inherited_state){frame->of_children, frame->inherited, frame->limit, nesting};
+    return (struct inherited_state){frame->csg_from_node, frame->inherited_operands, frame->limit_operands, nesting};
 }
 
 static bool enter_solid(struct flattening *f, struct csg_draft *draft, struct scene_traversal *t,
-                        const struct above *above) {
+                        const struct inherited_state *above) {
     struct operand_frame *frame = scene_traversal_frame(t, 0);
     const struct node *node = scene_traversal_node(t);
     bool skip = false;
@@ -281,7 +282,7 @@ static bool enter_solid(struct flattening *f, struct csg_draft *draft, struct sc
             .csg_from_node = above->csg_from_parent, .inherited = above->inherited, .limit = above->limit};
         return begin_operation(f, node, frame, above->nesting);
     }
-    struct above own = t->depth > 1 ? above_of(t, above->nesting) : *above;
+    struct inherited_state own = t->depth > 1 ? above_of(t, above->nesting) : *above;
     if (!enter_operand(f, draft, node, &own, frame, &skip))
         return false;
     enum content nothing;
@@ -296,7 +297,7 @@ static bool enter_solid(struct flattening *f, struct csg_draft *draft, struct sc
 /* Everything under a node as one operand: the union of its own surface and of its children. inside: only its operands,
  * as if the node had the pose of its parent. */
 static bool add_solid(struct flattening *f, struct csg_draft *draft, const struct node *solid,
-                      const struct above *above, bool inside, enum content *content) {
+                      const struct inherited_state *above, bool inside, enum content *content) {
     struct scene_traversal t = {
         .operands = OPERANDS_OF_SOLIDS, .inside = inside, .frame_size = sizeof(struct operand_frame)};
     enum scene_event event;
@@ -329,7 +330,7 @@ static bool add_clips(struct flattening *f, struct csg_draft *draft, const struc
     *content = EVERYTHING;
     draft->unseen = true;
     for (const struct clip *clip = clips; clip; clip = clip->next) {
-        struct above above = {.csg_from_parent = transform_compose(&csg_from_ground, &clip->pose.from_node)};
+        struct inherited_state above = {.csg_from_parent = transform_compose(&csg_from_ground, &clip->pose.from_node)};
         enum content one;
         if (clip->pose.above != pose->above)
             return error_set(
@@ -395,7 +396,7 @@ bool flatten_csg(struct flattening *f, const struct node *node, const struct pos
     struct csg_draft draft = {0};
     enum content content = SOMETHING, clip = EVERYTHING;
     struct transform identity = transform_identity();
-    struct above above = {.csg_from_parent = identity, .inherited = state ? state->inherited : NULL};
+    struct inherited_state above = {.csg_from_parent = identity, .inherited = state ? state->inherited : NULL};
     *parts = NULL;
     *count = 0;
     bool ok = node->kind == NODE_CSG ? add_solid(f, &draft, node, &above, true, &content)

@@ -150,7 +150,7 @@ TEST(frames_of_meshes_have_the_voxels_that_the_model_finds_cheapest) {
 }
 
 /* The cost of an invented mesh: a million occupied voxels, of which a ray meets one. */
-TEST(a_mesh_whose_voxels_spare_more_than_the_walk_costs_gets_them) {
+TEST(a_mesh_whose_voxels_save_more_than_their_traversal_costs_gets_them) {
     struct cost_sample cost_sample = {.level_count = 4, .items = 1e6};
     for (uint32_t l = 0; l < 4; l++)
         cost_sample.levels[l] = (struct cost_level){
@@ -221,7 +221,7 @@ static double counted_world(const struct stage *s) {
     return (nodes + 0.3 * boxes + 0.35 * voxels) / RAYS;
 }
 
-TEST(frames_over_placed_primitives_cost_little_more_than_the_better_of_cells_and_hierarchy) {
+TEST(scene_accelerators_cost_little_more_than_the_better_of_cells_and_hierarchy) {
     int cells = 0, hierarchies = 0;
     for (int form = 0; form < 6; form++) {
         double cost[3];

@@ -178,7 +178,7 @@ TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
 }
 
 /* No ray hits anything, and without an accelerator every ray tests every box: the cost is known. */
-TEST(the_cost_of_a_ray_that_tries_everything_is_the_number_of_things) {
+TEST(the_cost_of_a_ray_that_tests_everything_is_the_number_of_primitives) {
     enum { OBJECTS = 37 };
     struct stage s;
     stage_begin(&s, 1);

@@ -379,7 +379,7 @@ TEST(a_sky_that_grows_with_height_lights_as_its_integral_says) {
 }
 
 /* The furnace test: in uniform light a surface that reflects everything is invisible. */
-TEST(white_rough_and_polished_things_vanish_in_uniform_light) {
+TEST(white_rough_and_polished_objects_vanish_in_uniform_light) {
     struct stage s;
     stage_begin(&s, 2);
     struct sky sky = {.kind = SKY_CONSTANT, .colour = {0.7, 0.7, 0.7}};

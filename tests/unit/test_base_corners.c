@@ -53,7 +53,7 @@ TEST(sizes_beyond_all_memory_are_refused_and_sizes_of_zero_are_fine) {
     arena_destroy(&arena);
 }
 
-TEST(an_arena_that_is_reset_keeps_its_largest_block_wherever_it_stands) {
+TEST(an_arena_that_is_reset_keeps_its_largest_block_at_any_position) {
     struct arena arena = {0};
     char *large = arena_alloc(&arena, 1 << 20); /* the next block is larger still, the one after it small again */
     CHECK(large && arena_alloc(&arena, 1 << 20) && arena_alloc(&arena, (size_t)100 << 20) &&
@@ -103,7 +103,7 @@ TEST(pools_have_the_threads_that_make_sense) {
 
 /* --- names of files --- */
 
-TEST(files_that_cannot_be_written_are_told_with_whose_fault_it_is) {
+TEST(files_that_cannot_be_written_are_errors_that_name_the_cause) {
     char long_name[5000], long_part[400];
     memset(long_name, 'x', sizeof long_name);
     long_name[sizeof long_name - 1] = '\0';
@@ -161,7 +161,7 @@ static bool take(void *context, const char *name) {
     return strlen(names) < 10;
 }
 
-TEST(folders_are_listed_in_order_up_to_a_limit_or_until_it_is_enough) {
+TEST(folders_are_listed_in_order_up_to_a_limit_or_until_the_caller_stops) {
     char names[200] = "";
     static const char *const files[] = {"charlie", "alpha", "bravo", "delta"};
     for (int i = 0; i < 4; i++)
@@ -183,7 +183,7 @@ TEST(folders_are_listed_in_order_up_to_a_limit_or_until_it_is_enough) {
 #endif
 }
 
-TEST(a_witness_counts_every_content_once_in_any_order) {
+TEST(a_read_log_counts_every_content_once_in_any_order) {
     struct file_read_log witness = {0}, turned = {0};
     struct file_bytes bytes;
     struct error error = {0};

@@ -109,7 +109,7 @@ TEST(boxes_of_cut_quadrics_hold_every_point_and_are_inside_both_boxes) {
     }
 }
 
-TEST(boxes_of_placed_meshes_and_patches_are_those_of_their_corners) {
+TEST(boxes_of_transformed_meshes_and_patches_are_those_of_their_corners) {
     struct test_random random = {33};
     struct maker m = {0};
     maker_sphere(&m, 4);

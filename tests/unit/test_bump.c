@@ -173,7 +173,7 @@ static uint32_t fill_shapes(struct shape out[8], struct mesh *mesh) {
     return count;
 }
 
-TEST(relief_of_constant_pictures_leaves_every_bit_of_the_normal) {
+TEST(bump_maps_of_constant_pictures_leave_every_bit_of_the_normal) {
     struct mesh *mesh = square_mesh(true);
     struct image *level = paint(half, 37, 20, 8), *blue = paint(neutral_blue, 16, 16, 8);
     struct test_random random = {5};
@@ -272,7 +272,7 @@ TEST(bumps_on_a_ball_are_the_normals_of_the_ball_with_those_heights) {
     image_release(image);
 }
 
-TEST(bump_heights_stand_out_of_the_hollow_that_an_operand_leaves) {
+TEST(bump_heights_rise_out_of_the_hollow_that_an_operand_leaves) {
     struct image *image = paint(ramp_right, 255, 4, 16);
     struct stage s;
     stage_begin(&s, 1);
@@ -317,7 +317,7 @@ TEST(normal_maps_turn_to_where_their_colours_point) {
     mesh_release(mesh);
 }
 
-TEST(relief_turns_the_interpolated_normal_of_smooth_meshes) {
+TEST(bump_maps_turn_the_interpolated_normal_of_smooth_meshes) {
     struct image *image = paint(ramp_right, 255, 4, 16);
     struct mesh *mesh = square_mesh(true);
     struct stage s;

@@ -227,7 +227,7 @@ TEST(lenses_give_the_same_bits_for_any_threads_crop_and_power_of_two) {
     free(reference);
 }
 
-TEST(an_orthographic_ray_that_starts_inside_glass_knows_it) {
+TEST(an_orthographic_ray_that_starts_inside_glass_carries_the_glass) {
     struct stage s;
     stage_begin(&s, 1);
     struct material *glass = stage_glass(&s, 0, 1, 1.5);

@@ -584,7 +584,7 @@ TEST(packed_directions_are_right_to_a_ten_thousandth) {
 }
 
 /* Photons are sent only towards specular objects: most of them meet one, however small it is. */
-TEST(photons_are_sent_to_where_specular_things_are) {
+TEST(photons_are_sent_towards_specular_objects) {
     for (int kind = 0; kind < 2; kind++) {
         struct stage s;
         struct photon_map map;
@@ -671,7 +671,7 @@ TEST(paths_with_photons_show_the_light_of_rough_glass_over_diffuse_once) {
     check_energy(0.3, 1024);
 }
 
-TEST(photons_bring_paths_the_caustic_of_a_light_without_body) {
+TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
     for (int photons = 0; photons <= 100000; photons += 100000) {
         struct stage s;
         stage_begin(&s, 2);

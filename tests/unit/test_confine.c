@@ -204,7 +204,7 @@ static int try_processes(void) {
     return failed;
 }
 
-TEST(hostile_a_confined_process_sees_no_other_process) {
+TEST(hostile_a_confined_process_finds_no_other_process) {
     check_confined(try_processes, false);
 }
 

@@ -324,7 +324,7 @@ static struct mesh *mesh_cube(bool outward) {
     return indexed_mesh(&input);
 }
 
-TEST(csg_takes_closed_meshes_like_boxes_whichever_way_they_are_wound) {
+TEST(csg_takes_closed_meshes_like_boxes_with_either_winding) {
     struct test_random random = {16};
     struct geom_scratch scratch_a, scratch_b;
     CHECK(geom_scratch_init(&scratch_a, 1000) && geom_scratch_init(&scratch_b, 1000));

@@ -77,7 +77,7 @@ TEST(de_morgan_pictures_are_equal) {
     CHECK(differing("a.png", "c.png", 8) > 150 && differing("a.png", "e.png", 8) > 150);
 }
 
-TEST(a_merge_is_the_union_and_looks_like_a_group_from_outside) {
+TEST(a_merge_is_the_union_and_renders_as_a_group_from_outside) {
     renders(STAGE "local function parts(m) local t = {}\n"
                   "for k = 1, 7 do t[k] = ball(m, math.sin(k), math.cos(2 * k) / 2, math.cos(k), .5 + k / 15) end\n"
                   "return t end\n"
@@ -146,7 +146,7 @@ TEST(a_bounding_solid_changes_nothing_where_it_is_true) {
     CHECK(differing("a.png", "c.png", 8) > 150);
 }
 
-TEST(a_clipped_thing_is_cut_open) {
+TEST(a_clipped_solid_is_cut_open) {
     renders(STAGE "local function clip() return gr.plane{normal={0,0,1}, distance=.3} end\n"
                   "show(gr.clipped_by('c', ball(thin,0,0,0,1.5), clip()), 'ball.png')\n"
                   "show(gr.clipped_by(gr.node{children={ball(thin,0,0,0,1.5)}}, gr.inverse(gr.inverse(clip()))), "
@@ -164,7 +164,7 @@ TEST(a_clipped_thing_is_cut_open) {
     CHECK(differing("ball.png", "bowl.png", 8) > 60);
 }
 
-TEST(the_material_and_the_place_of_a_clipped_node_go_to_what_is_under_it) {
+TEST(the_material_and_the_transform_of_a_clipped_node_apply_to_its_children) {
     renders(STAGE "local function half() return gr.plane{normal={0,0,1}, distance=.3} end\n"
                   "local a = gr.clipped_by('c', gr.sphere('s'), half()):set_material(thin)\n"
                   "local b = gr.clipped_by('c', gr.sphere('s'):set_material(thin):scale(1.5,1,1), "
@@ -176,7 +176,7 @@ TEST(the_material_and_the_place_of_a_clipped_node_go_to_what_is_under_it) {
     CHECK_EQ_INT(differing("c.png", "d.png", 0), 0);
 }
 
-TEST(a_camera_inside_of_a_solid_sees_it_from_inside) {
+TEST(a_camera_inside_of_a_solid_renders_its_inner_side) {
     renders(STAGE
             "local function inside(n, f) show(gr.node{children={n, ball(red,-.3,-.3,-.3,.2)}}, f, {.1,.2,.3}) end\n"
             "inside(ball(glass,0,0,0,1.5), 'ball.png')\n"

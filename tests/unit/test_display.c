@@ -173,7 +173,7 @@ TEST(a_viewer_that_goes_away_or_is_not_there_is_done_without) {
     free(result.err);
 }
 
-TEST(places_to_display_are_read_or_refused) {
+TEST(addresses_of_displays_are_read_or_refused) {
     struct display_choice choice;
     CHECK(display_parse("tev", &choice) && choice.kind == DISPLAY_TEV);
     CHECK_TEXT(choice.port, "14158");

@@ -255,7 +255,7 @@ TEST(changes_by_calls_give_the_bytes_of_a_script_that_says_the_same_itself) {
                  SCENE_HEAD "gr.change_exposure('out.png', 1)\n" SCENE_TAIL("{0, 0, 6}", LIGHT), false);
 }
 
-TEST(changes_hold_for_every_picture_and_leave_the_scripts_own_tree_alone) {
+TEST(changes_hold_for_every_picture_and_leave_the_tree_of_the_script_as_it_is) {
     /* The second picture is made after the script has moved the ball itself: both moves count. */
     same_picture(SCENE_HEAD "ball:translate(1, 0, 0)\nball:translate(0, 1, 0)\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
                  SCENE_HEAD "gr.change_node('ball', 2, {1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 0})\n" SCENE_TAIL(
@@ -263,7 +263,7 @@ TEST(changes_hold_for_every_picture_and_leave_the_scripts_own_tree_alone) {
                  true);
 }
 
-TEST(changes_of_a_node_that_moves_move_its_whole_way) {
+TEST(changes_of_a_node_that_moves_shift_its_whole_motion) {
     static const char tail[] = "r:render{file='out.png', width=60, height=40, eye={0, 0, 6}, view={0, 0, -1}, fov=40, "
                                "shutter={0, 1}, samples=4, lights={gr.light({4, 5, 6}, {0.5, 0.5, 0.5}, {1, 0, 0})}}\n";
     char one[4096], other[4096];
@@ -278,7 +278,7 @@ TEST(changes_of_a_node_that_moves_move_its_whole_way) {
     same_picture(one, other, true);
 }
 
-TEST(changes_of_what_is_not_there_are_told_once_and_left_out) {
+TEST(changes_of_missing_nodes_are_reported_once_and_left_out) {
     struct test_result result = test_gray_scene(
         SCENE_HEAD "gr.change_delete('no such', 77)\n" SCENE_TAIL("{0, 0, 6}", LIGHT) SCENE_TAIL("{0, 0, 6}", LIGHT),
         "scene.lua", NULL);
@@ -443,7 +443,7 @@ static bool near(struct vec3 a, struct vec3 b) {
     return vec3_length(vec3_sub(a, b)) < 1e-12;
 }
 
-TEST(changes_turn_and_size_lights_about_their_place) {
+TEST(changes_turn_and_size_lights_about_their_position) {
     const double quarter[9] = {0, 0, 1, 0, 1, 0, -1, 0, 0}; /* z becomes x, x becomes -z */
     const double double_size[9] = {2, 0, 0, 0, 2, 0, 0, 0, 2};
     struct light sun = {.kind = LIGHT_DIRECTIONAL, .direction = {0, 0, 1}};
@@ -587,7 +587,7 @@ TEST(changes_of_every_part_of_a_material_give_the_bytes_of_a_script_that_says_th
                  true);
 }
 
-TEST(changes_give_a_shape_a_material_of_its_own_which_is_changed_alone) {
+TEST(changes_give_a_shape_a_material_of_its_own) {
     same_picture("local function red(kd) return gr.material(kd, {0.4, 0.4, 0.4}, 20) end\nlocal r = gr.node('root')\n"
                  "local a, b = gr.geometry('a', gr.sphere(red({0.8, 0.2, 0.1}))), gr.geometry('b', gr.sphere(red({0.1, "
                  "0.9, 0.1})))\na:translate(-1, 0, 0)\nb:translate(1, 0, 0)\nr:add_child(a)\nr:add_child(b)\n"

@@ -291,7 +291,7 @@ TEST(elementary_angles_of_any_size_keep_the_identities) {
     }
 }
 
-TEST(elementary_functions_leave_errno_alone) {
+TEST(elementary_functions_do_not_change_errno) {
     static const double odd[] = {0.0, -1.0, 1e300, -1e300, INFINITY, NAN, 5e-324, 2.0};
     errno = 0;
     volatile double sum = 0.0;

@@ -363,7 +363,7 @@ static void check_operations(uint32_t points) {
     CHECK(cpu_select_isa("auto"));
 }
 
-TEST(every_operation_gives_the_bits_of_lua_alone_and_in_batches) {
+TEST(every_operation_gives_the_bits_of_lua_at_points_and_in_batches) {
     check_operations(20000);
 }
 

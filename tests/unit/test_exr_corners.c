@@ -76,7 +76,7 @@ static void expect_line(const struct bytes *b, const char *words) {
     free(copy);
 }
 
-TEST(exr_of_other_kinds_is_told) {
+TEST(exr_of_other_kinds_is_an_error) {
     static const int32_t ten[] = {0, 0, 9, 9}, wide[] = {0, 0, 4999, 999}, tall[] = {-2000, -2000, -1999, 26000};
     struct bytes b = {0};
     make_header(&b, true, 3, ten);

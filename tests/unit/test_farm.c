@@ -170,7 +170,7 @@ static bool is_open(int rank) {
     return controls[rank].handout == HANDOUT_OPEN;
 }
 
-TEST(ranks_in_any_order_with_nonsense_between_make_every_tile_once) {
+TEST(ranks_in_any_order_with_nonsense_messages_make_every_tile_once) {
     struct test_random random = {21};
     for (int turn = 0; turn < 30; turn++) {
         struct error error;

@@ -205,14 +205,14 @@ static void stop_renderer(int rank) {
     expect_pictures(line, COMPARE);
 }
 
-TEST(a_renderer_that_stands_still_is_killed_by_its_rank_and_its_tiles_are_made_again) {
+TEST(a_renderer_that_hangs_is_killed_by_its_rank_and_its_tiles_are_made_again) {
     need_mpi(ONE);
     make_whole();
     stop_renderer(0);
     stop_renderer(2);
 }
 
-TEST(a_farm_of_one_makes_the_tiles_of_a_renderer_that_stands_still) {
+TEST(a_farm_of_one_makes_the_tiles_of_a_renderer_that_hangs) {
     need_mpi(ONE);
     make_whole();
     pid_t farm = start_farm("", 1, WORDS);
@@ -222,7 +222,7 @@ TEST(a_farm_of_one_makes_the_tiles_of_a_renderer_that_stands_still) {
     expect_pictures("rank 0 has killed its render process", COMPARE);
 }
 
-TEST(a_renderer_that_stands_still_before_its_picture_is_begun_anew) {
+TEST(a_renderer_that_hangs_before_its_picture_is_started_again) {
     need_mpi("local function spend(limit) local n = 0; for i = 1, limit do n = n + math.sin(i) end end\n"
              "spend(15e5)\n" ONE);
     make_whole();

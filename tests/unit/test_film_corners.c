@@ -93,7 +93,7 @@ TEST(names_of_layers_are_read_or_refused) {
 
 /* A floor, a light with centre (0, 5, 0) (or at the given height), a small cube half way: its shadow is directly below
  * it. */
-TEST(the_layer_of_lights_knows_the_middle_of_every_kind_of_light) {
+TEST(the_layer_of_lights_has_the_middle_of_every_kind_of_light) {
     enum { SIZE = 21 };
     static const struct light all[] = {
         {.kind = LIGHT_POINT, .position = {0, 5, 0}},

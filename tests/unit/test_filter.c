@@ -99,7 +99,7 @@ static void begin_edge(struct stage *s, enum integrator_kind integrator, enum fi
     s->settings.path_samples = 4096;
 }
 
-TEST(an_edge_looks_as_the_integral_of_the_filter_with_every_integrator) {
+TEST(an_edge_has_the_profile_of_the_filter_s_integral_with_every_integrator) {
     enum { SIDE = 16 };
     for (int integrator = 0; integrator < LIST_COUNT(INTEGRATORS); integrator++) {
         for (int kind = 0; kind < LIST_COUNT(FILTERS); kind++) {

@@ -188,7 +188,7 @@ TEST(a_hall_of_mirrors_ends_by_the_cut_off) {
 }
 
 /* The same hall: with four times the brightness, or four times the exposure, two more reflections count. */
-TEST(the_cut_off_knows_how_bright_things_can_be_and_are_shown) {
+TEST(the_cut_off_uses_the_largest_brightness_and_the_display_s_range) {
     static const uint64_t expected[] = {8, 10, 10, 9, 11};
     for (int i = 0; i < 5; i++) {
         struct stage s;

@@ -100,7 +100,7 @@ TEST(font_letters_have_the_areas_of_the_pen_that_drew_them) {
     free(font.data);
 }
 
-TEST(font_kerning_and_missing_letters_are_told) {
+TEST(font_kerning_and_missing_letters_are_reported) {
     struct arena arena = {0};
     struct font font = read_font();
     struct font_text pair, single;

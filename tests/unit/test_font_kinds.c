@@ -122,7 +122,7 @@ TEST(fonts_with_pictures_of_letters_are_refused) {
 }
 
 /* 72 bytes that claim half a gigabyte: memory for the unpacked font is requested first. */
-TEST(fonts_that_ask_for_too_much_memory_are_refused) {
+TEST(fonts_that_need_too_much_memory_are_refused) {
     struct bytes woff = {0};
     const uint32_t unpacked = 0x20000000, packed = 8, total = 44 + 20 + 8;
     bytes_print(&woff, "wOFF");

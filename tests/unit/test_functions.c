@@ -107,7 +107,7 @@ TEST(a_function_that_is_not_pure_is_an_error_that_names_the_difference) {
     fails("local kept fn(function(p) kept = kept or p.x return kept end)", "outside of it");
 }
 
-TEST(errors_of_recording_name_the_line_and_the_way_out) {
+TEST(errors_of_recording_name_the_line_and_the_remedy) {
     fails("fn(function(p)\n return p.x + nil end)", "scene.lua:2: ");
     fails("fn(function(p) return 'red' end)", "the function must return a number or a colour {r, g, b}, not a string");
     fails("fn(function(p) return {1, 2} end)", "the function must return a number or a colour {r, g, b}, not a table");

@@ -93,7 +93,7 @@ static struct vec3 position_of(const struct node *node, const char *name, struct
     return p;
 }
 
-TEST(gltf_nodes_are_placed_by_matrix_and_by_parts_and_share_their_mesh) {
+TEST(gltf_nodes_have_matrices_or_parts_and_share_their_mesh) {
     static const char text[] = "{" ASSET "," TRIANGLE "," MESH ",\"scene\":0,\"scenes\":[{\"nodes\":[2]}],\"nodes\":["
                                "{\"name\":\"a\",\"mesh\":0,\"translation\":[1,2,3],\"scale\":[2,2,2],\"rotation\":[0,0,"
                                "0.7071067811865476,0.7071067811865476]},"
@@ -343,7 +343,7 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     model_destroy(&model);
 }
 
-TEST(gltf_errors_name_the_place) {
+TEST(gltf_errors_name_the_element) {
     static const struct {
         const char *text, *message;
     } cases[] = {

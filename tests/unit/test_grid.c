@@ -11,13 +11,13 @@
 
 enum { WORLD_ITEMS = 300 };
 
-struct answer {
+struct nearest_item {
     bool found;
     uint32_t item;
     double t;
 };
 
-static void point_at(const struct box *boxes, uint32_t item, const struct ray *ray, struct answer *best) {
+static void point_at(const struct box *boxes, uint32_t item, const struct ray *ray, struct nearest_item *best) {
     struct crossing pair[2];
     if (!box_shape_crossings(&boxes[item], ray, pair))
         return;
@@ -26,21 +26,21 @@ static void point_at(const struct box *boxes, uint32_t item, const struct ray *r
         if (!(t > ray->t_min && t < ray->t_max))
             continue;
         if (!best->found || t < best->t || (t == best->t && item < best->item))
-            *best = (struct answer){true, item, t};
+            *best = (struct nearest_item){true, item, t};
         return;
     }
 }
 
-static struct answer brute_force(const struct box *boxes, uint32_t count, const struct ray *ray) {
-    struct answer best = {0};
+static struct nearest_item brute_force(const struct box *boxes, uint32_t count, const struct ray *ray) {
+    struct nearest_item best = {0};
     for (uint32_t i = 0; i < count; i++)
         point_at(boxes, i, ray, &best);
     return best;
 }
 
-static struct answer through_grid(const struct grid *grid, const struct box *boxes, const struct ray *ray,
-                                  uint32_t *voxels) {
-    struct answer best = {0};
+static struct nearest_item through_grid(const struct grid *grid, const struct box *boxes, const struct ray *ray,
+                                        uint32_t *voxels) {
+    struct nearest_item best = {0};
     struct grid_traversal w;
     double last_exit = -INFINITY;
     for (bool ok = grid_traversal_begin(&w, grid, ray); ok; ok = grid_traversal_next(&w)) {
@@ -132,7 +132,7 @@ static void compare_with_brute_force(uint64_t seed, int worlds, int rays) {
         CHECK(grid_build(&grid, boxes, count, NULL, &error));
         for (int i = 0; i < rays; i++) {
             struct ray ray = random_ray(&random, boxes, count);
-            struct answer a = brute_force(boxes, count, &ray), b = through_grid(&grid, boxes, &ray, &voxels);
+            struct nearest_item a = brute_force(boxes, count, &ray), b = through_grid(&grid, boxes, &ray, &voxels);
             hits += a.found;
             if (a.found == b.found && (!a.found || (a.item == b.item && a.t == b.t)))
                 continue;

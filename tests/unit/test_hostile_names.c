@@ -255,7 +255,7 @@ TEST(hostile_names_of_no_file_are_errors) {
     ATTACKS(rows);
 }
 
-TEST(hostile_names_of_other_places_are_errors) {
+TEST(hostile_names_of_other_folders_are_errors) {
     static const struct attack rows[] = {
         {.name = "the folder above", .scene = "p'../x.png'", .status = 1, .says = "x.png|-o"},
         {.name = "a picture beside", .scene = "p'../out/canary.png'", .status = 1, .says = "canary.png|-o"},

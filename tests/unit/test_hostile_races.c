@@ -219,13 +219,13 @@ static const char *harm(const struct race *race, const struct attack_tree *old, 
 }
 
 /* The FIFOs of a race: the test reads and watches them. */
-struct fifos {
+struct fifo_pair {
     int readers[2], watcher;
 };
 
-static struct fifos open_fifos(void) {
+static struct fifo_pair open_fifos(void) {
     static const char *const names[2] = {"../out/canary.fifo", "fifo"};
-    struct fifos fifos = {.watcher = inotify_init1(IN_NONBLOCK | IN_CLOEXEC)};
+    struct fifo_pair fifos = {.watcher = inotify_init1(IN_NONBLOCK | IN_CLOEXEC)};
     char path[1024];
     for (int i = 0; i < 2; i++) {
         (void)snprintf(path, sizeof path, "%s/%s", in, names[i]);
@@ -235,7 +235,7 @@ static struct fifos open_fifos(void) {
     return fifos;
 }
 
-static const char *close_fifos(struct fifos *fifos) {
+static const char *close_fifos(struct fifo_pair *fifos) {
     char bytes[512] __attribute__((aligned(8)));
     const char *harmed = NULL;
     for (int i = 0; i < 2; i++) {
@@ -265,7 +265,7 @@ static void run_race(const struct race *race, uid_t user) {
     for (long moment = 1; !reason && acted && moment < 400; moment += user && getuid() == 0 ? 3 : 1) {
         fresh_folder(race, user);
         struct attack_tree old = attack_tree(root);
-        struct fifos fifos = open_fifos();
+        struct fifo_pair fifos = open_fifos();
         struct ending ending = run_traced(race, moment, user);
         struct attack_tree new = attack_tree(root);
         const char *opened = close_fifos(&fifos), *harmed = harm(race, &old, &new);
@@ -407,7 +407,7 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
         fresh_folder(race, user);
         char words[256], *reason = NULL;
         struct attack_tree old = attack_tree(root);
-        struct fifos fifos = open_fifos();
+        struct fifo_pair fifos = open_fifos();
         fflush(stdout);
         pid_t thrower = fork();
         if (thrower == 0) {

@@ -125,7 +125,7 @@ TEST(hostile_a_picture_replaces_no_other_file) {
     ATTACKS(rows);
 }
 
-TEST(hostile_links_in_the_last_place_are_errors_that_name_o) {
+TEST(hostile_links_as_the_last_component_are_errors_that_name_o) {
     static const struct attack rows[] = {
         {.name = "to a picture",
          .before = "png y.png; link x.png y.png",

@@ -180,7 +180,7 @@ static void prepare_links(void) {
     CHECK_EQ_INT(shell(links), 0);
 }
 
-static void bring_into_state(int state) {
+static void enter_state(int state) {
     char line[2048];
     (void)snprintf(line, sizeof line,
                    "umask 022; t='readobj(1) gr.x()'; for o in out a/.hid a/s/.hid; do chmod -R u+rwx $o 2>/dev/null; "
@@ -246,7 +246,7 @@ static void check_state_is_not_seen(const char *arguments) {
     const char *folder = test_path("a/s");
     char *first = NULL;
     for (int state = 0; state < STATES; state++) {
-        bring_into_state(state);
+        enter_state(state);
         char *all = all_of(folder, arguments);
         size_t at = 0;
         while (first && first[at] && first[at] == all[at])
@@ -262,7 +262,7 @@ static void check_state_is_not_seen(const char *arguments) {
             first = all;
     }
     free(first);
-    bring_into_state(0);
+    enter_state(0);
 }
 
 TEST(hostile_no_route_shows_what_lies_outside_or_is_hidden) {
@@ -541,7 +541,7 @@ TEST(hostile_no_scene_begins_a_line_as_the_program_does) {
 }
 
 /* Fragments, lines of the program and text without a line end are printed completely and in order. */
-TEST(hostile_words_of_a_scene_and_of_the_program_stand_in_their_order) {
+TEST(hostile_words_of_a_scene_and_of_the_program_keep_their_order) {
     static const char *const text = "io.stderr:write('one\\n', 2, ' ', 3.5, '\\n', 'gr')\n"
                                     "gr.sphere('s', 1)\n"
                                     "io.stderr:write('een\\nfour')\n"
@@ -623,7 +623,7 @@ TEST(hostile_a_reader_of_standard_error_that_stops_does_not_hold_the_program) {
 }
 
 /* The bar shows the end of a long name, wherever that begins. */
-TEST(hostile_the_bar_of_a_picture_does_not_look_like_a_line_of_the_program) {
+TEST(hostile_the_bar_of_a_picture_cannot_imitate_a_line_of_the_program) {
     static const char *const names[] = {
         "gray: notice: a.png",
         "folder/of/some/length/gray: all is well.......png",

@@ -60,7 +60,7 @@ static void build(struct stage *s, const struct scatter *all, int kind, struct p
     }
 }
 
-TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
+TEST(instances_with_many_transforms_give_the_bits_of_a_node_for_each) {
     struct scatter all;
     struct placements placements;
     unsigned char *reference = NULL;
@@ -82,7 +82,7 @@ TEST(instances_in_many_places_give_the_bits_of_a_node_for_each) {
     free(reference);
 }
 
-TEST(placements_by_matrix_stand_where_the_matrix_says) {
+TEST(placements_by_matrix_follow_the_matrix) {
     struct scatter all;
     scatter(&all);
     struct placements placements = {.count = COPIES, .matrices = all.matrices};
@@ -94,7 +94,7 @@ TEST(placements_by_matrix_stand_where_the_matrix_says) {
     }
 }
 
-TEST(lists_of_lights_hold_for_what_stands_in_many_places) {
+TEST(lists_of_lights_hold_for_every_instance) {
     static const double at[3][3] = {{-3, 0, 0}, {0, 0, 0}, {3, 0, 0}};
     struct placements placements = {.count = 3, .at = at};
     struct stage s;
@@ -152,7 +152,7 @@ TEST(a_group_takes_no_memory_for_what_only_shapes_have) {
 
 /* Rays at a dense cluster, alone and on a floor ten thousand times its size, in a hall around both: the work of the
  * search must stay about the same. */
-TEST(a_dense_heap_in_a_huge_scene_costs_about_what_it_costs_alone) {
+TEST(a_dense_heap_costs_as_much_in_a_huge_scene_as_by_itself) {
     uint64_t work[2] = {0, 0}, balls[2] = {0, 0};
     for (int kind = 0; kind < 2; kind++) {
         struct stage s;

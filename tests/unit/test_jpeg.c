@@ -254,7 +254,7 @@ TEST(jpeg_of_no_bytes_is_one_line) {
 }
 
 /* libjpeg allocates the coefficients of a progressive picture before gray allocates its texels. */
-TEST(jpeg_that_finds_no_memory_for_its_coefficients_is_told) {
+TEST(jpeg_that_finds_no_memory_for_its_coefficients_is_an_error) {
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
     test_skip("the sanitizers' own memory is beyond any limit on addresses");
 #endif

@@ -298,7 +298,7 @@ TEST(the_material_of_a_combined_solid_is_that_of_its_operands_without_one) {
     expect_colours("5.png", 0x00ff00, 0x00ff00);
 }
 
-TEST(an_operand_that_is_shown_elsewhere_keeps_its_own_look_there) {
+TEST(an_operand_that_is_shown_elsewhere_keeps_its_own_material_there) {
     struct test_result result = test_gray_scene(CSG "local c = gr.cube('shared') local u = gr.union('u', c, "
                                                     "gr.cube('x')) u:set_material(red) show(c, 'a.png')\n",
                                                 "scene.lua", NULL);
@@ -417,7 +417,7 @@ static void check_sphere(const char *name, double angle, enum sphere_mapping map
     free(p.rgb);
 }
 
-TEST(images_on_spheres_follow_both_formulas_from_all_around) {
+TEST(images_on_spheres_follow_both_formulas_from_every_side) {
     write_texels("t.png", 51, 17);
     renders(
         "local m = gr.material({1,1,1},{0,0,0},1)\n"

@@ -36,7 +36,7 @@ TEST(library_words_grow_as_they_should_and_the_turtle_walks_the_curve_of_hilbert
     claims_hold("claims_lsystem");
 }
 
-TEST(library_scattered_places_keep_their_distance_and_leave_no_holes) {
+TEST(library_scattered_points_keep_their_distance_and_leave_no_holes) {
     claims_hold("claims_scatter");
 }
 

@@ -43,7 +43,7 @@ static void expect_text(const char *text, const char *words) {
 
 #define HEAD "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n"
 
-TEST(corners_of_radiance_pictures_are_read_or_told) {
+TEST(corners_of_radiance_pictures_are_read_or_reported) {
     static const char marks[] = HEAD "\n-Y 1 +X 9\n\x80\x80\x80\x80\1\1\1\0\1\1\1\0\1\1\1\0\1\1\1\0\1\1\1\1";
     static const char nearly[] = HEAD "\n-Y 1 +X 2\n\1\1\2\x80\1\2\1\x80";
     static const char wide[] = HEAD "\n-Y 1 +X 40000\n\x80\x80\x80\x80\1\1\1\xff\1\1\1\x9b\1\1\1\0";
@@ -70,7 +70,7 @@ TEST(corners_of_radiance_pictures_are_read_or_told) {
     free(text);
 }
 
-TEST(corners_of_pfm_pictures_are_read_or_told) {
+TEST(corners_of_pfm_pictures_are_read_or_reported) {
     static const char grey[] = "Pf\r1 1\n-1\n\0\0\x80\x3f",
                       plain[] = "PF 1\t1\r1\n\x3f\x80\0\0\x3f\x80\0\0\x3f\x80\0\0";
     expect(grey, sizeof grey - 1, NULL);
@@ -124,7 +124,7 @@ TEST(exr_with_any_byte_changed_is_a_picture_or_one_line) {
 }
 
 /* The channels with other names, in their order: A, X and Y are a grey picture; A, G, R are refused. */
-TEST(exr_of_other_channels_is_grey_or_told) {
+TEST(exr_of_other_channels_is_grey_or_an_error) {
     static const struct {
         const char *names, *words;
     } channels[] = {

@@ -259,7 +259,7 @@ TEST(the_mean_of_one_over_pdf_is_the_solid_angle_of_a_lamp) {
 
 /* --- radiance --- */
 
-TEST(a_sample_of_every_lamp_shows_what_a_ray_to_it_sees) {
+TEST(a_sample_of_every_lamp_has_the_radiance_of_a_ray_that_meets_it) {
     struct example e;
     struct light_context context;
     FOR_EVERY_AREA_LIGHT(e, context) {
@@ -372,7 +372,7 @@ static struct vec3 flux_by_photons(const struct light *light) {
     return sum;
 }
 
-TEST(photons_of_every_light_carry_what_its_samples_bring) {
+TEST(photons_of_every_light_carry_the_power_of_its_samples) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         for (int area_light = 0; area_light < 2; area_light++) {
             struct example e;
@@ -412,7 +412,7 @@ TEST(photons_of_the_parts_of_a_light_are_those_of_the_whole) {
 /* --- from afar --- */
 
 /* The importance is 0 only if no sample brings light; otherwise it is about as large as the light of the samples. */
-TEST(the_bounds_of_every_light_hold_what_its_samples_bring) {
+TEST(the_bounds_of_every_light_hold_its_samples) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         for (int area_light = 0; area_light < 2; area_light++) {
             struct example e;

@@ -170,7 +170,7 @@ TEST(the_same_lights_make_the_same_sampler) {
     arena_destroy(&b.arena);
 }
 
-TEST(lights_in_one_place_and_far_apart_make_a_tree_that_is_not_deep) {
+TEST(coincident_and_distant_lights_make_a_tree_that_is_not_deep) {
     enum { LIGHTS = 3000 };
     for (int apart = 0; apart < 2; apart++) {
         struct lights l;

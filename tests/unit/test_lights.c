@@ -137,7 +137,7 @@ TEST(a_one_sided_lamp_lights_its_side_only) {
     stage_end(&s);
 }
 
-TEST(directional_light_is_the_cosine_without_fading) {
+TEST(directional_light_is_the_cosine_without_attenuation) {
     struct stage s;
     stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_DIRECTIONAL, .direction = {0.6, -0.8, 0}, .colour = {1, 1, 1}};
@@ -152,7 +152,7 @@ TEST(directional_light_is_the_cosine_without_fading) {
     stage_end(&s);
 }
 
-TEST(fading_by_range_and_by_inverse_square) {
+TEST(attenuation_by_range_and_by_inverse_square) {
     struct stage s;
     stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_POINT, .position = {0, 3, 0}, .colour = {1, 1, 1}};
@@ -168,7 +168,7 @@ TEST(fading_by_range_and_by_inverse_square) {
     stage_end(&s);
 }
 
-TEST(spot_is_full_inside_smooth_between_and_dark_outside) {
+TEST(spot_is_full_inside_smooth_at_its_edge_and_dark_outside) {
     struct stage s;
     stage_floor(&s);
     s.lights[0] = (struct light){.kind = LIGHT_SPOT,
@@ -338,7 +338,7 @@ TEST(a_visible_lamp_counts_once_in_a_mirror) {
         }
 }
 
-TEST(a_light_may_say_how_many_shadow_rays_it_wants) {
+TEST(a_light_may_set_its_number_of_shadow_rays) {
     struct stage s;
     stage_floor(&s);
     for (int n = 1; n <= 20; n += 19) {

@@ -20,7 +20,7 @@
 enum { NO_LIMIT = -1, CRASHED = 128, SECONDS = 60, WORDS = 32, SCENE_SIZE = 16384 };
 
 /* A run of the program in the test's folder. */
-struct run {
+struct program_run {
     int status; /* exit status, or 128 + signal */
     char *out, *err;
 };
@@ -56,8 +56,8 @@ static void be_program(const char *arguments, int resource, long limit) {
     _exit(127);
 }
 
-static struct run run_limited(const char *arguments, int resource, long limit) {
-    struct run run = {0};
+static struct program_run run_limited(const char *arguments, int resource, long limit) {
+    struct program_run run = {0};
     int how = 0;
     (void)test_folder(); /* made by this process, not by the child */
     pid_t child = fork();
@@ -70,7 +70,7 @@ static struct run run_limited(const char *arguments, int resource, long limit) {
     return run;
 }
 
-static void forget(struct run *run) {
+static void forget(struct program_run *run) {
     free(run->out);
     free(run->err);
 }
@@ -84,7 +84,7 @@ static bool is_there(const char *name) {
     return stat(test_path(name), &status) == 0;
 }
 
-static void fail(const char *what, long limit, const struct run *run) {
+static void fail(const char *what, long limit, const struct program_run *run) {
     test_fail(__FILE__, __LINE__, "%s, limit %ld: status %d: %.300s", what, limit, run->status, run->err);
 }
 
@@ -179,14 +179,14 @@ static void same_with_any_stack(const struct deep *cases, size_t count, const lo
     for (size_t i = 0; i < count; i++) {
         put_scene(cases[i].text);
         (void)unlink(test_path("x.pfm"));
-        struct run whole = run_limited("-q scene.lua", RLIMIT_STACK, NO_LIMIT);
+        struct program_run whole = run_limited("-q scene.lua", RLIMIT_STACK, NO_LIMIT);
         size_t size = 0, other_size = 0;
         char *bytes = picture(&size);
         if (whole.status > 1 || (whole.status == 1) != (whole.err[0] != '\0'))
             fail(cases[i].what, NO_LIMIT, &whole);
         for (const long *limit = kibibytes; *limit; limit++) {
             (void)unlink(test_path("x.pfm"));
-            struct run run = run_limited("-q scene.lua", RLIMIT_STACK, *limit * 1024);
+            struct program_run run = run_limited("-q scene.lua", RLIMIT_STACK, *limit * 1024);
             char *other = picture(&other_size);
             bool same = run.status == whole.status && strcmp(run.err, whole.err) == 0 &&
                         strcmp(run.out, whole.out) == 0 && !bytes == !other && size == other_size &&
@@ -258,7 +258,7 @@ TEST(every_action_works_with_a_stack_of_128_kilobytes) {
         "merge x.pfm.1-of-2.part x.pfm.2-of-2.part -o m.png"};
     put_scene(BALL "r = gr.difference('d', a, c) " PICTURE);
     for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
-        struct run run = run_limited(arguments[i], RLIMIT_STACK, 128 * 1024);
+        struct program_run run = run_limited(arguments[i], RLIMIT_STACK, 128 * 1024);
         if (run.status != 0)
             fail(arguments[i], 128, &run);
         forget(&run);
@@ -305,7 +305,7 @@ static void descriptors_up_to_40(const char *arguments, const char *made, int sc
     for (int limit = 3; limit <= 40; limit += limit < 16 ? 1 : 6) {
         (void)unlink(test_path(made));
         (void)unlink(test_path("c"));
-        struct run run = run_limited(arguments, RLIMIT_NOFILE, limit);
+        struct program_run run = run_limited(arguments, RLIMIT_NOFILE, limit);
         /* Before main the dynamic linker reports it in its own words. */
         bool unstarted = run.status == 127 && strstr(run.err, "error while loading shared libraries");
         bool refused = run.status == 3 && strstr(run.err, "Too many open files") && messages(run.err) >= 1 &&
@@ -342,7 +342,7 @@ TEST(few_descriptors_are_one_line_and_status_3) {
 TEST(few_descriptors_are_one_line_for_parts_and_several_scripts) {
     put_files();
     put_scene(scene_with_files);
-    struct run run = run_limited("-q --shard 1/1 scene.lua", RLIMIT_NOFILE, NO_LIMIT);
+    struct program_run run = run_limited("-q --shard 1/1 scene.lua", RLIMIT_NOFILE, NO_LIMIT);
     CHECK_EQ_INT(run.status, 0);
     forget(&run);
     descriptors_up_to_40("merge x.pfm.1-of-1.part -o m.png", "m.png", 1);
@@ -373,7 +373,7 @@ TEST(descriptors_that_a_scene_holds_are_missed_with_status_3) {
                            "for i = 1, %d do held[#held]:close() held[#held] = nil end\n%s\n",
                            left, cases[i].then);
             put_scene(text);
-            struct run run = run_limited("-q scene.lua", RLIMIT_NOFILE, 30);
+            struct program_run run = run_limited("-q scene.lua", RLIMIT_NOFILE, 30);
             bool sufficient = left >= cases[i].needs;
             bool right = sufficient
                              ? run.status == 0
@@ -429,7 +429,7 @@ TEST(names_that_no_file_can_have_are_refused_with_status_1) {
             char text[SCENE_SIZE];
             with_name(cases[i].text, lengths[k], text, sizeof text);
             put_scene(text);
-            struct run run = run_limited("-q scene.lua", RLIMIT_NOFILE, NO_LIMIT);
+            struct program_run run = run_limited("-q scene.lua", RLIMIT_NOFILE, NO_LIMIT);
             char *name = strstr(run.err, "nnnnnn");
             bool cut = name && strspn(name, "n") < lengths[k];
             bool explained = strstr(run.err, "has at most") || strstr(run.err, "no such file") ||
@@ -450,7 +450,7 @@ TEST(names_of_255_bytes_are_read) {
     CHECK(rename(test_path("t.png"), path) == 0);
     (void)snprintf(text, sizeof text, "s = gr.sphere('s') s:set_texture('%s') r = s " PICTURE, name);
     put_scene(text);
-    struct run run = run_limited("-q scene.lua", RLIMIT_NOFILE, NO_LIMIT);
+    struct program_run run = run_limited("-q scene.lua", RLIMIT_NOFILE, NO_LIMIT);
     if (run.status != 0)
         fail("a texture", 255, &run);
     forget(&run);
@@ -467,7 +467,7 @@ TEST(long_names_in_mesh_files_are_warnings) {
         with_name("newmtl m\nmap_Kd NAME.png\n", lengths[k], text, sizeof text);
         test_write_text(test_path("a.mtl"), text);
         put_scene("r = gr.mesh{file = 'a.obj'} " PICTURE);
-        struct run run = run_limited("scene.lua", RLIMIT_NOFILE, NO_LIMIT);
+        struct program_run run = run_limited("scene.lua", RLIMIT_NOFILE, NO_LIMIT);
         if (run.status != 0 || !is_there("x.pfm") || !strstr(run.err, "is not there"))
             fail("a mesh file", (long)lengths[k], &run);
         forget(&run);
@@ -479,7 +479,7 @@ TEST(a_scene_with_a_long_name_is_refused_with_status_1) {
     for (size_t k = 0; k < sizeof lengths / sizeof lengths[0]; k++) {
         char arguments[4000];
         with_name("-q NAME.lua", lengths[k], arguments, sizeof arguments);
-        struct run run = run_limited(arguments, RLIMIT_NOFILE, NO_LIMIT);
+        struct program_run run = run_limited(arguments, RLIMIT_NOFILE, NO_LIMIT);
         if (run.status != 1 || messages(run.err) != 1)
             fail("a scene", (long)lengths[k], &run);
         forget(&run);

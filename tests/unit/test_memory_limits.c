@@ -573,7 +573,7 @@ TEST(files_of_tiles_of_any_size_take_the_memory_of_one_record) {
 }
 
 /* A huge file instead of a finished picture: it is read in blocks, and the picture is made again. */
-TEST(a_file_in_the_place_of_a_finished_picture_takes_no_memory) {
+TEST(a_file_over_a_finished_picture_takes_no_memory) {
     static const char text[] =
         "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}}\n"
         "if io.open('again.txt') then gr.render{node=gr.node('n'), file='p.png', width=8, height=8, eye={0, 0, 9}}\n"

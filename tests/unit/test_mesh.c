@@ -393,7 +393,7 @@ TEST(equal_t_goes_to_the_lowest_triangle) {
     maker_free(&m);
 }
 
-TEST(crossings_ask_for_more_scratch_and_then_succeed) {
+TEST(crossings_report_missing_scratch_and_then_succeed) {
     struct maker m = {0};
     for (int i = 0; i < 100; i++) {
         uint32_t v = maker_vertex(&m, 0, 0, i);

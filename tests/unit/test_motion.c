@@ -67,7 +67,7 @@ TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
     CHECK_NEAR(fabs(motion.axis.x), 1, 1e-12);
 }
 
-TEST(there_is_no_way_to_a_mirror_image) {
+TEST(mirror_images_are_refused) {
     struct transform identity = transform_identity(), mirror = transform_scale(vec3_make(1, -1, 1));
     struct motion motion;
     CHECK(!motion_interpolate(&identity, &mirror, vec3_all(0), &motion));
@@ -241,7 +241,7 @@ TEST(a_moving_camera_is_the_mean_of_standing_ones) {
     stage_end(&s);
 }
 
-TEST(moving_the_camera_is_moving_everything_the_other_way) {
+TEST(moving_the_camera_is_moving_everything_in_the_opposite_direction) {
     struct vec3 *first = calloc(32 * 8, sizeof *first);
     for (int i = 0; i < 2; i++) {
         struct stage s;
@@ -309,7 +309,7 @@ TEST(motion_gives_the_same_bits_for_any_threads_search_crop_and_power_of_two) {
 }
 
 /* The camera is outside a moving glass ball at first and inside it at the end: each ray must have the right medium. */
-TEST(a_camera_that_glass_moves_over_knows_it_at_every_moment) {
+TEST(a_camera_that_glass_moves_over_starts_in_glass_at_the_right_times) {
     struct stage s;
     stage_begin(&s, 2);
     struct material *glass = stage_glass(&s, 0, 1, 1.5);

@@ -135,7 +135,7 @@ TEST(mtl_that_is_missing_is_a_warning_and_one_that_is_broken_an_error) {
     }
 }
 
-TEST(mtl_and_pictures_out_of_reach_are_not_there) {
+TEST(mtl_and_pictures_outside_the_readable_folders_are_not_there) {
     char inner[400], path[500];
     (void)snprintf(inner, sizeof inner, "%s/inner/deep", test_folder());
     (void)snprintf(path, sizeof path, "%s/r.obj", inner);
@@ -198,7 +198,7 @@ TEST(mtl_materials_of_faces_keep_their_slots) {
     }
 }
 
-TEST(mtl_materials_are_placed_with_the_mesh) {
+TEST(mtl_materials_follow_their_mesh) {
     test_write_text(in_folder("p.mtl"), "newmtl red\nKd 1 0 0\nillum 1\nKs 1 1 1\nnewmtl glass\nKd .5 .5 .5\nd 0.25\n"
                                         "Ni 1.5\nillum 7\nnewmtl mirror\nKd 0 0 0\nKs 1 1 1\nillum 3\n");
     test_write_text(in_folder("p.obj"),
@@ -359,7 +359,7 @@ TEST(smooth_fan_of_a_hundred_thousand_faces_takes_a_moment) {
     maker_free(&m);
 }
 
-TEST(weld_makes_one_vertex_of_each_place_and_flip_turns_the_outside) {
+TEST(weld_makes_one_vertex_of_each_position_and_flip_turns_the_outside) {
     struct maker m = {0};
     cube(&m, false);
     maker_vertex(&m, 5, 5, 5); /* used by no face */

@@ -382,7 +382,7 @@ TEST_LONG(white_layered_surfaces_send_all_light_back_or_on_at_every_roughness) {
 
 /* --- inputs --- */
 
-TEST(a_texture_takes_the_place_of_every_number_of_a_layered_material) {
+TEST(a_texture_replaces_every_number_of_a_layered_material) {
     static const enum material_input inputs[] = {
         INPUT_BASE_WEIGHT,         INPUT_DIFFUSE_ROUGHNESS, INPUT_METALNESS,           INPUT_SPECULAR_WEIGHT,
         INPUT_SPECULAR_ANISOTROPY, INPUT_SPECULAR_IOR,      INPUT_TRANSMISSION_COLOUR, INPUT_COAT_WEIGHT,

@@ -144,7 +144,7 @@ static int differing(const char *name, const struct test_picture *plain) {
     return count;
 }
 
-TEST(lines_are_drawn_in_every_projection_and_for_every_way_of_searching) {
+TEST(lines_are_drawn_in_every_projection_and_for_every_accelerator) {
     static const char *const names[] = {"perspective.png", "orthographic.png", "fisheye.png", "panorama.png"};
     static const char *const options[] = {"--overlay boxes scene.lua", "--overlay grid scene.lua",
                                           "--overlay grid --accel grid scene.lua",

@@ -96,7 +96,7 @@ TEST(edges_around_the_camera_are_drawn_where_their_points_are) {
     }
 }
 
-TEST(lines_may_be_stopped_and_some_boxes_stand_for_all) {
+TEST(lines_may_be_stopped_and_some_boxes_represent_all) {
     static float all[WIDTH * HEIGHT][4], some[WIDTH * HEIGHT][4];
     static const enum accel_kind kinds[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE};
     struct test_random random = {12};

@@ -290,7 +290,7 @@ TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
 }
 
 /* The table of docs/reliability.md. */
-TEST_LONG(one_picture_made_in_every_way_has_one_hash) {
+TEST_LONG(one_picture_made_with_every_option_has_one_hash) {
     char *folder = getcwd(NULL, 0), *line = NULL;
     CHECK(folder && asprintf(&line, "bash %s/tools/one_hash.sh $gray %s/tests/scripts/one_hash.lua >table.txt", folder,
                              folder) > 0);
@@ -380,7 +380,7 @@ TEST(an_interrupted_run_keeps_what_is_finished) {
 
 /* Ctrl-C finishes the tiles in progress and saves them as requested: a checkpoint, a partial picture. (Shells start
  * background children with SIGINT ignored: env resets it.) */
-TEST(control_c_finishes_tiles_and_writes_what_is_asked) {
+TEST(control_c_finishes_tiles_and_writes_every_output) {
     put("scene.lua", ONE);
     gives("$gray scene.lua -full -ss 3 -o whole.png; printf 'PF\\n1 old' >out.png; for moment in " MOMENTS "; do "
           "env --default-signal=INT $gray scene.lua -full -ss 3 --checkpoint auto --checkpoint-every 1000 --partial "

@@ -342,7 +342,7 @@ TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
     stage_end(&s);
 }
 
-TEST(glass_absorbs_on_the_way_of_paths) {
+TEST(glass_absorbs_along_paths) {
     struct stage s;
     stage_begin(&s, 1);
     struct material *glass = stage_glass(&s, 0, 1, 1), *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);

@@ -183,11 +183,11 @@ static void check_noise(double wanted, int reference_samples, int seeds) {
     stage_end(&s);
 }
 
-TEST(the_error_of_a_tile_is_at_most_one_and_a_quarter_of_the_noise_asked_for) {
+TEST(the_error_of_a_tile_is_at_most_one_and_a_quarter_of_the_noise_requested) {
     check_noise(0.08, 400, 1);
 }
 
-TEST_LONG(the_error_of_tiles_is_that_asked_for_at_every_noise_and_seed) {
+TEST_LONG(the_error_of_tiles_is_the_one_requested_at_every_noise_and_seed) {
     static const double wanted[] = {0.06, 0.04, 0.03, 0.02};
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
         check_noise(wanted[i], 16384, 3);

@@ -126,7 +126,7 @@ TEST(a_folder_that_may_be_written_takes_files_and_gives_none_away) {
     path_policy_destroy(&path_policy);
 }
 
-TEST(folders_that_are_none_are_told_or_left_out) {
+TEST(folders_that_are_none_are_reported_or_left_out) {
     struct path_policy path_policy = {0};
     struct error error = {0};
     char *much = malloc(6000);
@@ -239,7 +239,7 @@ static void race(const char *outer, const char *mode, int number) {
 }
 #endif
 
-TEST(a_folder_that_becomes_a_link_between_two_looks_leads_nowhere) {
+TEST(a_folder_that_becomes_a_link_between_two_checks_leads_nowhere) {
 #ifndef GRAY_FAULTS
     test_skip("what happens between two calls to the system is only in builds with GRAY_FAULTS");
 #else

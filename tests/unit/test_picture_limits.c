@@ -134,7 +134,7 @@ TEST(the_picture_count_is_one_line_and_is_caught_by_nothing) {
     }
 }
 
-TEST(the_picture_count_holds_in_every_way_of_making_pictures) {
+TEST(the_picture_count_holds_for_every_render_call) {
     char arguments[256];
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
         (void)snprintf(arguments, sizeof arguments, "%s --script-time 2 --picture-count 20 scene.lua", variants[i]);
@@ -286,7 +286,7 @@ TEST(exactly_as_many_bytes_as_are_allowed_are_written_and_then_nothing_is_begun)
 }
 
 /* --script-output limits what scripts print and write. */
-TEST(pictures_do_not_count_towards_the_output_of_a_script_nor_the_other_way_round) {
+TEST(pictures_and_the_output_of_a_script_have_limits_of_their_own) {
     struct test_result result = test_gray_scene("local n = gr.node('n') for i = 1, 5 do " PFM("i .. '.pfm'") " end",
                                                 "-q --script-output 1K scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);

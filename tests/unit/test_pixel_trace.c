@@ -156,7 +156,7 @@ static void fill_stage(struct stage *s) {
     s->sky = (struct sky){.kind = SKY_GRADIENT};
 }
 
-TEST(the_parts_of_every_told_ray_are_what_it_brings) {
+TEST(the_parts_of_every_traced_ray_add_up_to_its_radiance) {
     struct stage s;
     stage_begin(&s, 2);
     fill_stage(&s);
@@ -166,7 +166,7 @@ TEST(the_parts_of_every_told_ray_are_what_it_brings) {
     stage_end(&s);
 }
 
-TEST(the_story_of_fog_lamps_and_blurred_lenses_is_the_picture) {
+TEST(the_pixel_trace_of_fog_lamps_and_blurred_lenses_is_the_picture) {
     const struct fog fog = {.kind = FOG_EXPONENTIAL, .colour = {0.5, 0.6, 0.7}, .density = 0.05};
     struct stage s;
     stage_begin(&s, 2);
@@ -190,7 +190,7 @@ TEST(the_story_of_fog_lamps_and_blurred_lenses_is_the_picture) {
 }
 
 /* Paths that split without end: rays beyond the limit are counted, and the colour is still the picture's. */
-TEST(a_story_that_is_too_long_counts_what_it_leaves_out) {
+TEST(a_pixel_trace_that_is_too_long_counts_what_it_leaves_out) {
     struct stage s;
     struct pixel_trace pixel_trace;
     stage_begin(&s, 1);
@@ -224,7 +224,7 @@ static bool note_path(void *context, uint32_t first, uint32_t count, const struc
     return true;
 }
 
-TEST(ways_to_instances_tell_every_node_and_place_on_them) {
+TEST(paths_to_instances_name_every_node_and_index_on_them) {
     struct stage s;
     stage_begin(&s, 1);
     const struct material *m = stage_phong(&s, vec3_all(0.5), vec3_all(0), 1);
@@ -322,7 +322,7 @@ static void print_scene(const char *path, uint32_t width, uint32_t height, int c
     release(reported);
 }
 
-TEST(what_a_script_prints_after_a_picture_stands_behind_its_stories) {
+TEST(what_a_script_prints_after_a_picture_follows_its_pixel_traces) {
     static const char scene[] =
         "local r = gr.node('r')\nr:add_child(gr.geometry('ball', gr.sphere('plain')))\n"
         "for i = 1, 5 do\n"
@@ -387,15 +387,15 @@ static void print_demos(uint32_t width, uint32_t height, int count, const char *
     }
 }
 
-TEST(told_pixels_have_the_bytes_of_the_picture_on_the_demos) {
+TEST(traced_pixels_have_the_bytes_of_the_picture_on_the_demos) {
     print_demos(32, 24, 8, "-D quick=true", false);
 }
 
-TEST_LONG(a_thousand_told_pixels_have_the_bytes_of_the_picture_on_every_demo) {
+TEST_LONG(a_thousand_traced_pixels_have_the_bytes_of_the_picture_on_every_demo) {
     print_demos(160, 120, 1000, "", true);
 }
 
-TEST(told_pixels_have_the_bytes_of_pictures_with_tone_depth_of_field_and_caustics) {
+TEST(traced_pixels_have_the_bytes_of_pictures_with_tone_depth_of_field_and_caustics) {
     print_scene("data/06demo.lua", 40, 30, 20, "--srgb --tone filmic --exposure 1 -full -ss 2");
     print_scene("data/06demo.lua", 40, 30, 20, "--caustics 3000 --pixel-sample corner --specular blinn -use-tir");
 }
@@ -416,7 +416,7 @@ static void says(const struct test_result *result, const char *text) {
         test_fail(__FILE__, __LINE__, "no \"%s\" in:\n%s", text, result->out);
 }
 
-TEST(a_told_pixel_names_nodes_decorators_lights_and_what_stands_before_them) {
+TEST(a_pixel_trace_names_nodes_decorators_lights_and_their_occluders) {
     struct test_result result = test_gray_scene(scene, "--pixel 10,9 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     says(&result, "out.png, pixel 10,9 of 21 x 21");
@@ -438,7 +438,7 @@ TEST(a_told_pixel_names_nodes_decorators_lights_and_what_stands_before_them) {
     release(result);
 }
 
-TEST(a_dumped_scene_lists_everything_placed_with_its_way) {
+TEST(a_dumped_scene_lists_every_primitive_with_its_path) {
     struct test_result result = test_gray_scene(scene, "--dump-scene scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     says(&result, "out.png: 2 primitives, 0 triangles, 2 materials, 2 lights");

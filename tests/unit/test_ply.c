@@ -97,7 +97,7 @@ TEST(ply_properties_of_all_types_in_any_order_are_read) {
         }
 }
 
-TEST(ply_strips_are_triangles_that_all_face_one_way) {
+TEST(ply_strips_are_triangles_that_all_face_one_side) {
     static const char text[] =
         HEAD "element vertex 6\n" XYZ "element tristrips 1\nproperty list int int vertex_indices\n"
              "end_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n"
@@ -114,7 +114,7 @@ TEST(ply_strips_are_triangles_that_all_face_one_way) {
     model_destroy(&model);
 }
 
-TEST(ply_normals_uvs_and_colours_reach_the_surface) {
+TEST(ply_normals_uvs_and_colours_are_used_at_the_surface) {
     static const char *const texts[] = {
         HEAD "element vertex 3\n" XYZ "property float nx\nproperty float ny\nproperty float nz\nproperty float s\n"
              "property float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n" FACES
@@ -177,7 +177,7 @@ TEST(ply_strips_beside_faces_with_uvs_have_none) {
     }
 }
 
-TEST(ply_errors_name_the_place) {
+TEST(ply_errors_name_the_line) {
     static const struct {
         const char *text, *message;
     } cases[] = {

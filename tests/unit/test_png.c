@@ -196,7 +196,7 @@ static void check_error(const struct error *error, const char *path) {
     CHECK(strncmp(error->text, path, strlen(path)) == 0 && !strchr(error->text, '\n'));
 }
 
-TEST(png_cut_at_any_byte_is_told_as_truncated) {
+TEST(png_cut_at_any_byte_is_an_error_of_a_truncated_file) {
     static struct rgba wanted[MAX_WIDTH * MAX_HEIGHT];
     for (int k = 0; k < 3; k++) {
         struct bytes bytes = make_png(&broken_kinds[k], 1, wanted);
@@ -341,7 +341,7 @@ TEST(png_write_and_read_give_the_same_pixels) {
     }
 }
 
-TEST(png_bytes_depend_on_the_pixels_alone) {
+TEST(png_bytes_depend_only_on_the_pixels) {
     char path[2][300];
     uint32_t width = 100;
     struct error error = {0};
@@ -409,7 +409,7 @@ TEST(png_bytes_are_the_same_by_any_number_of_threads) {
     }
 }
 
-TEST(png_write_tells_of_a_full_disk) {
+TEST(png_write_reports_a_full_disk) {
     struct error error = {0};
     uint32_t width = 2000;
     const struct file_rules is_direct = {.is_direct = true};

@@ -325,7 +325,7 @@ TEST(size_replaces_the_size_of_the_script) {
     free(picture.rgb);
 }
 
-TEST(debug_pictures_stand_beside_the_picture) {
+TEST(debug_pictures_are_written_beside_the_picture) {
     ends(test_gray_scene(BALL "picture('sub/out.png', 70, 50)\n", "-write-aa-targets aa- -write-pre-aa pre- scene.lua",
                          NULL),
          0);
@@ -347,7 +347,7 @@ TEST(debug_pictures_stand_beside_the_picture) {
     free(first.rgb);
 }
 
-TEST(layers_stand_beside_the_picture_in_its_format) {
+TEST(layers_are_written_beside_the_picture_in_its_format) {
     ends(test_gray_scene(BALL "picture('layers/out.png', 31, 21)\npicture('layers/light.pfm', 31, 21)\n",
                          "--aov depth,normal,cost scene.lua", NULL),
          0);
@@ -405,7 +405,7 @@ TEST(names_with_blanks_dashes_and_signs_work) {
     CHECK(exists("a b/-c.png"));
 }
 
-TEST(a_folder_in_the_place_of_the_picture_is_an_error_before_rendering) {
+TEST(a_folder_with_the_name_of_the_picture_is_an_error_before_rendering) {
     char *folder = path_in(test_folder(), "out.png");
     CHECK(mkdir(folder, 0777) == 0);
     free(folder);
@@ -523,7 +523,7 @@ TEST(control_c_ends_the_run_with_130_and_the_old_picture_stays) {
     interrupted_by(SIGINT);
 }
 
-TEST(a_wish_to_terminate_ends_the_run_with_130_and_the_old_picture_stays) {
+TEST(a_request_to_terminate_ends_the_run_with_130_and_keeps_the_old_picture) {
     interrupted_by(SIGTERM);
 }
 
@@ -568,7 +568,7 @@ TEST(a_name_as_long_as_the_file_system_allows_can_be_written) {
     free(picture.rgb);
 }
 
-TEST(a_place_that_cannot_hold_a_file_is_one_line_and_status_1) {
+TEST(a_folder_that_cannot_hold_a_file_is_one_line_and_status_1) {
     struct test_result result = test_gray_scene(SMALL, "-o /proc/out.png scene.lua", NULL);
     CHECK(strchr(result.err, '\n') == strrchr(result.err, '\n'));
     ends_saying(result, 1, "/proc/out.png: cannot be written: ");

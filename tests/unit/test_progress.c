@@ -45,7 +45,7 @@ TEST(tiles_from_the_centre_come_by_their_distance_from_it) {
 }
 
 /* The share done of any rectangle of tiles equals that of the whole picture, within a few tiles. */
-TEST(spread_tiles_stand_for_the_others_at_any_time) {
+TEST(spread_tiles_represent_the_others_at_any_time) {
     struct film film = film_of(32 * 30, 32 * 20);
     uint32_t order[600];
     double worst = 0;
@@ -239,7 +239,7 @@ TEST(time_estimate_learns_what_edges_cost) {
     time_estimate_destroy(&time_estimate);
 }
 
-TEST(time_estimate_counts_tiles_under_way_and_those_of_others) {
+TEST(time_estimate_counts_unfinished_tiles_and_those_of_others) {
     struct film film = film_of(4 * 32, 32);
     size_t bytes;
     struct error error;

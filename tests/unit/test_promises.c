@@ -240,7 +240,7 @@ TEST(links_that_are_exchanged_all_the_time_lead_no_reader_out) {
     }
 }
 
-TEST(scenes_see_variables_that_begin_as_the_program_s_alone) {
+TEST(scenes_can_read_only_variables_that_begin_as_the_program_s) {
     struct test_result result =
         test_gray_scene("assert(os.getenv('GRAY_OF_A_TEST') == 'seen')\n"
                         "for _, n in ipairs{'HOME', 'PATH', 'USER', 'PWD', 'OF_A_TEST', 'GRAY', 'gray_x', ''} do\n"

@@ -159,7 +159,7 @@ static void expect(const char *name, const void *data, size_t size, const char *
         model_destroy(&model);
 }
 
-TEST(corners_of_the_mesh_readers_are_read_or_told) {
+TEST(corners_of_the_mesh_readers_are_read_or_reported) {
     put("corner.mtl", "newmtl a\rKd\v1\f1 1\r\nNs 5\nillum 9.5\n-\nmap_Kd\t-texres 5 -\n");
     put("wrong.mtl", "newmtl a\nNs\n");
     put("long.mtl", "newmtl a\nNs xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\n");
@@ -190,7 +190,7 @@ static void expect_repeated(const char *name, const char *before, const char *pi
     free(text);
 }
 
-TEST(mesh_files_with_too_many_of_anything_are_told) {
+TEST(mesh_files_with_too_many_of_anything_are_errors) {
     char name[64];
     char *text = malloc(1 << 20);
     size_t used = (size_t)sprintf(text, "ply\nformat ascii 1.0\n");
@@ -278,7 +278,7 @@ static void expect_max(const char *name, const void *data, size_t size, size_t m
         model_destroy(&model);
 }
 
-TEST(more_than_an_index_can_name_is_told_by_every_reader) {
+TEST(more_than_an_index_can_name_is_an_error_of_every_reader) {
     static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 4\n";
     static const char names[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nusemtl b\nusemtl c\nusemtl d\nf 1 2 3\n";
     static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -389,7 +389,7 @@ TEST(any_allocation_may_fail_while_long_lists_grow) {
     bytes_free(&b);
 }
 
-TEST(a_place_on_a_picture_that_is_no_number_is_told) {
+TEST(texture_coordinates_that_are_no_numbers_are_reported) {
     struct bytes b = {0};
     bytes_print(&b, "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                     "property float z\nelement face 1\nproperty list uchar uchar vertex_indices\n"
@@ -425,7 +425,7 @@ TEST(gzip_of_any_length_is_read_piece_by_piece) {
     bytes_free(&b);
 }
 
-TEST(names_in_a_library_that_stands_alone_are_kept_as_they_are) {
+TEST(names_in_a_library_without_a_scene_are_kept_as_they_are) {
     static const char text[] = "newmtl a\nmap_Kd x\\y.png\n";
     struct model model = {.path = "d/t.obj", .options.single_file = true};
     struct error error = {0};
@@ -462,7 +462,7 @@ TEST(sparse_parts_that_are_walked_through_too_often_are_refused) {
     bytes_free(&b), bytes_free(&buffer);
 }
 
-TEST(a_picture_is_not_looked_for_when_a_file_stands_alone) {
+TEST(a_single_file_has_no_warning_of_missing_pictures) {
     static const char text[] = HEAD TRIANGLE MESH ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{"
                                                   "\"index\":0}}}],\"textures\":[{\"source\":0}],"
                                                   "\"images\":[{\"uri\":\"gone.png\"}]}";

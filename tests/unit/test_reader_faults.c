@@ -324,7 +324,7 @@ TEST(any_word_of_an_stl_file_may_be_another) {
 
 /* Each kind of map alone, each kind of bump and of emission, metal without a map; an STL with an unnamed part; a mesh
  * without triangles. */
-TEST(any_allocation_may_fail_while_looks_are_placed) {
+TEST(any_allocation_may_fail_while_materials_are_flattened) {
     static const char library[] = "newmtl a\nillum 2\nKs 1 1 1\nNs 0\nmap_Ks pic.png\nnewmtl b\nbump pic.png\n"
                                   "newmtl c\nillum 6\nNi 0.5\nNs 7\nnewmtl d\nillum 7\nNi 1.5\nnewmtl e\nillum 10\n"
                                   "newmtl f\nillum 5\nNi 1.2\nnewmtl g\nillum 9\nNi 1.2\nmap_d pic.png\n";
@@ -383,7 +383,7 @@ TEST(a_part_that_a_file_does_not_name_changes_nothing) {
     assets_destroy(&assets);
 }
 
-TEST(a_model_whose_real_name_is_too_long_for_the_store_is_told) {
+TEST(a_model_whose_real_name_is_too_long_for_the_store_is_an_error) {
     struct assets assets = {0};
     struct error error = {0};
     bool fresh;

@@ -378,7 +378,7 @@ TEST(mirrored_scene_gives_the_mirrored_picture) {
     stage_end(&b);
 }
 
-TEST(two_lights_together_are_the_sum_of_each_alone) {
+TEST(two_lights_together_are_the_sum_of_both) {
     struct stage s[3];
     for (int i = 0; i < 3; i++) {
         stage_begin(&s[i], 2);
@@ -473,7 +473,7 @@ TEST(glass_in_water_bubble_in_glass_shell_and_camera_inside_follow_snell) {
     nested_balls(1.5, 1.333, 0.5, true);  /* the camera inside water inside glass */
 }
 
-TEST(overlapping_solids_are_left_wherever_they_stand_in_the_stack) {
+TEST(overlapping_solids_are_left_at_any_depth_of_the_stack) {
     /* Two slabs, x-normal, that overlap: a ray passes 1 | A | A+B | B | 1 and leaves parallel to its original
      * direction. */
     struct stage s;

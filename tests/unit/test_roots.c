@@ -133,7 +133,7 @@ TEST(roots_cubic_and_quartic_find_known_roots_and_pairs_of_complex_ones_hide) {
     }
 }
 
-TEST(roots_multiple_ones_keep_parity_and_place) {
+TEST(roots_multiple_ones_keep_parity_and_position) {
     static const struct {
         double roots[6];
         int degree, simple;

@@ -43,7 +43,7 @@ TEST(pairs_has_a_fixed_order_and_strangers_get_no_dangerous_functions) {
     expect_done(&listener, "tests/scripts/traverse.lua", NULL);
 }
 
-TEST(scripts_may_use_the_names_of_the_library_for_their_things) {
+TEST(scripts_may_use_the_names_of_the_library_for_their_variables) {
     struct listener listener = {.renders = 0};
     expect_done(&listener, "tests/scripts/shadowed.lua", NULL);
     CHECK_EQ_INT(listener.renders, 1);
@@ -149,7 +149,7 @@ TEST(definitions_are_lua_literals_or_strings) {
                      &options);
 }
 
-TEST(random_numbers_depend_on_the_seed_alone) {
+TEST(random_numbers_depend_only_on_the_seed) {
     const char *text =
         "local n = gr.node('n') local x = math.random() math.randomseed() assert(math.random() == x)\n"
         "math.randomseed(7) assert(math.random() ~= x) n:translate(x, 0, 0) local r = gr.node('r')\n"
@@ -164,7 +164,7 @@ TEST(random_numbers_depend_on_the_seed_alone) {
     CHECK(x[0] == x[1] && x[0] != x[2]);
 }
 
-TEST(each_render_takes_the_tree_as_it_stands) {
+TEST(each_render_takes_the_current_tree) {
     struct listener listener = {.renders = 0};
     expect_text_done(&listener,
                      "local r, n = gr.node('r'), gr.node('n') r:add_child(n)\n"
@@ -200,7 +200,7 @@ TEST(equal_tables_and_files_are_one_mesh) {
     assets_destroy(&assets);
 }
 
-TEST(primitives_and_geometry_nodes_share_shape_and_look) {
+TEST(primitives_and_geometry_nodes_share_shape_and_material) {
     struct listener listener = {.renders = 0};
     expect_text_done(&listener,
                      "local m = gr.material({1, 1, 1}, {0, 0, 0}, 1)\n"
@@ -212,7 +212,7 @@ TEST(primitives_and_geometry_nodes_share_shape_and_look) {
     CHECK(listener.first_child[0].m[0][3] == 2 && listener.first_child[0].m[0][0] == 2);
 }
 
-TEST(an_error_of_the_host_is_told_at_the_line_of_the_call) {
+TEST(an_error_of_the_host_names_the_line_of_the_call) {
 #define CALL "gr.render(gr.node('n'), 'x.png', 8, 8, {0, 0, 9}, {0, 0, -1}, {0, 1, 0}, 50, {0, 0, 0}, {})\n"
     struct listener listener = {.renders = 0};
     struct error error;
@@ -286,7 +286,7 @@ TEST(protected_calls_work_as_in_plain_lua) {
         NULL);
 }
 
-TEST(long_paths_are_told_in_full) {
+TEST(long_paths_are_traced_in_full) {
     char folder[600], path[1200], text[100] = "\nlocal t\nt.x = 1\n";
     struct listener listener = {.renders = 0};
     struct error error;
@@ -305,7 +305,7 @@ TEST(long_paths_are_told_in_full) {
     }
 }
 
-TEST(a_scene_that_cannot_be_read_is_told_without_traceback) {
+TEST(a_scene_that_cannot_be_read_is_an_error_without_traceback) {
     struct listener listener = {.renders = 0};
     struct error error;
     char *traceback;

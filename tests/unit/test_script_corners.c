@@ -152,7 +152,7 @@ static void check(const struct corner *corner, const struct script_options *opti
     check_corner(preparation, corner, options);
 }
 
-TEST(rare_ways_of_scripts_run_or_are_told) {
+TEST(rare_forms_of_scripts_run_or_are_reported) {
     write_files();
     for (size_t i = 0; i < sizeof corners / sizeof corners[0]; i++)
         check(&corners[i], NULL);
@@ -206,7 +206,7 @@ TEST(values_of_defines_are_numbers_texts_tables_or_the_text_itself) {
 }
 
 /* Without a library, with a missing one, with a broken module in it; without the sandbox. */
-TEST(libraries_that_are_missing_or_broken_are_told) {
+TEST(libraries_that_are_missing_or_broken_are_reported) {
     char folder[512], file[600];
     static const struct corner missing = {"require('meshes')", "is not a folder"},
                                broken = {"require('broken')", "broken.lua:1"},
@@ -233,7 +233,7 @@ TEST(libraries_that_are_missing_or_broken_are_told) {
     check(&plain, &options);
 }
 
-TEST(a_path_that_is_too_long_is_told) {
+TEST(a_path_that_is_too_long_is_an_error) {
     struct listener listener = {.renders = 0};
     struct error error;
     char *path = malloc(6000);

@@ -93,7 +93,7 @@ static void write_files(void) {
     make_huge("huge.lua", ((off_t)1 << 28) + 1);
 }
 
-TEST(the_rarest_ways_of_scripts_run_or_are_told) {
+TEST(the_rarest_forms_of_scripts_run_or_are_reported) {
     write_files();
     for (size_t i = 0; i < sizeof corners / sizeof corners[0]; i++)
         check_corner(preparation, &corners[i], NULL);
@@ -110,7 +110,7 @@ TEST(bounds_of_millions_of_faces_are_those_of_a_few) {
     check_corner("", &many, NULL);
 }
 
-TEST(ghosts_stand_in_lists_of_materials_and_behind_forms) {
+TEST(ghosts_follow_lists_of_materials_and_forms_of_arguments) {
     static const struct corner ghosts[] = {
         {"local g = gr.unknown() gr.mesh{verts = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, faces = {{0, 1, 2}, {0, 2, 1}}, "
          "materials = {g, glass}, face_materials = {1, 2}}",
@@ -148,7 +148,7 @@ TEST(the_newest_change_of_a_view_and_of_the_exposure_counts) {
     CHECK(listener.last.settings.tone.exposure == 2);
 }
 
-TEST(a_change_that_fits_nothing_is_told_once_for_all_pictures) {
+TEST(a_change_that_fits_nothing_is_reported_once_for_all_pictures) {
     struct listener listener = {.renders = 0};
     struct error error;
     static const char text[] =
@@ -160,7 +160,7 @@ TEST(a_change_that_fits_nothing_is_told_once_for_all_pictures) {
 }
 
 /* coroutine.wrap and error each prepend a position: only the innermost is reported. */
-TEST(an_error_that_was_caught_and_raised_again_names_one_place) {
+TEST(an_error_that_was_caught_and_raised_again_names_one_line) {
     struct listener listener = {.renders = 0};
     struct error error;
     CHECK(!listen_to_text(&listener, "local ok, m = pcall(function()\nerror('deep') end)\nerror(m)", NULL, &error));
@@ -255,7 +255,7 @@ static void write_library(void) {
     put("libx.lua", "return 'beside'");
 }
 
-TEST(modules_of_the_library_find_each_other_whatever_they_are_asked_for) {
+TEST(modules_of_the_library_find_each_other_and_not_those_of_the_scene) {
     static const struct corner all[] = {
         {"assert(outer.get('inner') == 'library' and outer.get('inner') == 'library' and require('inner') == 'mine')",
          NULL},
@@ -300,7 +300,7 @@ TEST(byte_code_without_globals_is_loaded_where_there_is_no_sandbox) {
     check_corner("", &all[0], &options);
 }
 
-TEST(modules_beside_and_above_are_named_as_people_would_name_them) {
+TEST(modules_beside_and_above_are_named_by_relative_paths) {
     static const char beside[] = "package.path = './?.lua' require('module')",
                       above[] = "package.path = '../?.lua' assert(require('above') == 8)";
     char path[512];
@@ -323,7 +323,7 @@ TEST(modules_beside_and_above_are_named_as_people_would_name_them) {
 }
 
 /* A file without read permission, opened by a user other than root: the message contains the reason of the system. */
-TEST(what_the_system_refuses_is_told_in_its_words_where_there_is_no_sandbox) {
+TEST(errors_of_the_system_are_reported_in_its_words_without_a_sandbox) {
     const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .no_sandbox = true};
     static const struct corner refused = {"assert(io.open(arg_folder .. 'closed.txt'))",
                                           "closed.txt: Permission denied"};
@@ -350,7 +350,7 @@ TEST(what_the_system_refuses_is_told_in_its_words_where_there_is_no_sandbox) {
 
 /* The order of transforms. */
 
-TEST(calls_of_meshes_tell_the_transform_order_by_their_arguments) {
+TEST(arguments_of_mesh_calls_decide_the_transform_order) {
     static const struct {
         const char *text;
         enum transform_order order;
@@ -452,7 +452,7 @@ static void fail_after_picture(const char *text, enum fault_kind kind, const str
     }
 }
 
-TEST(memory_may_end_on_the_rarest_ways) {
+TEST(memory_may_end_on_the_rarest_paths) {
     const struct script_options lenient = {
         .transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua", .lenient = true};
     write_files();
@@ -471,7 +471,7 @@ TEST(memory_may_end_on_the_rarest_ways) {
     fail_after_picture("dofile('good.lua')", FAULT_OF_ALLOCATION, NULL, NULL);
 }
 
-TEST(calls_to_the_system_may_fail_on_the_rarest_ways) {
+TEST(calls_to_the_system_may_fail_on_the_rarest_paths) {
     char folder[512];
     (void)snprintf(folder, sizeof folder, "%s/lib", test_folder());
     const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = folder};

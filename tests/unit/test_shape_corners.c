@@ -59,7 +59,7 @@ static bool build_patch(struct arena *arena, struct error *error) {
         error);
 }
 
-TEST(shapes_refuse_every_number_that_is_none_and_every_place_too_far_away) {
+TEST(shapes_refuse_numbers_that_are_nan_and_positions_too_far_away) {
     static const struct {
         double *numbers;
         int count;

@@ -354,7 +354,7 @@ TEST(nearest_is_the_first_crossing_in_the_open_interval) {
     geom_scratch_destroy(&scratch);
 }
 
-TEST(scratch_overflow_is_told_and_growing_answers_the_ray) {
+TEST(scratch_overflow_is_reported_and_growing_answers_the_ray) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 16));
     struct shape s = sphere_at(vec3_all(0), 1);

@@ -158,7 +158,7 @@ TEST(the_clear_sky_has_the_zenith_luminance_and_symmetry_of_its_model) {
     }
 }
 
-TEST(the_sun_stands_where_the_almanac_says) {
+TEST(the_sun_has_the_direction_of_the_almanac) {
     /* Altitude at true noon is 90 - latitude + declination; 23.4 degrees on 21 June, 0 at the equinoxes. */
     struct vec3 june = sky_sun(172, 12, 51.5, 0, 0), december = sky_sun(355, 12, 51.5, 0, 0);
     CHECK_NEAR(asin(june.y) * 180 / pi, 90 - 51.5 + 23.4, 0.5);

@@ -132,7 +132,7 @@ TEST(smoke_no_scene_has_the_name_of_a_library_module) {
     CHECK(module_count > 5);
 }
 
-TEST(smoke_scenes_of_shapes_meshes_and_relief_render_in_small) {
+TEST(smoke_scenes_of_shapes_meshes_and_bump_maps_render_in_small) {
     smoke("data", "solids.lua", false);
     smoke("data", "swept.lua", false);
     smoke("data", "meshes.lua", false);

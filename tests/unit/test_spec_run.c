@@ -86,7 +86,7 @@ TEST(marked_pixels_are_those_of_the_rule_recomputed_from_the_first_pass) {
 }
 
 /* The right edge of a white square runs through the pixels of column 10 at the fraction 0.3 of their width. */
-TEST(samples_of_a_pixel_stand_at_the_middles_of_n_by_n_cells) {
+TEST(samples_of_a_pixel_are_the_centres_of_n_by_n_cells) {
     static const struct { int n, covered; } cases[] = {{1, 0}, {2, 1}, {3, 1}, {4, 1}, {6, 2}, {10, 3}};
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         for (int full = 0; full < 2; full++) {

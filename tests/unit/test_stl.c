@@ -42,7 +42,7 @@ TEST(stl_text_may_be_loud_and_hold_several_solids) {
     model_destroy(&model);
 }
 
-TEST(stl_errors_name_the_place) {
+TEST(stl_errors_name_the_line) {
     static const struct {
         const char *text, *message;
     } cases[] = {

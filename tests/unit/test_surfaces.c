@@ -10,7 +10,7 @@ static double centre_of(struct stage *s, uint32_t size) {
     return stage_pixel(s, size / 2, size / 2).x;
 }
 
-TEST(light_fades_exponentially_with_the_way_inside_glass) {
+TEST(light_decays_exponentially_with_the_distance_inside_glass) {
     static const double thickness[] = {0.25, 1, 4};
     for (int i = 0; i < 3; i++) {
         for (int inside = 0; inside < 2; inside++) {

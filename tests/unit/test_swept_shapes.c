@@ -34,7 +34,7 @@ TEST(swept_shapes_cross_random_lines_where_points_say_so_under_random_affine_map
 }
 
 /* Rays that lie in planes of symmetry, along axes, through vertices of the defining points, almost level. */
-TEST(swept_shapes_keep_parity_and_place_on_special_lines) {
+TEST(swept_shapes_keep_parity_and_position_on_special_lines) {
     struct geom_scratch scratch;
     CHECK(geom_scratch_init(&scratch, 64));
     const double exact[] = {0, 0.5, -0.5, 0.25, 1, -1, 0.3, 1e-300, 1e-17, -1e-9, 1e-5};

@@ -129,7 +129,7 @@ static bool resembles_the_program(const char *line, size_t size) {
     return strcmp(seen, "gray:") == 0;
 }
 
-TEST(no_random_text_in_random_pieces_looks_like_the_program) {
+TEST(no_random_text_in_random_pieces_imitates_the_program) {
     static const char *const words[] = {"g",
                                         "r",
                                         "a",

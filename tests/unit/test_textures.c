@@ -173,7 +173,7 @@ TEST(a_mix_of_any_two_kinds_lies_where_its_ratio_says_and_products_commute) {
     palette_destroy(&p);
 }
 
-TEST(a_shared_texture_is_what_it_is_alone) {
+TEST(a_shared_texture_gives_the_values_of_a_single_one) {
     struct palette p;
     struct test_random random = {7};
     palette_init(&p);

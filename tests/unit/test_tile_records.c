@@ -273,7 +273,7 @@ static struct tile_picture some_picture(void) {
                                  .name = "a.png"};
 }
 
-TEST(pictures_that_do_not_belong_together_are_told_apart_by_everything) {
+TEST(pictures_that_do_not_belong_together_differ_in_their_keys) {
     const struct tile_picture one = some_picture();
     CHECK(!tile_picture_difference(&one, &one));
 #define DIFFERS(change, words)                                                                                         \

@@ -211,7 +211,7 @@ TEST(a_picture_may_be_exr_where_its_library_is) {
     free(result.err);
 }
 
-TEST(the_extension_says_the_format_and_tone_is_for_png_alone) {
+TEST(the_extension_sets_the_format_and_tone_is_only_for_png) {
     struct test_result result = test_gray_scene(bright_scene, "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     expect_pixel("plain.png", 64, 255, 128);

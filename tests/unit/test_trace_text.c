@@ -122,7 +122,7 @@ static char *print_trace(const char *options) {
     return result.out;
 }
 
-TEST(a_told_scene_with_one_of_everything_has_words_for_all_of_it) {
+TEST(a_pixel_trace_of_a_scene_with_one_of_everything_has_words_for_all_of_it) {
     static const char *const always[] = {"meets root#",
                                          ", interpolated (",
                                          ", uv (",
@@ -163,7 +163,7 @@ TEST(a_told_scene_with_one_of_everything_has_words_for_all_of_it) {
     free(reported);
 }
 
-TEST(a_told_draft_says_what_was_not_worth_following) {
+TEST(a_pixel_trace_of_a_draft_names_the_rays_it_left_out) {
     static const char *const words[] = {"it could not change the pixel any more (--cutoff)", ", blinn (",
                                         "what it meets at distance ", "one sample: no neighbour"};
     write_files();

@@ -118,7 +118,7 @@ TEST(triangles_of_concave_polygons_cover_them_once) {
     clear(&p);
 }
 
-TEST(corners_in_straight_runs_and_in_one_place_are_kept) {
+TEST(collinear_and_coincident_corners_are_kept) {
     struct polygon p = {0};
     for (int i = 0; i < 5; i++)
         add(&p, i, 0);

@@ -63,7 +63,7 @@ TEST(watch_reports_another_content_once_and_the_same_content_never) {
     watch_close(&t.watch);
 }
 
-TEST(watch_sees_files_that_are_renamed_over_and_files_behind_links) {
+TEST(watch_notices_files_that_are_renamed_over_and_files_behind_links) {
     struct output_of_tests t;
     CHECK(system(NULL) != 0);
     char line[9000];

@@ -46,7 +46,7 @@ TEST(fly_camera_keeps_a_proper_orientation_through_a_million_turns) {
     CHECK_NEAR(vec3_dot(camera.view, camera.up), 0, 1e-12);
 }
 
-TEST(fly_camera_looks_straight_up_and_over_without_trouble) {
+TEST(fly_camera_turns_straight_up_and_over_without_trouble) {
     struct fly_camera fly_camera;
     const struct camera camera = {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90};
     const struct box bounds = {{-1, -1, -1}, {1, 1, 1}};
@@ -88,7 +88,7 @@ TEST(fly_camera_orbits_keep_the_distance_of_the_centre_and_its_position_in_the_p
     CHECK_NEAR(vec3_dot(to, before.view), vec3_dot(to_after, after.view), 1e-9);
 }
 
-TEST(fly_camera_levels_the_horizon_and_keeps_where_it_looks) {
+TEST(fly_camera_levels_the_horizon_and_keeps_its_direction) {
     struct fly_camera fly_camera = some_traversal();
     fly_camera_roll(&fly_camera, 40);
     struct vec3 view = fly_camera_current(&fly_camera).view;
@@ -303,7 +303,7 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     end(&t);
 }
 
-TEST(window_keys_mean_walking_only_while_the_mouse_looks) {
+TEST(window_keys_fly_only_while_the_mouse_turns_the_camera) {
     struct table t;
     begin(&t);
     go_to_the_end(&t);
@@ -439,7 +439,7 @@ TEST(window_menu_renders_again_and_quits_by_clicks_that_do_not_turn_the_camera) 
     end(&t);
 }
 
-TEST(window_places_the_picture_in_its_middle_for_any_size_and_density) {
+TEST(window_centres_the_picture_for_any_size_and_density) {
     struct table t;
     begin(&t);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
@@ -644,7 +644,7 @@ TEST(window_clicks_select_and_orbits_turn_about_the_selection) {
     end(&t);
 }
 
-TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
+TEST(window_that_gets_a_request_during_a_fine_pass_goes_on_with_it) {
     struct table t;
     begin(&t);
     enlarge(&t);
@@ -668,7 +668,7 @@ TEST(window_that_is_asked_during_a_fine_pass_goes_on_with_it) {
     end(&t);
 }
 
-TEST(window_moves_what_is_picked_by_the_way_of_the_mouse_and_undoes_it) {
+TEST(window_moves_what_is_picked_with_the_mouse_and_undoes_it) {
     struct table t;
     begin(&t);
     enlarge(&t);
@@ -816,7 +816,7 @@ TEST(window_goes_up_to_the_node_above_and_down_to_the_operand_below) {
     end(&t);
 }
 
-TEST(window_asks_for_lights_until_it_knows_them_all_and_goes_through_them_by_keys) {
+TEST(window_requests_lights_until_it_has_them_all_and_selects_them_by_keys) {
     struct table t;
     begin(&t);
     enlarge(&t);

@@ -67,7 +67,7 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
 }
 
 /* For any view direction, also straight up and with an up vector parallel to it. */
-TEST(the_fly_camera_begins_where_the_camera_looks) {
+TEST(the_fly_camera_begins_in_the_direction_of_the_camera) {
     const struct box box = {{-1, -1, -1}, {1, 1, 1}}, endless = {{-INFINITY, -1, -1}, {1, 1, 1}},
                      nothing = {{1, 1, 1}, {-1, -1, -1}}, above = {{-1, -1, -1}, {1, INFINITY, 1}};
     const struct box *const boxes[] = {&box, &endless, &nothing, &above};

@@ -232,7 +232,7 @@ static struct node *random_convex_or_not(struct stage *s, struct test_random *ra
 }
 
 /* Rays that leave a surface and skip its primitive. */
-TEST(what_a_ray_is_told_to_pass_by_it_would_not_have_met) {
+TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
     struct test_random random = {77};
     int reported = 0, met_others = 0;
     for (int w = 0; w < 40; w++) {
@@ -469,7 +469,7 @@ TEST(an_empty_operand_follows_the_algebra_of_sets) {
     stage_end(&s);
 }
 
-TEST(world_finds_the_solids_round_a_point_innermost_last) {
+TEST(world_finds_the_solids_that_contain_a_point_innermost_last) {
     struct stage s;
     stage_begin(&s, 1);
     struct node *root = scene_node(&s.scene, NODE_GROUP, "root", &s.error);

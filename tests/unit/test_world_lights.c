@@ -399,7 +399,7 @@ TEST(lists_hold_for_lights_that_are_sampled_and_met) {
     room_end(&r);
 }
 
-TEST(camera_rays_see_the_nearest_lamp_that_shows_itself) {
+TEST(camera_rays_meet_the_nearest_visible_lamp) {
     struct room r;
     room_begin(&r);
     for (int i = 0; i < 4; i++) {

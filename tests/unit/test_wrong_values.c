@@ -254,7 +254,7 @@ static bool run_after_preparation(const char *call, struct listener *listener, s
     return listen_to_text(listener, text, NULL, error);
 }
 
-TEST(values_that_are_wrong_together_are_told_with_their_place) {
+TEST(values_that_are_wrong_together_are_errors_that_name_the_line) {
     write_files();
     for (size_t i = 0; i < sizeof wrongs / sizeof wrongs[0]; i++) {
         struct error error;
