@@ -13,9 +13,14 @@ local M = {}
 
 local folder = debug.getinfo(1, 'S').source:match '^(.*[/\\])' or '@'
 
+-- Numbers of recorded functions have no value yet. Checks accept them; the comparison with Lua repeats the checks with
+-- numbers.
+local is_recorded = gr.is_recorded
+
 --- Describes the value of an argument in words.
 local function shown(value)
     if value == nil then return 'nothing' end
+    if is_recorded(value) then return 'a number of the recorded function' end
     if type(value) == 'number' then return ('%.14g'):format(value) end
     if type(value) == 'string' then return ("'%s'"):format(#value > 40 and value:sub(1, 37) .. '...' or value) end
     if type(value) == 'boolean' then return tostring(value) end
@@ -65,6 +70,7 @@ end
 ---@return number
 function M.number(where, name, value, low, high, default)
     if value == nil and default ~= nil then return default end
+    if is_recorded(value) then return value end
     if not is_number(value) or low and value < low or high and value > high then
         wrong(where, name, 'a number' .. range_words(low, high), value)
     end
@@ -74,6 +80,7 @@ end
 --- A finite number above a bound.
 function M.above(where, name, value, low, default)
     if value == nil and default ~= nil then return default end
+    if is_recorded(value) then return value end
     if not is_number(value) or value <= low then wrong(where, name, ('a number above %.14g'):format(low), value) end
     return value
 end
@@ -82,7 +89,7 @@ end
 ---@return integer
 function M.whole(where, name, value, low, high, default)
     if value == nil and default ~= nil then return default end
-    local whole = is_number(value) and math.tointeger(value)
+    local whole = not is_recorded(value) and is_number(value) and math.tointeger(value)
     if not whole or low and whole < low or high and whole > high then
         wrong(where, name, 'a whole number' .. range_words(low, high), value)
     end
@@ -147,7 +154,7 @@ function M.tuple(where, name, value, size, default)
     if value == nil and default ~= nil then return default end
     if type(value) ~= 'table' then wrong(where, name, ('a tuple of %d numbers'):format(size), value) end
     for k = 1, size do
-        if not is_number(value[k]) then
+        if not is_recorded(value[k]) and not is_number(value[k]) then
             M.fail(where, ('%s[%d] must be a number, not %s'):format(name, k, shown(value[k])))
         end
     end

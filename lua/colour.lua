@@ -196,7 +196,8 @@ function M.palette(name, t)
     local list = colours_of('colour.palette', name)
     t = clamp(check.number('colour.palette', 't', t)) * (#list - 1)
     local k = math.min(math.floor(t), #list - 2)
-    if k < 0 then return { list[1][1], list[1][2], list[1][3] } end
+    if #list < 2 then return { list[1][1], list[1][2], list[1][3] } end
+    if gr.is_recorded(k) then return M.mix(gr.lookup(list, k + 1), gr.lookup(list, k + 2), t - k) end
     return M.mix(list[k + 1], list[k + 2], t - k)
 end
 

@@ -22,7 +22,7 @@ local begins = {
     circ = function(t) return 1 - math.sqrt(1 - t * t) end,
     back = function(t) return t * t * (2.70158 * t - 1.70158) end,
     elastic = function(t)
-        if t == 0 or t == 1 then return t end
+        if t <= 0 or t >= 1 then return t end
         return -2 ^ (10 * t - 10) * math.sin((t * 10 - 10.75) * 2 * pi / 3)
     end,
     bounce = function(t)

@@ -1881,3 +1881,6 @@ function gr.cells(p) end
 ---A random number in 0..1 for each point.
 function gr.hash(p) end
 
+---Whether x is a number of a recorded function, whose value is not known yet.
+function gr.is_recorded(x) end
+

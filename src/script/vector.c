@@ -546,6 +546,12 @@ static int max_of_all(lua_State *L) {
     return all_of(L, two_max);
 }
 
+static int is_recorded(lua_State *L) {
+    luaL_checkany(L, 1);
+    lua_pushboolean(L, is_symbol(L, 1));
+    return 1;
+}
+
 static const struct {
     struct value_function function;
     lua_CFunction run;
@@ -571,6 +577,7 @@ static const struct {
     {{"cells", "p", "Distances from the nearest and the second nearest of random points, and a number of the nearest."},
      cells},
     {{"hash", "p", "A random number in 0..1 for each point."}, hash},
+    {{"is_recorded", "x", "Whether x is a number of a recorded function, whose value is not known yet."}, is_recorded},
 };
 
 const struct value_function *value_function_at(size_t index) {

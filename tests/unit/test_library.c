@@ -52,6 +52,10 @@ TEST(library_colours_and_easings_begin_and_end_where_they_should) {
     claims_hold("claims_colour");
 }
 
+TEST(library_patterns_have_their_closed_forms_and_no_seams_at_the_lattice) {
+    claims_hold("claims_patterns");
+}
+
 TEST(library_polygons_are_cut_into_triangles_and_drawn_out_into_closed_solids) {
     claims_hold("claims_polygon");
 }
