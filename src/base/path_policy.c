@@ -10,6 +10,7 @@
 #include "base/fault.h"
 #include "base/mem.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -195,6 +196,7 @@ struct resolution {
     char rest[2 * PATH_MAX + 2]; /* what follows */
     int links;
     bool last_is_link; /* a link in the last place was followed */
+    bool is_out;       /* it ended where the name leaves the folders */
 };
 
 /* Replaces the name by the target of the link at `at` plus `name`. */
@@ -235,6 +237,7 @@ static bool take_part(const struct path_policy *path_policy, struct resolution *
     }
     bool known = leads_to_folder(path_policy, next);
     if (!known && !find(path_policy, next, false, &below)) {
+        r->is_out = true;
         errno = EACCES;
         return false;
     }
@@ -257,7 +260,7 @@ static bool take_part(const struct path_policy *path_policy, struct resolution *
 static bool resolve(const struct path_policy *path_policy, const char *path, bool follow, struct resolution *r) {
     r->at[0] = '\0';
     r->links = 0;
-    r->last_is_link = false;
+    r->last_is_link = r->is_out = false;
     if (!make_absolute(path_policy, path, r->rest)) {
         errno = strlen(path) >= PATH_MAX ? ENAMETOOLONG : path[0] == '\0' ? ENOENT : EACCES;
         return false;
@@ -294,6 +297,20 @@ bool path_policy_is_outside(const struct path_policy *path_policy, const char *p
     const char *rest;
     return path_policy && (!make_absolute(path_policy, path, whole) || !make_plain(whole, plain, sizeof plain) ||
                            !find(path_policy, plain, false, &rest));
+}
+
+bool path_policy_leads_out(const struct path_policy *path_policy, const char *path) {
+    struct resolution r;
+    char whole[3 * PATH_MAX + 4];
+    const char *rest;
+    if (path[0] == '\0')
+        return false;
+    if (!path_policy || resolve(path_policy, path, true, &r))
+        return path_policy && !find(path_policy, r.at, false, &rest) && !leads_to_folder(path_policy, r.at);
+    if (errno != ENOENT || r.is_out)
+        return r.is_out;
+    (void)snprintf(whole, sizeof whole, "%s/%s", r.at, r.rest); /* what is missing may still contain ".." */
+    return !make_plain(whole, r.rest, sizeof r.rest) || !find(path_policy, r.rest, false, &rest);
 }
 
 /* Opens a canonical path below a folder with these flags. */
@@ -381,6 +398,78 @@ bool path_policy_map(const struct path_policy *path_policy, const char *path, si
     if (descriptor < 0)
         return error_set(error, error_kind_of_reading(errno), "%s: cannot be read: %s", path, strerror(errno));
     return file_map_descriptor(descriptor, path, limit, out, error);
+}
+
+/* A descriptor of a folder for reading, or -1. */
+static int open_listing(const struct path_policy *path_policy, const char *path) {
+    const int flags = O_RDONLY | O_DIRECTORY;
+    struct resolution r;
+    const char *rest = ".";
+    if (!path_policy)
+        return MAY_FAIL(open(path, flags | O_CLOEXEC));
+    if (!resolve(path_policy, path, true, &r))
+        return -1;
+    for (size_t i = 0; i < path_policy->count; i++)
+        if (strcmp(path_policy->folders[i].path, r.at) == 0)
+            return open_below(&path_policy->folders[i], rest, r.at, flags);
+    const struct path_policy_folder *folder = find(path_policy, r.at, false, &rest);
+    return folder ? open_below(folder, rest, r.at, flags) : -1;
+}
+
+static bool is_folder_entry(int descriptor, const struct dirent *entry) {
+    struct stat status;
+    if (entry->d_type != DT_UNKNOWN)
+        return entry->d_type == DT_DIR;
+    return MAY_FAIL(fstatat(descriptor, entry->d_name, &status, AT_SYMLINK_NOFOLLOW)) == 0 && S_ISDIR(status.st_mode);
+}
+
+static int compare_entries(const void *a, const void *b) {
+    const struct path_policy_entry *left = a, *right = b;
+    return strcmp(left->name, right->name);
+}
+
+/* The entries that `stream` returns, copied into the arena; NULL without memory. */
+static struct path_policy_entry *read_entries(DIR *stream, size_t limit, struct arena *arena, size_t *count) {
+    struct path_policy_entry *found = NULL, *kept;
+    size_t room = 0, seen = 0;
+    *count = 0;
+    for (struct dirent *entry; seen < limit && (entry = readdir(stream)) != NULL; seen++) {
+        if (entry->d_name[0] == '.')
+            continue;
+        if (*count == room) {
+            struct path_policy_entry *more = mem_resize_array(found, room ? 2 * room : 64, sizeof *found);
+            if (!more)
+                break;
+            found = more;
+            room = room ? 2 * room : 64;
+        }
+        const char *name = arena_copy_text(arena, entry->d_name, strlen(entry->d_name));
+        if (!name)
+            break;
+        found[(*count)++] = (struct path_policy_entry){name, is_folder_entry(dirfd(stream), entry)};
+    }
+    kept = arena_alloc_array(arena, *count ? *count : 1, sizeof *kept);
+    if (kept && *count > 0) {
+        qsort(found, *count, sizeof *found, compare_entries);
+        memcpy(kept, found, *count * sizeof *kept);
+    }
+    mem_free(found);
+    return kept;
+}
+
+size_t path_policy_list(const struct path_policy *path_policy, const char *folder, size_t limit, struct arena *arena,
+                        struct path_policy_entry **entries) {
+    size_t count = 0;
+    int descriptor = open_listing(path_policy, folder);
+    DIR *stream = descriptor >= 0 ? MAY_GIVE_NULL(fdopendir(descriptor)) : NULL;
+    *entries = NULL;
+    if (stream) {
+        *entries = read_entries(stream, limit, arena, &count);
+        (void)closedir(stream);
+    } else if (descriptor >= 0) {
+        (void)close(descriptor);
+    }
+    return *entries ? count : 0;
 }
 
 /* fopen's modes; -1 for an unknown one. */

@@ -5,6 +5,7 @@
 #ifndef GRAY_BASE_PATH_POLICY_H
 #define GRAY_BASE_PATH_POLICY_H
 
+#include "base/arena.h"
 #include "base/error.h"
 #include "base/file.h"
 
@@ -46,6 +47,17 @@ void path_policy_destroy(struct path_policy *path_policy);
 bool path_policy_is_readable(const struct path_policy *path_policy, const char *path);
 /* Whether the name as written, without following links, is outside all folders: for error messages. */
 bool path_policy_is_outside(const struct path_policy *path_policy, const char *path);
+/* Whether the name leads out of all folders, by itself, by ".." or by a link: never depends on what exists outside. */
+bool path_policy_leads_out(const struct path_policy *path_policy, const char *path);
+
+struct path_policy_entry {
+    const char *name;
+    bool is_folder; /* links are none */
+};
+/* The entries of a folder that may be read, in byte order, without hidden ones: of the first `limit` that the file
+ * system returns. The array and the names are in the arena. 0: none, or it cannot be listed. */
+size_t path_policy_list(const struct path_policy *path_policy, const char *folder, size_t limit, struct arena *arena,
+                        struct path_policy_entry **entries);
 /* As file_map. */
 bool path_policy_map(const struct path_policy *path_policy, const char *path, size_t limit, struct file_bytes *out,
                      struct error *error);

@@ -238,7 +238,7 @@ static const struct rule rules[] = {
     {.call = SYS_exit_group},
     {.call = SYS_openat, .kind = RULE_OPEN, .tests = {WITHOUT(INT, 2, WRITING_FLAGS)}},
     {.call = SYS_openat2, .kind = RULE_BENEATH},
-    {.call = SYS_fcntl, .tests = {IS(INT, 1, F_GETFL)}},
+    {.call = SYS_fcntl, .tests = {{INT, 1, ~UINT32_C(1), F_SETFD}}}, /* F_SETFD or F_GETFL, as fdopendir calls them */
     {.call = SYS_ioctl, .tests = {IS(INT, 1, TCGETS)}},
     /* Its own limits: reading only. */
     {.call = SYS_prlimit64, .tests = {IS(INT, 0, 0), IS(LONG, 2, 0)}},

@@ -12,6 +12,7 @@
 #include "base/path_policy.h"
 #include "scene/change.h"
 #include "script/script.h"
+#include "script/search_internal.h"
 #include "script/table_internal.h"
 
 #include <lua.h>
@@ -83,6 +84,8 @@ struct script_context {
     const char *path;       /* the scene as the user named it */
     char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
     struct source_name *sources;
+    struct file_search search;       /* for files that are not where the script says */
+    struct source_name *found_names; /* the names of those that were found, with a notice for each */
     const void *metatables[HANDLE_TYPES];
     uint32_t handle_count;
     const struct script_function *function; /* the one that runs */

@@ -1,6 +1,7 @@
 /* Files a script names: Lua files through require, dofile and loadfile, meshes and images. Everything is read through
  * base/file.h. A relative name is looked for in (docs/language.md 12.3): the scene's folder, the working directory,
- * Assets/ beside and above the scene, and the bare file name in the scene's folder. */
+ * Assets/ beside and above the scene, and the bare file name in the scene's folder; then below these folders
+ * (search.c). */
 #include "script/context_internal.h"
 
 #include "base/file.h"
@@ -74,27 +75,77 @@ static bool name_fits(const char *name, struct error *error) {
     return true;
 }
 
+/* Looks for a file that is not where the scene names it; the first time for each name with a notice. *found is NULL if
+ * there is none. */
+static bool search_file(struct script_context *context, const char *name, const char **found, struct error *error) {
+    if (!search_find(&context->search, context->path_policy, context->folder, name, found))
+        return error_no_memory(error, "the names of files");
+    if (!*found)
+        return true;
+    for (const struct source_name *known = context->found_names; known; known = known->next)
+        if (strcmp(known->path, name) == 0)
+            return true;
+    struct source_name *known = arena_alloc(&context->keep, sizeof *known);
+    const char *copy = known ? arena_copy_text(&context->keep, name, strlen(name)) : NULL;
+    if (!copy)
+        return error_no_memory(error, "the names of files");
+    *known = (struct source_name){.path = copy, .next = context->found_names};
+    context->found_names = known;
+    char where[PATH_SIZE + 32], text[3 * PATH_SIZE];
+    context_where(context, where, sizeof where);
+    snprintf(text, sizeof text, "%s'%.1000s' was found as '%s'", where, name, *found);
+    context->host->message(context->host->context, SCRIPT_NOTICE, text);
+    return true;
+}
+
+static bool outside(const char *name, struct error *error) {
+    return error_set(error, ERROR_SCENE,
+                     "'%s' lies outside the folders that scenes may read (--allow-read DIR adds one)", name);
+}
+
+/* The error of a file that is nowhere, with the name of one that is spelt like it. */
+static bool not_found(struct script_context *context, const char *name, struct error *error) {
+    const char *folder = context->folder, *slash = strrchr(name, '/');
+    int length = (int)strlen(folder);
+    char looked_in[3 * PATH_SIZE] = "";
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, slash ? slash + 1 : name);
+    for (uint32_t i = 0; i < context->search.count; i++) {
+        const char *file = strrchr(context->search.files[i], '/');
+        suggest_offer(&suggestion, file ? file + 1 : context->search.files[i]);
+    }
+    if (length == 0)
+        snprintf(looked_in, sizeof looked_in, " (looked in ., Assets, ../Assets)");
+    else
+        snprintf(looked_in, sizeof looked_in, " (looked in %.*s, ., %sAssets, %s../Assets)", length - 1, folder, folder,
+                 folder);
+    const char *meant = suggestion.best;
+    return error_set(error, ERROR_SCENE, "cannot find '%s'%s%s%s%s", name, name[0] == '/' ? "" : looked_in,
+                     meant ? "; did you mean '" : "", meant ? meant : "", meant ? "'?" : "");
+}
+
 bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error) {
     if (!name_fits(name, error))
         return false;
     if (files_find(context, name, out))
         return true;
-    const char *repaired = files_repair_number(context, name);
+    const char *repaired = files_repair_number(context, name), *found;
     if (!repaired)
         return error_no_memory(error, "the name of a file");
     if (repaired != name && files_find(context, repaired, out))
         return true;
+    if (!search_may(context->path_policy, context->folder, name))
+        return outside(name, error);
+    if (!search_file(context, name, &found, error) ||
+        (!found && repaired != name && !search_file(context, repaired, &found, error)))
+        return false;
+    if (found && strlen(found) < PATH_SIZE) {
+        memcpy(out, found, strlen(found) + 1);
+        return true;
+    }
     if (path_policy_is_outside(context->path_policy, name))
-        return error_set(error, ERROR_SCENE,
-                         "'%s' lies outside the folders that scenes may read (--allow-read DIR adds one)", name);
-    if (name[0] == '/')
-        return error_set(error, ERROR_SCENE, "cannot find '%s'", name);
-    const char *folder = context->folder;
-    int length = (int)strlen(folder);
-    if (length == 0)
-        return error_set(error, ERROR_SCENE, "cannot find '%s' (looked in ., Assets, ../Assets)", name);
-    return error_set(error, ERROR_SCENE, "cannot find '%s' (looked in %.*s, ., %sAssets, %s../Assets)", name,
-                     length - 1, folder, folder, folder);
+        return outside(name, error);
+    return not_found(context, name, error);
 }
 
 /* Lua shortens a long file name to "..." and its end, LUA_IDSIZE - 1 characters in total. */
@@ -189,6 +240,48 @@ bool files_on_path(const struct script_context *context, const char *templates, 
     return false;
 }
 
+/* Raises the error of a module that is nowhere, with the name of one that is spelt like it: a module of the library, or
+ * a Lua file of the scene. */
+_Noreturn static void no_module(struct script_context *context, const char *module) {
+    const char *library = context->options->library_folder;
+    struct path_policy_entry *entries;
+    struct suggestion suggestion;
+    suggest_begin(&suggestion, module);
+    size_t count = library ? path_policy_list(context->path_policy, library, 1000, &context->call, &entries) : 0;
+    for (size_t i = 0; i < count + context->search.count; i++) {
+        const char *path = i < count ? entries[i].name : context->search.files[i - count], *slash = strrchr(path, '/');
+        const char *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+        const char *plain =
+            dot && strcmp(dot, ".lua") == 0 ? arena_format(&context->call, "%.*s", (int)(dot - name), name) : NULL;
+        if (plain)
+            suggest_offer(&suggestion, plain);
+    }
+    if (suggestion.best)
+        context_raise(context,
+                      "require: cannot find module '%.200s' (no such file on package.path); did you mean '%s'?", module,
+                      suggestion.best);
+    context_raise(context, "require: cannot find module '%.200s' (no such file on package.path)", module);
+}
+
+/* A module that is not on package.path: its file, found elsewhere, or NULL. `file` is its name without .lua. */
+static const char *search_elsewhere(struct script_context *context, const char *file) {
+    struct error error = {0};
+    const char *name = arena_format(&context->call, "%s.lua", file), *found = NULL;
+    if (!name) {
+        (void)error_no_memory(&error, "the name of a module");
+        context_raise_error(context, &error);
+    }
+    if (strlen(name) >= PATH_SIZE)
+        return NULL;
+    if (!search_may(context->path_policy, context->folder, name)) {
+        (void)outside(name, &error);
+        context_raise(context, "require: %s", error.text);
+    }
+    if (!search_file(context, name, &found, &error))
+        context_raise_error(context, &error);
+    return found;
+}
+
 /* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. Scripts for Lua 5.0 also wrote the
  * extension .lua. */
 static int search_module(lua_State *L) {
@@ -196,31 +289,36 @@ static int search_module(lua_State *L) {
     context->lua = L;
     context->function = NULL;
     context->subject = NULL;
+    arena_reset(&context->call);
     const char *module = luaL_checkstring(L, 1);
     lua_getfield(L, lua_upvalueindex(1), "path");
     const char *templates = lua_tostring(L, -1);
     if (!templates)
         context_raise(context, "require: package.path must be a string");
     char path[PATH_SIZE];
-    bool found = files_on_path(context, templates, luaL_gsub(L, module, ".", "/"), path);
+    const char *file = luaL_gsub(L, module, ".", "/"), *found = path;
+    bool on_path = files_on_path(context, templates, file, path);
     size_t length = strlen(module);
-    if (!found && length > 4 && strcmp(module + length - 4, ".lua") == 0) {
+    if (!on_path && length > 4 && strcmp(module + length - 4, ".lua") == 0) {
         lua_pushlstring(L, module, length - 4);
-        found = files_on_path(context, templates, lua_tostring(L, -1), path);
+        file = lua_tostring(L, -1);
+        on_path = files_on_path(context, templates, file, path);
     }
-    if (found) {
-        if (files_load(L, plain_path(path)) != LUA_OK)
-            return lua_error(L); /* the message names the file and its line */
-        lua_pushstring(L, plain_path(path));
-        return 2;
+    if (!on_path) {
+        lua_getfield(L, lua_upvalueindex(1), "searchers");
+        if (lua_type(L, -1) == LUA_TTABLE &&
+            lua_rawlen(L, -1) > 2) { /* the script has added its own searchers: they are called next */
+            lua_pushfstring(L, "no file '%s.lua' on package.path", module);
+            return 1;
+        }
+        found = templates[0] ? search_elsewhere(context, file) : NULL; /* '': the script wants no file */
+        if (!found)
+            no_module(context, module);
     }
-    lua_getfield(L, lua_upvalueindex(1), "searchers");
-    if (lua_type(L, -1) == LUA_TTABLE &&
-        lua_rawlen(L, -1) > 2) { /* the script has added its own searchers: they are called next */
-        lua_pushfstring(L, "no file '%s.lua' on package.path", module);
-        return 1;
-    }
-    context_raise(context, "require: cannot find module '%.200s' (no such file on package.path)", module);
+    if (files_load(L, plain_path(found)) != LUA_OK)
+        return lua_error(L); /* the message names the file and its line */
+    lua_pushstring(L, plain_path(found));
+    return 2;
 }
 
 /* Index 1 holds a file name: finds it and loads it. */

@@ -10,6 +10,7 @@
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/path_policy.h"
+#include "script/search_internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -287,6 +288,7 @@ struct search {
     const char *visited[FILES];
     int visited_count;
     struct evidence evidence;
+    struct file_search files; /* for those that are not where the script says */
     bool no_memory;
 };
 
@@ -311,8 +313,20 @@ static void follow(struct search *search, const struct token *token, bool is_mod
     bool has_end = length > 4 && strcmp(name + length - 4, ".lua") == 0;
     const char *end = is_module && !has_end ? ".lua" : "", *folder = name[0] == '/' ? "" : search->folder;
     if (try_path(search, path, folder, "", name, end) || try_path(search, path, "", "", name, end) ||
-        try_path(search, path, folder, "lua/", name, end) || try_path(search, path, folder, "../lua/", name, end))
+        try_path(search, path, folder, "lua/", name, end) || try_path(search, path, folder, "../lua/", name, end)) {
         scan_file(search, path, depth + 1);
+        return;
+    }
+    const char *found;
+    if (search->library[0] && try_path(search, path, search->library, "/", name, end))
+        return;
+    (void)snprintf(path, sizeof path, "%s%s", name, end);
+    if (!search_may(search->path_policy, search->folder, path))
+        return;
+    if (!search_find(&search->files, search->path_policy, search->folder, path, &found))
+        search->no_memory = true;
+    else if (found)
+        scan_file(search, found, depth + 1);
 }
 
 static void scan_text(struct search *search, const char *text, size_t size, int depth) {
@@ -437,6 +451,7 @@ bool order_detect(const char *path, const char *library_folder, const struct pat
         }
     }
     arena_destroy(&search.arena);
+    arena_destroy(&search.files.arena);
     return search.no_memory ? error_no_memory(error, "the order of transforms") : true;
 }
 

@@ -266,6 +266,7 @@ bool script_run(const char *path, const struct script_options *options, const st
     streams_close(&context);
     path_policy_destroy(&path_policy);
     scene_destroy(&context.scene);
+    arena_destroy(&context.search.arena);
     arena_destroy(&context.call);
     arena_destroy(&context.keep);
     limits_end(&context);

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.mesh: cannot find 'leads_out' (looked in *
+-- expect: SCRIPT:2: gr.mesh: 'leads_out' lies outside the folders that scenes may read (--allow-read DIR adds one)*
 gr.mesh('m', 'leads_out')

@@ -1,0 +1,185 @@
+/* Files that are not where a scene names them (docs/language.md 12.3), and what the search must not do. */
+#define _GNU_SOURCE
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char triangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+static const char *in(const char *name) {
+    static char path[1200];
+    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    return path;
+}
+
+static void folder(const char *name) {
+    CHECK(mkdir(in(name), 0777) == 0);
+}
+
+static void file(const char *name, const char *text) {
+    test_write_file(in(name), text, strlen(text));
+}
+
+#define PICTURE(root) "gr.render{node = " root ", file = 't.png', width = 2, height = 2, eye = {0, 0, 5}}\n"
+
+/* Runs s/scene.lua below the folder w. */
+static struct test_result run(const char *scene, const char *options) {
+    char text[200];
+    file("w/s/scene.lua", scene);
+    (void)snprintf(text, sizeof text, "%s s/scene.lua", options);
+    return test_gray(in("w"), text);
+}
+
+static void says(const char *scene, const char *options, int status, const char *line) {
+    struct test_result result = run(scene, options);
+    if (result.status != status || !strstr(result.err, line))
+        test_fail(__FILE__, __LINE__, "status %d, not %d; printed: %s; expected: %s", result.status, status, result.err,
+                  line);
+    free(result.out);
+    free(result.err);
+}
+
+static void begin(void) {
+    folder("w");
+    folder("w/s");
+}
+
+TEST(a_mesh_is_found_below_the_scene_and_above_it_with_one_notice) {
+    begin();
+    folder("w/s/Assets");
+    folder("w/s/Assets/Obj");
+    file("w/s/Assets/Obj/plane.obj", triangle);
+    struct test_result result =
+        run("local n = gr.mesh('a', 'plane.obj') n:add_child(gr.mesh('b', 'plane.obj'))\n" PICTURE("n"), "");
+    CHECK_EQ_INT(result.status, 0);
+    const char *notice = strstr(result.err, "s/scene.lua:1: 'plane.obj' was found as 's/Assets/Obj/plane.obj'");
+    CHECK(notice && !strstr(notice + 40, "was found as"));
+    free(result.out);
+    free(result.err);
+    folder("w/meshes");
+    file("w/meshes/cow.obj", triangle);
+    says("local n = gr.mesh('a', '/u/cs488/data/cow.obj')\n" PICTURE("n"), "", 0, "was found as 's/../meshes/cow.obj'");
+    says("local n = gr.mesh('a', 'data\\\\cow.obj')\n" PICTURE("n"), "", 0, "was found as 's/../meshes/cow.obj'");
+}
+
+TEST(modules_and_pictures_are_found_by_name_too) {
+    begin();
+    folder("w/s/lib");
+    folder("w/s/lib/shapes");
+    file("w/s/lib/shapes/ball.lua", "return {make = function() return gr.sphere('ball') end}");
+    says("local n = require('shapes.ball').make()\n" PICTURE("n"), "", 0, "was found as 's/lib/shapes/ball.lua'");
+    says("local n = require 'ball' .make()\n" PICTURE("n"), "", 0, "was found as 's/lib/shapes/ball.lua'");
+    says("require 'shapes.bal'", "", 1, "cannot find module 'shapes.bal' (no such file on package.path)");
+    says("require 'bsll'", "", 1, "did you mean 'ball'?");
+    says("require 'meshs'", "", 1, "did you mean 'meshes'?");
+    says("gr.texture('brik.png')", "", 1, "cannot find 'brik.png'");
+    file("w/s/lib/brick.png", "no picture");
+    says("gr.texture('brik.png')", "", 1, "; did you mean 'brick.png'?");
+    says("gr.texture('tex/brick.png')", "", 1, "s/lib/brick.png: ");
+}
+
+TEST(the_longest_end_wins_then_the_nearest_then_byte_order) {
+    static const char *const folders[] = {"w/s/a", "w/s/b", "w/s/b/Obj", "w/s/b/Obj/deep", "w/Obj"};
+    static const struct {
+        const char *file, *found;
+    } steps[] = {
+        {"w/Obj/x.obj", "s/../Obj/x.obj"},
+        {"w/s/b/Obj/deep/x.obj", "s/../Obj/x.obj"}, /* two parts beat one */
+        {"w/s/b/Obj/x.obj", "s/b/Obj/x.obj"},
+    };
+    begin();
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
+        folder(folders[i]);
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        file(steps[i].file, triangle);
+        char line[200];
+        (void)snprintf(line, sizeof line, "was found as '%s'", steps[i].found);
+        says("local n = gr.mesh('a', 'm/Obj/x.obj')\n" PICTURE("n"), "", 0, line);
+    }
+    says("local n = gr.mesh('a', 'elsewhere/x.obj')\n" PICTURE("n"), "", 0, "was found as 's/b/Obj/x.obj'");
+    file("w/s/b/x.obj", triangle);
+    says("local n = gr.mesh('a', 'elsewhere/x.obj')\n" PICTURE("n"), "", 0, "was found as 's/b/x.obj'");
+    file("w/s/a/x.obj", triangle);
+    says("local n = gr.mesh('a', 'elsewhere/x.obj')\n" PICTURE("n"), "", 0, "was found as 's/a/x.obj'");
+}
+
+TEST(the_search_ends_four_levels_down_and_passes_hidden_folders) {
+    begin();
+    folder("w/s/1"), folder("w/s/1/2"), folder("w/s/1/2/3"), folder("w/s/1/2/3/4"), folder("w/s/1/2/3/4/5");
+    folder("w/s/.hidden");
+    file("w/s/1/2/3/4/four.obj", triangle);
+    file("w/s/1/2/3/4/5/five.obj", triangle);
+    file("w/s/.hidden/secret.obj", triangle);
+    file("w/s/1/.secret.obj", triangle);
+    says("local n = gr.mesh('a', 'four.obj')\n" PICTURE("n"), "", 0, "was found as 's/1/2/3/4/four.obj'");
+    says("gr.mesh('a', 'five.obj')", "", 1, "cannot find 'five.obj'");
+    says("gr.mesh('a', 'secret.obj')", "", 1, "cannot find 'secret.obj'");
+    says("gr.mesh('a', 'x/.secret.obj')", "", 1, "lies outside the folders");
+}
+
+TEST(names_that_lead_out_are_refused_alike_with_and_without_a_file_there) {
+    static const char *const names[] = {"../../out/%s.obj", "link/%s.obj", "none/../../../out/%s.obj", "%s_link.obj"};
+    begin();
+    folder("out");
+    file("out/there.obj", triangle);
+    folder("w/s/sub");
+    file("w/s/x.obj", triangle);
+    CHECK(symlink("../../out", in("w/s/link")) == 0 && symlink("../../out/there.obj", in("w/s/there_link.obj")) == 0);
+    CHECK(symlink("../../out/gone.obj", in("w/s/gone_link.obj")) == 0);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char name[100], scene[200], here[200], there[2][400];
+        for (int k = 0; k < 2; k++) {
+            const char *word = k ? "there" : "gone";
+            (void)snprintf(name, sizeof name, names[i], word);
+            (void)snprintf(scene, sizeof scene, "gr.mesh('a', '%s')", name);
+            /* A file of that name inside does not help. */
+            (void)snprintf(here, sizeof here, "w/s/sub/%s.obj", word);
+            file(here, triangle);
+            struct test_result result = run(scene, "");
+            CHECK_EQ_INT(result.status, 1);
+            char *at = strstr(result.err, name);
+            CHECK(at && strstr(at, "lies outside the folders that scenes may read"));
+            (void)snprintf(there[k], sizeof there[k], "%.300s", at ? at + strlen(name) : "");
+            free(result.out);
+            free(result.err);
+            CHECK(unlink(in(here)) == 0);
+        }
+        CHECK_TEXT(there[0], there[1]);
+    }
+    /* A found file that is a link to the outside is passed. */
+    folder("w/s/d");
+    CHECK(symlink("../../../out/there.obj", in("w/s/d/y.obj")) == 0);
+    says("gr.mesh('a', 'y.obj')", "", 1, "cannot find 'y.obj'");
+}
+
+TEST(link_loops_pipes_and_closed_folders_do_not_stop_the_search) {
+    begin();
+    folder("w/s/a"), folder("w/s/b"), folder("w/s/closed"), folder("w/s/z");
+    CHECK(symlink(".", in("w/s/a/self")) == 0 && symlink("../b", in("w/s/a/b")) == 0);
+    CHECK(symlink("../a", in("w/s/b/a")) == 0 && symlink("x.obj", in("w/s/b/x.obj")) == 0);
+    CHECK(mkfifo(in("w/s/a/x.obj"), 0666) == 0 && mkdir(in("w/s/closed/x.obj"), 0777) == 0);
+    CHECK(chmod(in("w/s/closed"), 0) == 0);
+    file("w/s/z/x.obj", triangle);
+    says("local n = gr.mesh('a', 'm/x.obj')\n" PICTURE("n"), "", 0, "was found as 's/z/x.obj'");
+    CHECK(unlink(in("w/s/z/x.obj")) == 0);
+    says("gr.mesh('a', 'm/x.obj')", "", 1, "cannot find 'm/x.obj'");
+    CHECK(chmod(in("w/s/closed"), 0777) == 0);
+}
+
+/* The search gives up after 10,000 entries, whichever they are. */
+TEST(a_folder_of_a_hundred_thousand_entries_costs_no_more_than_its_share) {
+    begin();
+    folder("w/s/many"), folder("w/s/many/sub");
+    for (int i = 0; i < 100000; i++) {
+        char name[100];
+        (void)snprintf(name, sizeof name, "w/s/many/%06d.obj", i);
+        CHECK(symlink("seed", in(name)) == 0);
+    }
+    file("w/s/near.obj", triangle);
+    says("gr.mesh('a', 'nowhere.obj')", "--script-memory 16 --script-time 20", 1, "cannot find 'nowhere.obj'");
+    says("local n = gr.mesh('a', 'x/near.obj')\n" PICTURE("n"), "--script-memory 16", 0, "");
+}
