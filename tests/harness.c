@@ -35,6 +35,7 @@ static struct test *all_tests;
 static int test_count;
 /* State inside the process of one test. */
 static int failures;
+static const char *current_name;
 static char folder_path[404]; /* created when it is first needed */
 static bool folder_made;
 
@@ -87,6 +88,10 @@ void test_need_window(void) {
     (void)setenv("ASAN_OPTIONS", text, 1);
     (void)setenv("SDL_RENDER_DRIVER", "software", 1);
     (void)setenv("SDL_FRAMEBUFFER_ACCELERATION", "0", 1);
+}
+
+const char *test_name(void) {
+    return current_name;
 }
 
 bool test_has_sanitizer(void) {
@@ -467,6 +472,7 @@ static _Noreturn void run_test(const struct runner *runner, const struct running
     (void)setenv("TMPDIR", above, 1);
     if (runner->log)
         (void)fclose(runner->log);
+    current_name = slot->test->name;
     slot->test->run();
     fflush(stdout);
     exit(failures ? STATUS_FAILED : STATUS_PASSED);

@@ -67,6 +67,9 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
                       check_b ? check_b : "(null)");                                                                   \
     } while (0)
 
+/* The name of the test that runs. */
+const char *test_name(void);
+
 /* For tests with the program in a real window: skips the test if gray-gui, Xvfb, xvfb-run or xdotool is missing. From
  * then on windows are drawn without OpenGL, whose threads the thread sanitizer does not know, and the libraries of the
  * desktop may leak. Leaks of the supervisor itself are found by the tests with a simulated window. */

@@ -67,7 +67,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     const struct world *world = renderer->job->world;
     if (path_film_parts(path_tracer_record(settings)) && !make_sample_parts(tracer, renderer))
         return error_no_memory(error, "the workers of a render");
-    struct world_lights_options options = {renderer->job->background_lights, LIGHT_CHOICE_TREE};
+    struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
     if (!tracer->built || settings->caustics.photons == 0)
         return tracer->built;

@@ -5,6 +5,7 @@
 
 #include "base/list.h"
 #include "image/tone.h"
+#include "light/light_sampler.h"
 #include "material/material.h"
 #include "math/motion.h"
 #include "math/vec3.h"
@@ -110,6 +111,7 @@ struct settings {
     enum integrator_kind integrator;
     enum colour_pipeline colour;
     enum path_strategy path_strategy;
+    enum light_choice light_choice; /* of paths; not of a script: to compare with */
     struct caustics caustics;
     struct lens lens;
     struct shutter shutter;

@@ -1,0 +1,272 @@
+/* Different estimators of the same light agree: sampling lights, sampling BSDFs and both; the tree of lights and
+ * uniform choice; the path tracer and a tracer of a page that knows neither lights nor weights. */
+#include "base/random.h"
+#include "material/material_eval.h"
+#include "shape/planar.h"
+#include "tests/harness.h"
+#include "tests/unit/path_estimate.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static struct material *glowing(struct stage *s, double emission) {
+    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0), 1);
+    material->phong.emission = vec3_all(emission);
+    return material;
+}
+
+static struct material *rough_metal(struct stage *s, double roughness) {
+    struct material *material = stage_phong(s, vec3_all(0), vec3_all(0.9), 1);
+    material->phong.reflect = 1;
+    material->phong.roughness = roughness;
+    return material;
+}
+
+static struct node *ball(struct stage *s, const struct material *material, struct vec3 centre, double radius) {
+    struct node *node = stage_sphere(s, s->root, material);
+    stage_scale(s, node, radius, radius, radius);
+    stage_move(s, node, centre.x, centre.y, centre.z);
+    return node;
+}
+
+/* --- the plates of Veach and Guibas ("Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995) --- */
+
+static void begin_plates(struct stage *s) {
+    static const double radii[] = {0.4, 0.6, 0.8, 1}, roughness[] = {0.3, 0.45, 0.6};
+    stage_begin(s, 1);
+    s->camera = (struct camera){{0, 2, 13}, {0, -0.1, -1}, {0, 1, 0}, 22};
+    for (int i = 0; i < 4; i++)
+        (void)ball(s, glowing(s, 1.5 / (radii[i] * radii[i])), vec3_make(-4.5 + 3 * i, 4.6, -3), radii[i]);
+    for (int i = 0; i < 3; i++) { /* from the furthest and highest to the nearest and lowest */
+        struct node *plate = stage_cube(s, s->root, rough_metal(s, roughness[i]));
+        stage_move(s, plate, -0.5, -0.5, -0.5);
+        stage_scale(s, plate, 9, 0.1, 1.6);
+        stage_rotate(s, plate, 0, 24 - 8 * i);
+        stage_move(s, plate, 0, 1.6 - 1.1 * i, -2.6 + 1.8 * i);
+    }
+}
+
+static void check_plates(struct effort effort, double precision) {
+    static const char *const claims[] = {"plates: both and lights alone", "plates: both and BSDFs alone"};
+    for (int seed = 1; seed <= effort.seeds; seed++) {
+        struct estimate by[3];
+        for (int strategy = PATH_STRATEGY_MIS; strategy <= PATH_STRATEGY_BSDF; strategy++) {
+            struct stage s;
+            begin_plates(&s);
+            s.settings.path_strategy = (enum path_strategy)strategy;
+            by[strategy] = estimate_render_twice(&s, &effort, 3, seed + 10 * strategy);
+            stage_end(&s);
+        }
+        for (int i = 0; i < 2; i++)
+            estimate_check_equal(claims[i], by[PATH_STRATEGY_MIS], by[PATH_STRATEGY_LIGHTS + i], seed, precision);
+        CHECK(by[PATH_STRATEGY_MIS].error < by[PATH_STRATEGY_LIGHTS].error);
+        CHECK(by[PATH_STRATEGY_MIS].error < by[PATH_STRATEGY_BSDF].error);
+    }
+}
+
+TEST(sampling_lights_and_bsdfs_and_both_agree_on_the_plates) {
+    check_plates((struct effort){16, 512, 1}, 0.02);
+}
+TEST_LONG(sampling_lights_and_bsdfs_and_both_agree_on_the_plates_for_every_seed) {
+    check_plates((struct effort){16, 32768, 3}, 0.001);
+}
+
+/* --- brute force --- */
+
+/* A sky, emitting surfaces of several kinds, and surfaces that are matt, rough metal and rough glass. */
+static void begin_mixed_scene(struct stage *s) {
+    stage_begin(s, 1);
+    s->sky.colour = vec3_make(0.3, 0.3, 0.3);
+    struct node *floor = stage_sphere(s, s->root, stage_phong(s, vec3_all(0.7), vec3_all(0), 1));
+    floor->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), -1)};
+    (void)ball(s, rough_metal(s, 0.7), vec3_make(-1.2, 0, 0), 1);
+    struct material *glass = stage_glass(s, 0, 1, 1.5);
+    glass->fresnel = true;
+    glass->phong.roughness = 1;
+    (void)ball(s, glass, vec3_make(1.2, 0, 0.4), 0.9);
+    (void)ball(s, glowing(s, 2), vec3_make(0, 2.6, -0.5), 0.8);
+    struct node *box = stage_cube(s, s->root, glowing(s, 1)); /* without a sampler of its own */
+    stage_scale(s, box, 0.8, 1.6, 0.8);
+    stage_move(s, box, -3, -1, 0.6);
+    struct material *both = stage_phong(s, vec3_all(0.5), vec3_all(0), 1); /* emits and scatters */
+    both->phong.emission = vec3_all(0.4);
+    both->phong.two_sided = true;
+    struct node *sheet = stage_sphere(s, s->root, both);
+    sheet->shape = (struct shape){
+        .kind = SHAPE_PLANAR,
+        .planar = planar_parallelogram(vec3_make(2.4, -1, -2), vec3_make(0, 0, 3), vec3_make(0.6, 2.5, 0))};
+    s->camera = (struct camera){{0, 0.6, 6}, {0, 0, -1}, {0, 1, 0}, 50};
+}
+
+static struct vec3 random_direction(uint64_t key) {
+    double y = 1 - 2 * random_unit(random_combine(key, 1)), angle = 2 * pi * random_unit(random_combine(key, 2));
+    double level = sqrt(fmax(0, 1 - y * y));
+    return vec3_make(level * cos(angle), y, level * sin(angle));
+}
+
+/* Every direction of the sphere is as likely at every vertex. */
+static double brute_force(const struct stage *s, struct world_scratch *scratch, struct ray ray, int depth,
+                          uint64_t key) {
+    const struct material_context context = {.total_reflection = true};
+    struct medium_stack media = {.count = 0};
+    struct hit hit;
+    struct bsdf bsdf;
+    double sum = 0, weight = 1;
+    ray.media = &media;
+    for (int i = 0; weight > 0; i++) {
+        if (!world_nearest(&s->world, &ray, scratch, &hit))
+            return sum + weight * s->sky.colour.x;
+        material_eval(&s->world.materials[hit.material], &hit, ray.media, &context, &bsdf);
+        sum += weight * bsdf.emission.x;
+        if (i == depth)
+            break;
+        struct vec3 wi = random_direction(random_combine(key, (uint64_t)i));
+        bool through = !(vec3_dot(wi, bsdf.geometric_side) > 0);
+        uint32_t lobes = through ? bsdf_lobes_with(&bsdf, BSDF_TRANSMITS) : BSDF_ALL;
+        lobes &= ~bsdf_lobes_with(&bsdf, BSDF_EXPONENT); /* highlights stand for what the rough mirror shows */
+        weight *= lobes ? bsdf_eval(&bsdf, lobes, BSDF_RADIANCE, hit.view, wi).x * 4 * pi : 0;
+        ray = hit_ray(&hit, &ray, wi, &media);
+        if (through)
+            medium_stack_cross(&media, &bsdf.boundary);
+    }
+    return sum;
+}
+
+static struct estimate brute_force_mean(const struct stage *s, struct vec3 direction, int depth, uint64_t paths,
+                                        uint64_t seed) {
+    struct world_scratch scratch;
+    double sum = 0, squares = 0, n = (double)paths;
+    const struct ray ray = {.origin = s->camera.eye, .direction = direction, .t_max = INFINITY, .time = 0.5};
+    CHECK(world_scratch_init(&scratch, &s->world));
+    for (uint64_t i = 0; i < paths; i++) {
+        double value = brute_force(s, &scratch, ray, depth, random_combine(seed, i));
+        sum += value;
+        squares += value * value;
+    }
+    world_scratch_destroy(&scratch);
+    return (struct estimate){sum / n, sqrt((squares / n - sum / n * (sum / n)) / n)};
+}
+
+/* At places on the floor, the metal, the glass, the sheet and near the box. */
+static void turn_camera(struct stage *s, size_t i) {
+    static const double targets[][3] = {{0, -1, 0.5}, {-1.2, 0, 1}, {1.2, 0.1, 1.3}, {2.7, 0.2, -0.5}, {-2, -1, -1}};
+    s->camera.view = vec3_sub(vec3_make(targets[i][0], targets[i][1], targets[i][2]), s->camera.eye);
+    s->camera.fov = 1e-6;
+}
+
+enum { TARGETS = 5, DEPTH = 3 };
+
+static void check_brute_force(struct effort effort, uint64_t paths, double precision) {
+    struct stage s;
+    begin_mixed_scene(&s);
+    for (size_t i = 0; i < TARGETS; i++) {
+        turn_camera(&s, i);
+        for (int seed = 1; seed <= effort.seeds; seed++) {
+            struct estimate path = estimate_render(&s, &effort, DEPTH, seed);
+            struct estimate brute =
+                brute_force_mean(&s, s.camera.view, DEPTH, paths, random_combine(i, (uint64_t)seed));
+            estimate_check_equal("brute force", brute, path, seed, precision);
+        }
+    }
+    stage_end(&s);
+}
+
+TEST(brute_force_agrees_where_all_lights_have_bodies_or_are_skies) {
+    check_brute_force((struct effort){8, 256, 1}, 150000, 0.1);
+}
+TEST_LONG(brute_force_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
+    check_brute_force((struct effort){8, 1024, 3}, 4000000, 0.02);
+}
+
+/* The same with directions of the BSDF, of which less have no light. */
+static void check_bsdf_sampling(struct effort both, struct effort bsdf_effort, double precision) {
+    struct stage s;
+    begin_mixed_scene(&s);
+    for (size_t i = 0; i < TARGETS; i++) {
+        turn_camera(&s, i);
+        for (int seed = 1; seed <= both.seeds; seed++) {
+            s.settings.path_strategy = PATH_STRATEGY_MIS;
+            struct estimate a = estimate_render(&s, &both, DEPTH, seed);
+            s.settings.path_strategy = PATH_STRATEGY_BSDF;
+            struct estimate b = estimate_render(&s, &bsdf_effort, DEPTH, seed + 10);
+            estimate_check_equal("sky and lamps: both and BSDFs alone", a, b, seed, precision);
+        }
+    }
+    stage_end(&s);
+}
+
+TEST(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies) {
+    check_bsdf_sampling((struct effort){8, 256, 1}, (struct effort){8, 512, 1}, 0.02);
+}
+TEST_LONG(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
+    check_bsdf_sampling((struct effort){16, 2048, 3}, (struct effort){16, 16384, 3}, 0.002);
+}
+
+/* --- a thousand lamps --- */
+
+/* Below the ceiling of a corridor of 3 x 3 x 200. */
+static void begin_corridor(struct stage *s, enum light_choice choice) {
+    stage_begin(s, 1);
+    s->settings.light_choice = choice;
+    const struct material *bright = glowing(s, 100);
+    for (uint64_t i = 0; i < 1000; i++)
+        (void)ball(s, bright,
+                   vec3_make(2.8 * random_unit(random_combine(3, i)) - 1.4, 2.9,
+                             -0.2 * ((double)i + random_unit(random_combine(4, i)))),
+                   0.04);
+    struct material *grey = stage_phong(s, vec3_all(0.6), vec3_all(0), 1);
+    grey->phong.two_sided = true;
+    struct node *walls = stage_cube(s, s->root, grey);
+    stage_scale(s, walls, 3, 3, 202);
+    stage_move(s, walls, -1.5, 0, -201);
+    s->camera.fov = 1e-6;
+}
+
+static void turn_camera_in_corridor(struct stage *s, int i) {
+    double z = -(10 + 19.3 * i);
+    s->camera.eye = vec3_make(0, 1.5, z);
+    s->camera.view = i % 3 == 1 ? vec3_make(-1.5, -0.3, 0) : vec3_make(0.25 * (i % 5) - 0.5, -1.5, 0);
+    s->camera.up = vec3_make(0, 0, 1);
+}
+
+/* With few samples, since the variance of many falls faster. */
+TEST(a_thousand_lamps_have_a_tenth_of_the_variance_of_uniform_choice_at_ten_places) {
+    const struct effort effort = {16, 16, 1};
+    double error[2][10];
+    for (int uniform = 0; uniform < 2; uniform++) {
+        struct stage s;
+        begin_corridor(&s, uniform ? LIGHT_CHOICE_UNIFORM : LIGHT_CHOICE_TREE);
+        for (int i = 0; i < 10; i++) {
+            turn_camera_in_corridor(&s, i);
+            error[uniform][i] = estimate_render(&s, &effort, 1, 1).error;
+        }
+        stage_end(&s);
+    }
+    for (int i = 0; i < 10; i++)
+        CHECK(error[0][i] > 0 && error[0][i] * error[0][i] * 10 <= error[1][i] * error[1][i]);
+}
+
+static void check_corridor(struct effort by_tree, struct effort by_uniform, int step, double precision) {
+    struct stage tree, uniform;
+    begin_corridor(&tree, LIGHT_CHOICE_TREE);
+    begin_corridor(&uniform, LIGHT_CHOICE_UNIFORM);
+    for (int seed = 1; seed <= by_tree.seeds; seed++) {
+        for (int i = 0; i < 10; i += step) {
+            turn_camera_in_corridor(&tree, i);
+            turn_camera_in_corridor(&uniform, i);
+            estimate_check_equal("1,000 lamps: tree and uniform choice", estimate_render(&tree, &by_tree, 1, seed),
+                                 estimate_render(&uniform, &by_uniform, 1, seed), seed, precision);
+        }
+    }
+    stage_end(&tree);
+    stage_end(&uniform);
+}
+
+TEST(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice) {
+    check_corridor((struct effort){8, 512, 1}, (struct effort){8, 8192, 1}, 4, 0.01);
+}
+TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_places_for_every_seed) {
+    check_corridor((struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 1, 0.001);
+}
