@@ -21,6 +21,7 @@ union expr_value {
  * the result in terms of a, b and c. Conditions of Lua that raise errors (a division of integers by zero, a float
  * without an integer value) are the recorder's; here any value does. */
 #define EXPR_OPERATIONS(X)                                                                                             \
+    X(EXPR_COPY, "copy", F, F, N, N, a)                                                                                \
     X(EXPR_ADD, "add", F, F, F, N, a + b)                                                                              \
     X(EXPR_SUBTRACT, "subtract", F, F, F, N, a - b)                                                                    \
     X(EXPR_MULTIPLY, "multiply", F, F, F, N, a *b)                                                                     \

@@ -103,6 +103,32 @@ double noise_perlin(double x, double y, double z, int interpolation) {
     return mix(w, mix(v, near_low, near_high), mix(v, far_low, far_high));
 }
 
+/* The sum over the corners of weight * ramp, by the product rule. */
+void noise_perlin_gradient(double x, double y, double z, double gradient[3]) {
+    double p[3] = {x, y, z}, weights[2][3], slope[3];
+    unsigned cell[3];
+    gradient[0] = gradient[1] = gradient[2] = 0;
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z))
+        return;
+    for (int k = 0; k < 3; k++) {
+        p[k] = cell_of(p[k], &cell[k]);
+        weights[1][k] = fade(p[k]);
+        weights[0][k] = 1 - weights[1][k];
+        slope[k] = 30 * p[k] * p[k] * ((p[k] - 1) * (p[k] - 1));
+    }
+    for (unsigned corner = 0; corner < 8; corner++) {
+        unsigned far[3] = {corner & 1, corner >> 1 & 1, corner >> 2};
+        unsigned h = hash(hash(hash(cell[0] + far[0]) + cell[1] + far[1]) + cell[2] + far[2]);
+        double w[3], height = ramp(h, p[0] - far[0], p[1] - far[1], p[2] - far[2]);
+        for (int k = 0; k < 3; k++)
+            w[k] = weights[far[k]][k];
+        for (int k = 0; k < 3; k++) {
+            double others = w[(k + 1) % 3] * w[(k + 2) % 3];
+            gradient[k] += others * (w[k] * gradients[h & 15][k] + (far[k] ? slope[k] : -slope[k]) * height);
+        }
+    }
+}
+
 /* Rounding may exceed [0, 1] by a last bit, and NaN is outside. */
 static double share(double ratio) {
     if (!(ratio < 1.0))
@@ -143,39 +169,55 @@ static double gap(double position, int step) {
     return d * d;
 }
 
-/* The second nearest point is nearer than 2: one cell of the neighbours touches the place or is within 1/2 of it, and
- * the far corner of both is at most sqrt(3) away. So cells two steps further suffice, and most of these are skipped. */
-struct noise_cells noise_cells(double x, double y, double z) {
+/* A point, as seen from the place. */
+struct cell_point {
+    double square, offset[3];
+    uint64_t key;
+};
+
+/* The nearest two points, if the place is finite. The second nearest point is nearer than 2: one cell of the neighbours
+ * touches the place or is within 1/2 of it, and the far corner of both is at most sqrt(3) away. So cells two steps
+ * further suffice, and most of these are skipped. */
+static inline void search_cells(double x, double y, double z, struct cell_point *nearest, struct cell_point *next) {
     static const int steps[5] = {0, -1, 1, -2, 2};
-    struct noise_cells out = {0, 0, 0};
-    if (!isfinite(x) || !isfinite(y) || !isfinite(z))
-        return out;
     double cx = floor(x), cy = floor(y), cz = floor(z), px = x - cx, py = y - cy, pz = z - cz;
-    double first = INFINITY, second = INFINITY;
-    uint64_t nearest = 0;
+    nearest->square = next->square = INFINITY;
     for (int i = 0; i < 5; i++) {
         for (int j = 0; j < 5; j++) {
             double across = gap(px, steps[i]) + gap(py, steps[j]);
-            for (int k = 0; k < 5 && across < second; k++) {
-                if (across + gap(pz, steps[k]) >= second)
+            for (int k = 0; k < 5 && across < next->square; k++) {
+                if (across + gap(pz, steps[k]) >= next->square)
                     continue;
                 uint64_t key = hash_of_point(cx + steps[i], cy + steps[j], cz + steps[k]);
                 double dx = steps[i] + random_unit(random_combine(key, 0)) - px;
                 double dy = steps[j] + random_unit(random_combine(key, 1)) - py;
                 double dz = steps[k] + random_unit(random_combine(key, 2)) - pz;
                 double distance = dx * dx + dy * dy + dz * dz;
-                if (distance < first) {
-                    second = first;
-                    first = distance;
-                    nearest = key;
-                } else if (distance < second) {
-                    second = distance;
+                if (distance < nearest->square) {
+                    *next = *nearest;
+                    *nearest = (struct cell_point){distance, {dx, dy, dz}, key};
+                } else if (distance < next->square) {
+                    *next = (struct cell_point){distance, {dx, dy, dz}, key};
                 }
             }
         }
     }
-    out.nearest = sqrt(first);
-    out.second = sqrt(second);
-    out.id = random_unit(random_combine(nearest, 3));
-    return out;
+}
+
+struct noise_cells noise_cells(double x, double y, double z) {
+    struct cell_point nearest = {.key = 0}, second = {.key = 0};
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z))
+        return (struct noise_cells){0, 0, 0};
+    search_cells(x, y, z, &nearest, &second);
+    return (struct noise_cells){sqrt(nearest.square), sqrt(second.square), random_unit(random_combine(nearest.key, 3))};
+}
+
+void noise_cells_gradients(double x, double y, double z, double nearest[3], double second[3]) {
+    struct cell_point points[2] = {{.square = 0}, {.square = 0}};
+    if (isfinite(x) && isfinite(y) && isfinite(z))
+        search_cells(x, y, z, &points[0], &points[1]);
+    for (int k = 0; k < 3; k++) {
+        nearest[k] = points[0].square > 0 ? -points[0].offset[k] / sqrt(points[0].square) : 0;
+        second[k] = points[1].square > 0 ? -points[1].offset[k] / sqrt(points[1].square) : 0;
+    }
 }

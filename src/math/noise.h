@@ -12,6 +12,14 @@ double noise_cosine_mix(double t, double a, double b);
  * then linear; anything else: noise_cosine_mix on the faded parameter. */
 double noise_perlin(double x, double y, double z, int interpolation);
 
+/* Of interpolation 0: the gradient, 0 where a coordinate is not finite; and bounds of the absolute values of the noise
+ * and of its derivatives, the second ones in one coordinate and in two (tests/unit/test_expr_bounds.c finds them). */
+void noise_perlin_gradient(double x, double y, double z, double gradient[3]);
+#define NOISE_MAX 1.0365
+#define NOISE_FIRST_MAX 3.85
+#define NOISE_SECOND_MAX 13.0
+#define NOISE_MIXED_MAX 12.0
+
 /* The weight in [0, 1] of a pattern's first colour at the point (x, y, z) or p; the rest is the weight of the mix
  * colour. factor multiplies the coordinates before the noise is taken. A NaN parameter gives share 1. */
 double noise_wood(double x, double y, double z, double factor, double density, int interpolation);
@@ -27,5 +35,7 @@ struct noise_cells {
     double nearest, second, id;
 };
 struct noise_cells noise_cells(double x, double y, double z);
+/* The gradients of both distances: unit vectors from the points, 0 where a distance or a coordinate gives none. */
+void noise_cells_gradients(double x, double y, double z, double nearest[3], double second[3]);
 
 #endif

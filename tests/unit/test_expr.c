@@ -88,6 +88,8 @@ static const char *in_lua(enum expr_operation operation) {
         return "a << b";
     case EXPR_SHIFT_RIGHT:
         return "a >> b";
+    case EXPR_COPY:
+        return "a";
     case EXPR_TO_FLOAT:
         return "a + 0.0";
     case EXPR_TO_INTEGER:

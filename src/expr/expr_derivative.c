@@ -1,0 +1,564 @@
+/* Values with derivatives: the chain rule, operation by operation. Over boxes the derivative of a function of one
+ * operand lies between those at the points of the operand's bounds (mean value theorem), and edges and jumps that the
+ * box may contain are covered: the slope of a min or max is one of its operands' or between, of a jump anything. */
+#include "expr/expr_derivative.h"
+
+#include "expr/expr_interval_internal.h"
+
+enum { D = EXPR_DIRECTIONS };
+
+const double expr_gradient_seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS] = {
+    [EXPR_POINT_X] = {1, 0, 0}, [EXPR_POINT_Y] = {0, 1, 0}, [EXPR_POINT_Z] = {0, 0, 1}};
+
+/* --- at points --- */
+
+struct dual {
+    union expr_value value;
+    double d[D];
+};
+
+/* The derivatives by each of the operands. 0 of what is constant between jumps. */
+static void partials(enum expr_operation operation, double a, double b, double c, double value, double out[3]) {
+    double other[3];
+    out[0] = out[1] = out[2] = 0;
+    switch (operation) {
+    case EXPR_COPY:
+    case EXPR_ADD:
+        out[0] = out[1] = 1;
+        break;
+    case EXPR_SUBTRACT:
+        out[0] = 1;
+        out[1] = -1;
+        break;
+    case EXPR_MULTIPLY:
+        out[0] = b;
+        out[1] = a;
+        break;
+    case EXPR_DIVIDE:
+        out[0] = 1 / b;
+        out[1] = -value / b;
+        break;
+    case EXPR_MODULO:
+        out[0] = 1;
+        out[1] = -floor(a / b);
+        break;
+    case EXPR_REMAINDER:
+        out[0] = 1;
+        out[1] = -trunc(a / b);
+        break;
+    case EXPR_POWER:
+        out[0] = b != 0 ? b * el_pow(a, b - 1) : 0;
+        out[1] = a > 0 ? value * el_log(a) : 0;
+        break;
+    case EXPR_NEGATE:
+        out[0] = -1;
+        break;
+    case EXPR_ABS:
+        out[0] = a < 0 ? -1 : 1;
+        break;
+    case EXPR_SQRT:
+        out[0] = 0.5 / value;
+        break;
+    case EXPR_MIN:
+        out[b < a ? 1 : 0] = 1;
+        break;
+    case EXPR_MAX:
+        out[a < b ? 1 : 0] = 1;
+        break;
+    case EXPR_SIN:
+        out[0] = el_cos(a);
+        break;
+    case EXPR_COS:
+        out[0] = -el_sin(a);
+        break;
+    case EXPR_TAN:
+        out[0] = 1 + value * value;
+        break;
+    case EXPR_ASIN:
+        out[0] = 1 / sqrt((1 - a) * (1 + a));
+        break;
+    case EXPR_ACOS:
+        out[0] = -1 / sqrt((1 - a) * (1 + a));
+        break;
+    case EXPR_ATAN:
+        out[0] = b / (a * a + b * b);
+        out[1] = -a / (a * a + b * b);
+        break;
+    case EXPR_EXP:
+        out[0] = value;
+        break;
+    case EXPR_LOG:
+        out[0] = 1 / a;
+        break;
+    case EXPR_LOG2:
+        out[0] = 0x1.71547652b82fep+0 / a; /* 1 / ln 2 */
+        break;
+    case EXPR_LOG10:
+        out[0] = 0x1.bcb7b1526e50ep-2 / a; /* 1 / ln 10 */
+        break;
+    case EXPR_SINH:
+        out[0] = el_cosh(a);
+        break;
+    case EXPR_COSH:
+        out[0] = el_sinh(a);
+        break;
+    case EXPR_TANH:
+        out[0] = 1 - value * value;
+        break;
+    case EXPR_NOISE:
+        noise_perlin_gradient(a, b, c, out);
+        break;
+    case EXPR_CELL_NEAREST:
+        noise_cells_gradients(a, b, c, out, other);
+        break;
+    case EXPR_CELL_SECOND:
+        noise_cells_gradients(a, b, c, other, out);
+        break;
+    case EXPR_FLOOR_DIVIDE:
+    case EXPR_FLOOR:
+    case EXPR_CEIL:
+    case EXPR_HASH:
+    case EXPR_CELL_ID:
+    case EXPR_INTEGER_ADD:
+    case EXPR_INTEGER_SUBTRACT:
+    case EXPR_INTEGER_MULTIPLY:
+    case EXPR_INTEGER_DIVIDE:
+    case EXPR_INTEGER_MODULO:
+    case EXPR_INTEGER_REMAINDER:
+    case EXPR_INTEGER_NEGATE:
+    case EXPR_BIT_AND:
+    case EXPR_BIT_OR:
+    case EXPR_BIT_XOR:
+    case EXPR_BIT_NOT:
+    case EXPR_SHIFT_LEFT:
+    case EXPR_SHIFT_RIGHT:
+    case EXPR_TO_FLOAT:
+    case EXPR_TO_INTEGER:
+    case EXPR_LESS:
+    case EXPR_LESS_EQUAL:
+    case EXPR_EQUAL:
+    case EXPR_INTEGER_LESS:
+    case EXPR_INTEGER_LESS_EQUAL:
+    case EXPR_INTEGER_EQUAL:
+    case EXPR_MIXED_LESS:
+    case EXPR_MIXED_LESS_EQUAL:
+    case EXPR_MIXED_GREATER:
+    case EXPR_MIXED_GREATER_EQUAL:
+    case EXPR_MIXED_EQUAL:
+    case EXPR_WHOLE:
+    case EXPR_SELECT: /* handled by the callers */
+    case EXPR_INTEGER_SELECT:
+    case EXPR_TRUTH_SELECT:
+    case EXPR_CONSTANT:
+    case EXPR_INPUT:
+    case EXPR_OPERATION_COUNT:
+        break;
+    }
+}
+
+size_t expr_gradient_size(const struct expr_program *program) {
+    return ((size_t)program->constant_count + program->register_count) * sizeof(struct dual);
+}
+
+/* A derivative that is 0 stays so, whatever it is multiplied by. */
+static void chain(const struct dual *operands[3], const double by[3], double out[D]) {
+    for (int k = 0; k < D; k++) {
+        double sum = 0;
+        for (int j = 0; j < 3; j++)
+            sum += operands[j]->d[k] != 0 && by[j] != 0 ? operands[j]->d[k] * by[j] : 0;
+        out[k] = sum;
+    }
+}
+
+#define TYPE_F double
+#define TYPE_I int64_t
+#define TYPE_B int64_t
+#define TYPE_N int64_t
+#define MEMBER_F f
+#define MEMBER_I i
+#define MEMBER_B i
+#define MEMBER_N i
+#define READ_F(operand) (operand)->value.f
+#define READ_I(operand) 0
+#define READ_B(operand) 0
+#define READ_N(operand) 0
+#define EVALUATE(member, name, R, A, B, C, expression)                                                                 \
+    case member: {                                                                                                     \
+        TYPE_##A a = from[0]->value.MEMBER_##A;                                                                        \
+        TYPE_##B b = from[1]->value.MEMBER_##B;                                                                        \
+        TYPE_##C c = from[2]->value.MEMBER_##C;                                                                        \
+        (void)a, (void)b, (void)c;                                                                                     \
+        result.value.MEMBER_##R = (expression);                                                                        \
+        if (member == EXPR_SELECT)                                                                                     \
+            result = from[0]->value.i ? *from[1] : *from[2];                                                           \
+        else if (EXPR_TYPE_##R == EXPR_TYPE_F)                                                                         \
+            partials(member, READ_##A(from[0]), READ_##B(from[1]), READ_##C(from[2]), result.value.f, by);             \
+        break;                                                                                                         \
+    }
+
+void expr_evaluate_gradient(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
+                            const double seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS], double outputs[EXPR_OUTPUTS],
+                            double gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS], void *rows) {
+    struct dual *values = rows;
+    for (uint32_t i = 0; i < program->constant_count; i++)
+        values[i] = (struct dual){program->constants[i], {0}};
+    for (int i = 0; i < program->input_count; i++) {
+        struct dual *value = &values[program->inputs[i].value];
+        value->value.f = inputs[program->inputs[i].input];
+        for (int k = 0; k < D; k++)
+            value->d[k] = seeds[program->inputs[i].input][k];
+    }
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+        static const struct dual none = {.d = {0}};
+        enum expr_operation operation = (enum expr_operation)in->operation;
+        const struct dual *from[3] = {&values[in->a], &values[in->b], &values[in->c]};
+        struct dual result = {.d = {0}};
+        double by[3] = {0, 0, 0};
+        for (int k = expr_operand_count(operation); k < 3; k++)
+            from[k] = &none;
+        switch (operation) {
+            EXPR_OPERATIONS(EVALUATE)
+        case EXPR_CONSTANT:
+        case EXPR_INPUT:
+        case EXPR_OPERATION_COUNT:
+            break;
+        }
+        if (operation != EXPR_SELECT)
+            chain(from, by, result.d);
+        values[in->out] = result;
+    }
+    for (int i = 0; i < program->output_count; i++) {
+        outputs[i] = values[program->outputs[i]].value.f;
+        for (int k = 0; k < D; k++)
+            gradients[i][k] = values[program->outputs[i]].d[k];
+    }
+}
+
+/* --- over boxes --- */
+
+static const struct expr_interval zero = {0, 0, false}, one = {1, 1, false}, minus_one = {-1, -1, false};
+static const struct expr_interval any_slope = {-INFINITY, INFINITY, false};
+static const struct expr_interval unused = {0, 1, false};
+
+static struct expr_interval of_one(enum expr_operation operation, struct expr_interval a) {
+    return expr_interval_apply(operation, a, unused, unused);
+}
+
+static struct expr_interval of_two(enum expr_operation operation, struct expr_interval a, struct expr_interval b) {
+    return expr_interval_apply(operation, a, b, unused);
+}
+
+static struct expr_interval product(struct expr_interval a, struct expr_interval b) {
+    return of_two(EXPR_MULTIPLY, a, b);
+}
+
+static struct expr_interval quotient(struct expr_interval a, struct expr_interval b) {
+    return of_two(EXPR_DIVIDE, a, b);
+}
+
+static struct expr_interval scaled(double factor, struct expr_interval a) {
+    return product((struct expr_interval){factor, factor, false}, a);
+}
+
+static struct expr_interval square(struct expr_interval a) {
+    return of_two(EXPR_POWER, a, (struct expr_interval){2, 2, false});
+}
+
+static bool is_single(struct expr_interval a) {
+    return a.low >= a.high && !a.may_be_nan;
+}
+
+static bool is_finite(struct expr_interval a) {
+    return a.low > -INFINITY && a.high < INFINITY && !a.may_be_nan;
+}
+
+static void power_slopes(struct expr_interval a, struct expr_interval b, struct expr_interval value,
+                         struct expr_interval out[3]) {
+    out[0] = product(b, of_two(EXPR_POWER, a, of_two(EXPR_SUBTRACT, b, one)));
+    out[1] = a.low > 0 ? product(value, of_one(EXPR_LOG, a)) : any_slope;
+}
+
+/* Of a remainder by a constant: 1 within a period, where the values are less than a period apart and in order. */
+static struct expr_interval period_slope(struct expr_interval a, struct expr_interval b, struct expr_interval value) {
+    double width = a.high - a.low, rise = value.high - value.low;
+    bool is_smooth = is_single(b) && width < 0.999 * fabs(b.low) && rise <= width * (1 + 1e-9) + fabs(b.low) * 1e-9 &&
+                     rise < 0.9995 * fabs(b.low);
+    return is_smooth && !value.may_be_nan ? one : any_slope;
+}
+
+static void noise_slopes(const struct expr_interval box[3], struct expr_interval out[3]) {
+    double middle[3], gradient[3], radius[3];
+    bool is_small = true, all_finite = true;
+    for (int k = 0; k < 3; k++) {
+        all_finite = all_finite && is_finite(box[k]);
+        middle[k] = box[k].low + (box[k].high - box[k].low) / 2;
+        radius[k] = (box[k].high - box[k].low) * 0.500001;
+        is_small = is_small && fabs(middle[k]) < 0x1p40 && radius[k] < 1;
+        out[k] = (struct expr_interval){-NOISE_FIRST_MAX, NOISE_FIRST_MAX, false};
+    }
+    if (!all_finite)
+        out[0] = out[1] = out[2] = any_slope;
+    if (!all_finite || !is_small)
+        return;
+    noise_perlin_gradient(middle[0], middle[1], middle[2], gradient);
+    for (int k = 0; k < 3; k++) {
+        double change =
+            NOISE_SECOND_MAX * radius[k] + NOISE_MIXED_MAX * (radius[(k + 1) % 3] + radius[(k + 2) % 3]) + 1e-9;
+        out[k].low = fmax(out[k].low, gradient[k] - change);
+        out[k].high = fmin(out[k].high, gradient[k] + change);
+    }
+}
+
+/* Bounds of the slopes by each operand; any_slope where the operation may jump. */
+static void slopes_of(enum expr_operation operation, struct expr_interval a, struct expr_interval b,
+                      struct expr_interval c, struct expr_interval value, struct expr_interval out[3]) {
+    out[0] = out[1] = out[2] = zero;
+    switch (operation) {
+    case EXPR_COPY:
+    case EXPR_ADD:
+        out[0] = out[1] = one;
+        break;
+    case EXPR_SUBTRACT:
+        out[0] = one;
+        out[1] = minus_one;
+        break;
+    case EXPR_MULTIPLY:
+        out[0] = b;
+        out[1] = a;
+        break;
+    case EXPR_DIVIDE:
+        out[0] = quotient(one, b);
+        out[1] = b.low > 0 || b.high < 0 ? of_one(EXPR_NEGATE, quotient(value, b)) : any_slope;
+        if (!(b.low > 0 || b.high < 0))
+            out[0] = any_slope;
+        break;
+    case EXPR_MODULO:
+    case EXPR_REMAINDER:
+        out[0] = period_slope(a, b, value);
+        out[1] = any_slope;
+        break;
+    case EXPR_POWER:
+        power_slopes(a, b, value, out);
+        break;
+    case EXPR_NEGATE:
+        out[0] = minus_one;
+        break;
+    case EXPR_ABS:
+        out[0] = a.low >= 0 ? one : a.high <= 0 ? minus_one : (struct expr_interval){-1, 1, false};
+        break;
+    case EXPR_SQRT:
+        out[0] = value.low > 0 ? quotient((struct expr_interval){0.5, 0.5, false}, value)
+                               : (struct expr_interval){0.5 / value.high * (1 - 1e-15), INFINITY, false};
+        break;
+    case EXPR_MIN: /* handled by slope_along */
+    case EXPR_MAX:
+    case EXPR_SELECT:
+        break;
+    case EXPR_SIN:
+        out[0] = of_one(EXPR_COS, a);
+        break;
+    case EXPR_COS:
+        out[0] = of_one(EXPR_NEGATE, of_one(EXPR_SIN, a));
+        break;
+    case EXPR_TAN:
+        out[0] = isinf(value.low) || isinf(value.high) ? any_slope : of_two(EXPR_ADD, one, square(value));
+        break;
+    case EXPR_ASIN:
+        out[0] = quotient(one, of_one(EXPR_SQRT, of_two(EXPR_SUBTRACT, one, square(a))));
+        break;
+    case EXPR_ACOS:
+        out[0] = quotient(minus_one, of_one(EXPR_SQRT, of_two(EXPR_SUBTRACT, one, square(a))));
+        break;
+    case EXPR_ATAN:
+        out[0] = out[1] = any_slope;
+        if (a.low > 0 || a.high < 0 || b.low > 0) {
+            struct expr_interval squares = of_two(EXPR_ADD, square(a), square(b));
+            out[0] = quotient(b, squares);
+            out[1] = of_one(EXPR_NEGATE, quotient(a, squares));
+        }
+        break;
+    case EXPR_EXP:
+        out[0] = value;
+        break;
+    case EXPR_LOG:
+        out[0] = a.low > 0 ? quotient(one, a) : any_slope;
+        break;
+    case EXPR_LOG2:
+        out[0] = a.low > 0 ? scaled(0x1.71547652b82fep+0, quotient(one, a)) : any_slope;
+        break;
+    case EXPR_LOG10:
+        out[0] = a.low > 0 ? scaled(0x1.bcb7b1526e50ep-2, quotient(one, a)) : any_slope;
+        break;
+    case EXPR_SINH:
+        out[0] = of_one(EXPR_COSH, a);
+        break;
+    case EXPR_COSH:
+        out[0] = of_one(EXPR_SINH, a);
+        break;
+    case EXPR_TANH:
+        out[0] = of_two(EXPR_SUBTRACT, one, square(value));
+        break;
+    case EXPR_NOISE:
+        noise_slopes((struct expr_interval[3]){a, b, c}, out);
+        break;
+    case EXPR_CELL_NEAREST:
+    case EXPR_CELL_SECOND:
+        for (int k = 0; k < 3; k++)
+            out[k] = is_finite(a) && is_finite(b) && is_finite(c) ? (struct expr_interval){-1, 1, false} : any_slope;
+        break;
+    case EXPR_FLOOR_DIVIDE:
+    case EXPR_FLOOR:
+    case EXPR_CEIL:
+    case EXPR_HASH:
+    case EXPR_CELL_ID:
+        for (int k = 0; k < 3; k++)
+            out[k] = is_single(value) ? zero : any_slope;
+        break;
+    case EXPR_TO_FLOAT:
+        out[0] = one; /* of integers that are 0, or anything */
+        break;
+    case EXPR_INTEGER_ADD:
+    case EXPR_INTEGER_SUBTRACT:
+    case EXPR_INTEGER_MULTIPLY:
+    case EXPR_INTEGER_DIVIDE:
+    case EXPR_INTEGER_MODULO:
+    case EXPR_INTEGER_REMAINDER:
+    case EXPR_INTEGER_NEGATE:
+    case EXPR_BIT_AND:
+    case EXPR_BIT_OR:
+    case EXPR_BIT_XOR:
+    case EXPR_BIT_NOT:
+    case EXPR_SHIFT_LEFT:
+    case EXPR_SHIFT_RIGHT:
+    case EXPR_TO_INTEGER:
+    case EXPR_INTEGER_SELECT:
+        for (int k = 0; k < 3; k++)
+            out[k] = is_single(value) ? zero : any_slope;
+        break;
+    case EXPR_LESS:
+    case EXPR_LESS_EQUAL:
+    case EXPR_EQUAL:
+    case EXPR_INTEGER_LESS:
+    case EXPR_INTEGER_LESS_EQUAL:
+    case EXPR_INTEGER_EQUAL:
+    case EXPR_MIXED_LESS:
+    case EXPR_MIXED_LESS_EQUAL:
+    case EXPR_MIXED_GREATER:
+    case EXPR_MIXED_GREATER_EQUAL:
+    case EXPR_MIXED_EQUAL:
+    case EXPR_WHOLE:
+    case EXPR_TRUTH_SELECT:
+        out[0] = out[1] = out[2] = is_single(value) ? zero : any_slope;
+        break;
+    case EXPR_CONSTANT:
+    case EXPR_INPUT:
+    case EXPR_OPERATION_COUNT:
+        break;
+    }
+}
+
+size_t expr_slopes_size(const struct expr_program *program) {
+    return ((size_t)program->constant_count + program->register_count) * sizeof(struct expr_range);
+}
+
+static bool is_zero(struct expr_interval a) {
+    return a.low == 0 && a.high == 0;
+}
+
+static struct expr_interval enclosure(struct expr_interval a, struct expr_interval b) {
+    return (struct expr_interval){fmin(a.low, b.low), fmax(a.high, b.high), a.may_be_nan || b.may_be_nan};
+}
+
+/* The slope of one of two operands, or between. */
+static struct expr_interval chosen_slope(struct expr_choice choice, struct expr_interval a, struct expr_interval b) {
+    return choice.first ? a : choice.second ? b : enclosure(a, b);
+}
+
+static struct expr_interval slope_along(enum expr_operation operation, const struct expr_range *from[3],
+                                        const struct expr_interval by[3], int direction) {
+    struct expr_interval sum = zero, slopes[3];
+    for (int j = 0; j < 3; j++)
+        slopes[j] = from[j]->slopes[direction];
+    if (operation == EXPR_SELECT && !is_single(from[0]->value) && !is_zero(slopes[0]))
+        return any_slope;
+    struct expr_choice choice = expr_interval_decide(operation, from[0]->value, from[1]->value);
+    if (operation == EXPR_SELECT)
+        return chosen_slope(choice, slopes[1], slopes[2]);
+    if (operation == EXPR_MIN || operation == EXPR_MAX)
+        return from[1]->value.may_be_nan ? any_slope : chosen_slope(choice, slopes[0], slopes[1]);
+    for (int j = 0; j < 3; j++) {
+        if (is_zero(slopes[j]) || is_zero(by[j]))
+            continue;
+        if (by[j].may_be_nan || !(by[j].low > -INFINITY || by[j].high < INFINITY))
+            return any_slope;
+        struct expr_interval term = product(slopes[j], by[j]);
+        sum = is_zero(sum) ? term : of_two(EXPR_ADD, sum, term);
+    }
+    return sum.may_be_nan ? any_slope : sum;
+}
+
+#define INTERVAL_F(value) expr_interval_of_float(value.f)
+#define INTERVAL_I(value) expr_interval_of_integer(value.i)
+#define INTERVAL_B(value) expr_interval_of_truth(value.i)
+#define INTERVAL_N(value) unused
+#define OPERAND(k, T, number)                                                                                          \
+    if ((number) < program->constant_count) {                                                                          \
+        constants[k].value = INTERVAL_##T(program->constants[number]);                                                 \
+        from[k] = &constants[k];                                                                                       \
+    } else if (EXPR_TYPE_##T == EXPR_TYPE_N) {                                                                         \
+        constants[k].value = unused;                                                                                   \
+        from[k] = &constants[k];                                                                                       \
+    } else {                                                                                                           \
+        from[k] = &values[number];                                                                                     \
+    }
+#define EVALUATE_RANGE(member, name, R, A, B, C, expression)                                                           \
+    case member:                                                                                                       \
+        OPERAND(0, A, in->a)                                                                                           \
+        OPERAND(1, B, in->b)                                                                                           \
+        OPERAND(2, C, in->c)                                                                                           \
+        break;
+
+void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
+                          const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
+                          struct expr_choice *choices, void *rows) {
+    struct expr_range *values = rows, constants[3] = {{.value = zero}, {.value = zero}, {.value = zero}};
+    for (int i = 0; i < program->input_count; i++) {
+        struct expr_range *value = &values[program->inputs[i].value];
+        value->value = inputs[program->inputs[i].input];
+        for (int k = 0; k < directions->count; k++) {
+            double seed = directions->seeds[program->inputs[i].input][k];
+            value->slopes[k] = (struct expr_interval){seed, seed, false};
+        }
+    }
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+        enum expr_operation operation = (enum expr_operation)in->operation;
+        const struct expr_range *from[3] = {constants, constants, constants};
+        struct expr_range result;
+        struct expr_interval by[3];
+        switch (operation) {
+            EXPR_OPERATIONS(EVALUATE_RANGE)
+        case EXPR_CONSTANT:
+        case EXPR_INPUT:
+        case EXPR_OPERATION_COUNT:
+            break;
+        }
+        struct expr_interval a = from[0]->value, b = from[1]->value, c = from[2]->value;
+        result.value = operation == EXPR_MULTIPLY && in->a == in->b ? expr_interval_square(a)
+                                                                    : expr_interval_apply(operation, a, b, c);
+        slopes_of(operation, a, b, c, result.value, by);
+        for (int k = 0; k < directions->count; k++)
+            result.slopes[k] = slope_along(operation, from, by, k);
+        if (choices)
+            choices[in - program->code] = expr_interval_decide(operation, a, b);
+        values[in->out] = result;
+    }
+    for (int i = 0; i < program->output_count; i++) {
+        uint16_t value = program->outputs[i];
+        bool is_constant = value < program->constant_count;
+        outputs[i].value = is_constant ? expr_interval_of_float(program->constants[value].f) : values[value].value;
+        for (int k = 0; k < directions->count; k++)
+            outputs[i].slopes[k] = is_constant                   ? zero
+                                   : outputs[i].value.may_be_nan ? any_slope
+                                                                 : values[value].slopes[k];
+    }
+}

@@ -1,0 +1,44 @@
+/* Derivatives of expressions, forwards, with their values: at points and over boxes (L. B. Rall, "Automatic
+ * Differentiation", 1981). */
+#ifndef GRAY_EXPR_EXPR_DERIVATIVE_H
+#define GRAY_EXPR_EXPR_DERIVATIVE_H
+
+#include "expr/expr_interval.h"
+
+/* Directions in which derivatives are taken at once. */
+enum { EXPR_DIRECTIONS = 3 };
+
+/* seeds[input][direction]: how much an input changes along a direction. The directions x, y and z of p. */
+extern const double expr_gradient_seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS];
+
+/* Bytes that expr_evaluate_gradient works in. */
+size_t expr_gradient_size(const struct expr_program *program);
+/* The outputs at one point, with the bits of expr_evaluate, and their derivatives in three directions. Where there is
+ * none (edges, jumps) it is that of one side; of selections, that of the side taken. NaN or infinite where the formula
+ * is (the root of 0). rows: expr_gradient_size bytes, aligned to 64. */
+void expr_evaluate_gradient(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
+                            const double seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS], double outputs[EXPR_OUTPUTS],
+                            double gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS], void *rows);
+
+/* The first `count` directions of `seeds`. */
+struct expr_directions {
+    int count;
+    double seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS];
+};
+
+/* Bounds of a value and of its slopes. */
+struct expr_range {
+    struct expr_interval value, slopes[EXPR_DIRECTIONS];
+};
+
+/* Bytes that expr_evaluate_slopes works in. */
+size_t expr_slopes_size(const struct expr_program *program);
+/* Bounds of the outputs over a box (those of expr_evaluate_interval), and of their slopes in the
+ * directions: (f(a + t seed) - f(a)) / t is within the bounds for all a and a + t seed in the box. So the bounds are
+ * infinite where the function may jump, and hold at edges. choices: as in expr_evaluate_interval. rows:
+ * expr_slopes_size bytes, aligned to 64. */
+void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
+                          const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
+                          struct expr_choice *choices, void *rows);
+
+#endif

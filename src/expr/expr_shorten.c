@@ -1,0 +1,113 @@
+/* One pass backwards over the program, with the new register of every old one that is still wanted. It renames, frees
+ * and drops at once. A decided min, max or selection hands its own register to the operand that it takes and is gone;
+ * only if that operand is wanted elsewhere already, or is a constant, a copy stays in its place. */
+#include "expr/expr_shorten.h"
+
+#include <string.h>
+
+enum { UNWANTED = 0xffff };
+
+/* Whether an operation reads each operand. */
+#define HAS_F 1
+#define HAS_I 1
+#define HAS_B 1
+#define HAS_N 0
+#define READS(member, name, R, A, B, C, expression) [member] = {HAS_##A, HAS_##B, HAS_##C},
+static const uint8_t reads[EXPR_OPERATION_COUNT][3] = {EXPR_OPERATIONS(READS)};
+
+struct renaming {
+    uint16_t *renamed, *unused; /* of old registers, UNWANTED where none; registers that are free */
+    uint32_t unused_count, register_count, first;
+};
+
+/* The new value of an old one, which is read. */
+static inline uint16_t want(struct renaming *r, uint16_t value) {
+    if (value < r->first)
+        return value;
+    uint16_t *to = &r->renamed[value - r->first];
+    if (*to == UNWANTED)
+        *to = r->unused_count ? r->unused[--r->unused_count] : (uint16_t)(r->first + r->register_count++);
+    return *to;
+}
+
+size_t expr_shorten_size(const struct expr_program *program) {
+    return 2 * ((size_t)program->register_count + 1) * sizeof(uint16_t);
+}
+
+/* The operand that is taken. */
+static inline uint16_t taken_operand(const struct expr_instruction *in, bool first) {
+    enum expr_operation operation = (enum expr_operation)in->operation;
+    if (operation == EXPR_SELECT || operation == EXPR_INTEGER_SELECT || operation == EXPR_TRUTH_SELECT)
+        return first ? in->b : in->c;
+    return first ? in->a : in->b;
+}
+
+/* An operation that gives its operand, of the same type. */
+static struct expr_instruction copy_of(const struct expr_instruction *in, uint16_t from) {
+    enum expr_operation operation = (enum expr_operation)in->operation;
+    if (operation == EXPR_INTEGER_SELECT)
+        return (struct expr_instruction){EXPR_BIT_AND, in->out, from, from, in->out};
+    if (operation == EXPR_TRUTH_SELECT)
+        return (struct expr_instruction){EXPR_TRUTH_SELECT, in->out, from, from, from};
+    return (struct expr_instruction){EXPR_COPY, in->out, from, in->out, in->out};
+}
+
+bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
+                  struct expr_stack *stack, void *scratch, struct expr_program *out) {
+    struct renaming r = {.renamed = scratch, .first = program->constant_count};
+    r.unused = r.renamed + program->register_count + 1;
+    memset(r.renamed, 0xff, program->register_count * sizeof *r.renamed); /* UNWANTED */
+    struct expr_program shorter = *program;
+    for (int i = 0; i < program->output_count; i++)
+        shorter.outputs[i] = want(&r, program->outputs[i]);
+    struct expr_instruction *end = stack->code + stack->free, *to = end;
+    for (uint32_t n = program->count; n-- > 0;) {
+        struct expr_instruction in = program->code[n];
+        uint16_t *renamed = &r.renamed[in.out - r.first], result = *renamed;
+        if (result == UNWANTED)
+            continue;
+        *renamed = UNWANTED;
+        bool first = choices[n].first >> lane & 1, second = choices[n].second >> lane & 1;
+        if (first || second) {
+            uint16_t from = taken_operand(&in, first);
+            if (from >= r.first && r.renamed[from - r.first] == UNWANTED) {
+                r.renamed[from - r.first] = result;
+                continue;
+            }
+            in = copy_of(&in, from);
+        }
+        if (to == stack->code)
+            return false;
+        r.unused[r.unused_count++] = result;
+        const uint8_t *reading = reads[in.operation];
+        in.out = result;
+        in.a = reading[0] ? want(&r, in.a) : result;
+        in.b = reading[1] ? want(&r, in.b) : result;
+        in.c = reading[2] ? want(&r, in.c) : result;
+        *--to = in;
+    }
+    shorter.code = to;
+    shorter.count = (uint32_t)(end - to);
+    shorter.input_count = 0;
+    for (int i = 0; i < program->input_count; i++) {
+        uint16_t renamed = r.renamed[program->inputs[i].value - r.first];
+        if (renamed == UNWANTED)
+            continue;
+        shorter.inputs[shorter.input_count].input = program->inputs[i].input;
+        shorter.inputs[shorter.input_count++].value = renamed;
+    }
+    shorter.register_count = r.register_count;
+    stack->free = (size_t)(to - stack->code);
+    *out = shorter;
+    return true;
+}
+
+bool expr_keep(const struct expr_program *program, struct arena *arena, struct expr_program *out) {
+    struct expr_instruction *code = arena_alloc_array(arena, (size_t)program->count + 1, sizeof *code);
+    if (!code)
+        return false;
+    memcpy(code, program->code, program->count * sizeof *code);
+    *out = *program;
+    out->code = code;
+    return true;
+}
