@@ -19,8 +19,8 @@ void fault_at(enum fault_kind kind, uint64_t number);
 uint64_t fault_count(enum fault_kind kind);
 /* Sets errno for calls that are made to fail; 0 changes nothing. Returns the previous value. */
 int fault_errno(int number);
-/* Calls `act` just before the system call with that number (1 is the next), in the role of another process. */
-void fault_before(uint64_t number, void (*act)(void));
+/* Calls `interfere` just before the system call with that number (1 is the next), in the role of another process. */
+void fault_before(uint64_t number, void (*interfere)(void));
 /* This process and its later children count separately from the others, from 0, and no call fails. */
 void fault_apart(void);
 #else
@@ -40,9 +40,9 @@ static inline int fault_errno(int number) {
     (void)number;
     return EIO;
 }
-static inline void fault_before(uint64_t number, void (*act)(void)) {
+static inline void fault_before(uint64_t number, void (*interfere)(void)) {
     (void)number;
-    (void)act;
+    (void)interfere;
 }
 static inline void fault_apart(void) {
 }

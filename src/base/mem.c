@@ -321,7 +321,7 @@ struct fault_counters {
     _Atomic uint64_t count[2], failing[2];
     _Atomic int error;
     uint64_t acting; /* of calls; 0: none */
-    void (*act)(void);
+    void (*interfere)(void);
     pid_t first; /* the process that reports the counts */
 };
 
@@ -362,12 +362,12 @@ __attribute__((destructor)) static void report_counts(void) {
 bool fault_now(enum fault_kind kind) {
     uint64_t number = atomic_fetch_add(&counters->count[kind], 1) + 1;
     if (kind == FAULT_OF_CALL && number == counters->acting)
-        counters->act();
+        counters->interfere();
     return number == atomic_load(&counters->failing[kind]);
 }
 
-void fault_before(uint64_t number, void (*act)(void)) {
-    counters->act = act;
+void fault_before(uint64_t number, void (*interfere)(void)) {
+    counters->interfere = interfere;
     counters->acting = atomic_load(&counters->count[FAULT_OF_CALL]) + number;
 }
 

@@ -93,7 +93,7 @@ struct sweep {
     struct crossing *items; /* the crossings of the leaves asked so far, by t; on top of the scratch */
     uint32_t count, next;
     struct geom_scratch *scratch;
-    struct pending_leaves *waiting; /* NULL: all leaves have been tested */
+    struct pending_leaves *pending; /* NULL: all leaves have been tested */
     struct ray *leaf_ray;           /* a copy of the ray, for the leaves' spaces */
     uint32_t first_clip_leaf;       /* leaves of the clip come after those of the solid */
     uint32_t *counts;               /* true children of each node */
@@ -287,7 +287,7 @@ static void take_in(struct sweep *s) {
 
 /* Tests the leaves that are entered before `until`; false: scratch overflow. */
 static bool ask_waiting(struct sweep *s, double until) {
-    struct pending_leaves *w = s->waiting;
+    struct pending_leaves *w = s->pending;
     for (uint32_t i = 0; i < w->count;) {
         if (!(w->enter[i] <= until)) {
             i++;
@@ -305,10 +305,10 @@ static bool ask_waiting(struct sweep *s, double until) {
 
 /* Makes sure that the next crossing is the next one of all leaves; false: scratch overflow. */
 static bool test_next_leaves(struct sweep *s) {
-    while (s->waiting && s->waiting->count > 0) {
+    while (s->pending && s->pending->count > 0) {
         double first = INFINITY;
-        for (uint32_t i = 0; i < s->waiting->count; i++)
-            first = s->waiting->enter[i] < first ? s->waiting->enter[i] : first;
+        for (uint32_t i = 0; i < s->pending->count; i++)
+            first = s->pending->enter[i] < first ? s->pending->enter[i] : first;
         if (s->next < s->count) { /* twice as far as crossings are compared with it */
             double t = s->items[s->next].t, until = t + 2 * (s->coarse + COARSE * fabs(t));
             if (first > until)
@@ -330,7 +330,7 @@ static uint32_t group_end(struct sweep *s, uint32_t first) {
         double before = s->items[end - 1].t, t = s->items[end].t, limit = s->coarse + COARSE * fabs(t);
         if (!(t - before <= limit))
             break;
-        if (s->waiting && s->waiting->count > 0) { /* rare: a group may extend beyond the tested range */
+        if (s->pending && s->pending->count > 0) { /* rare: a group may extend beyond the tested range */
             if (!ask_waiting(s, INFINITY))
                 return 0;
             end = first;
@@ -379,7 +379,7 @@ static bool clip(const struct box_probe *probe, const struct box *b, double *fro
 
 /* A leaf whose box the line meets. False: scratch overflow. */
 static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
-    struct pending_leaves *w = s->waiting;
+    struct pending_leaves *w = s->pending;
     if (!w)
         return ask_leaf(s, leaf);
     if (w->count < WAITING_MAX) {
@@ -390,15 +390,15 @@ static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
     for (uint32_t i = 0; i < w->count; i++)
         if (!ask_leaf(s, w->leaf[i]))
             return false;
-    s->waiting = NULL;
+    s->pending = NULL;
     return ask_leaf(s, leaf);
 }
 
 /* Finds the leaves that matter where the ray is inside of the bounds; everything on the scratch above `used` is the
- * sweep's until the caller pops it. The caller lends leaf_ray, a copy of the ray, and `waiting`; without that all
+ * sweep's until the caller pops it. The caller lends leaf_ray, a copy of the ray, and `pending`; without that all
  * crossings are collected at once. False: nothing can be there, or scratch overflow. */
 static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, struct ray *leaf_ray,
-                        struct pending_leaves *waiting, struct geom_scratch *scratch) {
+                        struct pending_leaves *pending, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
     double speed = vec3_max_abs(ray->direction), t_from = ray->t_min, t_to = ray->t_max;
     struct box_probe probe = box_probe_make(ray);
@@ -423,7 +423,7 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
     s->items = &scratch->items[first];
     s->count = s->next = 0;
     s->scratch = scratch;
-    s->waiting = waiting;
+    s->pending = pending;
     s->leaf_ray = leaf_ray;
     s->first_clip_leaf = first_of_clip ? first_of_clip->leaf : UINT32_MAX;
     s->counts = words;
@@ -437,8 +437,8 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
         s->counts[i] = plan->start_counts[i];
     for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
         s->inside[i] = 0;
-    if (waiting)
-        waiting->count = 0;
+    if (pending)
+        pending->count = 0;
     for (uint32_t i = 0; i < plan->needed_count; i++) {
         if (!ask_leaf(s, plan->needed[i]) || !(s->from <= s->to))
             return false;
@@ -468,10 +468,10 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
 bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out) {
     uint32_t used = scratch->used;
     struct sweep s;
-    struct pending_leaves waiting;
+    struct pending_leaves pending;
     struct ray leaf_ray = *ray;
     bool found = false;
-    if (sweep_begin(&s, csg, ray, &leaf_ray, &waiting, scratch)) {
+    if (sweep_begin(&s, csg, ray, &leaf_ray, &pending, scratch)) {
         struct crossing surface;
         while (!found && sweep_next(&s, &surface) && surface.t < ray->t_max)
             if (surface.t > ray->t_min) {

@@ -95,7 +95,7 @@ static int render(struct options *options, const struct program_parts *parts) {
     return supervisor_run(options, &wanted);
 }
 
-static int act(struct options *options, const struct program_parts *parts, struct arena *arena) {
+static int perform(struct options *options, const struct program_parts *parts, struct arena *arena) {
     switch (options->action) {
     case ACTION_HELP:
         options_print_help(stdout);
@@ -159,7 +159,7 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     } else if (options.window && options.action == ACTION_RENDER && !parts->window) {
         status = exec_variant("gui", "sdl2 (Debian: libsdl2-dev)", argv);
     } else {
-        status = act(&options, parts, &arena);
+        status = perform(&options, parts, &arena);
     }
     /* Detects a full disk after text output; rendering has already checked it. */
     if (options.action != ACTION_RENDER && (fflush(stdout) != 0 || ferror(stdout))) {

@@ -24,7 +24,8 @@
 struct race {
     const char *name;
     const char *before, *scene, *options;
-    const char *act; /* "FROM TO; ...": renames in the working directory; "parts": links in place of temporary files */
+    const char
+        *change; /* "FROM TO; ...": renames in the working directory; "parts": links in place of temporary files */
     const char *stays; /* a file that must exist afterwards, under any name; or NULL */
 };
 
@@ -68,8 +69,8 @@ static void link_parts(void) {
 }
 
 /* flags: of renameat2. */
-static void act(const struct race *race, unsigned flags) {
-    char *copy = strdup(race->act), *rest = NULL;
+static void change(const struct race *race, unsigned flags) {
+    char *copy = strdup(race->change), *rest = NULL;
     if (strcmp(copy, "parts") == 0)
         link_parts();
     for (char *one = strtok_r(copy, ";", &rest); one; one = strtok_r(NULL, ";", &rest)) {
@@ -147,7 +148,7 @@ struct ending {
 };
 
 /* Runs the program; just before its call number `moment` with a name, counted from the start of its render process, the
- * race changes the folder (or kills the program if race->act is NULL). */
+ * race changes the folder (or kills the program if race->change is NULL). */
 static struct ending run_traced(const struct race *race, long moment, uid_t user) {
     struct ending ending = {0};
     char words[1024];
@@ -165,8 +166,8 @@ static struct ending run_traced(const struct race *race, long moment, uid_t user
                 counting = counting || starts_process(info.entry.nr);
                 if (counting && is_about_names(info.entry.nr) && ++ending.calls == moment) {
                     ending.acted = true;
-                    if (race->act)
-                        act(race, 0);
+                    if (race->change)
+                        change(race, 0);
                     else
                         (void)kill(program, SIGKILL);
                 }
@@ -269,11 +270,11 @@ static void run_race(const struct race *race, uid_t user) {
         struct ending ending = run_traced(race, moment, user);
         struct attack_tree new = attack_tree(root);
         const char *opened = close_fifos(&fifos), *harmed = harm(race, &old, &new);
-        const char *wrong = ending.status > 3                                    ? "does not end as it should"
-                            : harmed                                             ? harmed
-                            : opened                                             ? opened
-                            : leftovers() > 0 && strcmp(race->act, "parts") != 0 ? "leaves a temporary file"
-                                                                                 : NULL;
+        const char *wrong = ending.status > 3                                       ? "does not end as it should"
+                            : harmed                                                ? harmed
+                            : opened                                                ? opened
+                            : leftovers() > 0 && strcmp(race->change, "parts") != 0 ? "leaves a temporary file"
+                                                                                    : NULL;
         char *said = attack_output("err.txt");
         if (wrong &&
             asprintf(&reason, "before call %ld: %s (status %d): %.200s", moment, wrong, ending.status, said) < 0)
@@ -412,8 +413,8 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
         pid_t thrower = fork();
         if (thrower == 0) {
             for (double limit = attack_now() + 60; attack_now() < limit;)
-                act(race, RENAME_NOREPLACE); /* never over a file that gray has restored: such a loss would look like a
-                                                fault of gray */
+                change(race, RENAME_NOREPLACE); /* never over a file that gray has restored: such a loss would look like
+                                                a fault of gray */
             _exit(0);
         }
         (void)snprintf(words, sizeof words, "-q -j 1 %s scene.lua", race->options ? race->options : "");
