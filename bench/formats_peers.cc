@@ -32,7 +32,7 @@ struct Best {
     }
 };
 
-static void tell(const char *path, const char *peer, const Best &best, size_t triangles) {
+static void print_best(const char *path, const char *peer, const Best &best, size_t triangles) {
     struct stat status = {};
     (void)stat(path, &status);
     std::printf("%-32s %-14s %7.1f MB/s %6.3f s   processor %7.1f MB/s %6.3f s   %zu triangles\n", path, peer,
@@ -57,7 +57,7 @@ int main(int count, char **paths) {
                 for (const auto &shape : reader.GetShapes())
                     triangles += shape.mesh.num_face_vertices.size();
             }
-            tell(path, "tinyobjloader", best, triangles);
+            print_best(path, "tinyobjloader", best, triangles);
         }
 #endif
 #ifdef PEER_ASSIMP
@@ -77,7 +77,7 @@ int main(int count, char **paths) {
             for (unsigned k = 0; k < scene->mNumMeshes; k++)
                 triangles += scene->mMeshes[k]->mNumFaces;
         }
-        tell(path, "Assimp", best, triangles);
+        print_best(path, "Assimp", best, triangles);
 #endif
     }
 }

@@ -209,15 +209,15 @@ end
 local function parabolas(line, tolerance)
     local n, pieces = #line, {}
     local function at(k) return line[(k - 1) % n + 1] end
-    local function way(a, b)
+    local function direction(a, b)
         local x, y = b[1] - a[1], b[2] - a[2]
         local length = sqrt(x * x + y * y)
         return x / length, y / length
     end
     local corners = {}
     for k = 1, n do
-        local ux, uy = way(at(k - 1), at(k))
-        local vx, vy = way(at(k), at(k + 1))
+        local ux, uy = direction(at(k - 1), at(k))
+        local vx, vy = direction(at(k), at(k + 1))
         local turn = ux * vx + uy * vy
         if turn < 0.88 then corners[#corners + 1] = k end
     end
@@ -227,10 +227,10 @@ local function parabolas(line, tolerance)
     local function tangent(k, ahead) -- along the line; at a corner, that of the requested side
         local wrapped = (k - 1) % n + 1
         if is_corner[wrapped] then
-            if ahead then return way(at(k), at(k + 1)) end
-            return way(at(k - 1), at(k))
+            if ahead then return direction(at(k), at(k + 1)) end
+            return direction(at(k - 1), at(k))
         end
-        return way(at(k - 1), at(k + 1))
+        return direction(at(k - 1), at(k + 1))
     end
     local function fit(i, j)
         local a, b = at(i), at(j)

@@ -19,7 +19,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 with open(os.path.join(ROOT, "Makefile")) as makefile:
     MODULES = re.search(r"^MODULES = (.*)$", makefile.read(), re.MULTILINE).group(1).split()
 # Modules that must be covered completely; all others count only for the totals.
-MARKS = {
+CATEGORIES = {
     "binding": r"src/script/",
     "sandbox": r"src/host/confine\.c|src/base/path_policy\.c|src/script/(sandbox|limits|protect|files|streams)\.c",
     "checkpoint": r"src/render/tile_file\.c|src/output/checkpoint\.c",
@@ -28,7 +28,7 @@ MARKS = {
 ALL_LINES, ALL_BRANCHES = 95.0, 90.0
 NOT_COUNTED = re.compile(r"\b(assert|UNREACHABLE|MAY_FAIL|MAY_GIVE_NULL)\(")
 # Functions that report an error and always return false; variables assigned at the same time.
-TELLS = re.compile(r"(error_\w+|wrong|refuse|tell|no_memory|\w*fail\w*)\(")
+REPORTS = re.compile(r"(error_\w+|wrong|refuse|tell|no_memory|\w*fail\w*)\(")
 ASSIGNS = re.compile(r"\(.* = true\)")
 FAULT = ("MAY_FAIL", "MAY_GIVE_NULL")
 
@@ -156,7 +156,7 @@ def read(folder, root):
     for file in files.values():
         for key, pair in list(file.branches.items()):
             text = file.source.text[file.source.offset(key[0], key[1]):file.source.offset(key[2], key[3])]
-            if TELLS.match(text):
+            if REPORTS.match(text):
                 pair[0] = pair[0] or pair[1]
             if ASSIGNS.fullmatch(text):
                 pair[1] = pair[0] or pair[1]
@@ -200,23 +200,23 @@ def main():
             out.append(row(module, add(inside)))
     total = add(counts.values())
     out += [row("**all**", total), "", f"| must be complete {head}"]
-    for mark, pattern in MARKS.items():
+    for mark, pattern in CATEGORIES.items():
         out.append(row(mark, add(c for name, c in counts.items() if re.match(pattern, name))))
     out += ["", "Files below the goal (100 % of branches where coverage must be complete, else 95 % of lines and 90 % of branches):",
             "", f"| file {head}"]
     for name in sorted(counts):
         c = counts[name]
-        whole = any(re.match(pattern, name) for pattern in MARKS.values())
+        whole = any(re.match(pattern, name) for pattern in CATEGORIES.values())
         if c[2] < c[3] if whole else percent(c[0], c[1]) < ALL_LINES or percent(c[2], c[3]) < ALL_BRANCHES:
             out.append(row(f"`{name}`{' (must be complete)' if whole else ''}", c))
     open(os.path.join(folder, "summary.md"), "w").write("\n".join(out) + "\n")
     with open(os.path.join(folder, "missing.txt"), "w") as missing:
         for name in sorted(files):
-            tell_missing(files[name], missing)
+            report_missing(files[name], missing)
     print("\n".join(out[:out.index("", len(MODULES) + 4)]))
 
 
-def tell_missing(file, out):
+def report_missing(file, out):
     said = []
     for line, count in file.lines.items():
         if count == 0 and line not in file.source.silent_lines:

@@ -52,7 +52,7 @@ def read_png(name):
     return width, height, rows
 
 
-def stands_out(rows, x, y):
+def is_outlier(rows, x, y):
     for channel in range(3):
         around = sorted(rows[y + j][3 * (x + i) + channel] for j in (-1, 0, 1) for i in (-1, 0, 1) if i or j)
         difference = abs(rows[y][3 * x + channel] - (around[3] + around[4]) / 2)
@@ -72,8 +72,8 @@ def main():
     reference = read_png(sys.argv[2]) if len(sys.argv) == 3 else None
     if reference and reference[:2] != (width, height):
         sys.exit(f'{sys.argv[2]}: is not of {width} x {height} pixels')
-    found = [(x, y) for y in range(1, height - 1) for x in range(1, width - 1) if stands_out(rows, x, y)]
-    found = [(x, y) for x, y in found if not (reference and stands_out(reference[2], x, y))]
+    found = [(x, y) for y in range(1, height - 1) for x in range(1, width - 1) if is_outlier(rows, x, y)]
+    found = [(x, y) for x, y in found if not (reference and is_outlier(reference[2], x, y))]
     for x, y in found:
         print(f'{sys.argv[1]}: pixel {x},{y} stands out')
     sys.exit(1 if found else 0)

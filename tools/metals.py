@@ -111,7 +111,7 @@ def reflectance(n, k, cosine):
     return (abs(s) ** 2 + abs(p) ** 2) / 2
 
 
-def between(xs, ys, x):
+def interpolated(xs, ys, x):
     for i in range(len(xs) - 1):
         if x <= xs[i + 1]:
             t = (x - xs[i]) / (xs[i + 1] - xs[i])
@@ -122,7 +122,7 @@ def between(xs, ys, x):
 def colour(metal, cosine):
     um, n, k = ([float(x) for x in column.split()] for column in metal[2:])
     assert len(um) == len(n) == len(k), metal[0]
-    seen = linear_srgb(lambda nm: reflectance(between(um, n, nm / 1000), between(um, k, nm / 1000), cosine))
+    seen = linear_srgb(lambda nm: reflectance(interpolated(um, n, nm / 1000), interpolated(um, k, nm / 1000), cosine))
     return [min(max(c / w, 0), 1) for c, w in zip(seen, WHITE)]
 
 

@@ -1,38 +1,27 @@
 #!/bin/sh
-# Prints every identifier of the C code, and every file, that has a word of tools/names.list as a component (split at _),
-# or is a struct, union or enum of a name listed there as a tag; fails when there is any. tools/names.allow has the
-# exceptions, each with its reason; names of tests are sentences and not looked at. Needs awk alone.
+# Prints every identifier and every file of src, tests, bench, tools and lua that has a word of tools/names.list as a
+# component (split at _), and every struct, union or enum of a name that is listed there as a tag; fails when there is
+# any. tools/names.allow has the exceptions, each with its reason; one that allows nothing fails too.
+# Universal Ctags finds the identifiers: functions, variables, parameters, members, types, macros, enumerators and tests
+# of C, functions and variables of Lua, shell and Python. Without it awk splits the C code into words and looks at those.
 # tools/names.sh --count: how many identifiers and files have each word.
 cd "$(dirname "$0")/.." || exit 1
-found=$(mktemp) || exit 1
-trap 'rm -f "$found"' EXIT
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+folders="src tests bench tools lua"
 
-# shellcheck disable=SC2016
-find src tests bench -name '*.[ch]' | sort | xargs awk '
-BEGIN {
-    while ((getline line <"tools/names.list") > 0) {
-        n = split(line, field, " ")
-        if (n >= 2 && field[1] == "part") bad[field[2]] = 1
-        if (n >= 2 && field[1] == "tag") bad_tag[field[2]] = 1
-    }
+# Lines "NAME FILE KIND".
+by_ctags() {
+    # shellcheck disable=SC2086
+    find $folders -name '*.c' -o -name '*.h' -o -name '*.cc' -o -name '*.lua' -o -name '*.sh' -o -name '*.py' | sort |
+        ctags --options=NONE -x --_xformat='%N %F %K' --langmap=C:.c.h,C++:.cc --kinds-C=+lzp --kinds-C++=+lzp \
+            --regex-C='/^TEST(_[A-Z]+)?\(([A-Za-z0-9_]+)/\2/k,test/' -L - >"$work/identifiers" 2>/dev/null
 }
-FNR == 1 {
-    comment = 0
-    tag = 0
-    name = FILENAME
-    sub(/.*\//, "", name)
-    sub(/\.[ch]$/, "", name)
-    look(name, "file")
-}
-function look(word, kind, low, n, i, part) {
-    low = tolower(word)
-    n = split(low, part, "_")
-    for (i = 1; i <= n; i++)
-        if (part[i] in bad && !((FILENAME, word) in seen)) {
-            seen[FILENAME, word] = 1
-            print part[i], word, FILENAME, kind
-        }
-}
+
+by_awk() {
+    # shellcheck disable=SC2016,SC2086
+    find $folders -name '*.[ch]' | sort | xargs awk '
+FNR == 1 { comment = 0; tag = "" }
 {
     line = $0
     if (comment) {
@@ -61,32 +50,53 @@ function look(word, kind, low, n, i, part) {
     }
     n = split(line, word, /[^A-Za-z0-9_]+/)
     for (i = 1; i <= n; i++) {
-        if (word[i] ~ /^[A-Za-z_]/ && test) {
-            test = 0
-        } else if (word[i] ~ /^[A-Za-z_]/) {
-            look(word[i], "identifier")
-            test = word[i] ~ /^TEST(_[A-Z]+)?$/
-            if (tag && word[i] in bad_tag && !((FILENAME, "tag " word[i]) in seen)) {
-                seen[FILENAME, "tag " word[i]] = 1
-                print word[i], word[i], FILENAME, "struct"
-            }
-        }
-        if (word[i] != "")
-            tag = word[i] ~ /^(struct|union|enum)$/
+        if (word[i] == "") continue
+        if (word[i] ~ /^[A-Za-z_]/) print word[i], FILENAME, tag == "" ? "identifier" : tag
+        tag = word[i] ~ /^(struct|union|enum)$/ ? word[i] : ""
     }
-}' >"$found" || exit 1
+}' >"$work/identifiers"
+}
+
+if ctags --version 2>/dev/null | grep -q '^Universal Ctags'; then
+    by=ctags
+    by_ctags || exit 1
+else
+    by=awk
+    echo "names: no Universal Ctags here (Debian: universal-ctags): awk looks at the C code only" >&2
+    by_awk || exit 1
+fi
+# Files, by their names without the ending; data of tests is named after what it holds.
+find src tests/unit tests/fuzz tests/*.[ch] bench tools lua -name '*.*' -type f ! -path 'tests/fuzz/*/*' \
+    ! -path 'tools/renames/*' | sed 's|^\(.*/\)\([^./]*\)\(\..*\)$|\2 \1\2\3 file|' >>"$work/identifiers"
+[ "$(wc -l <"$work/identifiers")" -gt 10000 ] || { echo "names: $by found no identifiers" >&2; exit 1; }
+
+awk '
+FILENAME == "tools/names.list" {
+    if ($1 == "part") bad[$2] = 1
+    if ($1 == "tag") bad_tag[$2] = 1
+    next
+}
+($0 in seen) { next }
+{
+    seen[$0] = 1
+    n = split(tolower($1), part, /[^a-z0-9]+/)
+    for (i = 1; i <= n; i++)
+        if (part[i] in bad) print part[i], $1, $2, $3
+    if ($1 in bad_tag && $3 ~ /^(struct|union|enum)$/ && $2 ~ /\.[ch]$/) print $1, $1, $2, $3
+}' tools/names.list "$work/identifiers" | sort -u >"$work/found"
 
 if [ "$1" = --count ]; then
-    awk '{ print $1 }' "$found" | sort | uniq -c | sort -rn
+    awk '{ print $1 }' "$work/found" | sort | uniq -c | sort -rn
     exit
 fi
 
 # A line of names.allow: WORD FILES IDENTIFIERS reason; patterns of the shell, * for any.
 # shellcheck disable=SC2016
-awk '
+awk -v by="$by" '
 function pattern(glob) {
     gsub(/[.]/, "\\.", glob)
     gsub(/[*]/, ".*", glob)
+    gsub(/,/, "|", glob)
     return "^(" glob ")$"
 }
 FILENAME == "tools/names.allow" {
@@ -95,26 +105,23 @@ FILENAME == "tools/names.allow" {
     count++
     allowed[count] = $1
     file[count] = pattern($2)
-    gsub(/,/, "|", file[count])
     identifier[count] = pattern($3)
-    gsub(/,/, "|", identifier[count])
     line[count] = FNR
     next
 }
 {
+    ok = 0
     for (i = 1; i <= count; i++)
-        if ($1 == allowed[i] && $3 ~ file[i] && $2 ~ identifier[i]) { used[i] = 1; next }
-    print $3 ": " $2 " (" $4 "): the word " $1
+        if ($1 == allowed[i] && $3 ~ file[i] && $2 ~ identifier[i]) ok = used[i] = 1
+    if (!ok) print $3 ": " $2 " (" $4 "): the word " $1
 }
 END {
-    for (i = 1; i <= count; i++)
-        if (!used[i]) print "names: tools/names.allow:" line[i] " allows nothing that exists" >"/dev/stderr"
-}' tools/names.allow "$found" >"$found.bad"
-if [ -s "$found.bad" ]; then
-    cat "$found.bad"
-    echo "names: $(wc -l <"$found.bad") lines; docs/glossary.md has the words of the field" >&2
-    rm -f "$found.bad"
+    for (i = 1; i <= count && by == "ctags"; i++)
+        if (!used[i]) print "tools/names.allow:" line[i] ": allows nothing that exists"
+}' tools/names.allow "$work/found" >"$work/bad"
+if [ -s "$work/bad" ]; then
+    cat "$work/bad"
+    echo "names: $(wc -l <"$work/bad") lines; docs/glossary.md has the words of the field" >&2
     exit 1
 fi
-rm -f "$found.bad"
-echo "names: no identifier and no file has a word of tools/names.list"
+echo "names: no identifier and no file has a word of tools/names.list (found by $by)"

@@ -1,16 +1,16 @@
 #!/bin/sh
-# Renders every scene of the repository in a small size, in several ways, and compares the files with recorded hashes:
+# Renders every scene of the repository in a small size, in several variants, and compares the files with recorded hashes:
 # the check for a change that must not change pictures.
 #   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are
 #   any tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
-# WAYS="default j1 bvh base" chooses among the ways; ONLY="word ..." scenes whose path holds one of the words.
+# WAYS="default j1 bvh base" chooses among the variants; ONLY="word ..." scenes whose path holds one of the words.
 # The hashes are of whole PNG files, so they hold for one version of zlib; tools/picture_difference.py OLD NEW shows by
 # how many levels the pictures of two folders differ.
 cd "$(dirname "$0")/.." || exit 1
 action=${1:-check}
 folder=${2:-build/pictures}
 list=tests/picture_hashes.txt
-ways=${WAYS:-default j1 bvh base}
+variants=${WAYS:-default j1 bvh base}
 gray=$PWD/${GRAY:-gray}
 case $action in check | record) ;; *) sed -n '2,9p' "$0" >&2; exit 2 ;; esac
 [ -x "$gray" ] || { echo "picture_hashes.sh: there is no $gray; run make first" >&2; exit 2; }
@@ -18,7 +18,7 @@ mkdir -p "$folder" || exit 1
 rm -f "$folder"/*
 folder=$(cd "$folder" && pwd)
 
-options_of_way() {
+options_of() {
     case $1 in
     default) echo "-j 2" ;;
     j1) echo "-j 1" ;;
@@ -52,12 +52,12 @@ for scene in $scenes; do
     base=$(echo "${scene%.lua}" | tr / -)
     # The options of the first lines, without those that set another size.
     options=$(head -n 20 "$scene" | sed -n 's/^-- *OPTIONS: *//p' | head -n 1)
-    for way in $ways; do
+    for variant in $variants; do
         # shellcheck disable=SC2046,SC2086
-        render "$base.$way" "$scene" --size 96x72 -ss 2 -al-samples 2 $options $(options_of_way "$way") \
-            -o "$folder/$base.$way-%02d.png"
+        render "$base.$variant" "$scene" --size 96x72 -ss 2 -al-samples 2 $options $(options_of "$variant") \
+            -o "$folder/$base.$variant-%02d.png"
     done
-    case " $ways " in *" default "*) ;; *) continue ;; esac
+    case " $variants " in *" default "*) ;; *) continue ;; esac
     # shellcheck disable=SC2086
     case $scene in
     *0[2-9]demo.lua | *1[0-4]demo.lua | tests/pictures/*)

@@ -13,7 +13,7 @@ local function area(outline)
     return twice / 2
 end
 
-local function placed(outline, degrees, x, y)
+local function turned(outline, degrees, x, y)
     local c, s, out = math.cos(math.rad(degrees)), math.sin(math.rad(degrees)), {}
     for k, p in ipairs(outline) do out[k] = { x + p[1] * c - p[2] * s, y + p[1] * s + p[2] * c } end
     return out
@@ -74,7 +74,7 @@ claims.claim('outlines lie between root and tip and have a point for each tooth 
         local q = math.sqrt(p[1] ^ 2 + p[2] ^ 2)
         assert(q > g.root - 1e-9 and q < g.tip + 1e-9)
     end
-    assert(inside(outline, { g.tip - 0.1, 0 }) and not inside(outline, placed({ { g.tip - 0.1, 0 } }, 180 / 19, 0, 0)[1]))
+    assert(inside(outline, { g.tip - 0.1, 0 }) and not inside(outline, turned({ { g.tip - 0.1, 0 } }, 180 / 19, 0, 0)[1]))
     -- about half of the ring between root and tip is tooth
     assert(area(outline) > pi * g.root ^ 2 and area(outline) < pi * g.tip ^ 2)
 end)
@@ -89,7 +89,7 @@ claims.claim('wheels that mate touch and do not cut into each other at any angle
             local d, angle = gear.mate(a, b, turn, toward)
             local x, y = d * math.cos(math.rad(toward)), d * math.sin(math.rad(toward))
             local mid = a.radius / (a.radius + b.radius)
-            local depth, gap = contact(placed(outline_a, turn, 0, 0), placed(outline_b, angle, x, y), x * mid, y * mid, 2.6)
+            local depth, gap = contact(turned(outline_a, turn, 0, 0), turned(outline_b, angle, x, y), x * mid, y * mid, 2.6)
             assert(depth < 0.006, ('%d and %d teeth at %g degrees: %g deep'):format(pair[1], pair[2], turn, depth))
             assert(gap < 0.01, ('%d and %d teeth at %g degrees: %g apart'):format(pair[1], pair[2], turn, gap))
         end
@@ -103,8 +103,8 @@ claims.claim('a wheel in a ring touches and does not cut into it', function()
         local d, angle = gear.mate(ring, planet, turn, 25)
         local x, y = d * math.cos(math.rad(25)), d * math.sin(math.rad(25))
         local gap = math.huge
-        for _, p in ipairs(placed(outline, angle, x, y)) do
-            local back = placed({ p }, -turn, 0, 0)[1] -- into the ring's own frame
+        for _, p in ipairs(turned(outline, angle, x, y)) do
+            local back = turned({ p }, -turn, 0, 0)[1] -- into the ring's own frame
             local e = distance(hole, back, 1)
             gap = math.min(gap, e)
             assert(inside(hole, back) or e < 0.006, ('%g outside at %g'):format(e, turn))
@@ -117,10 +117,10 @@ claims.claim('planets fit sun and ring', function()
     local train = gear.planetary { sun = 24, planet = 18, planets = 3, turn = 33 }
     assert(train.ring.teeth == 60)
     near(train.carrier_angle, 33 * 24 / 84, 1e-12, 'carrier')
-    local hole = placed(gear.outline(train.ring, 8), train.ring_angle, 0, 0)
-    local sun = placed(gear.outline(train.sun, 8), train.sun_angle, 0, 0)
+    local hole = turned(gear.outline(train.ring, 8), train.ring_angle, 0, 0)
+    local sun = turned(gear.outline(train.sun, 8), train.sun_angle, 0, 0)
     for _, p in ipairs(train.planets) do
-        local planet = placed(gear.outline(train.planet, 8), p[3], p[1], p[2])
+        local planet = turned(gear.outline(train.planet, 8), p[3], p[1], p[2])
         for k = 1, #planet, 3 do
             local q = planet[k]
             assert(inside(hole, q) or distance(hole, q, 1) < 0.01, 'planet cuts the ring')
@@ -135,7 +135,7 @@ claims.claim('a rack takes the teeth of a wheel that rolls on it', function()
     for turn = 0, 18, 6 do
         -- a tooth points down at -90 degrees; a turn rolls the wheel to -x * ... by its arc
         local at = -math.rad(turn) * g.radius
-        local depth, gap = contact(rack, placed(wheel, -90 + turn, at, g.radius), at, 0, 4)
+        local depth, gap = contact(rack, turned(wheel, -90 + turn, at, g.radius), at, 0, 4)
         assert(depth < 0.006 and gap < 0.01, ('%g deep, %g apart at %g'):format(depth, gap, turn))
     end
 end)

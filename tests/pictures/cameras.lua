@@ -33,13 +33,13 @@ end
 picture { target = { 0, .7, 0 }, fov = 50, aperture = .25, focus_point = { -1.4, .7, -.6 }, blades = 5, blade_angle = 20,
     samples = 3, seed = 7 }
 local root = scene()
-local function place(node, x, y, z)
+local function moved(node, x, y, z)
     node:translate(x, y, z)
     return node
 end
-root:add_child(place(gr.sphere { radius = .5, material = gr.material({ 1, .3, .3 }, { .5, .5, .5 }, 40) }, -2, 2.5,
+root:add_child(moved(gr.sphere { radius = .5, material = gr.material({ 1, .3, .3 }, { .5, .5, .5 }, 40) }, -2, 2.5,
     0):velocity(1.2, 0, 0))
-local cube = place(gr.cube(gr.marble_pnd_material(gr.material({ .9, .9, .9 }, { 0, 0, 0 }, 1), 2, 5, 6, 1, { .1, .1, .4 })), 1,
+local cube = moved(gr.cube(gr.marble_pnd_material(gr.material({ .9, .9, .9 }, { 0, 0, 0 }, 1), 2, 5, 6, 1, { .1, .1, .4 })), 1,
     2, 0)
 cube:moves_to(gr.node 'there':rotate('z', 40):scale(1, 1.3, 1):translate(1.8, 2.2, 0))
 local group = gr.node { children = { cube, gr.torus { major = .5, minor = .15, material = gr.material({ .2, .8, .3 }, { .5, .5,

@@ -206,7 +206,7 @@ local polygon = thing(function(m) return gr.polygon {points = flat, material = m
 -- --- the scenes ---
 
 local TURN, SIZE, MOVE = {20, 35, -15}, {1.2, 0.9, 1.1}, {0.2, -0.1, 0.3}
-local function alone(what) return placed(what, 1, SIZE, TURN, MOVE) end
+local function single(what) return placed(what, 1, SIZE, TURN, MOVE) end
 local node_solid = difference(intersection(placed(cube, 1, {0.9, 0.9, 0.9}), placed(sphere, 2, {1.25, 1.25, 1.25})),
     placed(thing(function(m) return gr.cylinder {from = {-2, 0, 0}, to = {2, 0, 0}, radius = 0.5, material = m} end,
         'cylinder{-2*x,2*x,.5 %s}'), 3),
@@ -214,17 +214,17 @@ local node_solid = difference(intersection(placed(cube, 1, {0.9, 0.9, 0.9}), pla
         'cylinder{-2*y,2*y,.5 %s}'), 4))
 
 local scenes = {
-    {'sphere', alone(sphere)}, {'box', alone(box)}, {'ellipsoid', alone(ellipsoid)},
-    {'plane', group(placed(plane, 2), placed(sphere, 1, {0.7, 0.7, 0.7}))}, {'disc', alone(disc)},
-    {'cylinder', alone(cylinder(false))}, {'open_cylinder', alone(cylinder(true))}, {'cone', alone(cone(0, false))},
-    {'frustum', alone(cone(0.4, false))}, {'open_frustum', alone(cone(0.4, true))}, {'paraboloid', alone(paraboloid)},
-    {'hyperboloid_one_sheet', alone(one_sheet)}, {'hyperboloid_two_sheets', alone(two_sheets)}, {'quadric', alone(quadric)},
-    {'torus', alone(torus)}, {'superellipsoid', alone(superellipsoid(0.4, 0.7))}, {'superellipsoid_octahedron', alone(superellipsoid(1.6, 1.4))},
-    {'lathe', alone(lathe)}, {'lathe_spline', alone(lathe_spline)}, {'prism', alone(prism)}, {'prism_with_hole', alone(prism_hole)},
-    {'prism_spline', alone(prism_spline)}, {'sphere_sweep', alone(sweep('linear_spline', 'linear'))},
-    {'sphere_sweep_spline', alone(sweep('cubic_spline', 'catmull-rom'))},
-    {'height_field', placed(height_field, 1, {2.6, 1.5, 2.6}, {10, 20, 0}, {-1.2, -0.4, -1.2})}, {'blob', alone(blob)},
-    {'patch', alone(patch)}, {'mesh', alone(mesh)}, {'polygon', alone(polygon)},
+    {'sphere', single(sphere)}, {'box', single(box)}, {'ellipsoid', single(ellipsoid)},
+    {'plane', group(placed(plane, 2), placed(sphere, 1, {0.7, 0.7, 0.7}))}, {'disc', single(disc)},
+    {'cylinder', single(cylinder(false))}, {'open_cylinder', single(cylinder(true))}, {'cone', single(cone(0, false))},
+    {'frustum', single(cone(0.4, false))}, {'open_frustum', single(cone(0.4, true))}, {'paraboloid', single(paraboloid)},
+    {'hyperboloid_one_sheet', single(one_sheet)}, {'hyperboloid_two_sheets', single(two_sheets)}, {'quadric', single(quadric)},
+    {'torus', single(torus)}, {'superellipsoid', single(superellipsoid(0.4, 0.7))}, {'superellipsoid_octahedron', single(superellipsoid(1.6, 1.4))},
+    {'lathe', single(lathe)}, {'lathe_spline', single(lathe_spline)}, {'prism', single(prism)}, {'prism_with_hole', single(prism_hole)},
+    {'prism_spline', single(prism_spline)}, {'sphere_sweep', single(sweep('linear_spline', 'linear'))},
+    {'sphere_sweep_spline', single(sweep('cubic_spline', 'catmull-rom'))},
+    {'height_field', placed(height_field, 1, {2.6, 1.5, 2.6}, {10, 20, 0}, {-1.2, -0.4, -1.2})}, {'blob', single(blob)},
+    {'patch', single(patch)}, {'mesh', single(mesh)}, {'polygon', single(polygon)},
     {'union', with(union(placed(sphere, 1), placed(box, 2, nil, nil, {0.6, 0.2, 0.4})), SIZE, TURN, MOVE)},
     {'difference', with(difference(placed(cube, 1), placed(sphere, 2, {1.2, 1.2, 1.2}), placed(cylinder(false), 3, {0.6, 3, 0.6})), SIZE, TURN, MOVE)},
     {'intersection', with(intersection(placed(cube, 1), placed(sphere, 2, {1.3, 1.2, 1.3}), placed(torus, 3, {1, 3, 1})), SIZE, TURN, MOVE)},
