@@ -7,10 +7,7 @@
 
 #include "base/checked.h"
 #include "base/fault.h"
-#include "base/hash.h"
 #include "base/mem_peak_internal.h"
-#include "base/random.h"
-#include "base/sort.h"
 
 #include <malloc.h>
 #include <stdatomic.h>
@@ -252,65 +249,6 @@ void *mem_share(size_t size) {
 void mem_unshare(void *block, size_t size) {
     if (block)
         (void)munmap(block, size ? size : 1);
-}
-
-/* --- what memory holds: hashes (base/hash.h), order (base/sort.h) --- */
-
-/* Eight bytes at a time, mixed with multiplications; the tail is padded with zeros and the length mixed in. */
-uint64_t hash_bytes(const void *data, size_t size, uint64_t seed) {
-    const unsigned char *bytes = data;
-    uint64_t h = random_mix(seed + UINT64_C(0x9e3779b97f4a7c15) + size);
-    size_t at = 0;
-    for (; size - at >= 8; at += 8) {
-        uint64_t word;
-        memcpy(&word, bytes + at, 8);
-        h = (h ^ random_mix(word)) * UINT64_C(0x100000001b3) + (h >> 47);
-    }
-    uint64_t tail = 0;
-    if (size > at)
-        memcpy(&tail, bytes + at, size - at);
-    return random_mix(h ^ tail);
-}
-
-struct digest digest_bytes(const void *data, size_t size, struct digest before) {
-    return (struct digest){hash_bytes(data, size, before.a), hash_bytes(data, size, before.b ^ ~UINT64_C(0))};
-}
-
-bool digest_equal(struct digest x, struct digest y) {
-    return x.a == y.a && x.b == y.b;
-}
-
-static void sift_down(uint64_t *items, size_t root, size_t count) {
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && items[child + 1] > items[child])
-            child++;
-        if (items[root] >= items[child])
-            return;
-        uint64_t swap = items[root];
-        items[root] = items[child];
-        items[child] = swap;
-    }
-}
-
-void sort_words(uint64_t *items, size_t count) {
-    if (count <= 24) {
-        for (size_t i = 1; i < count; i++) {
-            uint64_t item = items[i];
-            size_t j = i;
-            for (; j > 0 && items[j - 1] > item; j--)
-                items[j] = items[j - 1];
-            items[j] = item;
-        }
-        return;
-    }
-    for (size_t root = count / 2; root-- > 0;)
-        sift_down(items, root, count);
-    for (size_t last = count - 1; last > 0; last--) {
-        uint64_t swap = items[0];
-        items[0] = items[last];
-        items[last] = swap;
-        sift_down(items, 0, last);
-    }
 }
 
 /* --- failures on demand (base/fault.h) --- */

@@ -1,11 +1,67 @@
-/* Sorting of 64-bit words, ascending, in place: insertion for a few, heap sort for more. Never allocates, never slower
- * than n log n whatever the order. */
+/* Sorting in place. Never allocates, never slower than n log n whatever the order. Not stable: where the result must be
+ * one, the order is total. */
 #ifndef GRAY_BASE_SORT_H
 #define GRAY_BASE_SORT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
-void sort_words(uint64_t *items, size_t count);
+/* Whether *a comes before *b. */
+typedef bool sort_before(const void *a, const void *b);
+
+enum { SORT_ITEM_MAX = 256 }; /* bytes */
+
+static inline __attribute__((always_inline)) void sort_swap(unsigned char *a, unsigned char *b, size_t size) {
+    unsigned char moved[SORT_ITEM_MAX];
+    memcpy(moved, a, size);
+    memcpy(a, b, size);
+    memcpy(b, moved, size);
+}
+
+/* Moves item `root` of a heap down until no child comes after it. */
+static inline __attribute__((always_inline)) void sort_sift_down(unsigned char *items, size_t root, size_t count,
+                                                                 size_t size, sort_before *before) {
+    for (size_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && before(items + child * size, items + (child + 1) * size))
+            child++;
+        if (!before(items + root * size, items + child * size))
+            return;
+        sort_swap(items + root * size, items + child * size, size);
+    }
+}
+
+/* Heap sort (Williams 1964) of items of `size` bytes, at most SORT_ITEM_MAX. Inline, so that the comparison is, too. */
+static inline __attribute__((always_inline)) void sort_items(void *items, size_t count, size_t size,
+                                                             sort_before *before) {
+    unsigned char *bytes = items;
+    for (size_t root = count / 2; root-- > 0;)
+        sort_sift_down(bytes, root, count, size, before);
+    for (size_t last = count; last-- > 1;) {
+        sort_swap(bytes, bytes + last * size, size);
+        sort_sift_down(bytes, 0, last, size, before);
+    }
+}
+
+static inline bool sort_word_before(const void *a, const void *b) {
+    const uint64_t *x = a, *y = b;
+    return *x < *y;
+}
+
+/* Words, ascending: by insertion if they are few. */
+static inline void sort_words(uint64_t *items, size_t count) {
+    if (count > 24) {
+        sort_items(items, count, sizeof *items, sort_word_before);
+        return;
+    }
+    for (size_t i = 1; i < count; i++) {
+        uint64_t item = items[i];
+        size_t j = i;
+        for (; j > 0 && items[j - 1] > item; j--)
+            items[j] = items[j - 1];
+        items[j] = item;
+    }
+}
 
 #endif

@@ -17,6 +17,7 @@
 #include "render/photon_target_internal.h"
 
 #include "base/random.h"
+#include "base/sort.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 
@@ -114,31 +115,10 @@ static bool find_casters(struct specular_objects *out, const struct world *world
     return true;
 }
 
-/* Heap sort by strength, then by order. */
-static bool is_weaker(const struct specular_object *a, const struct specular_object *b) {
-    return a->strength != b->strength ? a->strength < b->strength : a->order > b->order;
-}
-
-static void sift(struct specular_object *list, uint32_t root, uint32_t count) {
-    struct specular_object item = list[root];
-    for (uint32_t child; (child = 2 * root + 1) < count; root = child) {
-        child += child + 1 < count && is_weaker(&list[child + 1], &list[child]);
-        if (!is_weaker(&list[child], &item))
-            break;
-        list[root] = list[child];
-    }
-    list[root] = item;
-}
-
-static void sort_casters(struct specular_objects *specular_objects) {
-    for (uint32_t i = specular_objects->count / 2; i-- > 0;)
-        sift(specular_objects->list, i, specular_objects->count);
-    for (uint32_t end = specular_objects->count; end > 1; end--) {
-        struct specular_object last = specular_objects->list[end - 1];
-        specular_objects->list[end - 1] = specular_objects->list[0];
-        specular_objects->list[0] = last;
-        sift(specular_objects->list, 0, end - 1);
-    }
+/* By strength, the strongest first, then by order. */
+static bool is_stronger(const void *one, const void *other) {
+    const struct specular_object *a = one, *b = other;
+    return a->strength != b->strength ? a->strength > b->strength : a->order < b->order;
 }
 
 /* --- cells --- */
@@ -529,7 +509,7 @@ bool photon_targets_make(struct photon_targets *out, const struct world *world, 
         return error_no_memory(error, "the photons of the caustics");
     if (specular_objects.count == 0 || world->light_count == 0)
         return true;
-    sort_casters(&specular_objects);
+    sort_items(specular_objects.list, specular_objects.count, sizeof *specular_objects.list, is_stronger);
     struct search search = {.specular_objects = &specular_objects, .pool = pool};
     /* Enough photons in a cell for their sequence to show; many lights share the time. */
     uint32_t by_photons = photons / PHOTONS_PER_CELL / world->light_count, by_time = BUDGET * 8 / world->light_count;
@@ -583,8 +563,8 @@ static struct light_photon start_across(const struct photon_target *target, cons
 }
 
 /* A unit direction within a cell; *share: the solid angle there for that in the cell's middle. */
-static struct vec3 cell_direction(const struct photon_target *target, const struct photon_cell *cell,
-                                  struct sample2 xi, double *share) {
+static struct vec3 cell_direction(const struct photon_target *target, const struct photon_cell *cell, struct sample2 xi,
+                                  double *share) {
     double width = ldexp(2, -(int)target->level), density, middle_density;
     (void)face_direction(cell->face, -1 + width * (cell->i + 0.5), -1 + width * (cell->j + 0.5), &middle_density);
     struct vec3 direction =
@@ -614,8 +594,7 @@ struct photon_start photon_target_start(const struct photon_target *target, uint
     struct light_photon photon;
     switch (emitter->domain) {
     case LIGHT_DOMAIN_ENVIRONMENT:
-        photon =
-            start_from_environment(target, (struct sample2){u[0], u[1]}, (struct sample2){u[2], u[3]});
+        photon = start_from_environment(target, (struct sample2){u[0], u[1]}, (struct sample2){u[2], u[3]});
         start.from_afar = true;
         break;
     case LIGHT_DOMAIN_PARALLEL:

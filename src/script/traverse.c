@@ -4,6 +4,8 @@
  * list of their keys and a heap sort. Entries removed during the traversal are skipped, as with Lua's own. */
 #include "script/context_internal.h"
 
+#include "base/sort.h"
+
 #include <assert.h>
 #include <lauxlib.h>
 #include <string.h>
@@ -32,7 +34,8 @@ static int compare_bytes(const struct key *a, const struct key *b) {
     return a->string.size < b->string.size ? -1 : a->string.size > b->string.size;
 }
 
-static bool comes_before(const struct key *a, const struct key *b) {
+static bool comes_before(const void *one, const void *other) {
+    const struct key *a = one, *b = other;
     if (a->rank != b->rank)
         return a->rank < b->rank;
     int order = 0;
@@ -52,30 +55,6 @@ static bool comes_before(const struct key *a, const struct key *b) {
         break;
     }
     return order != 0 ? order < 0 : a->slot < b->slot;
-}
-
-static void sift_down(struct key *keys, size_t root, size_t count) {
-    for (size_t child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && comes_before(&keys[child], &keys[child + 1]))
-            child++;
-        if (!comes_before(&keys[root], &keys[child]))
-            return;
-        struct key swap = keys[root];
-        keys[root] = keys[child];
-        keys[child] = swap;
-    }
-}
-
-/* Heap sort (Williams 1964): no memory, no slow case. */
-static void sort_keys(struct key *keys, size_t count) {
-    for (size_t root = count / 2; root-- > 0;)
-        sift_down(keys, root, count);
-    for (size_t last = count; last-- > 1;) {
-        struct key swap = keys[0];
-        keys[0] = keys[last];
-        keys[last] = swap;
-        sift_down(keys, 0, last);
-    }
 }
 
 static struct key make_key(lua_State *L, int index, lua_Unsigned length, uint32_t slot) {
@@ -192,7 +171,7 @@ static int fixed_pairs(lua_State *L) {
             lua_rawseti(L, 2, (lua_Integer)++slot);
         }
         lua_settop(L, 3);
-        sort_keys(keys, slot);
+        sort_items(keys, slot, sizeof *keys, comes_before);
         lua_pushinteger(L, 0);
         lua_pushinteger(L, (lua_Integer)slot);
         lua_pushcclosure(L, next_of_list, 4);
