@@ -86,7 +86,8 @@ override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETY
 override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
-MAIN := src/host/main.c
+# Files with a main function; those of gray-gui and gray-mpi replace the one of program.c.
+MAIN := src/host/program.c
 MPI_MAIN := src/host/main_mpi.c
 GUI_MAIN := src/host/main_gui.c
 OBJECTS := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(MAIN) $(MPI_MAIN) $(GUI_MAIN),$(SOURCES)))
@@ -124,10 +125,10 @@ $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # The program for many machines, where there is MPI: one of its own, so that the other does not load the library.
-$(BUILD)/gray-mpi: $(OBJECTS) $(MPI_OBJECT)
+$(BUILD)/gray-mpi: $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(MPI_LIBS)
-$(BUILD)/gray-gui: $(OBJECTS) $(GUI_OBJECT)
+$(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECT)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS) $(SDL_LIBS)
 $(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)

@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -351,8 +352,9 @@ int file_open_folder_of(const char *path) {
 
 void file_fill_standard(void) {
     for (int descriptor = 0; descriptor <= 2; descriptor++) {
-        /* open returns the lowest free descriptor; it is read-only, so that writing to it is an error. */
-        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0)
+        /* The lowest free number each time. It is read-only, so that writing to it is an error; where there is no
+         * /dev/null, an epoll descriptor needs no file and can be neither read nor written. */
+        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0 && epoll_create1(0) < 0)
             return;
     }
 }

@@ -97,7 +97,7 @@ bool file_is_folder(const char *path);
 int file_open_folder_of(const char *path);
 /* Makes standard input empty from now on: a scene that reads it would wait for ever. */
 bool file_null_input(void);
-/* If descriptors 0, 1 or 2 are closed at the start, they are replaced by one that supports neither reading nor writing:
+/* If descriptors 0, 1 or 2 are closed at the start, they are replaced by one that is empty and cannot be written:
  * a file that is opened later must not get their number, and with it the output for the terminal. */
 void file_fill_standard(void);
 /* The canonical absolute path (realpath) into out; false when it does not exist or does not fit. */

@@ -1,4 +1,5 @@
-/* Reads the command line and calls the module of each action. */
+/* The whole program behind its main functions: reads the command line and calls the module of each action. Tests have a
+ * main function of their own, so they are linked without this file. */
 #define _GNU_SOURCE
 #include "host/program.h"
 
@@ -168,4 +169,9 @@ int program_run(int argc, char **argv, const struct program_parts *parts) {
     }
     arena_destroy(&arena);
     return status;
+}
+
+/* gray itself. main_gui.c and main_mpi.c replace this function in gray-gui and gray-mpi. */
+__attribute__((weak)) int main(int argc, char **argv) {
+    return program_run(argc, argv, &(struct program_parts){0});
 }

@@ -1,4 +1,4 @@
-/* The whole program, called by all main functions. */
+/* The whole program, called by the main functions of gray, gray-gui and gray-mpi. */
 #ifndef GRAY_HOST_PROGRAM_H
 #define GRAY_HOST_PROGRAM_H
 
