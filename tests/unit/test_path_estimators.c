@@ -232,7 +232,7 @@ static void turn_camera_in_corridor(struct stage *s, int i) {
 }
 
 /* With few samples, since the variance of many falls faster. */
-TEST(a_thousand_lamps_have_a_tenth_of_the_variance_of_uniform_choice_at_ten_places) {
+TEST(a_thousand_lamps_have_a_tenth_of_the_variance_of_uniform_choice_at_ten_points) {
     const struct effort effort = {16, 16, 1};
     double error[2][10];
     for (int uniform = 0; uniform < 2; uniform++) {
@@ -267,6 +267,6 @@ static void check_corridor(struct effort by_tree, struct effort by_uniform, int 
 TEST(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice) {
     check_corridor((struct effort){8, 512, 1}, (struct effort){8, 8192, 1}, 4, 0.01);
 }
-TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_places_for_every_seed) {
+TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
     check_corridor((struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 1, 0.001);
 }
