@@ -360,7 +360,23 @@ bool light_surface_box(const struct light *light, struct box *out) {
 
 /* --- bounds --- */
 
-enum light_extent light_bounds_of(const struct light *light, struct light_bounds *out) {
+uint32_t light_part_count(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_MESH:
+        return light->mesh->count;
+    case LIGHT_POINT:
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_SKY:
+        break;
+    }
+    return 1;
+}
+
+enum light_extent light_bounds_of(const struct light *light, uint32_t part, struct light_bounds *out) {
     struct vec3 across;
     *out = (struct light_bounds){.box = {light->position, light->position}, .range = INFINITY};
     (void)light_surface_box(light, &out->box);
@@ -400,7 +416,7 @@ enum light_extent light_bounds_of(const struct light *light, struct light_bounds
                           out); /* as a disc in all directions */
         break;
     case LIGHT_MESH:
-        light_mesh_bounds(light->mesh, out);
+        light_triangle_bounds(light->mesh, part, out);
         break;
     case LIGHT_DIRECTIONAL:
     case LIGHT_SKY:

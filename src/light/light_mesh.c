@@ -73,6 +73,13 @@ uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint
     return low < mesh->count && t->primitive == primitive && t->part == part ? low : LIGHT_NONE;
 }
 
+/* Uniform over the triangle, for x and y of the unit interval. */
+static struct vec3 triangle_point(const struct light_triangle *t, double x, double y) {
+    double root = sqrt(x < 1 ? x : 1);
+    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - y));
+    return vec3_add_scaled(point, t->edge2, root * y);
+}
+
 /* xi.x, rescaled to the unit interval within the share of its triangle. */
 struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi) {
     uint32_t low = 0, high = mesh->count - 1;
@@ -84,10 +91,9 @@ struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample
             low = middle + 1;
     }
     double begin = low > 0 ? mesh->until[low - 1] : 0, share = mesh->until[low] - begin;
-    double x = share > 0 ? (xi.x - begin) / share : 0.5, root = sqrt(x < 1 ? x : 1);
+    double x = share > 0 ? (xi.x - begin) / share : 0.5;
     const struct light_triangle *t = &mesh->triangles[low];
-    struct vec3 point = vec3_add_scaled(t->corner, t->edge1, root * (1 - xi.y));
-    return (struct light_point){t, vec3_add_scaled(point, t->edge2, root * xi.y)};
+    return (struct light_point){t, triangle_point(t, x, xi.y)};
 }
 
 struct vec3 light_triangle_radiance(const struct light_triangle *triangle) {
@@ -108,28 +114,38 @@ void light_mesh_context(const struct light_mesh *mesh, struct light_context *out
                          behind * sine / sqrt((1 - sine) * (1 + sine)));
 }
 
-struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struct light_context *context,
-                                      struct sample2 xi) {
-    struct light_point at = light_mesh_point(mesh, xi);
-    const struct light_triangle *t = at.triangle;
-    struct vec3 away = vec3_sub(context->from, at.xi);
+/* A point of a triangle that is sampled with that density by area. */
+static struct light_sample sample_at(const struct light_mesh *mesh, const struct light_triangle *t, struct vec3 at,
+                                     struct vec3 point, struct vec3 from, double density) {
+    struct vec3 away = vec3_sub(from, at);
     double squared = vec3_length_squared(away), across = vec3_dot(t->normal, away);
     double weight = squared > 0 && (across > 0 || !mesh->one_sided) ? fabs(across) / (squared * sqrt(squared)) : 0;
-    struct vec3 target = vec3_add_scaled(at.xi, t->normal, across > 0 ? t->offset : -t->offset);
-    return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, context->point)),
+    struct vec3 target = vec3_add_scaled(at, t->normal, across > 0 ? t->offset : -t->offset);
+    return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, point)),
                                  .target = {target, false},
                                  .radiance = light_triangle_radiance(t),
-                                 .pdf = weight > 0 ? t->density / weight : 0,
+                                 .pdf = weight > 0 ? density / weight : 0,
                                  .intensity = vec3_scale(t->intensity, weight),
                                  .triangle = (uint32_t)(t - mesh->triangles)};
 }
 
-double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context *context, const struct light_hit *hit) {
+struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struct light_context *context,
+                                      struct sample2 xi) {
+    struct light_point at = light_mesh_point(mesh, xi);
+    return sample_at(mesh, at.triangle, at.xi, context->point, context->from, at.triangle->density);
+}
+
+/* By solid angle, of a density by area. */
+static double pdf_at(const struct light_mesh *mesh, struct vec3 from, const struct light_hit *hit, double density) {
     const struct light_triangle *t = &mesh->triangles[hit->triangle];
-    struct vec3 away = vec3_sub(context->from, hit->point);
+    struct vec3 away = vec3_sub(from, hit->point);
     bool back = mesh->one_sided && !(vec3_dot(t->normal, away) > 0);
     double weight = back ? 0 : weight_of_area(1, t->normal, away);
-    return weight > 0 ? t->density / weight : 0;
+    return weight > 0 ? density / weight : 0;
+}
+
+double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context *context, const struct light_hit *hit) {
+    return pdf_at(mesh, context->from, hit, mesh->triangles[hit->triangle].density);
 }
 
 struct vec3 light_mesh_colour(const struct light_mesh *mesh) {
@@ -148,30 +164,31 @@ struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3
                                  vec3_scale(t->intensity, shines)};
 }
 
-/* The cone about the mean normal that contains all normals. The visible area is the projection of the triangles: at
- * least that of the sum of their area vectors; on average a quarter of their area (Cauchy), a half if both sides emit.
- */
-void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out) {
-    struct vec3 sum = {0, 0, 0};
-    double all = 0, min = 1;
+/* --- one triangle --- */
+
+static double triangle_area(const struct light_triangle *t) {
+    return vec3_length(vec3_cross(t->edge1, t->edge2)) / 2;
+}
+
+struct light_sample light_triangle_sample(const struct light_mesh *mesh, uint32_t triangle, struct vec3 point,
+                                          struct vec3 from, struct sample2 xi) {
+    const struct light_triangle *t = &mesh->triangles[triangle];
+    return sample_at(mesh, t, triangle_point(t, xi.x, xi.y), point, from, 1 / triangle_area(t));
+}
+
+double light_triangle_pdf(const struct light_mesh *mesh, struct vec3 from, const struct light_hit *hit) {
+    return pdf_at(mesh, from, hit, 1 / triangle_area(&mesh->triangles[hit->triangle]));
+}
+
+void light_triangle_bounds(const struct light_mesh *mesh, uint32_t triangle, struct light_bounds *out) {
+    const struct light_triangle *t = &mesh->triangles[triangle];
+    struct vec3 corners[3] = {t->corner, vec3_add(t->corner, t->edge1), vec3_add(t->corner, t->edge2)};
     out->box = box_empty();
-    for (uint32_t i = 0; i < mesh->count; i++) {
-        const struct light_triangle *t = &mesh->triangles[i];
-        double weight = vec3_length(vec3_cross(t->edge1, t->edge2)) / 2 * light_magnitude(light_triangle_radiance(t));
-        sum = vec3_add_scaled(sum, t->normal, weight);
-        all += weight;
-        out->box = box_add_point(out->box, t->corner);
-        out->box = box_add_point(out->box, vec3_add(t->corner, t->edge1));
-        out->box = box_add_point(out->box, vec3_add(t->corner, t->edge2));
-    }
-    out->axis = vec3_normalize(sum);
-    bool directed = vec3_length(sum) > 0x1p-20 * all;
-    for (uint32_t i = 0; i < mesh->count && directed; i++)
-        min = fmin(min, vec3_dot(out->axis, mesh->triangles[i].normal));
-    light_bounds_emit(intensity_of(fmax(vec3_length(sum), all / (mesh->one_sided ? 4 : 2))), out);
-    out->cos_theta_o = directed ? fmax(-1, min - 0x1p-40) : -1;
+    for (int i = 0; i < 3; i++)
+        out->box = box_add_point(out->box, corners[i]);
+    light_bounds_emit(intensity_of(light_magnitude(light_triangle_radiance(t)) * triangle_area(t)), out);
+    out->axis = t->normal;
+    out->cos_theta_o = 1;
     out->cos_theta_e = 0;
     out->two_sided = !mesh->one_sided;
-    if (!directed)
-        out->axis = vec3_make(0, 1, 0);
 }

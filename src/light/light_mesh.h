@@ -1,5 +1,6 @@
-/* The triangles of a mesh light, in world space. A triangle is chosen in proportion to its area times the luminance of
- * its emission. */
+/* The triangles of a mesh light, in world space. As a whole (light_mesh_sample) a triangle is chosen in proportion to
+ * its area times the luminance of its emission; light samplers choose each triangle for itself (light_triangle_sample).
+ */
 #ifndef GRAY_LIGHT_LIGHT_MESH_H
 #define GRAY_LIGHT_LIGHT_MESH_H
 
@@ -59,10 +60,15 @@ double light_mesh_pdf(const struct light_mesh *mesh, const struct light_context 
 struct light_photon light_mesh_photon(const struct light_mesh *mesh, struct vec3 direction, struct sample2 xi);
 /* Approximately the mean over points and directions. */
 struct vec3 light_mesh_colour(const struct light_mesh *mesh);
-/* Its part of light_bounds_of. */
-struct light_bounds;
-void light_mesh_bounds(const struct light_mesh *mesh, struct light_bounds *out);
 /* The radiance of a triangle. */
 struct vec3 light_triangle_radiance(const struct light_triangle *triangle);
+
+/* One triangle, for a point and a ray that starts at `from` next to it: uniform over its area. */
+struct light_sample light_triangle_sample(const struct light_mesh *mesh, uint32_t triangle, struct vec3 point,
+                                          struct vec3 from, struct sample2 xi);
+double light_triangle_pdf(const struct light_mesh *mesh, struct vec3 from, const struct light_hit *hit);
+/* Its part of light_bounds_of. */
+struct light_bounds;
+void light_triangle_bounds(const struct light_mesh *mesh, uint32_t triangle, struct light_bounds *out);
 
 #endif

@@ -17,16 +17,18 @@ enum { BINS = 12, DEPTH_LIMIT = 64 };
 
 /* --- building --- */
 
-struct item {
-    struct light_bounds bounds;
-    uint32_t light;
-};
-
 struct building {
     struct light_tree_node *nodes;
     uint32_t node_count;
+    /* By part: */
+    struct light_bounds *bounds;
+    struct light_part *parts;
+    const uint32_t *first_part;
     uint32_t *leaf_of;
-    struct item *items;
+    uint32_t *items, *spare; /* numbers of the parts with a place; room to sort them */
+    uint32_t bounded;
+    const struct pool *pool;
+    bool cancelled;
 };
 
 /* The solid angle of the directions in which a cone of normals shines, those near its rim by their cosine. */
@@ -92,8 +94,10 @@ static void try_axis(const struct building *b, uint32_t first, uint32_t count, i
     if (!(high > low))
         return;
     struct bin bins[BINS] = {{.count = 0}};
-    for (uint32_t i = first; i < first + count; i++)
-        add_to_bin(&bins[bin_of(vec3_get(b->items[i].bounds.centre, axis), low, high)], &b->items[i].bounds);
+    for (uint32_t i = first; i < first + count; i++) {
+        const struct light_bounds *bounds = &b->bounds[b->items[i]];
+        add_to_bin(&bins[bin_of(vec3_get(bounds->centre, axis), low, high)], bounds);
+    }
     double costs[BINS] = {0}, thin = vec3_max_abs(size) / (high - low);
     uint32_t counts[BINS];
     for (int k = 0; k < BINS; k++)
@@ -106,101 +110,93 @@ static void try_axis(const struct building *b, uint32_t first, uint32_t count, i
 }
 
 /* Puts the items of the lower half first, both halves in the order they had; returns how many they are. */
-static uint32_t part(struct building *b, struct item *spare, uint32_t first, uint32_t count,
-                     const struct split *split) {
+static uint32_t split_items(struct building *b, uint32_t first, uint32_t count, const struct split *split) {
     uint32_t lower = 0, upper = 0;
     for (uint32_t i = first; i < first + count; i++) {
-        const struct item *item = &b->items[i];
-        if (bin_of(vec3_get(item->bounds.centre, split->axis), split->low, split->high) < split->bin)
-            b->items[first + lower++] = *item;
+        uint32_t item = b->items[i];
+        if (bin_of(vec3_get(b->bounds[item].centre, split->axis), split->low, split->high) < split->bin)
+            b->items[first + lower++] = item;
         else
-            spare[upper++] = *item;
+            b->spare[upper++] = item;
     }
     for (uint32_t i = 0; i < upper; i++)
-        b->items[first + lower + i] = spare[i];
+        b->items[first + lower + i] = b->spare[i];
     return lower;
 }
 
-static uint32_t build_node(struct building *b, struct item *spare, uint32_t first, uint32_t count, uint32_t parent,
-                           int depth) {
+/* Of more than one item. -1 as its axis: none. */
+static struct split best_split(const struct building *b, uint32_t first, uint32_t count, int depth) {
+    struct split best = {.axis = -1, .cost = INFINITY};
+    struct box centres = box_empty();
+    for (uint32_t i = first; i < first + count; i++)
+        centres = box_add_point(centres, b->bounds[b->items[i]].centre);
+    for (int axis = 0; axis < 3 && depth < DEPTH_LIMIT; axis++)
+        try_axis(b, first, count, axis, &centres, &best);
+    return best;
+}
+
+static uint32_t build_node(struct building *b, uint32_t first, uint32_t count, uint32_t parent, int depth) {
     uint32_t index = b->node_count++;
     struct light_tree_node *node = &b->nodes[index];
     node->parent = parent;
     if (count == 1) {
-        node->bounds = b->items[first].bounds;
-        node->light = b->items[first].light;
-        b->leaf_of[node->light] = index;
+        uint32_t item = b->items[first];
+        node->bounds = b->bounds[item];
+        node->part = b->parts[item];
+        b->leaf_of[item] = index;
         return index;
     }
-    struct box centres = box_empty();
-    for (uint32_t i = first; i < first + count; i++)
-        centres = box_add_point(centres, b->items[i].bounds.centre);
-    struct split split = {.axis = -1, .cost = INFINITY};
-    for (int axis = 0; axis < 3 && depth < DEPTH_LIMIT; axis++)
-        try_axis(b, first, count, axis, &centres, &split);
-    uint32_t lower = split.axis < 0 ? count / 2 : part(b, spare, first, count, &split);
-    uint32_t one = build_node(b, spare, first, lower, index, depth + 1);
-    node->second = build_node(b, spare, first + lower, count - lower, index, depth + 1);
+    b->cancelled = b->cancelled || (b->pool && pool_cancelled(b->pool));
+    struct split split = {.axis = -1};
+    if (!b->cancelled)
+        split = best_split(b, first, count, depth);
+    uint32_t lower = split.axis < 0 ? count / 2 : split_items(b, first, count, &split);
+    uint32_t one = build_node(b, first, lower, index, depth + 1);
+    node->second = build_node(b, first + lower, count - lower, index, depth + 1);
     node->bounds = light_bounds_join(&b->nodes[one].bounds, &b->nodes[node->second].bounds);
     return index;
 }
 
-/* The items of the lights with a position; other lights that emit are listed. */
-static uint32_t collect(const struct light *lights, uint32_t count, struct item *items, uint32_t *infinite,
-                        uint32_t *infinite_count) {
-    uint32_t bounded = 0;
+/* The items of the parts with a place; other lights that emit are listed. */
+static void collect(struct building *b, const struct light *lights, uint32_t count, uint32_t *infinite,
+                    uint32_t *infinite_count) {
     for (uint32_t i = 0; i < count; i++) {
-        struct item *item = &items[bounded];
-        *item = (struct item){.light = i};
-        switch (light_bounds_of(&lights[i], &item->bounds)) {
-        case LIGHT_EXTENT_NONE:
-            break;
-        case LIGHT_EXTENT_BOUNDED:
-            bounded++;
-            break;
-        case LIGHT_EXTENT_INFINITE:
-            infinite[(*infinite_count)++] = i;
-            break;
+        for (uint32_t k = b->first_part[i]; k < b->first_part[i + 1]; k++) {
+            b->parts[k] = (struct light_part){i, k - b->first_part[i]};
+            b->leaf_of[k] = LIGHT_NONE;
+            switch (light_bounds_of(&lights[i], b->parts[k].triangle, &b->bounds[k])) {
+            case LIGHT_EXTENT_NONE:
+                break;
+            case LIGHT_EXTENT_BOUNDED:
+                b->items[b->bounded++] = k;
+                break;
+            case LIGHT_EXTENT_INFINITE:
+                infinite[(*infinite_count)++] = i;
+                b->leaf_of[k] = LIGHT_LEAF_INFINITE;
+                break;
+            }
         }
     }
-    return bounded;
-}
-
-static bool build_tree(struct light_sampler *out, struct item *items, uint32_t count, uint32_t light_count,
-                       struct arena *arena) {
-    struct item *spare = mem_alloc_zero(count, sizeof *spare);
-    struct building b = {.items = items};
-    b.nodes = arena_alloc_array(arena, (size_t)count * 2, sizeof *b.nodes);
-    b.leaf_of = arena_alloc_array(arena, light_count, sizeof *b.leaf_of);
-    bool ok = spare && b.nodes && b.leaf_of;
-    for (uint32_t i = 0; ok && i < light_count; i++)
-        b.leaf_of[i] = LIGHT_NONE;
-    if (ok && count > 0)
-        (void)build_node(&b, spare, 0, count, LIGHT_NONE, 0);
-    mem_free(spare);
-    out->nodes = b.nodes;
-    out->node_count = b.node_count;
-    out->leaf_of = b.leaf_of;
-    return ok;
 }
 
 /* Shares that do not depend on the point. An infinite light counts as the mean of the others. */
-static bool build_shares(struct light_sampler *out, const struct item *items, uint32_t bounded, uint32_t light_count,
+static bool build_shares(struct light_sampler *out, const struct building *b, uint32_t part_count,
                          struct arena *arena) {
-    uint32_t *candidates = arena_alloc_array(arena, out->count, sizeof *candidates);
+    struct light_part *candidates = arena_alloc_array(arena, out->count, sizeof *candidates);
     double *until = arena_alloc_array(arena, out->count, sizeof *until), sum = 0, so_far = 0;
-    double *share = arena_alloc_array(arena, light_count, sizeof *share);
+    double *share = arena_alloc_array(arena, part_count, sizeof *share);
     if (!candidates || !until || !share)
         return false;
     bool by_power = out->choice == LIGHT_CHOICE_POWER;
-    for (uint32_t i = 0; i < bounded; i++) {
-        candidates[i] = items[i].light;
-        until[i] = by_power ? items[i].bounds.steady + items[i].bounds.attenuation : 1;
+    for (uint32_t i = 0; i < b->bounded; i++) {
+        const struct light_bounds *bounds = &b->bounds[b->items[i]];
+        candidates[i] = b->parts[b->items[i]];
+        until[i] = by_power ? bounds->steady + bounds->attenuation : 1;
         sum += until[i];
     }
-    double mean = bounded > 0 ? sum / bounded : 1;
-    for (uint32_t i = bounded; i < out->count; i++) {
-        candidates[i] = out->infinite[i - bounded];
+    double mean = b->bounded > 0 ? sum / b->bounded : 1;
+    for (uint32_t i = b->bounded; i < out->count; i++) {
+        candidates[i] = (struct light_part){out->infinite[i - b->bounded], 0};
         until[i] = mean;
         sum += mean;
     }
@@ -208,7 +204,7 @@ static bool build_shares(struct light_sampler *out, const struct item *items, ui
         double begin = so_far;
         so_far = i + 1 < out->count ? fmin(so_far + until[i] / sum, 1) : 1;
         until[i] = so_far;
-        share[candidates[i]] = so_far - begin;
+        share[out->first_part[candidates[i].light] + candidates[i].triangle] = so_far - begin;
     }
     out->candidates = candidates;
     out->until = until;
@@ -216,27 +212,70 @@ static bool build_shares(struct light_sampler *out, const struct item *items, ui
     return true;
 }
 
-bool light_sampler_build(struct light_sampler *out, enum light_choice choice, const struct light *lights,
-                         uint32_t light_count, struct arena *arena, struct error *error) {
-    *out = (struct light_sampler){.choice = choice};
-    struct item *items = mem_alloc_zero((size_t)light_count + 1, sizeof *items);
+/* Memory for the parts. first_part: by light, and one more. */
+static bool building_begin(struct building *b, uint32_t part_count, struct arena *arena) {
+    b->bounds = mem_alloc_zero((size_t)part_count + 1, sizeof *b->bounds);
+    b->parts = mem_alloc_zero((size_t)part_count + 1, sizeof *b->parts);
+    b->items = mem_alloc_zero((size_t)part_count + 1, sizeof *b->items);
+    b->spare = mem_alloc_zero((size_t)part_count + 1, sizeof *b->spare);
+    b->leaf_of = arena_alloc_array(arena, part_count, sizeof *b->leaf_of);
+    return b->bounds && b->parts && b->items && b->spare && b->leaf_of;
+}
+
+static void building_end(struct building *b) {
+    mem_free(b->bounds);
+    mem_free(b->parts);
+    mem_free(b->items);
+    mem_free(b->spare);
+}
+
+static bool build_tree(struct light_sampler *out, struct building *b, struct arena *arena) {
+    b->nodes = arena_alloc_array(arena, (size_t)b->bounded * 2, sizeof *b->nodes);
+    if (!b->nodes)
+        return false;
+    if (b->bounded > 0)
+        (void)build_node(b, 0, b->bounded, LIGHT_NONE, 0);
+    out->nodes = b->nodes;
+    out->node_count = b->node_count;
+    return true;
+}
+
+static bool build(struct light_sampler *out, struct building *b, const struct light *lights, uint32_t light_count,
+                  struct arena *arena) {
     uint32_t *infinite = arena_alloc_array(arena, light_count, sizeof *infinite);
-    bool ok = items && infinite;
-    if (ok) {
-        uint32_t bounded = collect(lights, light_count, items, infinite, &out->infinite_count);
-        out->infinite = infinite;
-        out->count = bounded + out->infinite_count;
-        switch (choice) {
-        case LIGHT_CHOICE_TREE:
-            ok = build_tree(out, items, bounded, light_count, arena);
-            break;
-        case LIGHT_CHOICE_POWER:
-        case LIGHT_CHOICE_UNIFORM:
-            ok = build_shares(out, items, bounded, light_count, arena);
-            break;
-        }
+    if (!infinite || !building_begin(b, b->first_part[light_count], arena))
+        return false;
+    collect(b, lights, light_count, infinite, &out->infinite_count);
+    out->infinite = infinite;
+    out->leaf_of = b->leaf_of;
+    out->count = b->bounded + out->infinite_count;
+    switch (out->choice) {
+    case LIGHT_CHOICE_TREE:
+        return build_tree(out, b, arena);
+    case LIGHT_CHOICE_POWER:
+    case LIGHT_CHOICE_UNIFORM:
+        break;
     }
-    mem_free(items);
+    return build_shares(out, b, b->first_part[light_count], arena);
+}
+
+bool light_sampler_build(struct light_sampler *out, struct light_sampler_options options, const struct light *lights,
+                         uint32_t light_count, struct arena *arena, struct error *error) {
+    *out = (struct light_sampler){.choice = options.choice};
+    uint32_t *first_part = arena_alloc_array(arena, (size_t)light_count + 1, sizeof *first_part);
+    uint64_t parts = 0;
+    for (uint32_t i = 0; first_part && i < light_count && parts <= UINT32_MAX / 2; i++) {
+        parts += light_part_count(&lights[i]);
+        first_part[i + 1] = (uint32_t)parts;
+    }
+    if (parts > UINT32_MAX / 2)
+        return error_set(error, ERROR_SCENE, "the scene has too many emitting triangles");
+    out->first_part = first_part;
+    struct building b = {.first_part = first_part, .pool = options.pool};
+    bool ok = first_part && build(out, &b, lights, light_count, arena);
+    building_end(&b);
+    if (ok && b.cancelled)
+        return error_set(error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
     return ok || error_no_memory(error, "the lights of the scene");
 }
 
@@ -254,15 +293,17 @@ static double tree_share(const struct light_sampler *s, struct vec3 point, struc
     return lit ? 1.0 / (1 + s->infinite_count) : 0;
 }
 
-static uint32_t sample_tree(const struct light_sampler *s, struct vec3 point, struct vec3 normal, double u,
-                            double *pmf) {
+static const struct light_part no_part = {LIGHT_NONE, 0};
+
+static struct light_part sample_tree(const struct light_sampler *s, struct vec3 point, struct vec3 normal, double u,
+                                     double *pmf) {
     uint32_t node = 0;
     while (s->nodes[node].second != 0) {
         uint32_t one = node + 1, other = s->nodes[node].second;
         double a = importance_at(s, one, point, normal), b = importance_at(s, other, point, normal);
         if (!(a + b > 0)) {
             *pmf = 0;
-            return LIGHT_NONE;
+            return no_part;
         }
         double share = a / (a + b);
         bool first = u < share;
@@ -270,14 +311,11 @@ static uint32_t sample_tree(const struct light_sampler *s, struct vec3 point, st
         *pmf *= first ? share : b / (a + b);
         u = fmin(first ? u / share : (u - share) / (1 - share), below_one);
     }
-    return s->nodes[node].light;
+    return s->nodes[node].part;
 }
 
-static double tree_pmf(const struct light_sampler *s, struct vec3 point, struct vec3 normal, uint32_t light) {
+static double tree_pmf(const struct light_sampler *s, struct vec3 point, struct vec3 normal, uint32_t node) {
     double pmf = 1;
-    uint32_t node = s->leaf_of[light];
-    if (node == LIGHT_NONE)
-        return 0;
     for (uint32_t parent; (parent = s->nodes[node].parent) != LIGHT_NONE; node = parent) {
         uint32_t one = parent + 1, other = s->nodes[parent].second;
         double a = importance_at(s, one, point, normal), b = importance_at(s, other, point, normal);
@@ -288,7 +326,7 @@ static double tree_pmf(const struct light_sampler *s, struct vec3 point, struct 
     return pmf;
 }
 
-static uint32_t sample_shares(const struct light_sampler *s, double u, double *pmf) {
+static struct light_part sample_shares(const struct light_sampler *s, double u, double *pmf) {
     uint32_t low = 0, high = s->count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
@@ -297,15 +335,16 @@ static uint32_t sample_shares(const struct light_sampler *s, double u, double *p
         else
             low = middle + 1;
     }
-    *pmf = s->share[s->candidates[low]];
-    return s->candidates[low];
+    struct light_part part = s->candidates[low];
+    *pmf = s->share[s->first_part[part.light] + part.triangle];
+    return part;
 }
 
-uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, struct vec3 normal, double u,
-                              double *pmf) {
+struct light_part light_sampler_sample(const struct light_sampler *s, struct vec3 point, struct vec3 normal, double u,
+                                       double *pmf) {
     *pmf = 0;
     if (s->count == 0)
-        return LIGHT_NONE;
+        return no_part;
     switch (s->choice) {
     case LIGHT_CHOICE_TREE:
         break;
@@ -315,7 +354,7 @@ uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, 
     }
     double tree = tree_share(s, point, normal);
     if (tree == 0 && s->infinite_count == 0) /* no light can be chosen */
-        return LIGHT_NONE;
+        return no_part;
     if (u < tree) {
         *pmf = tree;
         return sample_tree(s, point, normal, fmin(u / tree, below_one), pmf);
@@ -323,22 +362,22 @@ uint32_t light_sampler_sample(const struct light_sampler *s, struct vec3 point, 
     double position = (u - tree) / (1 - tree) * s->infinite_count;
     uint32_t number = position < s->infinite_count ? (uint32_t)position : s->infinite_count - 1;
     *pmf = (1 - tree) / s->infinite_count;
-    return s->infinite[number];
+    return (struct light_part){s->infinite[number], 0};
 }
 
-double light_sampler_pmf(const struct light_sampler *s, struct vec3 point, struct vec3 normal, uint32_t light) {
+double light_sampler_pmf(const struct light_sampler *s, struct vec3 point, struct vec3 normal, struct light_part part) {
+    uint32_t number = s->first_part[part.light] + part.triangle, leaf = s->leaf_of[number];
     switch (s->choice) {
     case LIGHT_CHOICE_TREE:
         break;
     case LIGHT_CHOICE_POWER:
     case LIGHT_CHOICE_UNIFORM:
-        return s->count > 0 ? s->share[light] : 0;
+        return s->count > 0 ? s->share[number] : 0;
     }
+    if (leaf == LIGHT_NONE)
+        return 0;
     double tree = tree_share(s, point, normal);
-    if (s->leaf_of[light] != LIGHT_NONE)
-        return tree * tree_pmf(s, point, normal, light);
-    for (uint32_t i = 0; i < s->infinite_count; i++)
-        if (s->infinite[i] == light)
-            return (1 - tree) / s->infinite_count;
-    return 0;
+    if (leaf == LIGHT_LEAF_INFINITE)
+        return (1 - tree) / s->infinite_count;
+    return tree * tree_pmf(s, point, normal, leaf);
 }

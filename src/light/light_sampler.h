@@ -3,13 +3,15 @@
  * "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; the vocabulary is that of M. Pharr, W.
  * Jakob, G. Humphreys, "Physically Based Rendering", 4th edition, section 12.6.3). The descent is random, at every node
  * in proportion to the importance of its two children. Lights without a position (skies, directional lights) are
- * separate from the tree; each of them is chosen as often as the whole tree. * The choice ignores visibility. A light
- * with probability 0 contributes nothing at the point. Equal lights in equal order give equal samplers. */
+ * separate from the tree; each of them is chosen as often as the whole tree. A mesh enters the tree by its triangles,
+ * each of which is chosen for itself. The choice ignores visibility. A light with probability 0 contributes nothing at
+ * the point. Equal lights in equal order give equal samplers. */
 #ifndef GRAY_LIGHT_LIGHT_SAMPLER_H
 #define GRAY_LIGHT_LIGHT_SAMPLER_H
 
 #include "base/arena.h"
 #include "base/list.h"
+#include "base/pool.h"
 #include "light/light.h"
 
 /* Bounds of a light, or of several together. */
@@ -25,9 +27,11 @@ struct light_bounds {
     struct vec3 centre; /* the rest is computed from the fields above: a ball around the box */
     double radius, sin_theta_o;
 };
-/* NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
+/* How many parts of a light are chosen separately: the triangles of a mesh; 1 of others. */
+uint32_t light_part_count(const struct light *light);
+/* Of a part. NONE: it sends nothing. INFINITE: it has no place; its bounds are not set. */
 enum light_extent { LIGHT_EXTENT_NONE, LIGHT_EXTENT_BOUNDED, LIGHT_EXTENT_INFINITE };
-enum light_extent light_bounds_of(const struct light *light, struct light_bounds *out);
+enum light_extent light_bounds_of(const struct light *light, uint32_t part, struct light_bounds *out);
 struct light_bounds light_bounds_join(const struct light_bounds *a, const struct light_bounds *b);
 /* An estimate of its contribution at a surface with that normal (both sides; {0,0,0}: at a point without a surface). 0:
  * none. */
@@ -40,35 +44,49 @@ double light_bounds_importance(const struct light_bounds *bounds, struct vec3 po
     X(LIGHT_CHOICE_UNIFORM, "uniform")
 enum light_choice { LIGHT_CHOICES(LIST_MEMBER) };
 
-struct light_tree_node {
-    struct light_bounds bounds;
-    uint32_t parent; /* LIGHT_NONE: the root */
-    uint32_t second; /* of an inner node: its second child; the first one follows it. 0: a leaf */
-    uint32_t light;  /* of a leaf */
+/* A light, and of a mesh the triangle; 0 of others. */
+struct light_part {
+    uint32_t light, triangle;
 };
 
+struct light_tree_node {
+    struct light_bounds bounds;
+    uint32_t parent;        /* LIGHT_NONE: the root */
+    uint32_t second;        /* of an inner node: its second child; the first one follows it. 0: a leaf */
+    struct light_part part; /* of a leaf */
+};
+
+/* Parts have numbers: those of a light follow each other, in the order of the lights. */
 struct light_sampler {
     enum light_choice choice;
-    uint32_t count; /* of lights that can be chosen: all that emit */
-    const uint32_t *infinite;
+    uint32_t count;           /* of parts that can be chosen: all that emit */
+    const uint32_t *infinite; /* lights */
     uint32_t infinite_count;
     const struct light_tree_node *nodes; /* node 0 is the root */
     uint32_t node_count;
-    const uint32_t *leaf_of;    /* by light: its leaf; LIGHT_NONE: it is not in the tree */
-    const uint32_t *candidates; /* of POWER and UNIFORM */
-    const double *until;        /* of POWER: share of the unit interval up to and with a candidate */
-    const double *share;        /* of POWER and UNIFORM, by light */
+    const uint32_t *first_part;          /* by light: its first part */
+    const uint32_t *leaf_of;             /* by part: its leaf; LIGHT_NONE: it cannot be chosen; LIGHT_LEAF_INFINITE */
+    const struct light_part *candidates; /* of POWER and UNIFORM */
+    const double *until;                 /* of POWER: share of the unit interval up to and with a candidate */
+    const double *share;                 /* of POWER and UNIFORM, by part */
 };
+#define LIGHT_LEAF_INFINITE (LIGHT_NONE - 1)
 
-/* For lights that are prepared (light_prepare) and do not change. Everything is in the arena. False: no memory.
- */
-bool light_sampler_build(struct light_sampler *out, enum light_choice choice, const struct light *lights,
+/* pool: to be asked for cancelling, or NULL. */
+struct light_sampler_options {
+    enum light_choice choice;
+    const struct pool *pool;
+};
+/* For lights that are prepared (light_prepare) and do not change. Everything is in the arena. Errors: no memory, too
+ * many lights, cancelled. */
+bool light_sampler_build(struct light_sampler *out, struct light_sampler_options options, const struct light *lights,
                          uint32_t light_count, struct arena *arena, struct error *error);
-/* A light for a point whose surface has that normal ({0,0,0}: none), by a number u of [0, 1), and its probability.
- * LIGHT_NONE: the importance became 0 during the descent. */
-uint32_t light_sampler_sample(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal, double u,
-                              double *pmf);
-/* The probability with which it chooses that light. */
-double light_sampler_pmf(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal, uint32_t light);
+/* A part for a point whose surface has that normal ({0,0,0}: none), by a number u of [0, 1), and its probability. Its
+ * light is LIGHT_NONE if the importance became 0 during the descent. */
+struct light_part light_sampler_sample(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal,
+                                       double u, double *pmf);
+/* The probability with which it chooses that part. */
+double light_sampler_pmf(const struct light_sampler *sampler, struct vec3 point, struct vec3 normal,
+                         struct light_part part);
 
 #endif

@@ -143,18 +143,18 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
     const struct light_receiver *receiver = &vertex->receiver;
     struct world_light_sample sample;
     double pmf;
-    uint32_t number = light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, choice, &pmf);
-    if (number == LIGHT_NONE || !world_lights_sample(lights, receiver, number, xi, &sample))
+    struct light_part part = light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, choice, &pmf);
+    if (part.light == LIGHT_NONE || !world_lights_sample(lights, receiver, part, xi, &sample))
         return none;
     struct vec3 f = scattered(vertex, vertex->lobes, sample.direction);
     uint32_t traced = tracer->photon_lights ? vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED) : 0;
     if (traced && !is_black(vertex->thrown)) {
-        struct vec3 part = scattered(vertex, traced, sample.direction);
-        f = vec3_sub(f, vec3_sub(part, without_thrown(tracer, number, vertex->thrown, part)));
+        struct vec3 by_traced = scattered(vertex, traced, sample.direction);
+        f = vec3_sub(f, vec3_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
     double pdf = pmf * sample.pdf;
-    const struct light *light = &lights->lights[number];
-    bool shown = !light_is_delta(light) && (number >= state->job->world->light_count || light_is_seen(light));
+    const struct light *light = &lights->lights[part.light];
+    bool shown = !light_is_delta(light) && (part.light >= state->job->world->light_count || light_is_seen(light));
     if (sample.is_delta) {
         f = vec3_scale(f, 1 / pdf);
     } else {

@@ -4,8 +4,10 @@
 
 #include "light/light_mesh.h"
 #include "light/sky.h"
+#include "material/material_eval.h"
 #include "world/path.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -81,6 +83,56 @@ bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct
     add_mesh(&g, primitive);
     light_mesh_end(&g.mesh, light->colour, mesh);
     mesh->shown = true;
+    light->mesh = mesh;
+    return true;
+}
+
+/* --- emission that varies over a mesh --- */
+
+/* Of a triangle that each point stands for: weights of vertices 1 and 2. */
+static const double points[][2] = {{1.0 / 3, 1.0 / 3}, {0.2, 0.2},   {0.6, 0.2}, {0.2, 0.6},
+                                   {0.45, 0.1},        {0.45, 0.45}, {0.1, 0.45}};
+enum { POINTS = sizeof points / sizeof *points };
+static const double least_share = 1.0 / 64; /* of the emission of the whole material */
+
+/* The emission at a point, filtered over its part of the triangle. */
+static struct vec3 emission_at(const struct world *world, const struct light_triangle *t, const double weights[2],
+                               double width) {
+    struct vec3 at = vec3_add_scaled(vec3_add_scaled(t->corner, t->edge1, weights[0]), t->edge2, weights[1]);
+    struct ray ray = {.origin = vec3_add(at, t->normal), .direction = vec3_negate(t->normal), .time = 0.5};
+    struct crossing crossing = {.t = 1, .u = weights[0], .v = weights[1], .part = t->part, .enter = true};
+    struct hit hit;
+    struct bsdf bsdf;
+    ray.footprint.width = width;
+    world_describe(world, &ray, t->primitive, &crossing, &hit);
+    material_eval(&world->materials[hit.material], &hit, NULL, NULL, &bsdf);
+    return vec3_scale(bsdf.emission, fmin(bsdf.opacity, 1));
+}
+
+bool mesh_lights_estimate(const struct world *world, struct light *light, struct arena *arena, struct pool *pool,
+                          struct error *error) {
+    const struct light_mesh *old = light->mesh;
+    struct light_mesh *mesh = arena_alloc(arena, sizeof *mesh);
+    struct light_mesh_builder builder;
+    if (!mesh || !light_mesh_begin(&builder, old->count, arena))
+        return error_no_memory(error, "a mesh light");
+    builder.one_sided = old->one_sided;
+    for (uint32_t i = 0; i < old->count; i++) {
+        const struct light_triangle *t = &old->triangles[i];
+        if ((i & 255) == 0 && pool_cancelled(pool))
+            return error_set(error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
+        struct vec3 across = vec3_cross(t->edge1, t->edge2), sum = {0, 0, 0};
+        double width = sqrt(vec3_length(across) / (2 * POINTS));
+        for (int k = 0; k < POINTS; k++)
+            sum = vec3_add_scaled(sum, emission_at(world, t, points[k], width), (1 - least_share) / POINTS);
+        struct vec3 corners[3] = {t->corner, vec3_add(t->corner, t->edge1), vec3_add(t->corner, t->edge2)};
+        builder.primitive = t->primitive;
+        builder.part = t->part;
+        sum = vec3_add_scaled(vec3_mul(sum, light->colour), light_triangle_radiance(t), least_share);
+        light_mesh_add(&builder, corners, vec3_dot(across, t->normal) < 0 ? -1 : 1, t->offset * 0x1p40, sum);
+    }
+    light_mesh_end(&builder, vec3_all(1), mesh);
+    mesh->shown = old->shown;
     light->mesh = mesh;
     return true;
 }

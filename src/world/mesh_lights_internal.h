@@ -15,6 +15,11 @@ bool mesh_lights_resolve(struct flattening *f, const struct scene_light *authore
 /* Sets `mesh` of a light that is only one primitive, a mesh, with the emission of its materials. Errors: no memory. */
 bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct light *light, struct arena *arena,
                            struct error *error);
+/* Replaces `mesh` of a light over primitives of the world: each triangle has its own mean emission, as far as a few
+ * filtered points show it, and at least a small part of that of its material. For textures, whose mean over a whole
+ * mesh says little about one triangle. Errors: no memory, cancelled. */
+bool mesh_lights_estimate(const struct world *world, struct light *light, struct arena *arena, struct pool *pool,
+                          struct error *error);
 
 /* Which primitives each light illuminates, from its lists of nodes. */
 

@@ -76,7 +76,9 @@ struct derived {
     struct transform map; /* world from object */
     struct light light;
     struct emitter emitter;
+    bool varies; /* the emission of its materials */
     struct arena *arena;
+    struct pool *pool;
     struct error *error;
 };
 
@@ -221,7 +223,8 @@ static bool derive_mesh(struct derived *d, bool *ok) {
     d->light.kind = LIGHT_MESH;
     d->emitter.by_triangle = true;
     struct light unit = {.colour = {1, 1, 1}};
-    *ok = mesh_lights_primitive(d->world, d->primitive, &unit, d->arena, d->error);
+    *ok = mesh_lights_primitive(d->world, d->primitive, &unit, d->arena, d->error) &&
+          (!d->varies || mesh_lights_estimate(d->world, &unit, d->arena, d->pool, d->error));
     d->light.mesh = unit.mesh;
     return *ok && unit.mesh->count > 0;
 }
@@ -254,17 +257,19 @@ struct building {
     uint32_t *of_primitive;
     struct emission *of_prototype;
     struct arena *arena;
+    struct pool *pool;
     struct error *error;
 };
 
 /* A light of the scene. If several lights use one primitive, it belongs to the first. */
-static void take_light(struct building *b, uint32_t number) {
+static bool take_light(struct building *b, uint32_t number) {
     const struct world *world = b->out->world;
-    const struct light *light = &b->lights[number];
+    struct light *light = &b->lights[number];
+    bool varies = false;
     struct emitter *emitter = &b->emitters[number];
     *emitter = (struct emitter){.primitive = WORLD_NOTHING, .unmet = light_is_delta(light), .emission = light->colour};
     if (!light->mesh)
-        return;
+        return true;
     emitter->shown = light->mesh->shown;
     emitter->unmet = !light->mesh->shown;
     emitter->by_triangle = true;
@@ -278,10 +283,11 @@ static void take_light(struct building *b, uint32_t number) {
         const struct prototype *prototype = primitive_prototype(world, primitive);
         b->of_primitive[primitive] = number;
         emitter->unmet = emitter->unmet || primitive_moves(world, primitive);
-        emitter->decided = emitter->decided || prototype->holes || prototype->cull != CULL_NONE ||
-                           (!light->has_emission && b->of_prototype[world->primitives[primitive].prototype].varies);
+        varies = varies || (!light->has_emission && b->of_prototype[world->primitives[primitive].prototype].varies);
+        emitter->decided = emitter->decided || prototype->holes || prototype->cull != CULL_NONE || varies;
     }
     emitter->decided = emitter->decided && !emitter->unmet;
+    return !emitter->decided || !varies || mesh_lights_estimate(world, light, b->arena, b->pool, b->error);
 }
 
 static bool take_primitive(struct building *b, uint32_t primitive) {
@@ -293,7 +299,9 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
                         .primitive = primitive,
                         .light = {.emissive = true, .colour = emission->colour},
                         .emitter = {.primitive = primitive, .shown = true, .decided = emission->varies},
+                        .varies = emission->varies,
                         .arena = b->arena,
+                        .pool = b->pool,
                         .error = b->error};
     d.emitter.emission = vec3_all(1);
     bool ok;
@@ -307,7 +315,7 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
 }
 
 /* Unless it is black. */
-static bool take_background(struct building *b, struct pool *pool) {
+static bool take_background(struct building *b) {
     struct light *light = &b->lights[b->out->count];
     if (!(sky_brightest(&b->out->world->sky) > 0))
         return true;
@@ -316,10 +324,10 @@ static bool take_background(struct building *b, struct pool *pool) {
             return true;
     *light = (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = &b->out->world->sky};
     b->emitters[b->out->count++] = (struct emitter){.primitive = WORLD_NOTHING};
-    return light_prepare(light, b->arena, pool, b->error);
+    return light_prepare(light, b->arena, b->pool, b->error);
 }
 
-static bool build_area_lights(struct building *b, struct pool *pool) {
+static bool build_area_lights(struct building *b) {
     struct world_lights *out = b->out;
     uint32_t *area_lights = arena_alloc_array(b->arena, out->world->light_count, sizeof *area_lights);
     struct box *boxes = mem_alloc_zero((size_t)out->world->light_count + 1, sizeof *boxes);
@@ -333,8 +341,8 @@ static bool build_area_lights(struct building *b, struct pool *pool) {
         area_lights[out->area_light_count++] = i;
     }
     out->area_lights = area_lights;
-    ok = ok &&
-         (out->area_light_count == 0 || box_tree_build(&out->surfaces, boxes, out->area_light_count, pool, b->error));
+    ok = ok && (out->area_light_count == 0 ||
+                box_tree_build(&out->surfaces, boxes, out->area_light_count, b->pool, b->error));
     mem_free(boxes);
     return ok;
 }
@@ -360,7 +368,7 @@ static bool allocate(struct building *b) {
     return b->lights && b->emitters;
 }
 
-static bool build(struct building *b, bool background, enum light_choice choice, struct pool *pool) {
+static bool build(struct building *b, struct world_lights_options options) {
     struct world_lights *out = b->out;
     const struct world *world = out->world;
     if (!allocate(b))
@@ -372,22 +380,24 @@ static bool build(struct building *b, bool background, enum light_choice choice,
         memcpy(b->lights, world->lights, world->light_count * sizeof *b->lights);
     out->count = world->light_count;
     for (uint32_t i = 0; i < world->light_count; i++)
-        take_light(b, i);
+        if (!take_light(b, i))
+            return false;
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        if ((i & 1023) == 0 && pool_cancelled(pool))
+        if ((i & 1023) == 0 && pool_cancelled(b->pool))
             return error_set(b->error, ERROR_CANCELLED, "stopped while the lights of the scene were gathered");
         if (!take_primitive(b, i))
             return false;
     }
-    return (!background || take_background(b, pool)) && build_area_lights(b, pool) &&
+    const struct light_sampler_options choice = {options.choice, b->pool};
+    return (!options.background || take_background(b)) && build_area_lights(b) &&
            light_sampler_build(&out->sampler, choice, out->lights, out->count, b->arena, b->error);
 }
 
 bool world_lights_build(struct world_lights *out, const struct world *world, struct world_lights_options options,
                         struct arena *arena, struct pool *pool, struct error *error) {
-    struct building b = {.out = out, .arena = arena, .error = error};
+    struct building b = {.out = out, .arena = arena, .pool = pool, .error = error};
     *out = (struct world_lights){.world = world};
-    bool ok = build(&b, options.background, options.choice, pool);
+    bool ok = build(&b, options);
     if (!ok)
         world_lights_destroy(out);
     return ok;
@@ -411,39 +421,45 @@ static bool is_dark(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
-/* A light as a receiver sees it: its context, or the bound that is sampled instead. */
+/* A part of a light as a receiver sees it: a triangle, the context of a light, or the bound that is sampled instead. */
 struct view {
+    const struct light *light;
     struct light_context context;
     struct spherical_box bound;
-    bool by_bound;
+    bool by_triangle, by_bound;
 };
 
 static bool view_make(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
                       struct view *out) {
     const struct light_box *bound = lights->emitters[light].bound;
+    out->light = &lights->lights[light];
+    out->by_triangle = lights->emitters[light].by_triangle;
     out->by_bound = bound && spherical_box_make(bound, receiver->from, &out->bound);
-    return out->by_bound || light_context_make(&lights->lights[light], receiver->point, receiver->from, &out->context);
+    return out->by_triangle || out->by_bound ||
+           light_context_make(out->light, receiver->point, receiver->from, &out->context);
 }
 
-static struct light_sample view_sample(const struct view *view, const struct light *light,
+static struct light_sample view_sample(const struct view *view, uint32_t triangle,
                                        const struct light_receiver *receiver, struct sample2 xi) {
+    if (view->by_triangle)
+        return light_triangle_sample(view->light->mesh, triangle, receiver->point, receiver->from, xi);
     if (!view->by_bound)
-        return light_sample(light, &view->context, xi);
+        return light_sample(view->light, &view->context, xi);
     struct light_sample sample = {.pdf = 1 / view->bound.angle};
     sample.target.at = spherical_box_point(&view->bound, xi);
     sample.direction = vec3_normalize(vec3_sub(sample.target.at, receiver->point));
     return sample;
 }
 
-bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t number,
-                         struct sample2 xi, struct world_light_sample *out) {
-    const struct light *light = &lights->lights[number];
+bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver,
+                         struct light_part part, struct sample2 xi, struct world_light_sample *out) {
+    uint32_t number = part.light;
     const struct emitter *emitter = &lights->emitters[number];
     struct view view;
     if (!world_lights_illuminate(lights, number, receiver->primitive) || !view_make(lights, receiver, number, &view))
         return false;
-    struct light_sample sample = view_sample(&view, light, receiver, xi);
-    if (!(sample.pdf > 0) || !is_own_triangle(lights, number, sample.triangle))
+    struct light_sample sample = view_sample(&view, part.triangle, receiver, xi);
+    if (!(sample.pdf > 0) || !is_own_triangle(lights, number, part.triangle))
         return false;
     bool own = emitter->shown && receiver->primitive == emitter->primitive && receiver->primitive != WORLD_NOTHING;
     *out = (struct world_light_sample){.direction = sample.direction,
@@ -453,7 +469,7 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
                                        .is_delta = emitter->unmet,
                                        .decided = emitter->decided || own,
                                        .light = number,
-                                       .triangle = sample.triangle};
+                                       .triangle = part.triangle};
     if (sample.is_delta)
         out->radiance = vec3_scale(sample.intensity, radiance_of(1));
     bool single = emitter->shown && !emitter->by_triangle && !out->decided;
@@ -489,12 +505,15 @@ double world_lights_pdf(const struct world_lights *lights, const struct light_re
     struct view view;
     if (lights->emitters[light].unmet || !world_lights_illuminate(lights, light, receiver->primitive))
         return 0;
-    double pmf = light_sampler_pmf(&lights->sampler, receiver->point, receiver->normal, light);
+    const struct light_part part = {light, lights->emitters[light].by_triangle ? hit->triangle : 0};
+    double pmf = light_sampler_pmf(&lights->sampler, receiver->point, receiver->normal, part);
     if (!(pmf > 0) || !view_make(lights, receiver, light, &view))
         return 0;
+    if (view.by_triangle)
+        return pmf * light_triangle_pdf(view.light->mesh, receiver->from, hit);
     if (view.by_bound)
         return pmf * spherical_box_pdf(lights->emitters[light].bound, &view.bound, receiver->from, direction);
-    return pmf * light_pdf(&lights->lights[light], &view.context, direction, hit);
+    return pmf * light_pdf(view.light, &view.context, direction, hit);
 }
 
 double world_lights_pdf_of_hit(const struct world_lights *lights, const struct light_receiver *receiver,

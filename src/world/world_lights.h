@@ -4,8 +4,8 @@
  * the background where it lights the scene.
  *
  * Next-event estimation at a point (struct light_receiver):
- *     light = light_sampler_sample(&lights->sampler, point, normal, u, &pmf);
- *     if (light != LIGHT_NONE && world_lights_sample(lights, &receiver, light, place, &sample))
+ *     part = light_sampler_sample(&lights->sampler, point, normal, u, &pmf);
+ *     if (part.light != LIGHT_NONE && world_lights_sample(lights, &receiver, part, xi, &sample))
  * Then a ray from receiver.from to sample.target, which skips sample.skip_primitive, says how much of it arrives. Where
  * sample.decided is false, sample.radiance times world_lights_visible, with the ray's interval up to the target; else
  * world_lights_seen_by, with an interval without end: what the ray meets decides. Its weight is bsdf_eval / (pdf *
@@ -29,7 +29,7 @@
 struct emitter {
     uint32_t primitive;   /* the only primitive, or WORLD_NOTHING: none or several */
     bool shown;           /* hits of primitives are its own */
-    bool by_triangle;     /* each triangle has a density of its own */
+    bool by_triangle;     /* a mesh: the parts of the light are its triangles */
     bool decided;         /* the ray to it decides what it meets: emission varies, there are holes, or the light is only
                            * a bound of what sends */
     bool unmet;           /* scattered rays do not bring its light */
@@ -51,8 +51,8 @@ struct world_lights {
     bool holes; /* something in the world has holes */
 };
 
-/* background: scattered rays meet the sky of the world, which is then one more light unless it is black; where the scene
- * has a sky light they meet that instead. */
+/* background: scattered rays meet the sky of the world, which is then one more light unless it is black; where the
+ * scene has a sky light they meet that instead. */
 struct world_lights_options {
     bool background;
     enum light_choice choice;
@@ -73,15 +73,15 @@ struct world_light_sample {
     struct vec3 direction;      /* unit, from the point */
     struct light_target target; /* of the shadow ray, from receiver.from */
     struct vec3 radiance;       /* where `decided` is false; of a delta light over pdf 1 */
-    double pdf;                 /* by solid angle at the point, for this light; of a delta light 1 */
+    double pdf;                 /* by solid angle at the point, for this part; of a delta light 1 */
     bool is_delta;              /* no scattered ray brings this light */
     bool decided;
     uint32_t skip_primitive; /* for ray->skip_primitive of the shadow ray */
     uint32_t light, triangle;
 };
 /* False: nothing arrives from there. */
-bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver, uint32_t light,
-                         struct sample2 xi, struct world_light_sample *out);
+bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver,
+                         struct light_part part, struct sample2 xi, struct world_light_sample *out);
 /* The share of light that arrives along a shadow ray: holes let through what their opacity leaves. */
 double world_lights_visible(const struct world_lights *lights, const struct ray *ray, struct world_scratch *scratch);
 /* The radiance of a `decided` sample that arrives along the ray to it, the same for holes; *t: where the ray meets the

@@ -416,16 +416,23 @@ TEST(the_bounds_of_every_light_hold_its_samples) {
     for (int kind = 0; kind < LIGHT_KIND_COUNT; kind++) {
         for (int area_light = 0; area_light < 2; area_light++) {
             struct example e;
-            struct light_bounds bounds;
+            struct light_bounds bounds[64]; /* of its parts */
             example_begin(&e, (enum light_kind)kind, area_light, 0.4);
-            enum light_extent extent = light_bounds_of(&e.light, &bounds);
-            CHECK(extent != LIGHT_EXTENT_NONE);
+            uint32_t parts = light_part_count(&e.light);
+            enum light_extent extent = LIGHT_EXTENT_NONE;
+            CHECK(parts > 0 && parts <= 64);
+            for (uint32_t k = 0; k < parts; k++) {
+                extent = light_bounds_of(&e.light, k, &bounds[k]);
+                CHECK(extent != LIGHT_EXTENT_NONE);
+            }
             int lit = 0;
             for (uint64_t i = 0; i < 400 && extent == LIGHT_EXTENT_BOUNDED; i++) {
                 struct sample2 a = xi_of(41, i), b = xi_of(42, i);
                 struct vec3 from = {8 * a.x - 4, 8 * a.y - 2, 8 * b.x - 4}, normal = {0, i % 2 ? -0.6 : 0.8, 0.6};
                 struct light_context context;
-                double brought = 0, importance = light_bounds_importance(&bounds, from, vec3_normalize(normal));
+                double brought = 0, importance = 0;
+                for (uint32_t k = 0; k < parts; k++)
+                    importance += light_bounds_importance(&bounds[k], from, vec3_normalize(normal));
                 for (uint64_t k = 0; k < 64 && light_context_make(&e.light, from, from, &context); k++) {
                     struct light_sample sample = light_sample(&e.light, &context, xi_of(43, k));
                     double cosine = fabs(vec3_dot(sample.direction, vec3_normalize(normal)));

@@ -57,8 +57,13 @@ static void lights_begin(struct lights *l, uint32_t count, uint64_t seed, uint32
                         : random_light(seed, i);
 }
 
+/* Of lights with one part. */
+static struct light_part part_of(uint32_t light) {
+    return (struct light_part){light, 0};
+}
+
 static void lights_sampler(struct lights *l, enum light_choice choice) {
-    CHECK(light_sampler_build(&l->sampler, choice, l->all, l->count, &l->arena, &l->error));
+    CHECK(light_sampler_build(&l->sampler, (struct light_sampler_options){choice, NULL}, l->all, l->count, &l->arena, &l->error));
 }
 
 TEST(probabilities_of_all_lights_sum_to_one) {
@@ -74,8 +79,8 @@ TEST(probabilities_of_all_lights_sum_to_one) {
                     normal = vec3_all(0);
                 double sum = 0, pmf;
                 for (uint32_t k = 0; k < l.count; k++)
-                    sum += light_sampler_pmf(&l.sampler, point, normal, k);
-                bool some = light_sampler_sample(&l.sampler, point, normal, 0.5, &pmf) != LIGHT_NONE;
+                    sum += light_sampler_pmf(&l.sampler, point, normal, part_of(k));
+                bool some = light_sampler_sample(&l.sampler, point, normal, 0.5, &pmf).light != LIGHT_NONE;
                 CHECK(sum <= 1 + 1e-12);
                 if (some) /* a descent may end at a light that contributes nothing: then the probabilities sum to less
                              than 1 */
@@ -103,14 +108,14 @@ TEST(lights_are_chosen_as_often_as_their_probability_says) {
             struct vec3 point = vector(200, k, 5), normal = vec3_normalize(vector(201, k, 1));
             for (uint64_t i = 0; i < N; i++) {
                 double pmf, u = ((double)i + random_unit(random_combine(7, i))) / N; /* stratified: less than random */
-                uint32_t light = light_sampler_sample(&l.sampler, point, normal, u, &pmf);
+                uint32_t light = light_sampler_sample(&l.sampler, point, normal, u, &pmf).light;
                 counted[light == LIGHT_NONE ? LIGHTS : light]++;
                 if (light != LIGHT_NONE && i % 64 == 0)
-                    CHECK_NEAR(light_sampler_pmf(&l.sampler, point, normal, light) / pmf, 1, 1e-9);
+                    CHECK_NEAR(light_sampler_pmf(&l.sampler, point, normal, part_of(light)) / pmf, 1, 1e-9);
             }
             double chi = 0, all = 0;
             for (uint32_t i = 0; i < LIGHTS; i++) {
-                double expected = N * light_sampler_pmf(&l.sampler, point, normal, i);
+                double expected = N * light_sampler_pmf(&l.sampler, point, normal, part_of(i));
                 all += expected;
                 chi += expected > 0 ? (counted[i] - expected) * (counted[i] - expected) / expected : counted[i];
             }
@@ -146,7 +151,7 @@ TEST(every_light_that_reaches_a_point_has_a_chance) {
         if (i < LIGHTS) /* at the position of the light */
             point = l.all[i].position;
         for (uint32_t k = 0; k < LIGHTS; k++) {
-            double pmf = light_sampler_pmf(&l.sampler, point, normal, k);
+            double pmf = light_sampler_pmf(&l.sampler, point, normal, part_of(k));
             if (brings(&l.all[k], point, normal) > 1e-12) {
                 CHECK(pmf > 0);
                 lit++;
@@ -201,7 +206,7 @@ static double relative_variance(const struct lights *l, struct vec3 point, struc
             continue;
         struct light_sample sample = light_sample(&l->all[i], &context, (struct sample2){0.5, 0.5});
         double f = sample.intensity.y * fmax(0, vec3_dot(sample.direction, normal));
-        double pmf = light_sampler_pmf(&l->sampler, point, normal, i);
+        double pmf = light_sampler_pmf(&l->sampler, point, normal, part_of(i));
         CHECK(pmf > 0 || f == 0);
         sum += f;
         squares += f > 0 ? f * f / pmf : 0;

@@ -1,7 +1,9 @@
 /* All light of a world: for emitters of every kind, samples of lights agree with samples of directions that hit them.
  */
 #include "base/random.h"
+#include "light/light_mesh.h"
 #include "material/classic.h"
+#include "material/material_eval.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/shape_makers.h"
@@ -46,7 +48,9 @@ static const struct material *glowing(struct room *r, double red, double green, 
 }
 
 static struct vec3 emission_at(const struct room *r, const struct hit *hit) {
-    return r->stage.world.materials[hit->material].phong.emission;
+    struct bsdf bsdf;
+    material_eval(&r->stage.world.materials[hit->material], hit, NULL, NULL, &bsdf);
+    return bsdf.emission;
 }
 
 static struct sample2 xi_of(uint64_t seed, uint64_t index) {
@@ -65,9 +69,9 @@ static struct vec3 of_lights(struct room *r, const struct light_receiver *at, ui
                              bool *is_delta) {
     struct world_light_sample sample;
     double pmf;
-    uint32_t light =
+    struct light_part part =
         light_sampler_sample(&r->lights.sampler, at->point, at->normal, random_unit(random_combine(11, i)), &pmf);
-    if (light == LIGHT_NONE || !world_lights_sample(&r->lights, at, light, xi_of(12, i), &sample))
+    if (part.light == LIGHT_NONE || !world_lights_sample(&r->lights, at, part, xi_of(12, i), &sample))
         return vec3_all(0);
     struct ray ray = {.origin = at->from,
                       .direction = light_target_from(&sample.target, at->from),
@@ -268,13 +272,13 @@ TEST(lights_without_emission_give_what_the_classic_language_says) {
         at.normal = vec3_normalize(vec3_make(0.6, 0.8, 0));
         for (uint64_t i = 0; i < 16; i++) {
             struct world_light_sample sample;
-            CHECK(world_lights_sample(&r.lights, &at, 0, xi_of(3, i), &sample));
+            CHECK(world_lights_sample(&r.lights, &at, (struct light_part){0, 0}, xi_of(3, i), &sample));
             CHECK(sample.is_delta && !sample.decided && sample.pdf == 1);
             double white = sample.radiance.y * vec3_dot(sample.direction, at.normal) / pi; /* of a white surface */
             CHECK_NEAR(white, 2 * cases[k / 5].factor * 0.8, 1e-12);
         }
         double pmf;
-        CHECK_EQ_INT(light_sampler_sample(&r.lights.sampler, at.point, at.normal, 0.3, &pmf), 0);
+        CHECK_EQ_INT(light_sampler_sample(&r.lights.sampler, at.point, at.normal, 0.3, &pmf).light, 0);
         CHECK_NEAR(pmf, 1, 0);
         room_end(&r);
     }
@@ -335,6 +339,66 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
     CHECK_NEAR(lit[3], 2.5 * lit[0], 1e-9);
 }
 
+/* A ceiling of triangles whose emission is 0 but about one vertex in a hundred. */
+static struct node *spotted_ceiling(struct room *r) {
+    enum { SIDE = 30, VERTICES = (SIDE + 1) * (SIDE + 1), FACES = SIDE * SIDE };
+    static double vertices[VERTICES][3];
+    static float colours[VERTICES][3];
+    static uint32_t start[FACES + 1], index[4 * FACES];
+    for (uint32_t i = 0; i < VERTICES; i++) {
+        double x = 0.2 * (i % (SIDE + 1)) - 3, z = 0.2 * (i / (SIDE + 1)) - 3;
+        memcpy(vertices[i], (const double[3]){x, 2, z}, sizeof vertices[i]);
+        for (int c = 0; c < 3; c++)
+            colours[i][c] = i % 97 == 50 ? 100 : 0;
+    }
+    for (uint32_t i = 0; i < FACES; i++) {
+        uint32_t corner = i / SIDE * (SIDE + 1) + i % SIDE;
+        const uint32_t of_face[4] = {corner, corner + 1, corner + SIDE + 2, corner + SIDE + 1};
+        memcpy(&index[4 * (size_t)i], of_face, sizeof of_face);
+        start[i + 1] = 4 * (i + 1);
+    }
+    const struct mesh_input input = {.name = "ceiling",
+                                     .vertex_count = VERTICES,
+                                     .face_count = FACES,
+                                     .vertices = (const double(*)[3])vertices,
+                                     .face_start = start,
+                                     .vertex_index = index,
+                                     .colours = (const float(*)[3])colours};
+    struct material *material = stage_phong(&r->stage, vec3_all(0), vec3_all(0), 1);
+    material->inputs[INPUT_EMISSION].authored =
+        texture_keep(&r->stage.scene.arena, texture_vertex_colour(), &r->stage.error);
+    struct node *node = stage_sphere(&r->stage, r->stage.root, material);
+    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&r->stage.assets, &input, &r->stage.error)};
+    return node;
+}
+
+TEST(triangles_of_a_mesh_are_sampled_by_their_own_part_of_a_texture_of_emission) {
+    for (int as_light = 0; as_light < 2; as_light++) {
+        struct room r;
+        room_begin(&r);
+        const struct node *node = spotted_ceiling(&r);
+        if (as_light) { /* the same by gr.mesh_light */
+            r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
+            r.stage.authored[0].node = node;
+            r.stage.light_count = 1;
+        }
+        room_build(&r, false);
+        CHECK_EQ_INT(r.lights.count, 1);
+        struct light_receiver at = receiver_at(0.1, 0, 0.2);
+        const struct light_mesh *mesh = r.lights.lights[0].mesh;
+        double bright = 0, all = 0;
+        for (uint32_t i = 0; i < mesh->count; i++) {
+            double pmf = light_sampler_pmf(&r.lights.sampler, at.point, at.normal, (struct light_part){0, i});
+            all += pmf;
+            bright += light_triangle_radiance(&mesh->triangles[i]).y > 1 ? pmf : 0;
+        }
+        CHECK_NEAR(all, 1, 1e-9);
+        CHECK(bright > 0.8);
+        compare(&r, &at, 40000, 0.5);
+        room_end(&r);
+    }
+}
+
 /* A partly transparent sheet in front of an emitting sphere, an emitting cube and a lamp. */
 TEST(holes_let_through_what_their_opacity_leaves) {
     static const double opacities[] = {0, 0.25, 0.75, 1};
@@ -391,7 +455,8 @@ TEST(lists_hold_for_lights_that_are_sampled_and_met) {
         struct world_light_sample sample;
         at.primitive = primitive; /* the mesh, then the ball */
         for (uint32_t light = 0; light < 2; light++)
-            CHECK(world_lights_sample(&r.lights, &at, light, (struct sample2){0.4, 0.4}, &sample) == (primitive == 0) ||
+            CHECK(world_lights_sample(&r.lights, &at, (struct light_part){light, 0}, (struct sample2){0.4, 0.4},
+                                      &sample) == (primitive == 0) ||
                   (light == 0 && primitive == 0));
         CHECK((world_lights_radiance(&r.lights, primitive, &hit, vec3_all(1)).y > 0) == (primitive == 0));
         CHECK((world_lights_pdf_of_hit(&r.lights, &at, vec3_normalize(up.direction), &hit) > 0) == (primitive == 0));
