@@ -75,7 +75,7 @@ TEST_LONG(closed_scenes_show_the_sum_of_their_bounces) {
     static const double albedos[][2] = {{0.2, 0}, {0.5, 0}, {0.8, 0}, {0.95, 0}, {0.3, 0.2}, {0.1, 0.8}, {0, 0.5}};
     for (size_t i = 0; i < sizeof albedos / sizeof *albedos; i++) {
         double kd = albedos[i][0], ks = albedos[i][1];
-        check_closed(kd, ks, (struct effort){16, kd + ks > 0.85 ? 4096 : 512, 3});
+        check_closed(kd, ks, (struct effort){16, kd + ks > 0.75 ? 3072 : 512, 3});
         for (int depth = 0; depth <= 5 && ks == 0; depth++)
             check_cut(kd, depth, (struct effort){16, 512, 3});
     }
@@ -115,7 +115,7 @@ TEST(indirect_light_in_a_sphere_is_the_same_wherever_the_light_is) {
 TEST_LONG(indirect_light_in_spheres_is_the_same_wherever_the_light_is) {
     check_lit_sphere(0.2, vec3_make(3, 0, 0), (struct effort){16, 2048, 3});
     check_lit_sphere(0.5, vec3_make(2, 1, -3), (struct effort){16, 2048, 3});
-    check_lit_sphere(0.8, vec3_make(-1, 4, 2), (struct effort){16, 2048, 3});
+    check_lit_sphere(0.8, vec3_make(-1, 4, 2), (struct effort){16, 4096, 3});
 }
 
 /* B1 = 1 + .5 B2, B2 = .8 B1. */

@@ -218,6 +218,68 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
     CHECK_NEAR(mirrored[1], 4, 1e-5);
 }
 
+/* On a line of sight, in front of a bright sky; light that falls through it reaches the floor. */
+TEST(a_visible_lamp_hides_what_is_behind_it_from_lines_of_sight_and_casts_no_shadow) {
+    double lit[2];
+    for (int lamps = 0; lamps < 2; lamps++) {
+        struct stage s;
+        (void)begin_floor(&s);
+        s.sky.colour = vec3_all(1);
+        if (lamps) {
+            struct light *light = add_light(&s, LIGHT_DISC);
+            light->emissive = light->visible = light->one_sided = true;
+            light->direction = vec3_make(0, 1, 0); /* shines upwards */
+            light->radius = 2;
+            light->colour = vec3_all(0.25);
+        }
+        s.camera.eye.y = 2;
+        lit[lamps] = path_mean(&s, 256, 1);
+        s.camera.eye.y = 9;
+        s.camera.fov = 1;
+        CHECK_NEAR(path_mean(&s, 4, 1), lamps ? 0.25 : 1, lamps ? 1e-6 : 0.01);
+        stage_end(&s);
+    }
+    CHECK_NEAR(lit[0], 1, 0.001);
+    CHECK_NEAR(lit[1], lit[0], 0.002);
+}
+
+/* A square of two triangles above the floor. gr.mesh_light over it counts once; with an emission of its own it lights
+ * the floor by that one, and cameras see the other one. */
+TEST(a_mesh_light_over_an_emitting_material_only_says_how_it_is_sampled) {
+    static const double corners[4][3] = {{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}};
+    static const uint32_t start[] = {0, 4}, index[] = {0, 1, 2, 3};
+    const struct mesh_input input = {.name = "square",
+                                     .vertex_count = 4,
+                                     .face_count = 1,
+                                     .vertices = corners,
+                                     .face_start = start,
+                                     .vertex_index = index};
+    double lit[3];
+    for (int kind = 0; kind < 3; kind++) {
+        struct stage s;
+        (void)begin_floor(&s);
+        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+        glow->phong.emission = vec3_all(1);
+        struct node *square = stage_sphere(&s, s.root, glow);
+        square->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, &input, &s.error)};
+        s.camera.eye.y = 2;
+        if (kind > 0) {
+            s.lights[0] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
+            s.lights[0].has_emission = kind == 2;
+            s.lights[0].emission = vec3_all(3);
+            s.authored[0].node = square;
+            s.light_count = 1;
+        }
+        lit[kind] = path_mean(&s, 256, 1);
+        s.camera.view = vec3_make(0, 1, 0);
+        CHECK_NEAR(path_mean(&s, 1, 1), 1, 1e-6);
+        stage_end(&s);
+    }
+    CHECK(lit[0] > 0.05);
+    CHECK_NEAR(lit[1], lit[0], 0.005 * lit[0]);
+    CHECK_NEAR(lit[2], 3 * lit[0], 0.005 * lit[2]);
+}
+
 /* Of two halves of a floor every light excludes one, whether the light is sampled or hit. */
 TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
     static const struct sky grey = {.kind = SKY_CONSTANT, .colour = {1, 1, 1}};
@@ -281,6 +343,41 @@ TEST(materials_that_emit_light_the_scene_from_both_sides) {
         glow->phong.emission = vec3_all(1);
         (void)add_planar(&s, glow, planar_plane(vec3_make(0, turned ? 1 : -1, 0), turned ? 6 : -6));
         CHECK_NEAR(path_mean(&s, 64, 1), 1, 0.001);
+        stage_end(&s);
+    }
+}
+
+/* --- surfaces --- */
+
+TEST(paths_pass_holes_as_often_as_their_opacity_leaves) {
+    struct stage s;
+    stage_begin(&s, 1);
+    struct material *sheet = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+    sheet->inputs[INPUT_OPACITY].authored = texture_keep(&s.scene.arena, texture_number(0.25), &s.error);
+    (void)add_planar(&s, sheet, planar_plane(vec3_make(0, 0, 1), 0));
+    s.sky.colour = vec3_all(1);
+    CHECK_NEAR(path_mean(&s, 1024, 1), 0.75, 0.004);
+    s.camera.eye.z = 1e6; /* of any number of sheets */
+    (void)add_planar(&s, sheet, planar_plane(vec3_make(0, 0, 1), -1));
+    CHECK_NEAR(path_mean(&s, 1024, 1), 0.75 * 0.75, 0.005);
+    stage_end(&s);
+}
+
+/* From inside of glass, beyond the critical angle, the eye sees what is in the glass behind it. */
+TEST(total_reflection_is_total_whatever_use_tir_says) {
+    for (int use_tir = 0; use_tir < 2; use_tir++) {
+        struct stage s;
+        stage_begin(&s, 1);
+        s.settings.use_tir = use_tir;
+        struct node *block = stage_cube(&s, s.root, stage_glass(&s, 0, 1, 1.5));
+        stage_move(&s, block, -0.5, -0.5, 0);
+        stage_scale(&s, block, 100, 100, 10);
+        stage_move(&s, block, 0, 0, -1);
+        struct material *glow = stage_phong(&s, vec3_all(0), vec3_all(0), 1);
+        glow->phong.emission = vec3_all(0.7);
+        (void)add_planar(&s, glow, planar_plane(vec3_make(0, 0, -1), -2));
+        s.camera = (struct camera){{0, 0, 0}, {2, 0, -1}, {0, 1, 0}, 5};
+        CHECK_NEAR(path_mean(&s, 4, 4), 0.7, 1e-6);
         stage_end(&s);
     }
 }
