@@ -48,18 +48,18 @@ static struct vec3 turned(struct vec3 v, struct vec3 to, double angle) {
 
 /* The axis of the smallest cone that contains both, and the cosine of its half angle. */
 static struct vec3 join_cones(struct vec3 axis_a, double cos_a, struct vec3 axis_b, double cos_b, double *cos_half) {
-    double between = vec3_dot(axis_a, axis_b);
+    double cosine = vec3_dot(axis_a, axis_b);
     *cos_half = cos_a;
-    if (cos_a <= -1 || (cos_b >= 1 && between >= cos_a)) /* without a call of the arc cosine */
+    if (cos_a <= -1 || (cos_b >= 1 && cosine >= cos_a)) /* without a call of the arc cosine */
         return axis_a;
-    double a = angle_of(cos_a), b = angle_of(cos_b), apart = angle_of(between);
+    double a = angle_of(cos_a), b = angle_of(cos_b), apart = angle_of(cosine);
     if (fmin(apart + b, PI) <= a)
         return axis_a;
     *cos_half = cos_b;
     if (fmin(apart + a, PI) <= b)
         return axis_b;
     double half = (a + apart + b) / 2;
-    struct vec3 across = vec3_sub(axis_b, vec3_scale(axis_a, between));
+    struct vec3 across = vec3_sub(axis_b, vec3_scale(axis_a, cosine));
     *cos_half = -1;
     if (half >= PI || !(vec3_length(across) > 0))
         return axis_a;

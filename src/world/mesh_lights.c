@@ -93,7 +93,7 @@ bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct
 static const double points[][2] = {{1.0 / 3, 1.0 / 3}, {0.2, 0.2},   {0.6, 0.2}, {0.2, 0.6},
                                    {0.45, 0.1},        {0.45, 0.45}, {0.1, 0.45}};
 enum { POINTS = sizeof points / sizeof *points };
-static const double least_share = 1.0 / 64; /* of the emission of the whole material */
+static const double min_share = 1.0 / 64; /* of the emission of the whole material */
 
 /* The emission at a point, filtered over its part of the triangle. */
 static struct vec3 emission_at(const struct world *world, const struct light_triangle *t, const double weights[2],
@@ -124,11 +124,11 @@ bool mesh_lights_estimate(const struct world *world, struct light *light, struct
         struct vec3 across = vec3_cross(t->edge1, t->edge2), sum = {0, 0, 0};
         double width = sqrt(vec3_length(across) / (2 * POINTS));
         for (int k = 0; k < POINTS; k++)
-            sum = vec3_add_scaled(sum, emission_at(world, t, points[k], width), (1 - least_share) / POINTS);
+            sum = vec3_add_scaled(sum, emission_at(world, t, points[k], width), (1 - min_share) / POINTS);
         struct vec3 corners[3] = {t->corner, vec3_add(t->corner, t->edge1), vec3_add(t->corner, t->edge2)};
         builder.primitive = t->primitive;
         builder.part = t->part;
-        sum = vec3_add_scaled(vec3_mul(sum, light->colour), light_triangle_radiance(t), least_share);
+        sum = vec3_add_scaled(vec3_mul(sum, light->colour), light_triangle_radiance(t), min_share);
         light_mesh_add(&builder, corners, vec3_dot(across, t->normal) < 0 ? -1 : 1, t->offset * 0x1p40, sum);
     }
     light_mesh_end(&builder, vec3_all(1), mesh);

@@ -63,7 +63,8 @@ static struct light_part part_of(uint32_t light) {
 }
 
 static void lights_sampler(struct lights *l, enum light_choice choice) {
-    CHECK(light_sampler_build(&l->sampler, (struct light_sampler_options){choice, NULL}, l->all, l->count, &l->arena, &l->error));
+    CHECK(light_sampler_build(&l->sampler, (struct light_sampler_options){choice, NULL}, l->all, l->count, &l->arena,
+                              &l->error));
 }
 
 TEST(probabilities_of_all_lights_sum_to_one) {

@@ -280,10 +280,10 @@ static void check_corridor_variance(bool mesh) {
         CHECK(error[0][i] > 0 && error[0][i] * error[0][i] * 10 <= error[1][i] * error[1][i]);
 }
 
-TEST(a_thousand_lamps_have_a_tenth_of_the_variance_of_uniform_choice_at_ten_places) {
+TEST(a_thousand_lamps_have_a_tenth_of_the_variance_of_uniform_choice_at_ten_points) {
     check_corridor_variance(false);
 }
-TEST(a_mesh_of_a_thousand_lamps_has_a_tenth_of_the_variance_of_uniform_choice_at_ten_places) {
+TEST(a_mesh_of_a_thousand_lamps_has_a_tenth_of_the_variance_of_uniform_choice_at_ten_points) {
     check_corridor_variance(true);
 }
 
@@ -314,7 +314,7 @@ TEST(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice) {
 TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
     check_corridor((struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 1, 0.001);
 =======
-TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_places_for_every_seed) {
+TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
     check_corridor(false, (struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 0.001);
     check_corridor(true, (struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 0.001);
 >>>>>>> 93d978e (light, world: Triangles of emitting meshes are in the tree of lights one by one)

@@ -221,11 +221,11 @@ TEST(a_lamp_that_is_not_visible_lights_and_is_not_seen) {
 /* On a line of sight, in front of a bright sky; light that falls through it reaches the floor. */
 TEST(a_visible_lamp_hides_what_is_behind_it_from_lines_of_sight_and_casts_no_shadow) {
     double lit[2];
-    for (int lamps = 0; lamps < 2; lamps++) {
+    for (int with_disc = 0; with_disc < 2; with_disc++) {
         struct stage s;
         (void)begin_floor(&s);
         s.sky.colour = vec3_all(1);
-        if (lamps) {
+        if (with_disc) {
             struct light *light = add_light(&s, LIGHT_DISC);
             light->emissive = light->visible = light->one_sided = true;
             light->direction = vec3_make(0, 1, 0); /* shines upwards */
@@ -233,10 +233,10 @@ TEST(a_visible_lamp_hides_what_is_behind_it_from_lines_of_sight_and_casts_no_sha
             light->colour = vec3_all(0.25);
         }
         s.camera.eye.y = 2;
-        lit[lamps] = path_mean(&s, 256, 1);
+        lit[with_disc] = path_mean(&s, 256, 1);
         s.camera.eye.y = 9;
         s.camera.fov = 1;
-        CHECK_NEAR(path_mean(&s, 4, 1), lamps ? 0.25 : 1, lamps ? 1e-6 : 0.01);
+        CHECK_NEAR(path_mean(&s, 4, 1), with_disc ? 0.25 : 1, with_disc ? 1e-6 : 0.01);
         stage_end(&s);
     }
     CHECK_NEAR(lit[0], 1, 0.001);
