@@ -1,4 +1,4 @@
-/* Batches for processors with AVX2, four points at once. Nothing here runs before system.c has asked the processor;
- * where the compiler knows no AVX2 these are the functions of the base. */
+/* Batches for processors with AVX2: four points in each vector. system.c checks the processor before any of this
+ * runs. A compiler without AVX2 makes the base functions from this file. */
 #define KERNEL(name) expr_##name##_avx2
 #include "expr/expr_batch_kernel_internal.h"

@@ -1,3 +1,3 @@
-/* Batches for the processor every build runs on. */
+/* Batches for every x86-64 processor. */
 #define KERNEL(name) expr_##name##_base
 #include "expr/expr_batch_kernel_internal.h"

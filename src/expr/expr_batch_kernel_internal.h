@@ -1,16 +1,17 @@
-/* The evaluator of batches, for the instruction set that its file is compiled for: one loop over the points for each
- * instruction, of constant length for whole batches. The loops are the list of operations; the compiler makes vectors
- * of them. No result depends on how many points are taken at once. */
+/* The batch evaluator, compiled for the instruction set of the file that includes this one. Each instruction is one
+ * loop over the points, with a constant length for whole batches. The loops come from the list of operations, and
+ * the compiler vectorises them. No result depends on the number of points in a vector. */
 #include "expr/expr_batch_internal.h"
 
-/* Integers and truths stand in rows of doubles. */
+/* Rows of doubles also store integers and truth values. */
 typedef int64_t __attribute__((may_alias)) row_integer;
 
 #define TYPE_F double
 #define TYPE_I row_integer
 #define TYPE_B row_integer
 #define TYPE_N row_integer
-/* A result may replace an operand: the same point only, so that no element waits for another. */
+/* The result may be stored over an operand. Each point only reads its own operands, so the loop has no dependency
+ * between points. */
 #if defined(__clang__)
 #define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
@@ -40,7 +41,7 @@ typedef int64_t __attribute__((may_alias)) row_integer;
         break;                                                                                                         \
     }
 
-/* The row of a value; a constant is written into `spare`. */
+/* The row of a value. A constant is copied into all of `spare`. */
 static inline const double *row_of(const struct expr_program *program, uint16_t value, uint32_t width, double *rows,
                                    double *spare) {
     if (value >= program->constant_count)

@@ -1,6 +1,7 @@
-/* Values with derivatives: the chain rule, operation by operation. Over boxes the derivative of a function of one
- * operand lies between those at the points of the operand's bounds (mean value theorem), and edges and jumps that the
- * box may contain are covered: the slope of a min or max is one of its operands' or between, of a jump anything. */
+/* Values with derivatives: the chain rule, operation by operation. Over a box, the slope of a function of one
+ * operand is between the derivatives at the points of the operand's bounds (mean value theorem). Edges and jumps
+ * that the box may contain are covered: the slope of a min or max is between those of its operands, the slope of a
+ * jump is unbounded. */
 #include "expr/expr_derivative.h"
 
 #include "expr/expr_interval_internal.h"
@@ -17,7 +18,7 @@ struct dual {
     double d[D];
 };
 
-/* The derivatives by each of the operands. 0 of what is constant between jumps. */
+/* The derivatives with respect to each operand; 0 for functions that are constant between jumps. */
 static void partials(enum expr_operation operation, double a, double b, double c, double value, double out[3]) {
     double other[3];
     out[0] = out[1] = out[2] = 0;
@@ -160,7 +161,7 @@ size_t expr_gradient_size(const struct expr_program *program) {
     return ((size_t)program->constant_count + program->register_count) * sizeof(struct dual);
 }
 
-/* A derivative that is 0 stays so, whatever it is multiplied by. */
+/* A derivative of 0 stays 0, whatever factor it gets. */
 static void chain(const struct dual *operands[3], const double by[3], double out[D]) {
     for (int k = 0; k < D; k++) {
         double sum = 0;
@@ -278,7 +279,8 @@ static void power_slopes(struct expr_interval a, struct expr_interval b, struct 
     out[1] = a.low > 0 ? product(value, of_one(EXPR_LOG, a)) : any_slope;
 }
 
-/* Of a remainder by a constant: 1 within a period, where the values are less than a period apart and in order. */
+/* For a remainder by a constant: 1 within a period, that is, if the values are in order and less than a period
+ * apart. */
 static struct expr_interval period_slope(struct expr_interval a, struct expr_interval b, struct expr_interval value) {
     double width = a.high - a.low, rise = value.high - value.low;
     bool is_smooth = is_single(b) && width < 0.999 * fabs(b.low) && rise <= width * (1 + 1e-9) + fabs(b.low) * 1e-9 &&
@@ -309,7 +311,7 @@ static void noise_slopes(const struct expr_interval box[3], struct expr_interval
     }
 }
 
-/* Bounds of the slopes by each operand; any_slope where the operation may jump. */
+/* Bounds of the slopes with respect to each operand; any_slope if the operation may jump. */
 static void slopes_of(enum expr_operation operation, struct expr_interval a, struct expr_interval b,
                       struct expr_interval c, struct expr_interval value, struct expr_interval out[3]) {
     out[0] = out[1] = out[2] = zero;
@@ -415,7 +417,7 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
             out[k] = is_single(value) ? zero : any_slope;
         break;
     case EXPR_TO_FLOAT:
-        out[0] = one; /* of integers that are 0, or anything */
+        out[0] = one; /* for integers: 0, or unbounded */
         break;
     case EXPR_INTEGER_ADD:
     case EXPR_INTEGER_SUBTRACT:
@@ -469,7 +471,7 @@ static struct expr_interval enclosure(struct expr_interval a, struct expr_interv
     return (struct expr_interval){fmin(a.low, b.low), fmax(a.high, b.high), a.may_be_nan || b.may_be_nan};
 }
 
-/* The slope of one of two operands, or between. */
+/* The slope of one of two operands, or any slope between them. */
 static struct expr_interval chosen_slope(struct expr_choice choice, struct expr_interval a, struct expr_interval b) {
     return choice.first ? a : choice.second ? b : enclosure(a, b);
 }

@@ -5,17 +5,17 @@
 
 #include "expr/expr_interval.h"
 
-/* Directions in which derivatives are taken at once. */
+/* The number of directions that are evaluated together. */
 enum { EXPR_DIRECTIONS = 3 };
 
-/* seeds[input][direction]: how much an input changes along a direction. The directions x, y and z of p. */
+/* seeds[input][direction]: the derivative of an input along a direction. These are the directions x, y and z of p. */
 extern const double expr_gradient_seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS];
 
-/* Bytes that expr_evaluate_gradient works in. */
+/* The size in bytes of the memory that expr_evaluate_gradient needs. */
 size_t expr_gradient_size(const struct expr_program *program);
-/* The outputs at one point, with the bits of expr_evaluate, and their derivatives in three directions. Where there is
- * none (edges, jumps) it is that of one side; of selections, that of the side taken. NaN or infinite where the formula
- * is (the root of 0). rows: expr_gradient_size bytes, aligned to 64. */
+/* The outputs at one point, with the bits of expr_evaluate, and their derivatives in three directions. At edges and
+ * jumps it is the derivative of one side, for selections that of the selected side. It is NaN or infinite where the
+ * formula is (the root of 0). rows: expr_gradient_size bytes, aligned to 64. */
 void expr_evaluate_gradient(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                             const double seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS], double outputs[EXPR_OUTPUTS],
                             double gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS], void *rows);
@@ -31,12 +31,12 @@ struct expr_range {
     struct expr_interval value, slopes[EXPR_DIRECTIONS];
 };
 
-/* Bytes that expr_evaluate_slopes works in. */
+/* The size in bytes of the memory that expr_evaluate_slopes needs. */
 size_t expr_slopes_size(const struct expr_program *program);
-/* Bounds of the outputs over a box (those of expr_evaluate_interval), and of their slopes in the
- * directions: (f(a + t seed) - f(a)) / t is within the bounds for all a and a + t seed in the box. So the bounds are
- * infinite where the function may jump, and hold at edges. choices: as in expr_evaluate_interval. rows:
- * expr_slopes_size bytes, aligned to 64. */
+/* Bounds of the outputs over a box (those of expr_evaluate_interval), and of their slopes in the directions: (f(a +
+ * t seed) - f(a)) / t is within the bounds for all a and a + t seed in the box. So the bounds hold at edges, and are
+ * infinite where the function may jump. choices: as in expr_evaluate_interval. rows: expr_slopes_size bytes, aligned
+ * to 64. */
 void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                           const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
                           struct expr_choice *choices, void *rows);

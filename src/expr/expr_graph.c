@@ -1,5 +1,5 @@
-/* Hash-consing and folding. An identity is applied only if it holds for NaN, infinities and both zeros: x * 1, x / 1,
- * x - 0, x + -0 are x; x + 0 is not (-0 + 0 is 0). */
+/* Hash-consing and constant folding. An identity is applied only if it holds for NaN, infinities and both zeros: x *
+ * 1, x / 1, x - 0 and x + -0 become x. x + 0 stays, because -0 + 0 is 0. */
 #include "expr/expr_graph.h"
 
 #include "base/mem.h"
@@ -90,7 +90,7 @@ static bool same(const struct expr_node *a, const struct expr_node *b) {
            memcmp(a->operands, b->operands, sizeof a->operands) == 0;
 }
 
-/* The slot of an equal node, or the free one for it. */
+/* The slot of an equal node, or the free slot where it belongs. */
 static uint32_t *find(const struct expr_graph *graph, const struct expr_node *node) {
     for (uint64_t at = hash_of(node);; at++) {
         uint32_t *slot = &graph->slots[at & (graph->slot_count - 1)];
@@ -166,7 +166,7 @@ static bool is_float(const struct expr_graph *graph, uint32_t node, double x) {
     return value && value->i == wanted.i;
 }
 
-/* What the operation is without computing it, or EXPR_NONE. */
+/* The result of the operation if an identity gives it, else EXPR_NONE. */
 static uint32_t simpler(const struct expr_graph *graph, enum expr_operation operation, const uint32_t operands[3]) {
     uint32_t a = operands[0], b = operands[1];
     bool is_select = operation == EXPR_SELECT || operation == EXPR_INTEGER_SELECT || operation == EXPR_TRUTH_SELECT;

@@ -1,7 +1,7 @@
-/* Expressions while they are recorded: a graph of operations without circles. Nodes are hash-consed (one node for equal
- * operations on equal operands: A. Ershov, "On programming of arithmetic operations", 1958) and folded: an operation
- * on constants is its result, and identities that hold for every bit pattern are applied. Operands come before what
- * reads them. */
+/* Expressions during recording: an acyclic graph of operations. Nodes are hash-consed: equal operations on equal
+ * operands are one node (A. Ershov, "On programming of arithmetic operations", 1958). They are also folded: an
+ * operation on constants becomes its result, and identities that hold for every bit pattern are applied. Operands
+ * precede the nodes that read them. */
 #ifndef GRAY_EXPR_EXPR_GRAPH_H
 #define GRAY_EXPR_EXPR_GRAPH_H
 
@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What a function may read of a hit. Directions are unit vectors of the world. */
+/* The inputs of a function: properties of a hit. Directions are unit vectors in world space. */
 #define EXPR_INPUTS(X)                                                                                                 \
     X(EXPR_POINT_X, "p.x")                                                                                             \
     X(EXPR_POINT_Y, "p.y")                                                                                             \
@@ -36,37 +36,37 @@ enum { EXPR_NODES = 100000 };
 struct expr_node {
     enum expr_operation operation;
     enum expr_type type;
-    uint32_t operands[3]; /* EXPR_NONE behind the last; of an input: its number first */
+    uint32_t operands[3]; /* EXPR_NONE after the last operand; of an input: first its number */
     union expr_value constant;
 };
 
-/* Zero-initialise to create; expr_graph_destroy gives the memory back and leaves an empty graph. */
+/* Zero-initialise to create. expr_graph_destroy frees the memory and leaves an empty graph. */
 struct expr_graph {
     struct expr_node *nodes;
-    uint32_t *slots; /* hash table of indices, a power of two of them, at most half full */
+    uint32_t *slots; /* hash table of indices; its size is a power of two, and it is at most half full */
     uint32_t count, capacity, slot_count;
     bool full, out_of_memory; /* why a node is EXPR_NONE */
 };
 
 void expr_graph_destroy(struct expr_graph *graph);
 
-/* The node of a leaf or an operation, an old one where it exists. EXPR_NONE: an operand is that, there is no memory, or
- * the graph has EXPR_NODES nodes. Types are the caller's responsibility. */
+/* The node of a leaf or an operation; an equal node is used again. EXPR_NONE if an operand is EXPR_NONE, if there is
+ * no memory, or if the graph has EXPR_NODES nodes. The caller makes sure that types match. */
 uint32_t expr_float(struct expr_graph *graph, double x);
 uint32_t expr_integer(struct expr_graph *graph, int64_t x);
 uint32_t expr_truth(struct expr_graph *graph, bool x);
 uint32_t expr_input(struct expr_graph *graph, enum expr_input input);
 uint32_t expr_operation(struct expr_graph *graph, enum expr_operation operation, uint32_t a, uint32_t b, uint32_t c);
-/* The constant, or NULL where the node is none (or EXPR_NONE). */
+/* The value of a constant; NULL for all other nodes and for EXPR_NONE. */
 const union expr_value *expr_constant(const struct expr_graph *graph, uint32_t node);
 
-/* Of an operation: how many operands it has, their types, its own, and its name. */
+/* Of an operation: the number and types of its operands, the type of its result, and its name. */
 int expr_operand_count(enum expr_operation operation);
 enum expr_type expr_operand_type(enum expr_operation operation, int operand);
 enum expr_type expr_result_type(enum expr_operation operation);
 const char *expr_operation_name(enum expr_operation operation);
 const char *expr_input_name(enum expr_input input);
-/* One operation on three values; those that it does not read may be anything. */
+/* Evaluates one operation on three values; it ignores operands that the operation does not have. */
 union expr_value expr_apply(enum expr_operation operation, union expr_value a, union expr_value b, union expr_value c);
 
 #endif

@@ -1,7 +1,8 @@
 /* Each operation bounds its computed results. Sums, products, quotients and roots are rounded to nearest, which is
- * monotone; their ends are then moved outwards by a unit in the last place or two, so that they bound the exact result
- * too. The elementary functions are wrong by up to 1.05 units, so theirs move further. Zero stays zero: the root of a
- * sum of squares has no NaN. A sum of opposite infinities, or an infinity times zero, makes every result possible. */
+ * monotone. Their ends are then moved outwards by one or two units in the last place, so that they bound the exact
+ * results too. The elementary functions have errors of up to 1.05 units, so their ends move further. Zero stays
+ * zero, so that the root of a sum of squares is never NaN. If a sum of opposite infinities or a product of infinity
+ * and zero is possible, the bounds allow every result. */
 #include "expr/expr_interval_internal.h"
 
 #include "math/exact.h"
@@ -15,7 +16,7 @@ static const struct expr_interval either = {0, 1, false};
 
 /* --- ends --- */
 
-/* NaN of an infinity less an infinity is refused by the comparison. */
+/* The comparison rejects the NaN of infinity minus infinity. */
 static inline double below(double x) {
     double lower = x - fabs(x) * DBL_EPSILON;
     return lower < x ? lower : x;
@@ -34,7 +35,7 @@ static inline double larger(double a, double b) {
     return a < b ? b : a;
 }
 
-/* Outwards by three units: of what the elementary functions give at the ends. */
+/* Moves the ends outwards by three units, for results of elementary functions. */
 static struct expr_interval widened(double low, double high, bool may_be_nan) {
     double lower = low - fabs(low) * (2 * DBL_EPSILON), upper = high + fabs(high) * (2 * DBL_EPSILON);
     return (struct expr_interval){lower < low ? lower - DBL_TRUE_MIN : low, upper > high ? upper + DBL_TRUE_MIN : high,
@@ -114,8 +115,8 @@ static inline struct expr_interval root(struct expr_interval a) {
                                   a.may_be_nan || !(a.low >= 0)};
 }
 
-/* The remainders in one period grow with a; `whole` is a bound of all. At the end of a period the result falls: then
- * the ends are in the wrong order, as long as they are less than a period apart. */
+/* Within one period the remainder grows with a; `whole` bounds all remainders. At the end of a period the result
+ * falls: the ends are then in the wrong order, if they are less than a period apart. */
 static struct expr_interval one_period(struct expr_interval a, double period, double low, double high,
                                        struct expr_interval whole) {
     if (low < high && a.high - a.low < 0.999 * fabs(period) && !a.may_be_nan)
@@ -140,7 +141,7 @@ static struct expr_interval remainder_of(struct expr_interval a, struct expr_int
     return one_period(a, b.low, el_fmod(a.low, b.low), el_fmod(a.high, b.low), whole);
 }
 
-/* NaN where a is; where b is, the result is a. */
+/* NaN if a is NaN; if b is NaN, the result is a. */
 static inline struct expr_interval minimum(struct expr_interval a, struct expr_interval b) {
     return (struct expr_interval){smaller(a.low, b.low), b.may_be_nan ? a.high : smaller(a.high, b.high), a.may_be_nan};
 }
@@ -153,7 +154,7 @@ static inline struct expr_interval maximum(struct expr_interval a, struct expr_i
 
 typedef double function_of_one(double);
 
-/* Of a function that grows, defined from `first` to `last`. */
+/* For a function that increases from `first` to `last` and is undefined elsewhere. */
 static struct expr_interval growing(struct expr_interval a, function_of_one *f, double first, double last) {
     struct expr_interval inside = within(a, first, last);
     if (!(inside.low <= inside.high))
@@ -161,13 +162,13 @@ static struct expr_interval growing(struct expr_interval a, function_of_one *f, 
     return widened(f(inside.low), f(inside.high), a.may_be_nan || a.low < first || a.high > last);
 }
 
-/* Whether start + n * 2 pi is in the interval, or so near that it does not matter. Angles are below 10^6. */
+/* Whether start + n * 2 pi is in the interval, or closer to it than rounding errors. Angles are below 10^6. */
 static bool contains_angle(struct expr_interval a, double start) {
     const double turn = 2 * PI, slack = 1e-9;
     return ceil((a.low - start - slack) / turn) <= floor((a.high - start + slack) / turn);
 }
 
-/* Of the sine or the cosine, whose largest value is at `top`. */
+/* For the sine or the cosine, with its maximum at `top`. */
 static struct expr_interval wave(struct expr_interval a, function_of_one *f, double top) {
     bool may_be_nan = a.may_be_nan || isinf(a.low) || isinf(a.high);
     if (!(a.high - a.low < 2 * PI) || fabs(a.low) > 1e6 || fabs(a.high) > 1e6)
@@ -186,7 +187,7 @@ static struct expr_interval tangent(struct expr_interval a) {
     return widened(el_tan(a.low), el_tan(a.high), may_be_nan);
 }
 
-/* The angle of (b, a): over a box without the origin and the cut along negative b its extremes are at corners. */
+/* The angle of (b, a). If the box excludes the origin and the cut along negative b, the extremes are at its corners. */
 static struct expr_interval arc_tangent(struct expr_interval a, struct expr_interval b) {
     bool may_be_nan = a.may_be_nan || b.may_be_nan;
     if (!(a.low > 0 || a.high < 0 || b.low > 0))
@@ -201,7 +202,7 @@ static struct expr_interval hyperbolic_cosine(struct expr_interval a) {
     return within(widened(el_cosh(size.low), el_cosh(size.high), a.may_be_nan), 1, INFINITY);
 }
 
-/* Of positive a: log a * b has its extremes at corners. */
+/* For positive a: log a * b has its extremes at the corners. */
 static struct expr_interval power_of_positive(struct expr_interval a, struct expr_interval b) {
     double p = el_pow(a.low, b.low), q = el_pow(a.low, b.high), r = el_pow(a.high, b.low), s = el_pow(a.high, b.high);
     return within(widened(smaller(smaller(p, q), smaller(r, s)), larger(larger(p, q), larger(r, s)), false), 0,
@@ -228,8 +229,8 @@ static struct expr_interval power(struct expr_interval a, struct expr_interval b
 
 /* --- noise --- */
 
-/* The middle of a box of the three operands, and how far it goes to each side. False: a coordinate may be infinite, or
- * so large that the middle is not exact enough. */
+/* The middle of a box of the three operands, and its half widths. False: a coordinate may be infinite, or is so
+ * large that the middle is too inexact. */
 static bool middle_of(const struct expr_interval box[3], double middle[3], double radius[3]) {
     for (int k = 0; k < 3; k++) {
         if (box[k].may_be_nan || !(box[k].low > -0x1p40 && box[k].high < 0x1p40))
@@ -240,7 +241,7 @@ static bool middle_of(const struct expr_interval box[3], double middle[3], doubl
     return true;
 }
 
-/* Taylor's formula with the bounds of the second derivatives; where a coordinate may be NaN the noise is 0. */
+/* Taylor's formula with bounds of the second derivatives. The noise is 0 where a coordinate may be NaN. */
 static struct expr_interval noise(const struct expr_interval box[3]) {
     const struct expr_interval all = {-NOISE_MAX, NOISE_MAX, false};
     double m[3], r[3], gradient[3];
@@ -256,7 +257,7 @@ static struct expr_interval noise(const struct expr_interval box[3]) {
     return within((struct expr_interval){value - change, value + change, false}, all.low, all.high);
 }
 
-/* The distances change by no more than the point moves; 0 where a coordinate is not finite. */
+/* The distances change at most by the movement of the point; they are 0 where a coordinate is not finite. */
 static struct expr_interval cells(const struct expr_interval box[3], enum expr_operation operation) {
     bool is_id = operation == EXPR_CELL_ID;
     const struct expr_interval all = {0, is_id ? 1 : 2, false};
@@ -281,7 +282,7 @@ static struct expr_interval hashed(const struct expr_interval box[3]) {
 
 /* --- integers --- */
 
-/* Ends that doubles cannot tell from their neighbours, or that wrap around, mean any integer. */
+/* Ends that doubles cannot represent exactly, or that wrap around, mean any integer. */
 static struct expr_interval integers(double low, double high) {
     return low >= -0x1p53 && high <= 0x1p53 ? (struct expr_interval){low, high, false} : any_integer;
 }
@@ -295,7 +296,8 @@ static struct expr_interval integer_multiply(struct expr_interval a, struct expr
     return integers(smaller(smaller(p, q), smaller(r, s)), larger(larger(p, q), larger(r, s)));
 }
 
-/* Division, remainders and bits: of single numbers as ever; of quotients and remainders by a constant what is easy. */
+/* Division, remainders and bits: exact for single numbers; for quotients and remainders by a constant, the simple
+ * cases; otherwise any integer. */
 static struct expr_interval integer_operation(enum expr_operation operation, struct expr_interval a,
                                               struct expr_interval b) {
     if (!is_exact(a) || !is_exact(b))
@@ -328,7 +330,7 @@ static struct expr_interval to_integer(struct expr_interval a) {
 
 /* --- conditions --- */
 
-/* A comparison with NaN does not hold. */
+/* A comparison with NaN is false. */
 static inline struct expr_interval less(struct expr_interval a, struct expr_interval b) {
     bool may_be_nan = a.may_be_nan || b.may_be_nan;
     return truth(a.high < b.low && !may_be_nan, a.low < b.high);
@@ -343,7 +345,7 @@ static struct expr_interval equal(struct expr_interval a, struct expr_interval b
     return truth(is_point(a) && is_point(b) && a.low == b.low && is_exact(a), a.low <= b.high && b.low <= a.high);
 }
 
-/* Comparisons of integers too large for doubles are not decided by equal ends. */
+/* Equal ends do not decide comparisons of integers that are too large for doubles. */
 static struct expr_interval compare_integers(enum expr_operation operation, struct expr_interval a,
                                              struct expr_interval b) {
     if ((a.high == b.low && !is_exact(a)) || (a.low == b.high && !is_exact(a)))
@@ -501,7 +503,7 @@ struct expr_interval expr_interval_apply(enum expr_operation operation, struct e
 
 struct expr_choice expr_interval_decide(enum expr_operation operation, struct expr_interval a, struct expr_interval b) {
     bool may_be_nan = a.may_be_nan || b.may_be_nan;
-    if (operation == EXPR_MIN) /* of NaN the first operand, too */
+    if (operation == EXPR_MIN) /* for NaN, the first operand, too */
         return (struct expr_choice){a.high <= b.low, b.high < a.low && !may_be_nan};
     if (operation == EXPR_MAX)
         return (struct expr_choice){b.high <= a.low, a.high < b.low && !may_be_nan};

@@ -10,8 +10,8 @@
 
 #include "expr/expr_program.h"
 
-/* Every value is NaN, which only happens where may_be_nan is set, or low <= value <= high (-0 counts as 0). Integers
- * are bounded by doubles; truths are 0 (false) and 1. */
+/* Either low <= value <= high (-0 counts as 0), or the value is NaN, which happens only if may_be_nan is set.
+ * Integers are bounded by doubles; truth values are 0 (false) and 1. */
 struct expr_interval {
     double low, high;
     bool may_be_nan;
@@ -20,21 +20,22 @@ struct expr_interval {
 /* Boxes that are evaluated at once, and lanes of a choice. */
 enum { EXPR_BOXES = 64 };
 
-/* Of one instruction: bit i is set if box i always takes the first operand (of min, max, abs, and where a condition
- * holds) or the second. */
+/* The decisions of one instruction. Bit i is set if the first operand, or the second, is always selected in box i:
+ * by min, max and abs, or by a condition. */
 struct expr_choice {
     uint64_t first, second;
 };
 
-/* One operation on intervals; those that it does not read may be anything. Of numbers or truths by their types. */
+/* Evaluates one operation on intervals; it ignores operands that the operation does not have. The types of the
+ * operands decide between numbers and truth values. */
 struct expr_interval expr_interval_apply(enum expr_operation operation, struct expr_interval a, struct expr_interval b,
                                          struct expr_interval c);
 
-/* Bytes that expr_evaluate_interval works in. */
+/* The size in bytes of the memory that expr_evaluate_interval needs. */
 size_t expr_interval_size(const struct expr_program *program);
-/* Bounds of the outputs over one box. inputs: by enum expr_input, of which only those that the program reads count.
- * choices: one for each instruction, of which lane 0 is written; or NULL. rows: expr_interval_size bytes, aligned to
- * 64, whatever they hold. */
+/* Bounds of the outputs over one box. inputs: by enum expr_input; the program ignores those that it does not read.
+ * choices: one for each instruction, of which lane 0 is written, or NULL. rows: expr_interval_size bytes, aligned to
+ * 64, with any contents. */
 void expr_evaluate_interval(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                             struct expr_interval outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows);
 

@@ -1,10 +1,10 @@
-/* What evaluators of intervals share: constants as intervals, and what decides an operand. */
+/* Common functions of the interval evaluators: constants as intervals, and decisions between operands. */
 #ifndef GRAY_EXPR_EXPR_INTERVAL_INTERNAL_H
 #define GRAY_EXPR_EXPR_INTERVAL_INTERNAL_H
 
 #include "expr/expr_interval.h"
 
-/* A constant NaN is any number, too. */
+/* A constant NaN allows any number, too. */
 static inline struct expr_interval expr_interval_of_float(double x) {
     return x == x ? (struct expr_interval){x, x, false} : (struct expr_interval){-INFINITY, INFINITY, true};
 }
@@ -18,7 +18,7 @@ static inline struct expr_interval expr_interval_of_truth(int64_t x) {
 /* a * a */
 struct expr_interval expr_interval_square(struct expr_interval a);
 
-/* The choice of one box, in lane 0; a and b are the first operands. */
+/* The decision for one box, in lane 0; a and b are the first two operands. */
 struct expr_choice expr_interval_decide(enum expr_operation operation, struct expr_interval a, struct expr_interval b);
 
 #endif

@@ -1,6 +1,6 @@
-/* The operations of expressions: one list, from which the graph, its folding and every evaluator are made, so that they
- * cannot disagree. The results are those of Lua 5.4 (reference manual, sections 3.4 and 6.7), bit for bit but for the
- * bits of a NaN: floats are doubles, integers wrap around, // and % round to minus infinity. */
+/* The operations of expressions: one list, from which the graph, its folding and every evaluator are generated, so
+ * that they cannot disagree. The results are those of Lua 5.4 (reference manual, sections 3.4 and 6.7), bit for bit
+ * except for the bits of a NaN: floats are doubles, integers wrap around, // and % round towards minus infinity. */
 #ifndef GRAY_EXPR_EXPR_OPERATIONS_H
 #define GRAY_EXPR_EXPR_OPERATIONS_H
 
@@ -11,15 +11,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A value in a register. Which member counts is known of every operation; truth is 0 or -1, all bits. */
+/* A value in a register. The operation determines which member is valid; a truth value is 0 or -1, all bits set. */
 union expr_value {
     double f;
     int64_t i;
 };
 
-/* Member, name in listings, types of the result and of the three operands (F float, I integer, B truth, N none), and
- * the result in terms of a, b and c. Conditions of Lua that raise errors (a division of integers by zero, a float
- * without an integer value) are the recorder's; here any value does. */
+/* Each line: member, name in listings, types of the result and of the three operands (F float, I integer, B truth
+ * value, N none), and the result in terms of a, b and c. Where Lua raises an error (an integer division by zero, a
+ * float without an integer value), the recorder checks the operands; here the result is arbitrary. */
 #define EXPR_OPERATIONS(X)                                                                                             \
     X(EXPR_COPY, "copy", F, F, N, N, a)                                                                                \
     X(EXPR_ADD, "add", F, F, F, N, a + b)                                                                              \
@@ -88,7 +88,7 @@ union expr_value {
 
 #define EXPR_OPERATION_MEMBER(member, ...) member,
 enum expr_operation {
-    EXPR_CONSTANT, /* leaves of the graph, no instructions */
+    EXPR_CONSTANT, /* leaves of the graph; they are no instructions */
     EXPR_INPUT,
     EXPR_OPERATIONS(EXPR_OPERATION_MEMBER) EXPR_OPERATION_COUNT
 };
@@ -99,7 +99,7 @@ static inline double expr_modulo(double a, double b) {
     return (m > 0 ? b < 0 : m < 0 && b > 0) ? m + b : m;
 }
 
-/* The rounded quotient. A division by 0 gives 0; the recorder makes an error of it before that. */
+/* The quotient, rounded down. A division by 0 gives 0; the recorder has reported it as an error before. */
 static inline int64_t expr_integer_divide(int64_t a, int64_t b) {
     if ((uint64_t)b + 1 <= 1) /* 0 and -1 */
         return b ? (int64_t)(0 - (uint64_t)a) : 0;
@@ -114,12 +114,12 @@ static inline int64_t expr_integer_modulo(int64_t a, int64_t b) {
     return m != 0 && (m ^ b) < 0 ? m + b : m;
 }
 
-/* math.fmod of integers: the sign of a. */
+/* math.fmod of integers: the result has the sign of a. */
 static inline int64_t expr_integer_remainder(int64_t a, int64_t b) {
     return (uint64_t)b + 1 <= 1 ? 0 : a % b;
 }
 
-/* To the right where b is negative; both fill with zeros. */
+/* A negative b shifts to the right; both directions fill with zeros. */
 static inline int64_t expr_shift_left(int64_t a, int64_t b) {
     if (b <= -64 || b >= 64)
         return 0;
@@ -130,12 +130,12 @@ static inline bool expr_is_integer(double x) {
     return x >= -0x1p63 && x < 0x1p63 && floor(x) == x;
 }
 
-/* Towards zero; the least integer for what has none. */
+/* Rounds towards zero; the smallest integer if the result is no integer of 64 bits. */
 static inline int64_t expr_to_integer(double x) {
     return x >= -0x1p63 && x < 0x1p63 ? (int64_t)x : INT64_MIN;
 }
 
-/* -1, 0 or 1 as a is below, at or above b exactly; 3 where b is NaN. */
+/* Compares exactly: -1, 0 or 1 if a is less than, equal to or greater than b; 3 if b is NaN. */
 static inline int expr_order(int64_t a, double b) {
     double rounded = (double)a;
     if (rounded < b)

@@ -1,5 +1,6 @@
-/* From the graph to a program: nodes that the outputs need, in the order of the graph, which has operands first; a
- * register is free again after the last instruction that reads it (linear scan: Poletto and Sarkar 1999). */
+/* From the graph to a program. It contains the nodes that the outputs need, in the order of the graph, in which
+ * operands come first. A register is free again after the last instruction that reads it (linear scan: Poletto and
+ * Sarkar 1999). */
 #include "expr/expr_program.h"
 
 #include "base/mem.h"
@@ -8,9 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What the compiler knows of each node. */
+/* The compiler's data about each node. */
 struct allocation {
-    uint32_t last;  /* the last node that reads it, its own number if none; of outputs the number of nodes */
+    uint32_t last;  /* the last node that reads it; its own number if there is none; the number of nodes for outputs */
     uint16_t value; /* where it stands */
     bool needed;
 };
@@ -29,7 +30,7 @@ static void mark(const struct expr_graph *graph, const uint32_t *outputs, int ou
     }
 }
 
-/* Registers that are free, and how many there are; numbers count from the end of the constants. */
+/* The free registers and their number; register numbers start after the constants. */
 struct registers {
     uint16_t free[EXPR_VALUES];
     uint32_t free_count, count, first;
@@ -70,7 +71,7 @@ static bool number_constants(const struct expr_graph *graph, struct allocation *
     return true;
 }
 
-/* Inputs stand in the first registers, from the beginning on. */
+/* Inputs are in the first registers from the start. */
 static bool assign_inputs(const struct expr_graph *graph, struct allocation *allocations, struct registers *registers,
                           struct expr_program *program, struct error *error) {
     for (uint32_t n = 0; n < graph->count; n++) {
@@ -97,7 +98,7 @@ static bool write_code(const struct expr_graph *graph, struct allocation *alloca
             values[k] = operand->value;
             if (operand->last == n && operand->value >= program->constant_count) {
                 registers->free[registers->free_count++] = operand->value;
-                operand->last = n + 1; /* once, also where it is read twice here */
+                operand->last = n + 1; /* once, also if this instruction reads it twice */
             }
         }
         if (!take(registers, &allocations[n].value))
@@ -110,7 +111,7 @@ static bool write_code(const struct expr_graph *graph, struct allocation *alloca
     return true;
 }
 
-/* The code of what is marked as needed. */
+/* Generates the code of all marked nodes. */
 static bool compile(const struct expr_graph *graph, struct arena *arena, struct allocation *allocations,
                     struct registers *registers, struct expr_program *program, struct error *error) {
     uint32_t count = 0;
@@ -192,7 +193,7 @@ void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_
 
 /* --- batches --- */
 
-/* A row for each register, and three for constants that are operands. */
+/* One row for each register, and three for constants that are operands. */
 size_t expr_batch_size(const struct expr_program *program) {
     return ((size_t)program->register_count + 3) * EXPR_BATCH * sizeof(union expr_value);
 }

@@ -1,6 +1,7 @@
-/* Expressions ready to be evaluated: a flat list of instructions over numbered values, constants first, then registers
- * that are used again as soon as nothing reads them any more. Immutable, in the arena of the caller; any number of
- * threads may evaluate it at once, and the results have the same bits on every machine, alone or in batches. */
+/* Expressions ready for evaluation: a flat list of instructions over numbered values. Constants come first, then
+ * registers, which are used again when no later instruction reads them. A program is immutable and in the arena of
+ * the caller. Any number of threads may evaluate it at the same time. The results have the same bits on every
+ * machine, for single points and in batches. */
 #ifndef GRAY_EXPR_EXPR_PROGRAM_H
 #define GRAY_EXPR_EXPR_PROGRAM_H
 
@@ -10,12 +11,12 @@
 
 #include <stddef.h>
 
-/* EXPR_VALUES: constants and registers of a program together. EXPR_BATCH: points of a batch. */
+/* EXPR_VALUES: the maximum number of constants and registers of a program. EXPR_BATCH: points of a batch. */
 enum { EXPR_VALUES = 8192, EXPR_OUTPUTS = 4, EXPR_BATCH = 64 };
 
 struct expr_instruction {
     uint16_t operation;    /* enum expr_operation */
-    uint16_t out, a, b, c; /* what the operation does not read is `out` */
+    uint16_t out, a, b, c; /* `out` for operands that the operation does not have */
 };
 
 struct expr_program {
@@ -24,28 +25,28 @@ struct expr_program {
     uint32_t count, constant_count, register_count;
     int input_count, output_count;
     struct {
-        uint16_t input, value; /* enum expr_input, and the register where it stands at the beginning */
+        uint16_t input, value; /* an enum expr_input, and the register that contains it at the start */
     } inputs[EXPR_INPUT_COUNT];
     uint16_t outputs[EXPR_OUTPUTS]; /* floats */
 };
 
-/* What computes these nodes, which are floats and at most EXPR_OUTPUTS. False and error: no memory, or more than
- * EXPR_VALUES values. */
+/* Compiles the program that computes these nodes, which are floats and at most EXPR_OUTPUTS. False and an error: no
+ * memory, or more than EXPR_VALUES values. */
 bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int output_count, struct arena *arena,
                   struct expr_program *program, struct error *error);
 
-/* One point; inputs by enum expr_input, of which only those that the program reads count. */
+/* Evaluates one point. inputs: by enum expr_input; the program ignores those that it does not read. */
 void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                    double outputs[EXPR_OUTPUTS]);
 
-/* Bytes that expr_evaluate_batch works in. */
+/* The size in bytes of the memory that expr_evaluate_batch needs. */
 size_t expr_batch_size(const struct expr_program *program);
-/* The same for `count` points, at most EXPR_BATCH: inputs[i] and outputs[i] are arrays of `count` numbers, inputs that
- * the program does not read may be NULL. rows: expr_batch_size bytes, aligned to 64, whatever they hold. */
+/* Evaluates `count` points, at most EXPR_BATCH. inputs[i] and outputs[i] are arrays of `count` numbers; inputs that
+ * the program does not read may be NULL. rows: expr_batch_size bytes, aligned to 64, with any contents. */
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          const double *const inputs[EXPR_INPUT_COUNT], double *const outputs[EXPR_OUTPUTS], void *rows);
 
-/* The values of one instruction in words: "r12 = add r3 0.5", at most `size` bytes with the final NUL. */
+/* Prints one instruction: "r12 = add r3 0.5", at most `size` bytes with the final NUL. */
 void expr_describe(const struct expr_program *program, uint32_t instruction, char *out, size_t size);
 
 #endif

@@ -1,6 +1,6 @@
-/* One pass backwards over the program, with the new register of every old one that is still wanted. It renames, frees
- * and drops at once. A decided min, max or selection hands its own register to the operand that it takes and is gone;
- * only if that operand is wanted elsewhere already, or is a constant, a copy stays in its place. */
+/* One pass backwards over the program. It keeps the new register of every old one that is still needed, and renames,
+ * frees and drops at the same time. A min, max or selection that is decided disappears: its selected operand gets
+ * its register. A copy remains only if another instruction needs that operand too, or if it is a constant. */
 #include "expr/expr_shorten.h"
 
 #include <string.h>
@@ -20,7 +20,7 @@ struct renaming {
     uint32_t unused_count, register_count, first;
 };
 
-/* The new value of an old one, which is read. */
+/* The new register or constant of an old value that is read. */
 static inline uint16_t want(struct renaming *r, uint16_t value) {
     if (value < r->first)
         return value;
@@ -34,7 +34,7 @@ size_t expr_shorten_size(const struct expr_program *program) {
     return 2 * ((size_t)program->register_count + 1) * sizeof(uint16_t);
 }
 
-/* The operand that is taken. */
+/* The operand that is selected. */
 static inline uint16_t taken_operand(const struct expr_instruction *in, bool first) {
     enum expr_operation operation = (enum expr_operation)in->operation;
     if (operation == EXPR_SELECT || operation == EXPR_INTEGER_SELECT || operation == EXPR_TRUTH_SELECT)
@@ -42,7 +42,7 @@ static inline uint16_t taken_operand(const struct expr_instruction *in, bool fir
     return first ? in->a : in->b;
 }
 
-/* An operation that gives its operand, of the same type. */
+/* An operation that returns its operand, of the same type. */
 static struct expr_instruction copy_of(const struct expr_instruction *in, uint16_t from) {
     enum expr_operation operation = (enum expr_operation)in->operation;
     if (operation == EXPR_INTEGER_SELECT)

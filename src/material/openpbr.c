@@ -1,13 +1,14 @@
-/* Layers, from the top: fuzz, coat, then metal beside dielectric, which is glossy over diffuse or transmits light.
- * What a layer does not reflect of light from the view goes to those below it ("albedo scaling"), so the sum is not
- * reciprocal, but nothing is lost: white layers send back or on all light. Albedos are those of albedo_internal.h,
- * those of smooth layers Fresnel's formula.
+/* Layers, from the top: fuzz, coat, then metal mixed with a dielectric, which is glossy over diffuse or transmits
+ * light. The light that a layer does not reflect for the view direction goes to the layers below it ("albedo
+ * scaling"). So the sum is not reciprocal, but no light is lost: white layers reflect or transmit all of it. The
+ * albedos are those of albedo_internal.h, for smooth layers those of Fresnel's formula.
  *
- * Where the specification leaves a choice: the colour of the coat multiplies what comes from below; darkening acts on
- * metal and on diffuse light, each by its own albedo, with the mean reflectance of the coat from inside for diffuse
- * light and that of the view for smooth metal, which is exact for both; specular_weight changes the index for Fresnel
- * and for refraction alike; transmission_color without a depth tints each passage through the surface; a solid seen
- * from inside has neither coat nor fuzz; compensation with two widths is that of one in between. */
+ * Where the specification leaves a choice: The colour of the coat multiplies the light from below. Darkening affects
+ * metal and diffuse light separately, each with its own albedo. It uses the mean reflectance of the coat from inside
+ * for diffuse light, and the one for the view direction for smooth metal, which is exact for both. specular_weight
+ * changes the index for reflection and refraction. transmission_color without a depth tints each passage through the
+ * surface. A solid has neither coat nor fuzz on the inside. For anisotropic facets the compensation is that of a
+ * width between both. */
 #include "material/openpbr.h"
 
 #include "material/albedo_internal.h"
@@ -16,7 +17,7 @@
 
 #include <stddef.h>
 
-/* Roughness below this is smooth. */
+/* Surfaces with a lower roughness are smooth. */
 static const double smooth_roughness = 0x1p-10;
 
 struct openpbr openpbr_defaults(void) {
@@ -78,19 +79,20 @@ static void read_textures(const struct material *material, const struct hit *hit
 
 /* --- layers --- */
 
-/* The light that passes down through the layers. */
+/* The light that the layers above transmit. */
 struct layering {
     const struct openpbr *values;
     const struct surface_inputs *inputs;
     struct bsdf *bsdf;
-    struct vec3 left;   /* the share of light that arrives at the layer */
+    struct vec3 left;   /* the fraction of light that arrives at the layer */
     struct vec3 mirror; /* of all smooth layers together */
     struct vec3 dpdu;
     double cosine;  /* of the view to the normal */
-    double outside; /* index of the medium around */
-    bool inside;    /* of a solid that light passes */
+    double outside; /* refractive index of the surrounding medium */
+    bool inside;    /* of the solid, if it transmits light */
     int facets;     /* used of bsdf->facets */
-    /* The effect of the coat on light from below: its share, its reflectance for the view, and the mean from inside. */
+    /* The effect of the coat on light from below: the fraction of the base under it, its reflectance for the view
+     * direction, and its mean reflectance from inside. */
     double coated, coat_sees, coat_inside;
 };
 
@@ -154,7 +156,8 @@ static void add_coat(struct layering *l) {
     l->left = vec3_mul(l->left, transmits);
 }
 
-/* Light from below that the coat sends down again, of a layer with this albedo, which is met by the share k of it. */
+/* Light from a layer with this albedo that the coat reflects back to it; the coat covers the fraction k of the
+ * layer. */
 static double darkened(const struct layering *l, double albedo, double k) {
     double factor = (1 - k) / (1 - (albedo < 1 ? albedo : 1) * k), amount = l->coated * l->values->coat_darkening;
     return 1 + amount * (factor - 1);
@@ -210,7 +213,7 @@ static void add_diffuse(struct layering *l, struct vec3 left) {
     add_matt(l, LOBE_OREN_NAYAR_MULTIPLE, vec3_mul(left, multiple), v->base_diffuse_roughness);
 }
 
-/* Light through a smooth surface: it transmits what it does not reflect. */
+/* A smooth surface transmits the light that it does not reflect. */
 static void add_smooth_passage(struct layering *l, const struct hit *hit, struct vec3 left) {
     struct bsdf *bsdf = l->bsdf;
     bsdf->transmits = l->values->thin_walled || bsdf_refract(bsdf, hit->view, &bsdf->through);
@@ -239,7 +242,7 @@ static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left
     add(l, LOBE_FACETS_THROUGH, tint, lack * facets->through);
 }
 
-/* The share of the surface that transmits light, and the rest, which is diffuse below the gloss. */
+/* The fraction of the surface that transmits light, and the rest, which is diffuse under a glossy layer. */
 static void add_dielectric(struct layering *l, const struct hit *hit, double eta, double roughness) {
     const struct openpbr *v = l->values;
     struct vec3 all = vec3_scale(l->left, 1 - v->base_metalness);
@@ -276,8 +279,8 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
         add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
 }
 
-/* Of an opaque base: to the medium around, or to the coat. A coat that is denser than the base would
- * reflect totally; as in the specification, the ratio of indices is then inverted. */
+/* Of an opaque base: relative to the surrounding medium or to the coat. A coat that is denser than the base would
+ * cause total reflection; as in the specification, the ratio of indices is then inverted. */
 static double relative_index(const struct layering *l) {
     double base = l->values->specular_ior, bare = base / l->outside, below = base / l->values->coat_ior;
     below = below < 1 ? 1 / below : below;

@@ -1,19 +1,21 @@
 /* See rough_lobes_internal.h.
  *
- * Rough diffuse surfaces: the energy-preserving model of Oren and Nayar by J. Portsmouth, P. Kutz and S. Hill, "EON: A
- * Practical Energy-Preserving Rough Diffuse BRDF", 2024, as two lobes, since their colours differ: the formula of M.
- * Fujii, and what that loses, spread out.
+ * Rough diffuse surfaces: the energy-preserving model of Oren and Nayar by J. Portsmouth, P. Kutz and S. Hill, "EON:
+ * A Practical Energy-Preserving Rough Diffuse BRDF", 2024. It has two lobes, because their colours differ: the
+ * formula of M. Fujii, and a lobe that returns the light which that formula loses.
  *
- * Fuzz: the distribution of A. Estevez and C. Kulla, "Production Friendly Microfacet Sheen BRDF", SIGGRAPH 2017 courses
- * ("Charlie"), with the visibility of D. Neubelt and M. Pettineo, "Crafting a Next-Gen Material Pipeline for The Order:
- * 1886", 2013. Its width is 0.25 + 0.75 roughness: below, it would reflect more than arrives at grazing angles.
+ * Fuzz: the distribution of A. Estevez and C. Kulla, "Production Friendly Microfacet Sheen BRDF", SIGGRAPH 2017
+ * courses ("Charlie"), with the visibility of D. Neubelt and M. Pettineo, "Crafting a Next-Gen Material Pipeline for
+ * The Order: 1886", 2013. Its width is 0.25 + 0.75 roughness; smaller widths would reflect more than arrives at
+ * grazing angles.
  *
- * Facets: as in bsdf.c, with two widths (Heitz 2014). Light that meets more than one of them comes out as C. Kulla and
- * A. Conty have it, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017 courses: with E(c) the share
- * that leaves after one facet, (1 - E(cos wo)) (1 - E(cos wi)) / (pi (1 - mean E)). Of boundaries the share `through`
- * goes to the other side, (1 - E(cos wo)) (1 - E'(cos wi)) / (pi (1 - mean E')) with E' for directions behind. It is (1
- * - mean Fresnel) min(1 - mean E, 1 - mean E') / (1 - mean E), so that there is as much either way, by the square of
- * the index: (1 - mean Fresnel) n^2 is the same on both sides. */
+ * Facets: as in bsdf.c, but with two widths (Heitz 2014). Light that hits more than one facet follows C. Kulla and
+ * A. Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017 courses. E(c) is the fraction of
+ * light that leaves after one facet; the compensating lobe is (1 - E(cos wo)) (1 - E(cos wi)) / (pi (1 - mean E)).
+ * At boundaries the fraction `through` of it goes to the other side: (1 - E(cos wo)) (1 - E'(cos wi)) / (pi (1 -
+ * mean E')), with E' for directions on that side. The fraction is (1 - mean Fresnel) min(1 - mean E, 1 - mean E') /
+ * (1 - mean E). Both directions then transmit the same, up to the square of the index: (1 - mean Fresnel) n^2 is the
+ * same on both sides. */
 #include "material/rough_lobes_internal.h"
 
 #include "material/albedo_internal.h"
@@ -78,7 +80,7 @@ struct vec3 bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine) 
     return not_negative(vec3_add_scaled(schlick, facets->edge, -cosine * fifth * rest));
 }
 
-/* 2 c (1 - c)^5 is 1/21 in the mean, 2 c^2 (1 - c)^6 is 1/126. */
+/* The mean of 2 c (1 - c)^5 is 1/21, that of 2 c^2 (1 - c)^6 is 1/126. */
 struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets) {
     struct vec3 schlick = vec3_add_scaled(facets->f0, vec3_sub(vec3_all(1), facets->f0), 1.0 / 21);
     return not_negative(vec3_add_scaled(schlick, facets->edge, -1.0 / 126));
@@ -86,7 +88,8 @@ struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets) {
 
 /* --- directions of a hemisphere --- */
 
-/* On the side of the view, for both the shading and the geometric normal; else on the other side of both. */
+/* On the side of the view direction, for both the shading and the geometric normal; otherwise on the other side for
+ * both. */
 static double cosine_on(const struct bsdf *bsdf, bool behind, struct vec3 wi) {
     double n_l = vec3_dot(bsdf->side, wi), height = vec3_dot(bsdf->geometric_side, wi);
     if (behind)
@@ -121,13 +124,13 @@ static double fujii_a(double roughness) {
     return 1 / (1 + (0.5 - 2 / (3 * PI)) * roughness);
 }
 
-/* Portsmouth et al. 2024, equation 5: pi f over the colour. */
+/* Portsmouth et al. 2024, equation 5: pi f divided by the colour. */
 static double fujii(double roughness, double n_o, double n_i, double o_i) {
     double a = fujii_a(roughness), s = o_i - n_o * n_i, t = s > 0 ? fmax(n_o, n_i) : 1;
     return a * (1 + roughness * s / t);
 }
 
-/* Its albedo, equation 18, and the mean of that. */
+/* Its albedo, equation 18, and the mean of the albedo. */
 static double fujii_albedo(double cosine, double roughness) {
     double a = fujii_a(roughness), c = cosine < 1 ? cosine : 1, sine = sqrt(1 - c * c);
     double g = sine * (el_acos(c) - sine * c) + 2.0 / 3 * (sine / c * (1 - sine * sine * sine) - sine);
@@ -165,7 +168,7 @@ static struct vec3 across_surface(const struct bsdf *bsdf, struct vec3 w) {
     return vec3_add_scaled(w, bsdf->side, -2 * vec3_dot(bsdf->side, w));
 }
 
-/* The share of light that facets with this cosine to the view reflect; metals have a colour instead. */
+/* The fraction of light that facets with this cosine to the view direction reflect; metals have a colour instead. */
 static double reflected_share(const struct bsdf_facets *facets, double towards) {
     switch (facets->kind) {
     case FACETS_BOUNDARY:
@@ -178,7 +181,7 @@ static double reflected_share(const struct bsdf_facets *facets, double towards) 
     return 1;
 }
 
-/* The density of a direction through its facet, and its factor by Fresnel and masking. */
+/* The density of a direction that one facet reflects or refracts, and its factor from Fresnel and masking. */
 struct facet_path {
     double pdf, share;
 };
@@ -199,7 +202,7 @@ static struct facet_path mirrored(const struct bsdf_facets *facets, struct vec3 
     return path_by(facets, wo, wi, half, 1 / (4 * v_h), reflected_share(facets, v_h));
 }
 
-/* Light that a thin wall transmits leaves in the mirrored direction, on the other side. */
+/* Light that a thin wall transmits leaves in the mirrored direction on the other side. */
 static struct facet_path through_pane(const struct bsdf *bsdf, const struct bsdf_facets *facets, struct vec3 wo,
                                       struct vec3 wi) {
     struct vec3 above = across_surface(bsdf, wi), half = vec3_normalize(vec3_add(wo, above));
@@ -248,7 +251,7 @@ static bool facet_sample(const struct bsdf *bsdf, const struct lobe *lobe, struc
     return cosine_on(bsdf, *transmits, *direction) > 0;
 }
 
-/* The share of light from one direction that facets do not reflect or transmit at the first facet. */
+/* The fraction of light from one direction that is neither reflected nor transmitted by the first facet. */
 static double facets_lack(const struct bsdf_facets *facets, double cosine, bool behind) {
     double eta = behind ? 1 / facets->eta : facets->eta;
     return 1 - (facets->kind == FACETS_BOUNDARY ? albedo_boundary(cosine, facets->roughness, eta)
