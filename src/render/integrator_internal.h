@@ -1,39 +1,39 @@
-/* The integrators behind one interface. A render (render.c) prepares camera, workers and tiles and hands out tiles;
- * what happens within a tile is the integrator's: which samples its pixels get, and what the film records of them.
- * sample.c turns a sample into camera rays and calls the integrator for their radiance. Each function is one switch
- * over the kind.
+/* The interface of integrators. A render (render.c) prepares camera, workers and tiles and distributes the tiles.
+ * The integrator decides what happens within a tile: which samples its pixels get, and what the film records for
+ * them. sample.c turns a sample into camera rays and calls the integrator for their radiance. Each function is one
+ * switch over the kind.
  *
- * What holds for all of them: the same bytes for any number of threads and any order of tiles (a tile or a part of one
- * depends on nothing but the job), numbers of the sampler only, events for observers, rays counted in the worker's
- * struct integrator_state. */
+ * All integrators have these properties: the same bytes for any number of threads and any order of tiles (a tile or
+ * a part of one depends on nothing but the job), random numbers only from the sampler, events for observers, and
+ * rays counted in the worker's struct integrator_state. */
 #ifndef GRAY_RENDER_INTEGRATOR_INTERNAL_H
 #define GRAY_RENDER_INTEGRATOR_INTERNAL_H
 
 #include "render/render_internal.h"
 
-/* What an integrator keeps for a run and for each of its workers. */
+/* The data of an integrator for a run and for each of its workers. */
 struct integrator;
 
-/* Makes renderer->integrator of the kind that the settings name, for so many workers, which are there: whatever must be
- * done before the first tile. Photons count in `statistics`. Errors: no memory, cancelled; renderer->integrator is to
- * be destroyed all the same. */
+/* Creates renderer->integrator of the kind in the settings, for this number of workers, which exist already. It does
+ * everything that must precede the first tile. Photons count in `statistics`. Errors: no memory, cancelled;
+ * renderer->integrator must be destroyed in these cases, too. */
 bool integrator_create(struct renderer *renderer, int workers, struct render_statistics *statistics,
                        struct error *error);
 void integrator_destroy(struct integrator *integrator); /* NULL is fine */
 
-/* Makes the pixels of a rectangle within a tile and stores them in the film. False: stopped before the end. */
+/* Renders the pixels of a rectangle within a tile and stores them in the film. False: stopped before the end. */
 bool integrator_render(struct renderer *renderer, struct worker *worker, const struct rectangle *part);
-/* The colour that a camera ray brings, clamped to the range of float. worker->state has the sampler of the sample and
- * the media round the eye; key: the random key of the ray. */
+/* The radiance along a camera ray, clamped to the range of float. worker->state has the sampler of the sample and
+ * the media around the eye. key: the random key of the ray. */
 struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker, const struct ray *ray, uint64_t key);
-/* The same for a ray that went with a packet: what it has met, or NULL. */
+/* The same for a ray of a packet. met: its hit, or NULL. */
 struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
                                     const struct packet_answer *met, uint64_t key);
-/* For the time estimate: whether pixels between two samples of these colours are to get more samples than others. */
+/* For the time estimate: whether pixels between two samples of these colours get more samples than others. */
 bool integrator_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b);
-/* Traces the samples of a finished pixel once more, one by one, for layers that measure what they cost. */
+/* Traces the samples of a finished pixel once more, one by one, for layers that measure their cost. */
 void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y);
-/* Adds what only this integrator counts. */
+/* Adds the numbers that only this integrator counts. */
 void integrator_add_statistics(const struct renderer *renderer, struct render_statistics *out);
 
 #endif

@@ -1,5 +1,5 @@
-/* The pixels of the path tracer: the mean of their samples, added in their order, as many as the pass of the renderer
- * says or until a tile has little enough noise. See path_internal.h. */
+/* The pixels of the path tracer. A pixel is the mean of its samples, which are added in order: as many as the pass
+ * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
 #include "render/aov.h"
@@ -17,8 +17,8 @@ struct film_record path_tracer_record(const struct settings *settings) {
     return path_film_record(parts);
 }
 
-/* Of the pixel's width, what a sample stands for: that of 64 samples, for any number of them, so that a picture does
- * not depend on how many samples it will have. The rest of the filtering is the mean over the samples. */
+/* The footprint of a sample as a fraction of the pixel's width. It is that of 64 samples for any number of samples,
+ * so that a picture does not depend on how many samples follow. The mean over the samples filters the rest. */
 static const double footprint_share = 0.125;
 
 /* Of a pixel, at most. */
@@ -30,7 +30,7 @@ static uint32_t samples_of(const struct settings *settings) {
                                       : PATH_SAMPLES_DEFAULT;
 }
 
-/* Where the parts of a batch of samples go, for each worker. */
+/* Storage for the parts of a batch of samples, one for each worker. */
 static bool make_sample_parts(struct path_tracer *tracer, struct renderer *renderer) {
     for (int i = 0; i < pool_workers(renderer->pool); i++) {
         struct path_parts *parts = arena_alloc(&tracer->arena, PACKET_RAYS * sizeof *parts);
@@ -41,7 +41,7 @@ static bool make_sample_parts(struct path_tracer *tracer, struct renderer *rende
     return true;
 }
 
-/* Which lights photons come from. */
+/* The lights that emit photons. */
 static bool find_photon_lights(struct path_tracer *tracer, const struct world *world) {
     bool *lights = arena_alloc_array(&tracer->arena, (size_t)tracer->lights.count + 1, sizeof *lights);
     for (uint32_t i = 0; lights && i < world->light_count; i++) {
@@ -104,18 +104,18 @@ static void finish_pixel(struct film *film, const struct worker *worker, int64_t
                   &(struct observed_pixel){.colour = path_pixel_mean(pixel), .full = true, .first_counts = true});
 }
 
-/* The pixel's sums before a pass: those of the film, unless it is the first one. */
+/* The sums of the pixel before a pass: those of the film, or zero in the first pass. */
 static struct path_pixel begin_pixel(const struct film *film, int64_t x, int64_t y, uint32_t begin) {
     return begin > 0 ? path_film_load(film, pixel_index(film, x, y)) : (struct path_pixel){0};
 }
 
-/* Numbers of samples, from `begin` on to that before `end`. */
+/* The numbers of samples from `begin` up to, but not including, `end`. */
 struct sample_range {
     uint32_t begin, end;
 };
 
-/* Adds these samples to the pixels of a row, pixel by pixel, batch by batch:
- * a batch may hold samples of several pixels. */
+/* Adds these samples to the pixels of a row, pixel by pixel and batch by batch. A batch may contain samples of
+ * several pixels. */
 static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                        const struct rectangle *part, int64_t y, struct sample_range range) {
     uint32_t begin = range.begin, end = range.end;
@@ -160,7 +160,8 @@ static bool sample_part(const struct path_tracer *tracer, struct renderer *rende
 
 /* --- noise --- */
 
-/* The noise of a tile is checked after 16, 24, 32, 48, 64 ... samples; returns the next of these after `samples`. */
+/* gray checks the noise of a tile after 16, 24, 32, 48, 64 ... samples. Returns the first of these numbers above
+ * `samples`. */
 static uint32_t next_check(uint32_t samples) {
     uint32_t power = 16;
     while (power <= samples / 2)
@@ -183,8 +184,8 @@ static bool is_quiet(const struct path_tracer *tracer, const struct film *film, 
     return sum <= tracer->noise * tracer->noise * pixels;
 }
 
-/* The samples of a pass until the tile has little enough noise. A tile that an earlier pass has left with that gets no
- * more. */
+/* Takes the samples of a pass, until the noise of the tile is small enough. A tile that an earlier pass has finished
+ * gets no more samples. */
 static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                                const struct rectangle *part) {
     const struct film *film = renderer->job->film;

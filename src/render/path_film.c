@@ -1,5 +1,5 @@
-/* The record of a path-traced pixel. A sum is two floats, the nearest float and the remainder: 48 bits, so 2^24 samples
- * can be added without a visible loss. See path_film.h. */
+/* The record of a path-traced pixel. Each sum is stored as two floats, the nearest float and the remainder. That is
+ * 48 bits, so 2^24 samples can be added without a visible loss. See path_film.h. */
 #include "render/path_film.h"
 
 #include <float.h>
@@ -7,16 +7,16 @@
 #include <string.h>
 
 enum {
-    RECORD_SUMS,                         /* of each half three channels */
+    RECORD_SUMS,                         /* three channels of each half */
     RECORD_RESTS = RECORD_SUMS + 6,      /* the remainders of the floats of RECORD_SUMS */
     RECORD_WEIGHTS = RECORD_RESTS + 6,   /* of each half */
-    RECORD_SAMPLES = RECORD_WEIGHTS + 2, /* at most PATH_SAMPLES_MAX = 2^24: a float holds it */
+    RECORD_SAMPLES = RECORD_WEIGHTS + 2, /* at most PATH_SAMPLES_MAX = 2^24, which a float represents exactly */
     RECORD_SQUARES = RECORD_SAMPLES + 1, /* three channels */
     RECORD_FLOATS = RECORD_SQUARES + 3,
     FEATURE_FLOATS = 2 * PATH_FEATURES,
-    LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* sums, then what they leave */
+    LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* first all sums, then all remainders */
 };
-/* Behind RECORD_FLOATS: the features, then the light. */
+/* After RECORD_FLOATS: the features, then the groups of light. */
 _Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS <= (int)FILM_RECORD_FLOATS,
                "a tile cannot carry the record of a path-traced pixel");
 
@@ -159,7 +159,7 @@ struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_gro
     return over(pixel->light[group], pixel->weights[0] + pixel->weights[1]);
 }
 
-/* The mean of both halves has half the variance of one of them, and their difference has twice that of one. */
+/* The mean of both halves has half of the variance of one half; their difference has twice that variance. */
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel) {
     if (pixel->samples < 2)
         return vec3_all(0);
@@ -177,7 +177,7 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
 }
 
 double path_pixel_noise(const struct path_pixel *pixel) {
-    const double dark = 0.01; /* the square of the value regarded as black */
+    const double dark = 0.01; /* the square of a value that counts as black */
     struct vec3 mean = path_pixel_mean(pixel), variance = path_pixel_variance_of_halves(pixel);
     return (variance.x / (mean.x * mean.x + dark) + variance.y / (mean.y * mean.y + dark) +
             variance.z / (mean.z * mean.z + dark)) /

@@ -15,40 +15,44 @@
 /* The zero value is a pixel without samples. */
 struct path_pixel {
     struct vec3 sums[2]; /* of the halves: weighted radiance */
-    double weights[2];   /* of the halves: sums of the samples' weights */
+    double weights[2];   /* of the halves: sums of the weights of the samples */
     struct vec3 squares; /* of the weighted radiance of all samples */
     uint32_t samples;    /* sample number k belongs to half k % 2 */
-    /* Only of records with these parts (enum path_part). */
+    /* Only in records with these parts (enum path_part). */
     float features[2][PATH_FEATURES];     /* of the halves: weighted sums */
     struct vec3 light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
 };
 
-/* The record of films with these parts, a mask of enum path_part; and back: 0 of all other records. */
+/* The record of films with these parts, a mask of enum path_part; and the mask of a record, 0 for records of other
+ * integrators. */
 struct film_record path_film_record(unsigned parts);
 unsigned path_film_parts(struct film_record record);
 
-/* at: index of the pixel in the film. Storing sets the colour of the pixel, too. */
+/* at: the index of the pixel in the film. Storing also sets the colour of the pixel. */
 struct path_pixel path_film_load(const struct film *film, size_t at);
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel);
 
-/* Adds sample number pixel->samples; weight: of the reconstruction filter, 1 or -1. Its parts are added before. */
+/* Adds sample number pixel->samples. weight: that of the reconstruction filter, 1 or -1. The parts of the sample are
+ * added before it. */
 void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight);
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight);
 
-/* The mean of all samples, and of one half (black if it has none). */
+/* The mean of all samples, and that of one half (black if it has none). */
 struct vec3 path_pixel_mean(const struct path_pixel *pixel);
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
-/* The mean of a feature over one half, and of a group of light over all samples; 0 where the record has none. */
+/* The mean of a feature over one half, and that of a group of light over all samples; 0 if the record does not
+ * contain them. */
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature);
 struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group);
-/* The variance of path_pixel_mean by channel: from the difference of the halves, unbiased with one degree of freedom;
- * and from the samples as if they were independent, which is smoother, and too large where stratification helps. 0 with
- * less than two samples. */
+/* The variance of path_pixel_mean by channel. The first estimate uses the difference of the halves and is unbiased,
+ * with one degree of freedom. The second one treats the samples as independent: it is smoother, but too large where
+ * stratification helps. 0 with less than two samples. */
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
 struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
 
-/* The contribution of a pixel to the noise of its tile: the mean over the channels of Var / (mean^2 + .01), Var from
- * the halves. The noise of a tile is the square root of the mean over its pixels, an estimate of its relative error. */
+/* The contribution of a pixel to the noise of its tile: the mean of Var / (mean^2 + .01) over the channels, with Var
+ * from the halves. The noise of a tile is the square root of the mean over its pixels: an estimate of its relative
+ * error. */
 double path_pixel_noise(const struct path_pixel *pixel);
 
 #endif

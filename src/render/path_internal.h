@@ -19,18 +19,18 @@ struct path_tracer {
     int max_depth;    /* scattering events of a path: 0 emission, 1 direct light */
     enum path_strategy strategy;
     struct filter filter;
-    double noise; /* a tile with this noise is finished; 0: take all samples */
+    double noise; /* a tile with this noise is finished; 0: every tile takes all samples */
     double clamp; /* the limit on components of a sample; 0: no limit */
     bool built;   /* the lights are prepared */
-    /* With --caustics: light from these lights (by number) that reaches classic lobes through traced lobes comes from
-     * photons, and paths omit it. NULL: paths include it. */
+    /* With --caustics: photons carry the light from these lights (by number) that reaches classic lobes through
+     * traced lobes, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;
     struct photon_map caustics;
     struct arena arena;
     struct world_lights lights; /* immutable while the render runs */
 };
 
-/* See render/integrator_internal.h. `tracer` is zero. */
+/* See render/integrator_internal.h. `tracer` is zero-initialised. */
 struct film_record path_tracer_record(const struct settings *settings); /* NULL: the least */
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error);
@@ -57,30 +57,31 @@ struct path_vertex {
     const struct hit *hit;
     const struct bsdf *bsdf;
     struct light_receiver receiver;
-    uint32_t lobes;             /* that scatter */
-    uint32_t substitute;        /* highlights that represent the mirror image of lights which no mirror shows */
-    struct vec3 thrown;         /* share of the path's weight that photons represent, if traced lobes scatter here */
-    struct vec3 *direct_shares; /* or NULL; path_direct sets what path_shares says about the light that it finds */
+    uint32_t lobes;      /* that scatter */
+    uint32_t substitute; /* highlights that represent the mirror image of those lights that no mirror shows */
+    struct vec3 thrown;  /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
+    struct vec3
+        *direct_shares; /* or NULL; path_direct then stores what path_shares returns for the light that it finds */
 };
 
 /* A ray that was scattered at a receiver. */
 struct path_segment {
     const struct ray *ray;
     const struct light_receiver *receiver;
-    double pdf;         /* of its direction by solid angle; 0: the only possible direction */
-    struct vec3 thrown; /* share of the path's weight that photons represent, for lights that send photons */
+    double pdf;         /* density of its direction by solid angle; 0: the only possible direction */
+    struct vec3 thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
 };
 
-/* Light that comes directly from one light of the scene: `choice` chooses the light, `xi` a point on it. */
+/* Light that arrives directly from one light of the scene: `choice` selects the light, `xi` a point on it. */
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
                         const struct path_vertex *vertex, double choice, struct sample2 xi);
-/* How much of the light that these lobes of the vertex scatter from wi belongs to each kind of scattering, by channel;
- * the sum is 1. */
+/* For each kind of scattering and each channel: its fraction of the light that these lobes of the vertex scatter
+ * from wi. The fractions add up to 1. */
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]);
-/* A kind alone: that of a lobe with these flags. */
+/* The fractions of a lobe with these flags: all of its light belongs to one kind. */
 void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]);
-/* The light along scattered rays, weighted against path_direct: of a surface whose material emits `emission` at the
- * hit; of the area lights that the ray crosses before t_max; of skies if it hits nothing. */
+/* The light along scattered rays, weighted against path_direct: that of an emissive surface (`emission` at the hit);
+ * that of the area lights that the ray crosses before t_max; that of skies if it hits nothing. */
 struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
                           struct vec3 emission);
 struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path_segment *segment, double t_max);

@@ -1,15 +1,15 @@
 /* The light that reaches a vertex of a path directly from the lights of the scene. Lights that a ray can hit are
- * sampled in two ways, by sampling the light and by scattered rays that hit it; each sample is weighted by the power
- * heuristic of multiple importance sampling (Veach 1997, equation 9.14). Other lights are sampled in the first way
+ * sampled in two ways: by sampling the light, and by scattered rays that hit it. The power heuristic of multiple
+ * importance sampling weights each sample (Veach 1997, equation 9.14). All other lights are sampled in the first way
  * only.
  *
- * Area lights do not block shadow rays, so a scattered ray adds the light of every area light that it crosses and
+ * Area lights do not block shadow rays. So a scattered ray adds the light of every area light that it crosses, and
  * continues: both ways give the same light. */
 #include "render/path_internal.h"
 
 #include "material/medium.h"
 
-/* The weight of a sample of density `pdf` that the other strategy finds with density `other`. */
+/* The weight of a sample of density `pdf`, if the other strategy finds the same light with density `other`. */
 static double weight_of(const struct path_tracer *tracer, enum path_strategy strategy, double pdf, double other) {
     if (tracer->strategy != PATH_STRATEGY_MIS)
         return tracer->strategy == strategy;
@@ -20,8 +20,8 @@ static bool is_black(struct vec3 c) {
     return c.x == 0 && c.y == 0 && c.z == 0;
 }
 
-/* The part of a light's radiance that the path adds; the share `photons` of the path's weight is left to the photon map
- * if photons come from this light. */
+/* The part of a light's radiance that the path adds. If photons come from this light, the fraction `photons` of the
+ * path's weight belongs to the photon map. */
 static struct vec3 without_thrown(const struct path_tracer *tracer, uint32_t light, struct vec3 thrown,
                                   struct vec3 radiance) {
     if (!tracer->photon_lights || light == LIGHT_NONE || !tracer->photon_lights[light])
@@ -39,9 +39,8 @@ static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, s
     return lobes ? bsdf_eval(bsdf, lobes, BSDF_RADIANCE, vertex->hit->view, wi) : vec3_all(0);
 }
 
-/* The ray to a sample, from the side of the surface on which the light is. media: of that side; `crossed` is storage
- * for them.
- */
+/* The ray to a sample, from the side of the surface on which the light is. media: those on that side; `crossed` is
+ * storage for them. */
 static struct ray shadow_ray(const struct path_vertex *vertex, const struct world_light_sample *sample,
                              struct medium_stack *crossed) {
     const struct hit *hit = vertex->hit;
@@ -118,13 +117,13 @@ void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 w
     }
     for (int i = 0; i < PATH_SCATTERINGS; i++)
         out[i] = vec3_make(share_of(out[i].x, sum.x), share_of(out[i].y, sum.y), share_of(out[i].z, sum.z));
-    /* A channel of no lobe: its light is 0 whatever the share. */
+    /* A channel that no lobe scatters: its light is 0 for any fraction. */
     out[0] = vec3_sub(vec3_all(1), vec3_add(out[1], out[2]));
 }
 
 /* --- one light --- */
 
-/* Of light from wi that the lobes answer by f, and highlights beside them. */
+/* Divides the light from wi between the lobes, whose values are f, and the highlights. */
 static void share_direct(const struct path_vertex *vertex, struct vec3 wi, struct vec3 f, struct vec3 highlight) {
     struct vec3 *shares = vertex->direct_shares, sum = vec3_add(f, highlight);
     path_shares(vertex, vertex->lobes, wi, shares);
@@ -172,7 +171,7 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
 
 /* --- rays that meet lights --- */
 
-/* The weight of a scattered ray that hits a light, which light sampling would find with that density. */
+/* The weight of a scattered ray that hits a light; sampling the light would find this point with that density. */
 static double met_weight(const struct path_tracer *tracer, const struct path_segment *segment, double pdf) {
     return segment->pdf == 0 ? 1 : weight_of(tracer, PATH_STRATEGY_BSDF, segment->pdf, pdf);
 }

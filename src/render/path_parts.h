@@ -1,5 +1,5 @@
-/* What paths find beside radiance: features of the surface that a pixel shows, which guide the denoiser, and groups of
- * light whose sum is the radiance. */
+/* The parts that paths record besides radiance: features of the visible surface, which guide the denoiser, and
+ * groups of light, whose sum is the radiance. */
 #ifndef GRAY_RENDER_PATH_PARTS_H
 #define GRAY_RENDER_PATH_PARTS_H
 
@@ -7,19 +7,20 @@
 
 #include <stdbool.h>
 
-/* What films may record of a path-traced pixel beside its colour. */
+/* The parts that films may record for a path-traced pixel besides its colour. */
 enum path_part { PATH_PART_FEATURES = 1, PATH_PART_LIGHT = 2 };
 
-/* Of the first surface that a line of sight meets which scatters light or emits it: behind mirrors and smooth glass. */
+/* Features of the first surface on a line of sight that scatters or emits light; mirrors and smooth glass in front
+ * of it are skipped. */
 enum path_feature {
-    PATH_ALBEDO,     /* 3 channels: weights of the lobes, and L / (1 + L) of emission and skies; 0 to 1 */
-    PATH_NORMAL = 3, /* 3: the shading normal on the side of the viewer; 0 of skies */
-    PATH_DEPTH = 6,  /* length of the line of sight in world units; 0 of skies */
-    PATH_GLOW = 7,   /* 3: the light of PATH_LIGHT_EMISSION, which is all but free of noise */
+    PATH_ALBEDO,     /* 3 channels, 0 to 1: weights of the lobes, or L / (1 + L) of emission and skies */
+    PATH_NORMAL = 3, /* 3 channels: the shading normal on the side of the viewer; 0 for skies */
+    PATH_DEPTH = 6,  /* length of the line of sight in world units; 0 for skies */
+    PATH_GLOW = 7,   /* 3 channels: the light of PATH_LIGHT_EMISSION, which has almost no noise */
     PATH_FEATURES = 10
 };
 
-/* By the first scattering event of a path. Direct: light that was scattered once. */
+/* Groups by the first scattering event of a path. Direct: light that was scattered once. */
 enum path_light_group {
     PATH_LIGHT_EMISSION, /* not scattered: emission, skies, fog */
     PATH_LIGHT_DIFFUSE_DIRECT,
@@ -37,8 +38,8 @@ struct path_parts {
     bool surface_known; /* the features are there */
     float features[PATH_FEATURES];
     struct vec3 light[PATH_LIGHT_GROUPS];
-    /* How much of what comes after the first scattering event belongs to each kind of scattering: diffuse, specular,
-     * transmission, by channel; the sum is 1. */
+    /* For each kind of scattering (diffuse, specular, transmission) and each channel: its fraction of the light
+     * after the first scattering event. The fractions add up to 1. */
     struct vec3 shares[PATH_SCATTERINGS];
 };
 

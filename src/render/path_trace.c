@@ -1,9 +1,9 @@
-/* One path, from the camera on, vertex by vertex. Its state is a weight (throughput) and the radiance so far; it ends
- * at the sky, at the maximum depth, by Russian roulette, or at a visible area light.
+/* One path, from the camera on, vertex by vertex. Its state is a weight (throughput) and the radiance so far. A path
+ * ends at the sky, at the maximum depth, by Russian roulette, or at a visible area light.
  *
- * A *line of sight* is a camera ray, with its continuations by smooth surfaces and through holes. Lines of sight show
- * the background, visible area lights and fog. Other rays are scattered: they add the light that a surface receives,
- * weighted against the samples of path_direct. */
+ * A *line of sight* is a camera ray, with its continuations by smooth surfaces and through holes. Lines of sight
+ * show the background, visible area lights and fog. All other rays are scattered: they add the light that a surface
+ * receives, weighted against the samples of path_direct. */
 #include "render/path_internal.h"
 
 #include "material/medium.h"
@@ -11,30 +11,30 @@
 
 #include <string.h>
 
-enum { HOLE_LIMIT = 200 };           /* holes in a row of surfaces, as in Whitted */
-enum { ROULETTE_FROM = 2 };          /* scattering events before roulette */
+enum { HOLE_LIMIT = 200 };           /* holes that a ray passes in succession, as in Whitted's integrator */
+enum { ROULETTE_FROM = 2 };          /* scattering events before Russian roulette begins */
 static const double survival = 0.95; /* at most */
 
 struct path {
     struct ray ray;
     struct vec3 weight, light;
-    double
-        radiance_scale; /* the factor of refraction in the weight so far: a product of eta^2, which roulette ignores */
+    double radiance_scale;    /* the factor of all refractions in the weight so far: a product of eta^2, which roulette
+                                 ignores */
     struct path_parts *parts; /* or NULL */
-    double travelled;         /* along the line of sight so far; only with parts */
-    double pdf;               /* of the ray's direction, by solid angle; 0: the only possible direction */
-    /* Shares of the weight, with photons: the last scattering was that of a lobe that photons light; after such a one
-     * the path was scattered by traced lobes only. */
+    double travelled;         /* distance along the line of sight so far; only if parts are recorded */
+    double pdf;               /* density of the ray's direction by solid angle; 0: the only possible direction */
+    /* With photons, fractions of the weight: for paths whose last scattering was by a lobe that receives photons,
+     * and for those that were scattered only by traced lobes since then. */
     struct vec3 received, thrown;
     enum ray_kind kind; /* of the ray, for observers */
     bool sight;
-    int depth, holes;              /* scattering events, holes so far */
+    int depth, holes;              /* scattering events and holes so far */
     uint32_t dimension;            /* of the sampler: the first dimension of the next vertex */
-    struct light_receiver scatter; /* the surface from which a scattered ray comes */
+    struct light_receiver scatter; /* the surface that scattered the current ray */
     struct medium_stack media;
 };
 
-/* Light that was scattered `depth` times, its first time by the shares. */
+/* Adds light that was scattered `depth` times, divided by the kinds of its first scattering. */
 static void add_to_groups(struct path_parts *parts, int depth, const struct vec3 shares[PATH_SCATTERINGS],
                           struct vec3 light) {
     if (depth == 0) {
@@ -47,7 +47,7 @@ static void add_to_groups(struct path_parts *parts, int depth, const struct vec3
     }
 }
 
-/* What the ray of the path meets. */
+/* The hit of the path's ray. */
 static void add_light(struct path *path, struct vec3 radiance) {
     struct vec3 light = vec3_mul(path->weight, radiance);
     path->light = vec3_add(path->light, light);
@@ -55,7 +55,7 @@ static void add_light(struct path *path, struct vec3 radiance) {
         add_to_groups(path->parts, path->depth, path->parts->shares, light);
 }
 
-/* What the vertex scatters straight from the lights. */
+/* The light of the lights that the vertex scatters directly. */
 static void add_direct(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                        struct path_vertex *vertex, double choice, struct sample2 position) {
     struct vec3 first[PATH_SCATTERINGS];
@@ -72,7 +72,7 @@ static double compressed(double x) {
     return x > 0 ? x / (1 + x) : 0;
 }
 
-/* Of light that a line of sight shows. */
+/* The groups of light that a line of sight shows. */
 static struct vec3 light_albedo(struct vec3 radiance) {
     return vec3_make(compressed(radiance.x), compressed(radiance.y), compressed(radiance.z));
 }
@@ -81,7 +81,7 @@ static float in_unit(double x) {
     return x >= 1 ? 1 : x > 0 ? (float)x : 0;
 }
 
-/* Where a line of sight ends. distance: of the last ray of the path. */
+/* The end of a line of sight. distance: along the last ray of the path. */
 static void set_features(struct path *path, struct vec3 albedo, struct vec3 normal, double distance) {
     struct path_parts *parts = path->parts;
     if (!parts || parts->surface_known)
@@ -98,7 +98,7 @@ static void set_features(struct path *path, struct vec3 albedo, struct vec3 norm
     memcpy(parts->features, features, sizeof features);
 }
 
-/* At a surface that scatters light in more than single directions, or emits it. */
+/* Records the features of a surface that scatters light in more than single directions, or emits light. */
 static void meet_features(struct path *path, const struct hit *hit, const struct bsdf *bsdf) {
     struct vec3 albedo = light_albedo(bsdf->emission);
     bool shows = vec3_max_abs(bsdf->emission) > 0;
@@ -119,7 +119,7 @@ static void meet_features(struct path *path, const struct hit *hit, const struct
 
 /* --- one ray --- */
 
-/* Applies everything between the origin of the ray and its hit: area lights, fog, absorption. False: the path ends at
+/* Adds everything between the origin of the ray and its hit: area lights, fog, absorption. False: the path ends at
  * an area light. */
 static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
                    const struct hit *hit) {
@@ -157,8 +157,9 @@ static void leave_scene(const struct path_tracer *tracer, const struct integrato
     }
 }
 
-/* Which lobes scatter. A highlight represents the mirror image of lights: if smooth traced lobes show that image, it
- * reflects only lights that no ray can hit, and if rough ones do, which reflect all lights, it is omitted. */
+/* Selects the lobes that scatter. A highlight represents the mirror image of lights. If smooth traced lobes show
+ * that image, the highlight only reflects lights that no ray can hit. Rough traced lobes reflect all lights, so the
+ * highlight is omitted. */
 static void choose_lobes(struct path_vertex *vertex) {
     const struct bsdf *bsdf = vertex->bsdf;
     uint32_t highlights = 0, others = 0;
@@ -212,7 +213,7 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
     struct vec3 light =
         vec3_mul(path->weight, photon_map_light(&tracer->caustics, state->job->world, vertex->hit, &bsdf));
     path->light = vec3_add(path->light, light);
-    /* Photons were scattered before, and diffuse lobes receive nearly all of them. */
+    /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
     struct vec3 diffuse[PATH_SCATTERINGS];
     path_share_all(BSDF_LAMBERT, diffuse);
     if (path->parts)
@@ -223,7 +224,7 @@ static double share_of(double part, double all) {
     return all != 0 ? part / all : 0;
 }
 
-/* The share of light from wi that these lobes of the vertex scatter. */
+/* The fraction of light from wi that these lobes of the vertex scatter. */
 static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi) {
     const struct bsdf *bsdf = vertex->bsdf;
     if (lobes == 0 || lobes == vertex->lobes)
@@ -233,8 +234,8 @@ static struct vec3 share_of_lobes(const struct path_vertex *vertex, uint32_t lob
     return vec3_make(share_of(part.x, all.x), share_of(part.y, all.y), share_of(part.z, all.z));
 }
 
-/* Photons carry light from a light source through traced lobes to a lobe that receives them: a path that continues from
- * such a lobe through traced lobes would find the same light again. */
+/* Photons carry light from a light source through traced lobes to a lobe that receives them. A path that continues
+ * from such a lobe through traced lobes would find the same light again. */
 static void count_shares(struct path *path, const struct path_vertex *vertex, const struct bsdf_sample *sample) {
     uint32_t traced = vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED);
     uint32_t receiving = vertex->lobes & receiving_lobes(vertex->bsdf);
@@ -244,7 +245,7 @@ static void count_shares(struct path *path, const struct path_vertex *vertex, co
     path->received = delta ? vec3_all(0) : share_of_lobes(vertex, receiving, sample->direction);
 }
 
-/* Continues in a direction of the BSDF. */
+/* Continues in a direction that the BSDF samples. */
 static bool scatter(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                     const struct path_vertex *vertex, struct sample2 u, double u_roulette) {
     const struct hit *hit = vertex->hit;
@@ -283,7 +284,7 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     return true;
 }
 
-/* At a surface. False: the path ends here. */
+/* One vertex on a surface. False: the path ends here. */
 static bool meet_surface(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                          const struct sampler *sampler, const struct hit *hit) {
     const struct settings *settings = &state->job->settings;
@@ -323,7 +324,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
 }
 
-/* --clamp: the colour is kept. This darkens the picture where samples differ much. */
+/* --clamp: the colour is kept. Pictures become darker where samples differ much. */
 static struct vec3 limited(struct vec3 colour, double limit) {
     double largest = vec3_max_abs(colour);
     return limit > 0 && largest > limit ? vec3_scale(colour, limit / largest) : colour;
@@ -336,7 +337,7 @@ static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colou
     return vec3_clamped(colour, (double)FLT_MAX);
 }
 
-/* Where the radiance was limited, each group of light is scaled as it is. */
+/* If the radiance was limited, each group of light is scaled by the same factor. */
 static void finish_parts(struct integrator_state *state, struct path_parts *parts, double found, double left) {
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
         struct vec3 light = clamp_light(state, parts->light[i]);
@@ -348,9 +349,9 @@ static void finish_parts(struct integrator_state *state, struct path_parts *part
     parts->features[PATH_GLOW + 2] = (float)glow->z;
 }
 
-/* The rays of a path that observers receive, in order. Only the first ones of a longer path. */
+/* The rays of a path for observers, in order. Of a longer path only the first ones. */
 struct observed_path {
-    struct vec3 weights[64], lights[64]; /* of the path where each ray began */
+    struct vec3 weights[64], lights[64]; /* the radiance of the path at the start of each ray */
     int count;
 };
 
@@ -383,7 +384,7 @@ static void observe_end(const struct observed_path *observed, const struct integ
     }
 }
 
-/* hit: the hit of the camera ray, or NULL; the hits of later rays are stored in it, too. */
+/* hit: the hit of the camera ray, or NULL; it is also the storage for the hits of later rays. */
 static struct vec3 follow(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
                           struct sampler *sampler, struct hit *hit, bool met) {
     struct observed_path observed;
