@@ -148,8 +148,9 @@ $(BUILD)/bench/formats $(BUILD)/bench/shapes $(BUILD)/bench/area_lights $(BUILD)
 # needed first would wait for the others.
 $(BUILD)/src/accel/%_avx2.o: override CFLAGS += -mavx2 -mfma -mpopcnt -fno-tree-slp-vectorize
 $(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -mfma -mpopcnt -fno-tree-slp-vectorize
-$(BUILD)/src/expr/%_avx2.o: override CFLAGS += -mavx2
-$(BUILD)/src/expr/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw
+# No exceptions of floating-point arithmetic are looked at: without that loops with selections are not made vectors of.
+$(BUILD)/src/expr/%_avx2.o: override CFLAGS += -mavx2 -fno-trapping-math
+$(BUILD)/src/expr/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -fno-trapping-math
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
 $(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
 

@@ -2,6 +2,10 @@
  * loop over the points, with a constant length for whole batches. The loops come from the list of operations, and
  * the compiler vectorises them. No result depends on the number of points in a vector. */
 #include "expr/expr_batch_internal.h"
+#include "math/elementary_lanes.h"
+#include "math/noise_lanes.h"
+
+#include <string.h>
 
 /* Rows of doubles also store integers and truth values. */
 typedef int64_t __attribute__((may_alias)) row_integer;
@@ -17,48 +21,140 @@ typedef int64_t __attribute__((may_alias)) row_integer;
 #else
 #define INDEPENDENT _Pragma("GCC ivdep")
 #endif
-#define LOOP(bound, A, B, C, expression)                                                                               \
+
+/* Operands that are constant are a number in place of a row: bit k of `constant` of operand k, known when compiling. */
+#define LOOP(bound, constant, A, B, C, expression)                                                                     \
     {                                                                                                                  \
+        const TYPE_##A a0 = *as;                                                                                       \
+        const TYPE_##B b0 = *bs;                                                                                       \
+        const TYPE_##C c0 = *cs;                                                                                       \
         INDEPENDENT                                                                                                    \
         for (uint32_t i = 0; i < (bound); i++) {                                                                       \
-            TYPE_##A a = as[i];                                                                                        \
-            TYPE_##B b = bs[i];                                                                                        \
-            TYPE_##C c = cs[i];                                                                                        \
+            TYPE_##A a = (constant)&1 ? a0 : as[i];                                                                    \
+            TYPE_##B b = (constant)&2 ? b0 : bs[i];                                                                    \
+            TYPE_##C c = (constant)&4 ? c0 : cs[i];                                                                    \
             (void)a, (void)b, (void)c;                                                                                 \
             out[i] = (expression);                                                                                     \
         }                                                                                                              \
+        (void)a0, (void)b0, (void)c0;                                                                                  \
     }
+/* The common operations have loops of constant length, for each operand that may be constant; the others have one loop,
+ * and their constants are copied into rows. */
+static inline bool is_common(enum expr_operation operation) {
+    return operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY ||
+           operation == EXPR_DIVIDE || operation == EXPR_NEGATE || operation == EXPR_ABS || operation == EXPR_SQRT ||
+           operation == EXPR_MIN || operation == EXPR_MAX || operation == EXPR_LESS || operation == EXPR_LESS_EQUAL ||
+           operation == EXPR_SELECT;
+}
+
+#define HAS_F 1
+#define HAS_I 1
+#define HAS_B 1
+#define HAS_N 0
+#define IS_CONSTANT(T, value) (HAS_##T && (value) < constants)
 #define RUN(member, name, R, A, B, C, expression)                                                                      \
     case member: {                                                                                                     \
+        const uint32_t constant = (uint32_t)IS_CONSTANT(A, in->a) | (uint32_t)IS_CONSTANT(B, in->b) << 1 |             \
+                                  (uint32_t)IS_CONSTANT(C, in->c) << 2;                                                \
+        const double *from[3] = {operand(program, in->a, rows), operand(program, in->b, rows),                         \
+                                 operand(program, in->c, rows)};                                                       \
         TYPE_##R *out = (TYPE_##R *)(void *)to;                                                                        \
         const TYPE_##A *as = (const TYPE_##A *)(const void *)from[0];                                                  \
         const TYPE_##B *bs = (const TYPE_##B *)(const void *)from[1];                                                  \
         const TYPE_##C *cs = (const TYPE_##C *)(const void *)from[2];                                                  \
-        if (width == EXPR_BATCH)                                                                                       \
-            LOOP(EXPR_BATCH, A, B, C, expression)                                                                      \
-        else                                                                                                           \
-            LOOP(width, A, B, C, expression)                                                                           \
+        const bool is_whole = is_common(member) && width == EXPR_BATCH;                                                \
+        if (is_whole && constant == 0)                                                                                 \
+            LOOP(EXPR_BATCH, 0, A, B, C, expression)                                                                   \
+        else if (is_whole && !HAS_##C && constant == 1)                                                                \
+            LOOP(EXPR_BATCH, 1, A, B, C, expression)                                                                   \
+        else if (is_whole && HAS_##B && constant == 2)                                                                 \
+            LOOP(EXPR_BATCH, 2, A, B, C, expression)                                                                   \
+        else if (is_whole && HAS_##C && constant == 4)                                                                 \
+            LOOP(EXPR_BATCH, 4, A, B, C, expression)                                                                   \
+        else {                                                                                                         \
+            const double *ra = row_of(from[0], constant & 1, width, spare);                                            \
+            const double *rb = row_of(from[1], constant & 2, width, spare + EXPR_BATCH);                               \
+            const double *rc = row_of(from[2], constant & 4, width, spare + 2 * EXPR_BATCH);                           \
+            as = (const TYPE_##A *)(const void *)ra;                                                                   \
+            bs = (const TYPE_##B *)(const void *)rb;                                                                   \
+            cs = (const TYPE_##C *)(const void *)rc;                                                                   \
+            if (lanes_functions[member])                                                                               \
+                lanes_functions[member](ra, rb, rc, width, to);                                                        \
+            else                                                                                                       \
+                LOOP(width, 0, A, B, C, expression)                                                                    \
+        }                                                                                                              \
         break;                                                                                                         \
     }
 
-/* The row of a value. A constant is copied into all of `spare`. */
-static inline const double *row_of(const struct expr_program *program, uint16_t value, uint32_t width, double *rows,
-                                   double *spare) {
-    if (value >= program->constant_count)
-        return rows + (size_t)(value - program->constant_count) * EXPR_BATCH;
-    row_integer *out = (row_integer *)(void *)spare, x = program->constants[value].i;
+/* The operand as a row. A constant is copied into all of `spare`. */
+static inline const double *row_of(const double *from, uint32_t is_constant, uint32_t width, double *spare) {
+    if (!is_constant)
+        return from;
+    row_integer *out = (row_integer *)(void *)spare, x = *(const row_integer *)(const void *)from;
     for (uint32_t i = 0; i < width; i++)
         out[i] = x;
     return spare;
 }
 
+/* Elementary functions and noise, with gathered tables: only where there are instructions for that. Points at which
+ * the loop without branches does not apply are computed again one by one, from copies of the operands: the result may
+ * have replaced them. */
+#ifdef __AVX2__
+#define LANES(name, fits, of_lane, of_one)                                                                             \
+    static void name(const double *as, const double *bs, const double *cs, uint32_t width, double *out) {              \
+        double copies[3][EXPR_BATCH];                                                                                  \
+        int64_t is_other = 0;                                                                                          \
+        INDEPENDENT                                                                                                    \
+        for (uint32_t i = 0; i < width; i++) {                                                                         \
+            double a = as[i], b = bs[i], c = cs[i];                                                                    \
+            (void)b, (void)c;                                                                                          \
+            is_other |= (fits) ? 0 : -1;                                                                               \
+        }                                                                                                              \
+        for (int k = 0; k < 3 && is_other; k++)                                                                        \
+            memcpy(copies[k], k == 0 ? as : k == 1 ? bs : cs, width * sizeof *as);                                     \
+        INDEPENDENT                                                                                                    \
+        for (uint32_t i = 0; i < width; i++) {                                                                         \
+            double a = as[i], b = bs[i], c = cs[i];                                                                    \
+            (void)b, (void)c;                                                                                          \
+            out[i] = (of_lane);                                                                                        \
+        }                                                                                                              \
+        for (uint32_t i = 0; i < width && is_other; i++) {                                                             \
+            double a = copies[0][i], b = copies[1][i], c = copies[2][i];                                               \
+            (void)b, (void)c;                                                                                          \
+            if (!(fits))                                                                                               \
+                out[i] = (of_one);                                                                                     \
+        }                                                                                                              \
+    }
+LANES(run_sin, el_angle_fits(a), el_sin_lane(a), el_sin(a))
+LANES(run_cos, el_angle_fits(a), el_cos_lane(a), el_cos(a))
+LANES(run_tan, el_angle_fits(a), el_tan_lane(a), el_tan(a))
+LANES(run_exp, el_exp_fits(a), el_exp_lane(a), el_exp(a))
+LANES(run_log, el_log_fits(a), el_log_lane(a), el_log(a))
+LANES(run_power, el_pow_fits(a, b), el_pow_lane(a, b), el_pow(a, b))
+LANES(run_noise, noise_fits(a, b, c), noise_perlin_lane(a, b, c), noise_perlin(a, b, c, 0))
+
+#endif
+
+typedef void lanes_function(const double *, const double *, const double *, uint32_t, double *);
+static lanes_function *const lanes_functions[EXPR_OPERATION_COUNT] = {
+#ifdef __AVX2__
+    [EXPR_SIN] = run_sin, [EXPR_COS] = run_cos,     [EXPR_TAN] = run_tan,     [EXPR_EXP] = run_exp,
+    [EXPR_LOG] = run_log, [EXPR_POWER] = run_power, [EXPR_NOISE] = run_noise,
+#endif
+    [EXPR_INPUT] = NULL};
+
+/* An operand: the beginning of its row, or the constant. */
+static inline const double *operand(const struct expr_program *program, uint16_t value, double *rows) {
+    if (value >= program->constant_count)
+        return rows + (size_t)(value - program->constant_count) * EXPR_BATCH;
+    return &program->constants[value].f;
+}
+
 void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows) {
     double *spare = rows + (size_t)program->register_count * EXPR_BATCH;
+    const uint32_t constants = program->constant_count;
     for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        double *to = rows + (size_t)(in->out - program->constant_count) * EXPR_BATCH;
-        const double *from[3] = {row_of(program, in->a, width, rows, spare),
-                                 row_of(program, in->b, width, rows, spare + EXPR_BATCH),
-                                 row_of(program, in->c, width, rows, spare + 2 * EXPR_BATCH)};
+        double *to = rows + (size_t)(in->out - constants) * EXPR_BATCH;
         switch ((enum expr_operation)in->operation) {
             EXPR_OPERATIONS(RUN)
         case EXPR_CONSTANT:

@@ -214,10 +214,13 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
     run[cpu_isa()](program, width, values);
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
+        if (value >= program->constant_count) {
+            const double *row = values + (size_t)(value - program->constant_count) * EXPR_BATCH;
+            memcpy(outputs[i], row, count * sizeof *row);
+            continue;
+        }
         for (uint32_t k = 0; k < count; k++)
-            outputs[i][k] = value < program->constant_count
-                                ? program->constants[value].f
-                                : values[(size_t)(value - program->constant_count) * EXPR_BATCH + k];
+            outputs[i][k] = program->constants[value].f;
     }
 }
 

@@ -14,7 +14,8 @@
  *  - products and sums whose error matters are Dekker's (1971) with Veltkamp's splitting (exact.h); there is
  * no fma.
  *
- * The algebraic ones (cube root, hypotenuse, remainder) are in elementary.c.
+ * The steps without branches, which functions of many arguments share, are in elementary_lanes.h; the algebraic ones
+ * (cube root, hypotenuse, remainder) are at the end.
  *
  * Invariant: no operation here depends on the processor, the compiler or the library. The build must keep
  * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in elementary_tables_internal.h.
@@ -25,8 +26,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "math/elementary_tables_internal.h"
-#include "math/exact.h"
+#include "math/elementary_lanes.h"
 
 #ifdef __FAST_MATH__
 #error "elementary functions need strict floating-point arithmetic"
@@ -34,27 +34,7 @@
 
 __extension__ typedef unsigned __int128 wide;
 
-static const double shifter = 0x1.8p52; /* adding and subtracting it rounds to an integer */
-
 /* ---- exponentials ------------------------------------------------------------------------------------------------ */
-
-/* e^(x + xl) as 2^exponent (value.hi + value.lo) with value in [1, 2); needs |x| < 2000 and |xl| < 2^-8 |x| or so. */
-struct scaled {
-    struct pair value;
-    int exponent;
-};
-
-static inline struct scaled exp_scaled(double x, double xl) {
-    double shifted = x * exp_per_step + shifter;
-    int32_t n = (int32_t)(uint32_t)to_bits(shifted);
-    double steps = shifted - shifter;
-    double r = (x - steps * exp_step_hi) - steps * exp_step_lo + xl;
-    const struct exp_entry *entry = &exp_table[n & 127];
-    double scale = from_bits(entry->bits);
-    double r2 = r * r;
-    double p = entry->tail + r + r2 * (0.5 + r * (1.0 / 6)) + r2 * r2 * (1.0 / 24 + r * (1.0 / 120));
-    return (struct scaled){{scale, scale * p}, n >> 7};
-}
 
 /* 2^exponent (hi + lo), rounded once even where the result is subnormal. */
 static double scale_result(struct pair value, int exponent) {
@@ -86,10 +66,10 @@ double el_exp(double x) {
         if (x < -746.0)
             return 0.0;
         struct scaled e = exp_scaled(x, 0.0);
-        return scale_result(e.value, e.exponent);
+        return scale_result(e.value, scaled_exponent(e));
     }
     struct scaled e = exp_scaled(x, 0.0);
-    return (e.value.hi + e.value.lo) * two_to(e.exponent);
+    return (e.value.hi + e.value.lo) * scaled_power(e);
 }
 
 double el_exp2(double x) {
@@ -147,54 +127,12 @@ double el_expm1(double x) {
 
 /* ---- logarithms -------------------------------------------------------------------------------------------------- */
 
-/* x = 2^exponent m with m in [0.6875, 1.375) and its interval; x positive and finite. */
-struct split {
-    double mantissa;
-    int exponent;
-    const struct log_entry *entry;
-};
-
 static inline struct split log_split(double x) {
-    int bias = 0;
-    if (x < 0x1.0p-1022) {
-        x *= 0x1.0p54;
-        bias = -54;
-    }
-    uint64_t above = to_bits(x) - 0x3fe6000000000000u;
-    struct split s;
-    s.exponent = (int)((int64_t)above >> 52) + bias;
-    s.entry = &log_table[above >> 45 & 127];
-    s.mantissa = from_bits(to_bits(x) - (above & 0xfff0000000000000u));
+    if (x >= 0x1.0p-1022)
+        return log_split_normal(x);
+    struct split s = log_split_normal(x * 0x1.0p54);
+    s.exponent -= 54;
     return s;
-}
-
-/* m c - 1 exactly: c has at most 10 bits, the upper part of m 21. */
-static inline struct pair log_remainder(struct split s) {
-    double upper = from_bits(to_bits(s.mantissa) & 0xffffffff00000000u);
-    double rh = upper * s.entry->inverse - 1.0;
-    return exact_fast_sum(rh, (s.mantissa - upper) * s.entry->inverse);
-}
-
-static inline double log_tail(double r) {
-    double r2 = r * r;
-    const double *c = log_poly;
-    return (c[0] + r * c[1]) + r2 * ((c[2] + r * c[3]) + r2 * ((c[4] + r * c[5]) + r2 * (c[6] + r * c[7])));
-}
-
-/* log(2^k m) as a pair with relative error near 2^-67; extra is added to m c - 1. */
-static inline struct pair log_pair(struct split s, double k, double extra) {
-    struct pair r = log_remainder(s);
-    if (extra != 0.0) {
-        struct pair sum = exact_sum(r.hi, extra);
-        r = exact_fast_sum(sum.hi, sum.lo + r.lo);
-    }
-    double rh = leading(r.hi);
-    struct pair a = exact_fast_sum(k * log_ln2_hi + s.entry->log_hi, r.hi);
-    struct pair b = exact_fast_sum(a.hi, -0.5 * rh * rh);
-    double small = a.lo + r.lo + (k * log_ln2_lo + s.entry->log_lo);
-    small += b.lo - 0.5 * (r.hi - rh) * (r.hi + rh) - r.hi * r.lo;
-    small += r.hi * r.hi * r.hi * log_tail(r.hi);
-    return exact_fast_sum(b.hi, small);
 }
 
 /* Zero, negative, infinite and NaN arguments of all logarithms. */
@@ -213,15 +151,7 @@ static inline bool log_is_plain(double x) {
 }
 
 double el_log(double x) {
-    if (!log_is_plain(x))
-        return log_special(x);
-    struct split s = log_split(x);
-    double k = s.exponent;
-    struct pair r = log_remainder(s);
-    struct pair a = exact_fast_sum(k * log_ln2_hi + s.entry->log_hi, r.hi);
-    double r2 = r.hi * r.hi;
-    double small = a.lo + r.lo + (k * log_ln2_lo + s.entry->log_lo);
-    return a.hi + (small + (r2 * r.hi * log_tail(r.hi) - 0.5 * r2));
+    return log_is_plain(x) ? log_value(log_split(x)) : log_special(x);
 }
 
 double el_log2(double x) {
@@ -321,10 +251,10 @@ double el_pow(double x, double y) {
         if (hi < -747.0)
             return sign * 0.0;
         struct scaled e = exp_scaled(hi, lo);
-        return sign * scale_result(e.value, e.exponent);
+        return sign * scale_result(e.value, scaled_exponent(e));
     }
     struct scaled e = exp_scaled(hi, lo);
-    return sign * ((e.value.hi + e.value.lo) * two_to(e.exponent));
+    return sign * ((e.value.hi + e.value.lo) * scaled_power(e));
 }
 
 /* ---- hyperbolic functions ---------------------------------------------------------------------------------------- */
@@ -332,7 +262,7 @@ double el_pow(double x, double y) {
 /* e^x as a pair, |x| < 700. */
 static struct pair exp_pair(double x) {
     struct scaled e = exp_scaled(x, 0.0);
-    double up = two_to(e.exponent);
+    double up = scaled_power(e);
     return (struct pair){e.value.hi * up, e.value.lo * up};
 }
 
@@ -341,7 +271,7 @@ static double half_exp(double x) {
     if (x > 711.0)
         return INFINITY;
     struct scaled e = exp_scaled(x, 0.0);
-    return scale_result(e.value, e.exponent - 1);
+    return scale_result(e.value, scaled_exponent(e) - 1);
 }
 
 double el_sinh(double x) {
@@ -440,14 +370,10 @@ static int reduce_by_integers(double x, struct pair *reduced) {
 static inline int reduce_angle(double x, struct pair *reduced) {
     double a = fabs(x);
     if (a < 1.0e6) {
-        double shifted = x * two_over_pi + shifter;
-        double n = shifted - shifter;
-        double t = x - n * half_pi_1;
-        struct pair s = exact_sum(t, -(n * half_pi_2));
-        /* The parts are good to 2^-99: enough unless the angle is next to a multiple of pi/2. */
-        if (fabs(s.hi) > 0x1.0p-30 || a < 0.5) {
-            *reduced = exact_fast_sum(s.hi, s.lo - n * half_pi_3);
-            return (int)(to_bits(shifted) & 3);
+        struct turned turned = turn_back(x);
+        if (is_turned_well(x, turned)) {
+            *reduced = turned_angle(turned);
+            return (int)(to_bits(turned.shifted) & 3);
         }
     }
     int quadrant = reduce_by_integers(a, reduced);
@@ -455,31 +381,6 @@ static inline int reduce_angle(double x, struct pair *reduced) {
         return quadrant;
     *reduced = (struct pair){-reduced->hi, -reduced->lo};
     return -quadrant & 3;
-}
-
-/* Sine of hi + lo, less hi. */
-static inline double sine_rest(struct pair r) {
-    double z = r.hi * r.hi, z2 = z * z;
-    const double *c = sin_poly;
-    double p = (c[0] + z * c[1]) + z2 * ((c[2] + z * c[3]) + z2 * (c[4] + z * c[5]));
-    return z * r.hi * p + (r.lo - 0.5 * z * r.lo);
-}
-
-static inline struct pair cosine_pair(struct pair r) {
-    double z = r.hi * r.hi, z2 = z * z;
-    const double *c = cos_poly;
-    double p = (c[0] + z * c[1]) + z2 * ((c[2] + z * c[3]) + z2 * (c[4] + z * c[5]));
-    double w = 1.0 - 0.5 * z;
-    return (struct pair){w, ((1.0 - w) - 0.5 * z) + (z2 * p - r.hi * r.lo)};
-}
-
-static inline double cosine_value(struct pair r) {
-    struct pair c = cosine_pair(r);
-    return c.hi + c.lo;
-}
-
-static inline double sine_value(struct pair r) {
-    return r.hi + sine_rest(r);
 }
 
 double el_sin(double x) {
@@ -526,18 +427,7 @@ double el_tan(double x) {
         return isnan(x) ? x + x : invalid();
     struct pair r = {x, 0.0};
     int quadrant = fabs(x) < 0.785 ? 0 : reduce_angle(x, &r);
-    struct pair s = exact_fast_sum(r.hi, sine_rest(r));
-    struct pair c = cosine_pair(r);
-    c = exact_fast_sum(c.hi, c.lo - 0.5 * exact_product(r.hi, r.hi).lo);
-    struct pair over = s, under = c;
-    if (quadrant & 1) {
-        over = (struct pair){-c.hi, -c.lo};
-        under = s;
-    }
-    double t = over.hi / under.hi;
-    struct pair back = exact_product(t, under.hi);
-    double rest = ((over.hi - back.hi) - back.lo) + over.lo - t * under.lo;
-    return t + rest / under.hi;
+    return tangent_of(r, (uint64_t)quadrant);
 }
 
 /* asin(x)/x - 1 for z = x^2 <= 1/4. */

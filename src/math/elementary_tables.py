@@ -85,7 +85,7 @@ def define(name, v, comment):
 
 def tables():
     print('/* Numbers of elementary.c, written by elementary_tables.py: tables and polynomials computed with 400 bits.')
-    print(' * Only elementary.c includes this file. */')
+    print(' * Only elementary_lanes.h includes this file. */')
     print('/* clang-format off */')
     print('#ifndef GRAY_MATH_ELEMENTARY_TABLES_H\n#define GRAY_MATH_ELEMENTARY_TABLES_H\n\n#include <stdint.h>\n')
 

@@ -1,5 +1,5 @@
 /* Numbers of elementary.c, written by elementary_tables.py: tables and polynomials computed with 400 bits.
- * Only elementary.c includes this file. */
+ * Only elementary_lanes.h includes this file. */
 /* clang-format off */
 #ifndef GRAY_MATH_ELEMENTARY_TABLES_INTERNAL_H
 #define GRAY_MATH_ELEMENTARY_TABLES_INTERNAL_H

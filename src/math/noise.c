@@ -14,23 +14,33 @@
 #include "base/random.h"
 #include "math/elementary.h"
 #include "math/exact.h"
+#include "math/noise_lanes.h"
 
 static const double pi = 0x1.921fb54442d18p+1;
 
-static const uint8_t permutation[256] = {
-    151, 160, 137, 91,  90,  15,  131, 13,  201, 95,  96,  53,  194, 233, 7,   225, 140, 36,  103, 30,  69,  142,
-    8,   99,  37,  240, 21,  10,  23,  190, 6,   148, 247, 120, 234, 75,  0,   26,  197, 62,  94,  252, 219, 203,
-    117, 35,  11,  32,  57,  177, 33,  88,  237, 149, 56,  87,  174, 20,  125, 136, 171, 168, 68,  175, 74,  165,
-    71,  134, 139, 48,  27,  166, 77,  146, 158, 231, 83,  111, 229, 122, 60,  211, 133, 230, 220, 105, 92,  41,
-    55,  46,  245, 40,  244, 102, 143, 54,  65,  25,  63,  161, 1,   216, 80,  73,  209, 76,  132, 187, 208, 89,
-    18,  169, 200, 196, 135, 130, 116, 188, 159, 86,  164, 100, 109, 198, 173, 186, 3,   64,  52,  217, 226, 250,
-    124, 123, 5,   202, 38,  147, 118, 126, 255, 82,  85,  212, 207, 206, 59,  227, 47,  16,  58,  17,  182, 189,
-    28,  42,  223, 183, 170, 213, 119, 248, 152, 2,   44,  154, 163, 70,  221, 153, 101, 155, 167, 43,  172, 9,
-    129, 22,  39,  253, 19,  98,  108, 110, 79,  113, 224, 232, 178, 185, 112, 104, 218, 246, 97,  228, 251, 34,
-    242, 193, 238, 210, 144, 12,  191, 179, 162, 241, 81,  51,  145, 235, 249, 14,  239, 107, 49,  192, 214, 31,
-    181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
-    67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180,
-};
+/* clang-format off */
+#define PERMUTATION(X)                                                                                                \
+    X(151) X(160) X(137) X(91) X(90) X(15) X(131) X(13) X(201) X(95) X(96) X(53) X(194) X(233) X(7) X(225)             \
+    X(140) X(36) X(103) X(30) X(69) X(142) X(8) X(99) X(37) X(240) X(21) X(10) X(23) X(190) X(6) X(148)                \
+    X(247) X(120) X(234) X(75) X(0) X(26) X(197) X(62) X(94) X(252) X(219) X(203) X(117) X(35) X(11) X(32)             \
+    X(57) X(177) X(33) X(88) X(237) X(149) X(56) X(87) X(174) X(20) X(125) X(136) X(171) X(168) X(68) X(175)           \
+    X(74) X(165) X(71) X(134) X(139) X(48) X(27) X(166) X(77) X(146) X(158) X(231) X(83) X(111) X(229) X(122)          \
+    X(60) X(211) X(133) X(230) X(220) X(105) X(92) X(41) X(55) X(46) X(245) X(40) X(244) X(102) X(143) X(54)           \
+    X(65) X(25) X(63) X(161) X(1) X(216) X(80) X(73) X(209) X(76) X(132) X(187) X(208) X(89) X(18) X(169)              \
+    X(200) X(196) X(135) X(130) X(116) X(188) X(159) X(86) X(164) X(100) X(109) X(198) X(173) X(186) X(3) X(64)        \
+    X(52) X(217) X(226) X(250) X(124) X(123) X(5) X(202) X(38) X(147) X(118) X(126) X(255) X(82) X(85) X(212)          \
+    X(207) X(206) X(59) X(227) X(47) X(16) X(58) X(17) X(182) X(189) X(28) X(42) X(223) X(183) X(170) X(213)           \
+    X(119) X(248) X(152) X(2) X(44) X(154) X(163) X(70) X(221) X(153) X(101) X(155) X(167) X(43) X(172) X(9)           \
+    X(129) X(22) X(39) X(253) X(19) X(98) X(108) X(110) X(79) X(113) X(224) X(232) X(178) X(185) X(112) X(104)         \
+    X(218) X(246) X(97) X(228) X(251) X(34) X(242) X(193) X(238) X(210) X(144) X(12) X(191) X(179) X(162) X(241)       \
+    X(81) X(51) X(145) X(235) X(249) X(14) X(239) X(107) X(49) X(192) X(214) X(31) X(181) X(199) X(106) X(157)         \
+    X(184) X(84) X(204) X(176) X(115) X(121) X(50) X(45) X(127) X(4) X(150) X(254) X(138) X(236) X(205) X(93)          \
+    X(222) X(114) X(67) X(29) X(24) X(72) X(243) X(141) X(128) X(195) X(78) X(66) X(215) X(61) X(156) X(180)
+/* clang-format on */
+#define BYTE(n) n,
+#define WIDE(n) n,
+static const uint8_t permutation[256] = {PERMUTATION(BYTE)};
+const uint64_t noise_permutation[256] = {PERMUTATION(WIDE)};
 
 /* The cell modulo 256 and the place in it. */
 static inline double cell_of(double x, unsigned *cell) {
@@ -51,15 +61,18 @@ static inline unsigned hash(unsigned i) {
     return permutation[i & 255];
 }
 
-static inline double fade(double t) {
-    return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
-}
-
 /* The 12 edge directions of a cube, four of them twice, in the order of the published program. */
 static const double gradients[16][3] = {
     {1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
     {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {0, -1, 1}, {-1, 1, 0}, {0, -1, -1},
 };
+
+/* The upper 12 bits of a coordinate (0, 1 or -1) as a double, from the directions where it is not 0 or negative. */
+#define COORDINATE(n, there, negative)                                                                                 \
+    (((uint64_t)(there) >> ((n)&15) & 1) * 0x3ff | ((uint64_t)(negative) >> ((n)&15) & 1) * 0x800)
+#define WORD(n)                                                                                                        \
+    COORDINATE(n, 0x50ff, 0x40aa) << 52 | COORDINATE(n, 0xff0f, 0xaa0c) << 40 | COORDINATE(n, 0xaff0, 0x8cc0) << 28,
+const uint64_t noise_gradient_words[256] = {PERMUTATION(WORD)};
 
 /* The gradient times the offset. Products with 1 and 0 are exact, so this equals the reference's selection of signed
  * summands without its unpredictable branches. */
@@ -68,16 +81,12 @@ static inline double ramp(unsigned h, double x, double y, double z) {
     return g[0] * x + g[1] * y + g[2] * z;
 }
 
-static inline double mix(double weight, double a, double b) {
-    return a + weight * (b - a);
-}
-
 static double cosine_weight(double t) {
     return (1.0 - el_cos(pi * t)) / 2.0;
 }
 
 double noise_cosine_mix(double t, double a, double b) {
-    return mix(cosine_weight(t), a, b);
+    return noise_mix(cosine_weight(t), a, b);
 }
 
 double noise_perlin(double x, double y, double z, int interpolation) {
@@ -87,7 +96,7 @@ double noise_perlin(double x, double y, double z, int interpolation) {
     x = cell_of(x, &i);
     y = cell_of(y, &j);
     z = cell_of(z, &k);
-    double u = fade(x), v = fade(y), w = fade(z);
+    double u = noise_fade(x), v = noise_fade(y), w = noise_fade(z);
     if (interpolation != 0) {
         /* The blend differs from the linear one only in its weight. */
         u = cosine_weight(u);
@@ -96,11 +105,11 @@ double noise_perlin(double x, double y, double z, int interpolation) {
     }
     unsigned a = hash(i) + j, aa = hash(a) + k, ab = hash(a + 1) + k;
     unsigned b = hash(i + 1) + j, ba = hash(b) + k, bb = hash(b + 1) + k;
-    double near_low = mix(u, ramp(hash(aa), x, y, z), ramp(hash(ba), x - 1, y, z));
-    double near_high = mix(u, ramp(hash(ab), x, y - 1, z), ramp(hash(bb), x - 1, y - 1, z));
-    double far_low = mix(u, ramp(hash(aa + 1), x, y, z - 1), ramp(hash(ba + 1), x - 1, y, z - 1));
-    double far_high = mix(u, ramp(hash(ab + 1), x, y - 1, z - 1), ramp(hash(bb + 1), x - 1, y - 1, z - 1));
-    return mix(w, mix(v, near_low, near_high), mix(v, far_low, far_high));
+    double near_low = noise_mix(u, ramp(hash(aa), x, y, z), ramp(hash(ba), x - 1, y, z));
+    double near_high = noise_mix(u, ramp(hash(ab), x, y - 1, z), ramp(hash(bb), x - 1, y - 1, z));
+    double far_low = noise_mix(u, ramp(hash(aa + 1), x, y, z - 1), ramp(hash(ba + 1), x - 1, y, z - 1));
+    double far_high = noise_mix(u, ramp(hash(ab + 1), x, y - 1, z - 1), ramp(hash(bb + 1), x - 1, y - 1, z - 1));
+    return noise_mix(w, noise_mix(v, near_low, near_high), noise_mix(v, far_low, far_high));
 }
 
 /* The sum over the corners of weight * ramp, by the product rule. */
@@ -112,7 +121,7 @@ void noise_perlin_gradient(double x, double y, double z, double gradient[3]) {
         return;
     for (int k = 0; k < 3; k++) {
         p[k] = cell_of(p[k], &cell[k]);
-        weights[1][k] = fade(p[k]);
+        weights[1][k] = noise_fade(p[k]);
         weights[0][k] = 1 - weights[1][k];
         slope[k] = 30 * p[k] * p[k] * ((p[k] - 1) * (p[k] - 1));
     }
