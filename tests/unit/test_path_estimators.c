@@ -260,11 +260,7 @@ static void turn_camera_in_corridor(struct stage *s, int i) {
 }
 
 /* With few samples, since the variance of many falls faster. */
-<<<<<<< HEAD
-TEST(a_thousand_lamps_have_a_tenth_of_the_variance_of_uniform_choice_at_ten_points) {
-=======
 static void check_corridor_variance(bool mesh) {
->>>>>>> 93d978e (light, world: Triangles of emitting meshes are in the tree of lights one by one)
     const struct effort effort = {16, 16, 1};
     double error[2][10];
     for (int uniform = 0; uniform < 2; uniform++) {
@@ -310,12 +306,7 @@ TEST(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice) {
     check_corridor(false, (struct effort){8, 256, 1}, (struct effort){8, 4096, 1}, 0.01);
     check_corridor(true, (struct effort){8, 256, 1}, (struct effort){8, 4096, 1}, 0.01);
 }
-<<<<<<< HEAD
-TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
-    check_corridor((struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 1, 0.001);
-=======
 TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
     check_corridor(false, (struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 0.001);
     check_corridor(true, (struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 0.001);
->>>>>>> 93d978e (light, world: Triangles of emitting meshes are in the tree of lights one by one)
 }
