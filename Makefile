@@ -151,6 +151,8 @@ $(BUILD)/src/accel/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512d
 # No exceptions of floating-point arithmetic are looked at: without that loops with selections are not made vectors of.
 $(BUILD)/src/expr/%_avx2.o: override CFLAGS += -mavx2 -fno-trapping-math
 $(BUILD)/src/expr/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -fno-trapping-math
+$(BUILD)/src/render/%_avx2.o: override CFLAGS += -mavx2 -fno-trapping-math
+$(BUILD)/src/render/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -fno-trapping-math
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
 $(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
 

@@ -96,6 +96,14 @@ static int render(struct options *options, const struct program_parts *parts) {
     return supervisor_run(options, &wanted);
 }
 
+static bool choose_isa(const struct options *options) {
+    const char *name = options_isa_name(options);
+    bool chosen = cpu_select_isa(name);
+    if (!chosen)
+        (void)fprintf(stderr, "gray: --isa %s: this processor does not have it\n", name);
+    return chosen;
+}
+
 static int perform(struct options *options, const struct program_parts *parts, struct arena *arena) {
     switch (options->action) {
     case ACTION_HELP:
@@ -111,14 +119,12 @@ static int perform(struct options *options, const struct program_parts *parts, s
         print_version();
         return 0;
     case ACTION_MERGE:
-        return merge_run(options);
+        return choose_isa(options) ? merge_run(options) : ERROR_USAGE;
     case ACTION_RENDER:
         break;
     }
-    if (!cpu_select_isa(options_isa_name(options))) {
-        (void)fprintf(stderr, "gray: --isa %s: this processor does not have it\n", options_isa_name(options));
+    if (!choose_isa(options))
         return ERROR_USAGE;
-    }
     options->script.library_folder = find_library(arena);
     return render(options, parts);
 }

@@ -28,6 +28,10 @@ static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
             for (int i = 0; i < 3; i++)
                 row[x].glow[half][i] = (float)path_pixel_feature(&pixel, from, PATH_GLOW + i);
         }
+        struct vec3 variance = path_pixel_variance_of_samples(&pixel);
+        row[x].variance[0] = (float)variance.x;
+        row[x].variance[1] = (float)variance.y;
+        row[x].variance[2] = (float)variance.z;
         row[x].share = weight != 0 ? (float)(pixel.weights[0] / weight) : 0.5F;
     }
 }

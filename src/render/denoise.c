@@ -4,104 +4,86 @@
  * The regression of a centre p fits, in a window round it, the colour of one half of the samples to a linear function
  * of the features; pixels count by their likeness to p in the other half (cross-filtering: weights and colours have
  * independent errors, so that noise does not choose the pixels that agree with it). What a regression says about each
- * pixel of its window is taken into account there (collaborative filtering), so centres on every second row and column
+ * pixel of its window is taken into account there (collaborative filtering), so centres on every third row and column
  * are enough. This is done for two bandwidths of the likeness; each place takes the one with the smaller error.
+ *
+ * A window leaves noise that is wider than itself. So the same is done with a picture of half the width and height,
+ * and what that one says about means of four pixels corrects them (M. Delbracio et al., "Boosting Monte Carlo Rendering
+ * by Ray Histogram Fusion", ACM Transactions on Graphics 2014, section 5).
  *
  * Numbers are floats and sums have a fixed order: the result does not depend on blocks, threads or instruction sets. */
 #include "render/denoise.h"
 
+#include "base/isa.h"
 #include "base/mem.h"
+#include "render/denoise_internal.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 enum {
-    BLOCK = 64,
-    WINDOW = 8, /* radius of a regression */
-    WINDOW_SIDE = 2 * WINDOW + 1,
-    WINDOW_PIXELS = WINDOW_SIDE * WINDOW_SIDE,
-    PATCH = 3,  /* radius of the patches that are compared */
-    STEP = 2,   /* between centres */
-    CHOICE = 4, /* radius of the mean that chooses between bandwidths */
+    BLOCK = DENOISE_BLOCK,
+    LOCAL = DENOISE_LOCAL,
+    MARGIN = DENOISE_MARGIN,
+    CHOICE = DENOISE_CHOICE,
     INNER = BLOCK + 2 * CHOICE,
-    MARGIN = CHOICE + 2 * WINDOW + PATCH,
-    LOCAL = BLOCK + 2 * MARGIN,            /* side of a block with everything that it reads */
-    CENTRES = (INNER + 2 * WINDOW) / STEP, /* on a side of a block */
-    COMPARED = INNER + 2 * WINDOW + 2 * PATCH,
-    TERMS = 1 + DENOISE_FEATURES + 2, /* of the linear function: constant, features, position */
-    PADDED_PIXELS = WINDOW_PIXELS + 8,
-    BANDWIDTHS = 2,
-    FEATURE_WINDOW = 4, /* radius of the filter of features */
-    FEATURE_LOCAL = BLOCK + 2 * FEATURE_WINDOW + 2,
+    LEVELS = 2,
+    STRIP = 128,         /* of a row, for sums of columns */
+    VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
 };
-_Static_assert((int)MARGIN + 3 <= (int)DENOISE_RIM, "the rim is less than what a pixel depends on");
-_Static_assert(2 * (int)WINDOW + (int)FEATURE_WINDOW + 1 <= (int)DENOISE_RIM, "the same of features");
+/* Two pixels of the coarser level and what they depend on; levels begin at even pixels of finer ones. */
+_Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 1 + (int)VARIANCE_WINDOW + 1 <= (int)DENOISE_RIM,
+               "the rim is less than what a pixel depends on");
+_Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
+               "the same of features");
 
 /* Found by measurement (bench/denoise.sh). */
-static const float noise_scale = 1.44F;  /* of the variance in distances of patches: k^2 */
-static const float colour_noise = 1e-3F; /* the same of the square of colours */
-static const struct bandwidth {
-    int radius;  /* of the window, at most WINDOW */
-    float scale; /* of distances */
-} bandwidths[BANDWIDTHS] = {{WINDOW, 1}, {5, 4}};
-static const double ridge = 5e-4;     /* of the sum of weights */
-static const float choice_slope = 12; /* how firmly the smaller error is chosen */
+static const float colour_noise = 1e-3F; /* of the square of colours, in units of which errors are compared */
+static const struct denoise_bandwidth bandwidths[DENOISE_BANDWIDTHS] = {{DENOISE_WINDOW, 1}, {5, 4}};
+static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
+static const float choice_slope = 12;       /* how firmly the smaller error is chosen */
 
 /* A picture as planes of floats. */
-struct denoiser {
+struct level {
     int width, height;
+    uint32_t x0, y0;     /* place in the whole picture, in its own pixels */
+    float *colour[2][3]; /* light of the halves without glow and outliers */
+    float *variance[3];  /* of a half */
+    float *feature[DENOISE_FEATURES];
+    float *estimate[2][3]; /* of the halves */
+};
+
+struct denoiser {
     const struct denoise_source *source;
     struct pool *pool;
     float (*out)[3];
-    float *loaded[2][3]; /* light of the halves without glow */
-    float *colour[2][3]; /* the same without outliers */
-    float *variance[3];  /* of a half */
-    float *feature[DENOISE_FEATURES];
-    float *mean[3], *noise[3];  /* of a group of features: what was measured, and its variance */
-    int first_feature, group;   /* which, and how many */
-    struct denoise_pixel *rows; /* one of each worker */
-    struct scratch *scratch;
+    struct level levels[LEVELS]; /* each half as wide and high as the one before */
+    struct level *level;         /* the one at work */
+    float *loaded[2][3];         /* the colours with outliers */
+    float *sampled[3];           /* the variance of a half, from its samples */
+    float *mean[3], *noise[3];   /* of a group of features: what was measured, and its variance */
+    int first_feature, group;    /* which, and how many */
+    struct denoise_pixel *rows;  /* one of each worker */
+    struct denoise_scratch *scratch;
+    const struct denoise_kernels *kernels;
 };
-
-/* Of a worker. */
-struct scratch {
-    float colour[2][3][LOCAL * LOCAL], variance[3][LOCAL * LOCAL], feature[DENOISE_FEATURES][LOCAL * LOCAL];
-    float feature_mean[3][FEATURE_LOCAL * FEATURE_LOCAL], feature_noise[3][FEATURE_LOCAL * FEATURE_LOCAL];
-    float unlikeness[COMPARED * COMPARED];
-    float distances[CENTRES * CENTRES][WINDOW_PIXELS]; /* between patches */
-    float sums[4][INNER * INNER];                      /* of colours and weights */
-    float estimates[BANDWIDTHS][2][3][INNER * INNER];
-    float errors[INNER * INNER];
-    /* Of one regression: the pixels that count, then pixels of weight 0 up to a multiple of 8. */
-    float terms[TERMS][PADDED_PIXELS], values[3][PADDED_PIXELS];
-    float weight[PADDED_PIXELS], weighted[PADDED_PIXELS];
-    int at[PADDED_PIXELS];
-};
-
-static int max_int(int a, int b) {
-    return a > b ? a : b;
-}
-
-static int min_int(int a, int b) {
-    return a < b ? a : b;
-}
 
 static int clamp_int(int x, int low, int high) {
     return x < low ? low : x > high ? high : x;
 }
 
-static size_t pixel_at(const struct denoiser *d, int x, int y) {
+static size_t pixel_at(const struct level *d, int x, int y) {
     return (size_t)y * (size_t)d->width + (size_t)x;
 }
 
 /* The nearest pixel of the picture. */
-static size_t nearest_at(const struct denoiser *d, int x, int y) {
+static size_t nearest_at(const struct level *d, int x, int y) {
     return pixel_at(d, clamp_int(x, 0, d->width - 1), clamp_int(y, 0, d->height - 1));
 }
 
 /* A square of a plane; outside of the picture its nearest pixel. */
-static void copy_plane(const struct denoiser *d, const float *plane, int x0, int y0, int side, float *local) {
+static void copy_plane(const struct level *d, const float *plane, int x0, int y0, int side, float *local) {
     for (int y = 0; y < side; y++)
         for (int x = 0; x < side; x++)
             local[y * side + x] = plane[nearest_at(d, x0 + x, y0 + y)];
@@ -115,7 +97,7 @@ static float bounded(float x) {
 
 /* The pixels of a row. */
 static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int worker) {
-    struct denoise_pixel *row = d->rows + (size_t)worker * (size_t)d->width;
+    struct denoise_pixel *row = d->rows + (size_t)worker * (size_t)d->levels[0].width;
     d->source->row(d->source->context, y, row);
     return row;
 }
@@ -125,10 +107,13 @@ static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int w
 static void load_colours(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker);
-    for (int x = 0; x < d->width; x++)
+    for (int x = 0; x < d->level->width; x++)
         for (int h = 0; h < 2; h++)
             for (int c = 0; c < 3; c++)
-                d->loaded[h][c][pixel_at(d, x, (int)y)] = bounded(row[x].colour[h][c] - row[x].glow[h][c]);
+                d->loaded[h][c][pixel_at(d->level, x, (int)y)] = bounded(row[x].colour[h][c] - row[x].glow[h][c]);
+    for (int x = 0; x < d->level->width; x++)
+        for (int c = 0; c < 3; c++)
+            d->sampled[c][pixel_at(d->level, x, (int)y)] = 2 * fabsf(bounded(row[x].variance[c]));
 }
 
 static float brightness(float *const colour[3], size_t at) {
@@ -138,11 +123,11 @@ static float brightness(float *const colour[3], size_t at) {
 /* The brightest that speaks for the brightness of a pixel of one half: the other half there, its neighbours in the
  * other half, and all but the brightest of its neighbours in its own. */
 static float brightest_support(const struct denoiser *d, int half, int x, int y) {
-    size_t at = pixel_at(d, x, y);
+    size_t at = pixel_at(d->level, x, y);
     float first = 0, second = 0, others = brightness(d->loaded[1 - half], at);
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
-            size_t q = nearest_at(d, x + i, y + j);
+            size_t q = nearest_at(d->level, x + i, y + j);
             if (q == at)
                 continue;
             float own = brightness(d->loaded[half], q), other = brightness(d->loaded[1 - half], q);
@@ -159,36 +144,57 @@ static float brightest_support(const struct denoiser *d, int half, int x, int y)
 static void remove_outliers(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     (void)worker;
-    for (int x = 0; x < d->width; x++) {
-        size_t at = pixel_at(d, x, (int)y);
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
         for (int h = 0; h < 2; h++) {
             float limit = 2 * brightest_support(d, h, x, (int)y), own = brightness(d->loaded[h], at);
             float scale = own > limit ? limit / own : 1;
-            for (int c = 0; c < 3; c++)
-                d->colour[h][c][at] = scale * d->loaded[h][c][at];
+            for (int c = 0; c < 3; c++) {
+                d->level->colour[h][c][at] = scale * d->loaded[h][c][at];
+                d->sampled[c][at] *= scale * scale;
+            }
         }
     }
 }
 
-/* Half the squared difference of the halves, smoothed. */
+/* The sums over nine rows about row y, from column x0 on: half the squared difference of the halves, the variance of
+ * samples, and the latter smoothed over five rows. */
+static void sum_columns(const struct denoiser *d, int c, int x0, int y, float sums[3][STRIP + 2 * VARIANCE_WINDOW]) {
+    static const float kernel[2 * VARIANCE_WINDOW + 1] = {0, 0, 0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F, 0, 0};
+    memset(sums, 0, 3 * sizeof *sums);
+    for (int j = 0; j <= 2 * VARIANCE_WINDOW; j++) {
+        for (int i = 0; i < STRIP + 2 * VARIANCE_WINDOW; i++) {
+            size_t q = nearest_at(d->level, x0 + i, y + j - VARIANCE_WINDOW);
+            float difference = d->level->colour[0][c][q] - d->level->colour[1][c][q], sampled = d->sampled[c][q];
+            sums[0][i] += 0.5F * difference * difference;
+            sums[1][i] += sampled;
+            sums[2][i] += kernel[j] * sampled;
+        }
+    }
+}
+
+/* What the samples say about the variance has little noise, but takes them as independent: points of low discrepancy
+ * have less error. So it is scaled by the mean of half the squared differences of the halves, which have no such bias,
+ * and smoothed. */
 static void estimate_variance(void *context, uint32_t y, int worker) {
-    static const float kernel[5] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+    const float largest = 1e30F; /* its square may overflow, its sums do not */
     struct denoiser *d = context;
     (void)worker;
-    for (int x = 0; x < d->width; x++) {
-        float sums[3] = {0};
-        for (int j = -2; j <= 2; j++) {
-            for (int i = -2; i <= 2; i++) {
-                size_t q = nearest_at(d, x + i, (int)y + j);
-                float w = 0.5F * kernel[j + 2] * kernel[i + 2];
-                for (int c = 0; c < 3; c++) {
-                    float difference = d->colour[0][c][q] - d->colour[1][c][q];
-                    sums[c] += w * difference * difference;
-                }
+    for (int item = 0; item < 3 * ((d->level->width + STRIP - 1) / STRIP); item++) {
+        float sums[3][STRIP + 2 * VARIANCE_WINDOW];
+        int c = item % 3, x0 = item / 3 * STRIP;
+        sum_columns(d, c, x0 - VARIANCE_WINDOW, (int)y, sums);
+        for (int x = 0; x < STRIP && x0 + x < d->level->width; x++) {
+            const float *smooth = sums[2] + x + 2;
+            float halves = 0, samples = 0;
+            for (int i = 0; i <= 2 * VARIANCE_WINDOW; i++) {
+                halves += sums[0][x + i];
+                samples += sums[1][x + i];
             }
+            float variance = 0.0625F * (smooth[0] + smooth[4]) + 0.25F * (smooth[1] + smooth[3]) + 0.375F * smooth[2];
+            variance = samples > 0 ? variance * (halves / samples) : 0;
+            d->level->variance[c][pixel_at(d->level, x0 + x, (int)y)] = variance < largest ? variance : largest;
         }
-        for (int c = 0; c < 3; c++)
-            d->variance[c][pixel_at(d, x, (int)y)] = sums[c];
     }
 }
 
@@ -197,8 +203,8 @@ static void estimate_variance(void *context, uint32_t y, int worker) {
 static void load_features(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker);
-    for (int x = 0; x < d->width; x++) {
-        size_t at = pixel_at(d, x, (int)y);
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
         for (int i = 0; i < d->group; i++) {
             float a = bounded(row[x].features[0][d->first_feature + i]);
             float b = bounded(row[x].features[1][d->first_feature + i]);
@@ -208,321 +214,52 @@ static void load_features(void *context, uint32_t y, int worker) {
     }
 }
 
-/* exp(-x) of a distance x, nearly; 0 from 8 on. */
-static float weight_of(float distance) {
-    float x = 1 - (distance > 0 ? distance : 0) * 0.125F;
-    x = x > 0 ? x : 0;
-    x *= x;
-    x *= x;
-    return x * x;
-}
-
-/* Squared differences of the block and what lies (dx, dy) farther, less what noise explains, in units of noise; noise
- * is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
-static void compare_features(const struct denoiser *d, struct scratch *s, int dx, int dy) {
-    bool depth = d->first_feature == DENOISE_DEPTH;
-    for (int y = 0; y < BLOCK + 2; y++) {
-        int p = (FEATURE_WINDOW + y) * FEATURE_LOCAL + FEATURE_WINDOW, q = p + dy * FEATURE_LOCAL + dx;
-        float above[BLOCK + 2] = {0}, below[BLOCK + 2] = {0};
-        for (int i = 0; i < d->group; i++) {
-            const float *mean = s->feature_mean[i], *noise = s->feature_noise[i];
-            float relative = depth ? 1e-6F : 0;
-            for (int x = 0; x < BLOCK + 2; x++) {
-                float vp = noise[p + x], vq = noise[q + x], u = mean[p + x], delta = u - mean[q + x];
-                above[x] += delta * delta - (vp + (vp < vq ? vp : vq));
-                below[x] += vp + vq + relative * u * u;
-            }
-        }
-        for (int x = 0; x < BLOCK + 2; x++)
-            s->unlikeness[y * (BLOCK + 2) + x] = above[x] / (below[x] + 1e-5F);
-    }
-}
-
-/* Adds what lies (dx, dy) farther by the likeness of patches of 3 x 3 pixels. */
-static void add_features(const struct denoiser *d, struct scratch *s, int dx, int dy, const int bounds[4]) {
-    for (int y = 0; y < BLOCK; y++) {
-        const float *above = s->unlikeness + y * (BLOCK + 2), *row = above + BLOCK + 2, *under = row + BLOCK + 2;
-        int q = (FEATURE_WINDOW + 1 + y + dy) * FEATURE_LOCAL + FEATURE_WINDOW + 1 + dx;
-        float columns[BLOCK + 2];
-        if (y + dy < bounds[1] || y + dy >= bounds[3])
-            continue;
-        for (int x = 0; x < BLOCK + 2; x++)
-            columns[x] = above[x] + row[x] + under[x];
-        for (int x = 0; x < BLOCK; x++) {
-            bool inside = x + dx >= bounds[0] && x + dx < bounds[2];
-            float w = weight_of((columns[x] + columns[x + 1] + columns[x + 2]) / 9);
-            w = inside ? (dx == 0 && dy == 0 ? 1 : w) : 0;
-            s->sums[3][y * BLOCK + x] += w;
-            for (int i = 0; i < d->group; i++)
-                s->sums[i][y * BLOCK + x] += w * s->feature_mean[i][q + x];
-        }
-    }
-}
-
 static void filter_features(void *context, uint32_t item, int worker) {
+    enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL };
     struct denoiser *d = context;
-    struct scratch *s = d->scratch + worker;
-    int across = (d->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK, by = (int)item / across * BLOCK;
-    const int bounds[4] = {-bx, -by, d->width - bx, d->height - by}; /* of the picture, from the block */
+    struct denoise_scratch *s = d->scratch + worker;
+    int across = (d->level->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK,
+        by = (int)item / across * BLOCK;
     for (int i = 0; i < d->group; i++) {
-        copy_plane(d, d->mean[i], bx - FEATURE_WINDOW - 1, by - FEATURE_WINDOW - 1, FEATURE_LOCAL, s->feature_mean[i]);
-        copy_plane(d, d->noise[i], bx - FEATURE_WINDOW - 1, by - FEATURE_WINDOW - 1, FEATURE_LOCAL,
-                   s->feature_noise[i]);
+        copy_plane(d->level, d->mean[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_mean[i]);
+        copy_plane(d->level, d->noise[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_noise[i]);
     }
-    memset(s->sums, 0, sizeof s->sums);
-    for (int dy = -FEATURE_WINDOW; dy <= FEATURE_WINDOW; dy++) {
-        for (int dx = -FEATURE_WINDOW; dx <= FEATURE_WINDOW; dx++) {
-            compare_features(d, s, dx, dy);
-            add_features(d, s, dx, dy, bounds);
-        }
-    }
-    for (int y = 0; y < BLOCK && by + y < d->height; y++)
-        for (int x = 0; x < BLOCK && bx + x < d->width; x++)
+    d->kernels->filter_features(s, d->group, d->first_feature == DENOISE_DEPTH,
+                                (struct denoise_bounds){-bx, -by, d->level->width - bx, d->level->height - by});
+    for (int y = 0; y < BLOCK && by + y < d->level->height; y++)
+        for (int x = 0; x < BLOCK && bx + x < d->level->width; x++)
             for (int i = 0; i < d->group; i++)
-                d->feature[d->first_feature + i][pixel_at(d, bx + x, by + y)] =
-                    s->sums[i][y * BLOCK + x] / s->sums[3][y * BLOCK + x];
+                d->level->feature[d->first_feature + i][pixel_at(d->level, bx + x, by + y)] =
+                    s->feature_sums[i][y * BLOCK + x] / s->feature_sums[3][y * BLOCK + x];
 }
 
 /* --- regressions --- */
 
-/* How unlike the pixels of the block are those that lie (dx, dy) farther: squared difference of colours less what
- * variance explains, in units of variance (Rousselle et al. 2012, equation 9). */
-static void compare(struct scratch *s, float *const colour[3], int dx, int dy) {
-    enum { FIRST = WINDOW };
-    for (int y = 0; y < COMPARED; y++) {
-        int p = (FIRST + y) * LOCAL + FIRST, q = p + dy * LOCAL + dx;
-        float *out = s->unlikeness + y * COMPARED;
-        for (int x = 0; x < COMPARED; x++) {
-            float above = 0, below = FLT_MIN;
-            for (int c = 0; c < 3; c++) {
-                float u = colour[c][p + x], v = colour[c][q + x], delta = u - v;
-                float vp = s->variance[c][p + x], vq = s->variance[c][q + x];
-                above += delta * delta - (vp + (vp < vq ? vp : vq));
-                below += noise_scale * (vp + vq) + colour_noise * (u * u + v * v);
-            }
-            out[x] = above / below;
-        }
-    }
-}
-
-static void average_patches(struct scratch *s, int k) {
-    float columns[COMPARED];
-    for (int j = 0; j < CENTRES; j++) {
-        memset(columns, 0, sizeof columns);
-        for (int v = 0; v < 2 * PATCH + 1; v++) {
-            const float *row = s->unlikeness + (j * STEP + v) * COMPARED;
-            for (int x = 0; x < COMPARED; x++)
-                columns[x] += row[x];
-        }
-        for (int i = 0; i < CENTRES; i++) {
-            float sum = 0;
-            for (int u = 0; u < 2 * PATCH + 1; u++)
-                sum += columns[i * STEP + u];
-            s->distances[j * CENTRES + i][k] = sum / ((2 * PATCH + 1) * (2 * PATCH + 1));
-        }
-    }
-}
-
-typedef float four __attribute__((vector_size(16)));
-
-/* n is a multiple of 8. */
-static float dot(const float *a, const float *b, int n) {
-    four s = {0}, t = {0};
-    for (int i = 0; i < n; i += 8) {
-        four u, v, w, x;
-        memcpy(&u, a + i, sizeof u);
-        memcpy(&v, b + i, sizeof v);
-        memcpy(&w, a + i + 4, sizeof w);
-        memcpy(&x, b + i + 4, sizeof x);
-        s += u * v;
-        t += w * x;
-    }
-    s += t;
-    return (s[0] + s[1]) + (s[2] + s[3]);
-}
-
-/* Cholesky; the matrix is symmetric and positive. Solves for three right sides in place. */
-static bool solve(double m[TERMS][TERMS], double r[TERMS][3], int n) {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j <= i; j++) {
-            double sum = m[i][j];
-            for (int k = 0; k < j; k++)
-                sum -= m[i][k] * m[j][k];
-            if (i == j) {
-                if (!(sum > 0))
-                    return false;
-                m[i][i] = sqrt(sum);
-            } else {
-                m[i][j] = sum / m[j][j];
-            }
-        }
-    }
-    for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < n; i++) {
-            double sum = r[i][c];
-            for (int k = 0; k < i; k++)
-                sum -= m[i][k] * r[k][c];
-            r[i][c] = sum / m[i][i];
-        }
-        for (int i = n - 1; i >= 0; i--) {
-            double sum = r[i][c];
-            for (int k = i + 1; k < n; k++)
-                sum -= m[k][i] * r[k][c];
-            r[i][c] = sum / m[i][i];
-        }
-    }
-    return true;
-}
-
-/* The pixels of the window of a centre that count, without those outside of the picture. */
-static int gather(struct scratch *s, const float *distances, struct bandwidth bandwidth, int cx, int cy,
-                  const int bounds[4]) {
-    int count = 0, radius = bandwidth.radius;
-    int x0 = max_int(cx - radius, bounds[0]), x1 = min_int(cx + radius + 1, bounds[2]);
-    int y0 = max_int(cy - radius, bounds[1]), y1 = min_int(cy + radius + 1, bounds[3]);
-    for (int y = y0; y < y1; y++) {
-        const float *row = distances + (y - cy + WINDOW) * WINDOW_SIDE + WINDOW - cx;
-        for (int x = x0; x < x1; x++) {
-            float w = weight_of(bandwidth.scale * row[x]);
-            s->at[count] = y * LOCAL + x;
-            s->weight[count] = w;
-            count += w > 1e-3F;
-        }
-    }
-    for (int i = count; i % 8 != 0; i++) {
-        s->at[i] = cy * LOCAL + cx;
-        s->weight[i] = 0;
-    }
-    return count;
-}
-
-/* Differences to the centre, in units of the largest one in the window, or of a small one if that is larger: 0.02 of
- * albedo and normals, 1/200 of a depth. */
-static void fill_feature(struct scratch *s, int feature, int centre, int padded) {
-    float *term = s->terms[1 + feature], middle = s->feature[feature][centre], largest = 0;
-    for (int i = 0; i < padded; i++) {
-        term[i] = s->feature[feature][s->at[i]] - middle;
-        float size = fabsf(term[i]);
-        largest = size > largest ? size : largest;
-    }
-    float smallest = feature == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
-    float scale = 1 / (largest > smallest ? largest : smallest);
-    for (int i = 0; i < padded; i++)
-        term[i] *= scale;
-}
-
-static void fill_terms(struct scratch *s, float *const colour[3], int cx, int cy, int padded) {
-    for (int i = 0; i < padded; i++) {
-        s->terms[0][i] = 1;
-        s->terms[TERMS - 2][i] = (float)(s->at[i] % LOCAL - cx) * (1.0F / WINDOW);
-        s->terms[TERMS - 1][i] = (float)(s->at[i] / LOCAL - cy) * (1.0F / WINDOW);
-    }
-    for (int f = 0; f < DENOISE_FEATURES; f++)
-        fill_feature(s, f, cy * LOCAL + cx, padded);
-    for (int c = 0; c < 3; c++)
-        for (int i = 0; i < padded; i++)
-            s->values[c][i] = colour[c][s->at[i]];
-}
-
-/* The coefficients of the terms for each channel by weighted least squares; the ridge keeps terms small that the window
- * does not determine. */
-static bool fit(struct scratch *s, int padded, double coefficients[TERMS][3]) {
-    double matrix[TERMS][TERMS];
-    for (int i = 0; i < TERMS; i++) {
-        for (int k = 0; k < padded; k++)
-            s->weighted[k] = s->weight[k] * s->terms[i][k];
-        for (int j = 0; j <= i; j++)
-            matrix[i][j] = (double)dot(s->weighted, s->terms[j], padded);
-        for (int c = 0; c < 3; c++)
-            coefficients[i][c] = (double)dot(s->weighted, s->values[c], padded);
-    }
-    for (int i = 1; i < TERMS; i++)
-        matrix[i][i] += ridge * matrix[0][0];
-    return solve(matrix, coefficients, TERMS);
-}
-
-/* Adds what a regression says about its pixels to those of the block. */
-static void predict(struct scratch *s, double coefficients[TERMS][3], int count, int padded) {
-    for (int c = 0; c < 3; c++) {
-        float *value = s->values[c];
-        memset(value, 0, (size_t)padded * sizeof *value);
-        for (int i = 0; i < TERMS; i++) {
-            float b = (float)coefficients[i][c];
-            for (int k = 0; k < padded; k++)
-                value[k] += b * s->terms[i][k];
-        }
-    }
-    for (int k = 0; k < count; k++) {
-        int x = s->at[k] % LOCAL - (MARGIN - CHOICE), y = s->at[k] / LOCAL - (MARGIN - CHOICE);
-        if (x < 0 || y < 0 || x >= INNER || y >= INNER)
-            continue;
-        for (int c = 0; c < 3; c++)
-            s->sums[c][y * INNER + x] += s->weight[k] * s->values[c][k];
-        s->sums[3][y * INNER + x] += s->weight[k];
-    }
-}
-
 /* Where a pixel of the inner part is in the planes of the scratch. */
-static int local_of(int inner) {
-    return (inner / INNER + MARGIN - CHOICE) * LOCAL + inner % INNER + MARGIN - CHOICE;
+static int local_of(int x, int y) {
+    return (y + MARGIN - CHOICE) * LOCAL + x + MARGIN - CHOICE;
 }
 
-/* What both halves have measured at a pixel and its eight neighbours. */
-static void local_range(const struct scratch *s, int channel, int local, float *low, float *high) {
-    *low = *high = s->colour[0][channel][local];
-    for (int half = 0; half < 2; half++) {
-        for (int k = 0; k < 9; k++) {
-            float value = s->colour[half][channel][local + (k / 3 - 1) * LOCAL + k % 3 - 1];
-            *low = value < *low ? value : *low;
-            *high = value > *high ? value : *high;
+/* Of one half: the mean of what the regressions say. A pixel that is like no centre keeps its colour. */
+static void keep_estimates(struct denoise_scratch *s, int bandwidth, int half) {
+    const float own = 0.01F;
+    for (int c = 0; c < 3; c++) {
+        for (int y = 0; y < INNER; y++) {
+            for (int at = local_of(0, y); at < local_of(INNER, y); at++) {
+                float colour = s->colour[half][c][at];
+                float value = (s->sums[c][at] + own * colour) / (s->sums[3][at] + own);
+                s->estimates[bandwidth][half][c][at] = isfinite(value) ? value : colour;
+            }
         }
     }
 }
 
-/* Of one half: the mean of what the regressions say. A pixel that is like no centre keeps its colour. Nothing is
- * darker or brighter than all that was measured there: regressions overshoot beside lights. */
-static float estimate(const struct scratch *s, int half, int channel, int at) {
-    const float own = 0.01F;
-    int local = local_of(at);
-    float colour = s->colour[half][channel][local], low, high;
-    float value = (s->sums[channel][at] + own * colour) / (s->sums[3][at] + own);
-    if (!isfinite(value))
-        return colour;
-    local_range(s, channel, local, &low, &high);
-    return value < low ? low : value > high ? high : value;
-}
-
-/* All regressions that the block reads, for one bandwidth. */
-static void regress_all(struct scratch *s, float *const colour[3], struct bandwidth bandwidth, const int bounds[4]) {
-    memset(s->sums, 0, sizeof s->sums);
-    for (int i = 0; i < CENTRES * CENTRES; i++) {
-        int cx = WINDOW + PATCH + i % CENTRES * STEP, cy = WINDOW + PATCH + i / CENTRES * STEP;
-        double coefficients[TERMS][3];
-        if (cx < bounds[0] || cy < bounds[1] || cx >= bounds[2] || cy >= bounds[3])
-            continue;
-        int count = gather(s, s->distances[i], bandwidth, cx, cy, bounds), padded = (count + 7) / 8 * 8;
-        fill_terms(s, colour, cx, cy, padded);
-        if (fit(s, padded, coefficients))
-            predict(s, coefficients, count, padded);
-    }
-}
-
-/* One half of the samples in a block; bounds: of the picture, in the coordinates of the block with its margin. */
-static void regress_half(struct scratch *s, int half, const int bounds[4]) {
-    float *colour[3], *other[3];
-    for (int c = 0; c < 3; c++) {
-        colour[c] = s->colour[half][c];
-        other[c] = s->colour[1 - half][c];
-    }
-    for (int k = 0; k < WINDOW_PIXELS; k++) {
-        compare(s, other, k % WINDOW_SIDE - WINDOW, k / WINDOW_SIDE - WINDOW);
-        average_patches(s, k);
-    }
-    for (int b = 0; b < BANDWIDTHS; b++) {
-        regress_all(s, colour, bandwidths[b], bounds);
-        for (int c = 0; c < 3; c++)
-            for (int at = 0; at < INNER * INNER; at++)
-                s->estimates[b][half][c][at] = estimate(s, half, c, at);
+/* One half of the samples in a block; pixels are compared in the other one. */
+static void regress_half(const struct denoiser *d, struct denoise_scratch *s, int half, struct denoise_bounds bounds) {
+    d->kernels->compare(s, 1 - half);
+    for (int b = 0; b < DENOISE_BANDWIDTHS; b++) {
+        d->kernels->regress(s, half, bandwidths[b], bounds);
+        keep_estimates(s, b, half);
     }
 }
 
@@ -531,86 +268,210 @@ static void regress_half(struct scratch *s, int half, const int bounds[4]) {
 /* What a half says beyond the other one has the error of both; so the difference of two such squares is that of the
  * errors of two estimates (Bitterli et al. 2016, section 5.4). Here of the narrow and the wide bandwidth, in units of
  * the variance. */
-static void compare_bandwidths(struct scratch *s) {
-    for (int at = 0; at < INNER * INNER; at++) {
-        int local = local_of(at);
-        float error = 0, scale = FLT_MIN;
-        for (int c = 0; c < 3; c++) {
-            for (int h = 0; h < 2; h++) {
-                float other = s->colour[1 - h][c][local];
-                float wide = s->estimates[0][h][c][at] - other, narrow = s->estimates[1][h][c][at] - other;
-                error += narrow * narrow - wide * wide;
-                scale += s->variance[c][local] + colour_noise * other * other;
+static void compare_bandwidths(const struct denoise_scratch *s, float errors[INNER][INNER]) {
+    for (int y = 0; y < INNER; y++) {
+        for (int x = 0; x < INNER; x++) {
+            int at = local_of(x, y);
+            float error = 0, scale = FLT_MIN;
+            for (int c = 0; c < 3; c++) {
+                for (int h = 0; h < 2; h++) {
+                    float other = s->colour[1 - h][c][at];
+                    float wide = s->estimates[0][h][c][at] - other, narrow = s->estimates[1][h][c][at] - other;
+                    error += narrow * narrow - wide * wide;
+                    scale += s->variance[c][at] + colour_noise * other * other;
+                }
             }
+            errors[y][x] = error / scale;
         }
-        s->errors[at] = error / scale;
     }
 }
 
-/* The share of the narrow bandwidth at a pixel of the block. */
-static float narrow_share(const struct scratch *s, int x, int y) {
-    float sum = 0;
+/* The share of the narrow bandwidth at the pixels of a row of the block. */
+static void narrow_shares(float (*errors)[INNER], int y, float shares[BLOCK]) {
+    float columns[INNER] = {0};
     for (int j = 0; j <= 2 * CHOICE; j++)
+        for (int x = 0; x < INNER; x++)
+            columns[x] += errors[y + j][x];
+    for (int x = 0; x < BLOCK; x++) {
+        float sum = 0;
         for (int i = 0; i <= 2 * CHOICE; i++)
-            sum += s->errors[(y + j) * INNER + x + i];
-    float share = 0.5F - choice_slope * sum / ((2 * CHOICE + 1) * (2 * CHOICE + 1));
-    return share > 1 ? 1 : share > 0 ? share : 0;
+            sum += columns[x + i];
+        float share = 0.5F - choice_slope * sum / ((2 * CHOICE + 1) * (2 * CHOICE + 1));
+        shares[x] = share > 1 ? 1 : share > 0 ? share : 0;
+    }
 }
 
-static void store_pixel(const struct scratch *s, int x, int y, float out[3]) {
-    int at = (y + CHOICE) * INNER + x + CHOICE;
-    float share = narrow_share(s, x, y);
+static void store_pixel(const struct level *level, const struct denoise_scratch *s, int from, size_t to, float share) {
     for (int c = 0; c < 3; c++) {
-        float wide = 0.5F * (s->estimates[0][0][c][at] + s->estimates[0][1][c][at]);
-        float narrow = 0.5F * (s->estimates[1][0][c][at] + s->estimates[1][1][c][at]);
-        out[c] = wide + share * (narrow - wide);
+        for (int half = 0; half < 2; half++) {
+            float wide = s->estimates[0][half][c][from], narrow = s->estimates[1][half][c][from];
+            level->estimate[half][c][to] = wide + share * (narrow - wide);
+        }
     }
 }
 
 /* Blocks begin where centres have even coordinates in the whole picture. */
 static void regress_block(void *context, uint32_t item, int worker) {
     struct denoiser *d = context;
-    struct scratch *s = d->scratch + worker;
-    int left = -(int)(d->source->x0 % STEP), top = -(int)(d->source->y0 % STEP);
-    int across = (d->width - left + BLOCK - 1) / BLOCK;
+    struct denoise_scratch *s = d->scratch + worker;
+    float errors[INNER][INNER], shares[BLOCK];
+    int left = -(int)(d->level->x0 % DENOISE_STEP), top = -(int)(d->level->y0 % DENOISE_STEP);
+    int across = (d->level->width - left + BLOCK - 1) / BLOCK;
     int bx = left + (int)item % across * BLOCK, by = top + (int)item / across * BLOCK;
     int x0 = bx - MARGIN, y0 = by - MARGIN;
-    const int bounds[4] = {-x0, -y0, d->width - x0, d->height - y0};
+    const struct denoise_bounds bounds = {-x0, -y0, d->level->width - x0, d->level->height - y0};
     for (int c = 0; c < 3; c++) {
-        copy_plane(d, d->colour[0][c], x0, y0, LOCAL, s->colour[0][c]);
-        copy_plane(d, d->colour[1][c], x0, y0, LOCAL, s->colour[1][c]);
-        copy_plane(d, d->variance[c], x0, y0, LOCAL, s->variance[c]);
+        copy_plane(d->level, d->level->colour[0][c], x0, y0, LOCAL, s->colour[0][c]);
+        copy_plane(d->level, d->level->colour[1][c], x0, y0, LOCAL, s->colour[1][c]);
+        copy_plane(d->level, d->level->variance[c], x0, y0, LOCAL, s->variance[c]);
     }
     for (int f = 0; f < DENOISE_FEATURES; f++)
-        copy_plane(d, d->feature[f], x0, y0, LOCAL, s->feature[f]);
+        copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
     for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
-        regress_half(s, half, bounds);
-    compare_bandwidths(s);
-    for (int y = by > 0 ? by : 0; y < by + BLOCK && y < d->height; y++)
-        for (int x = bx > 0 ? bx : 0; x < bx + BLOCK && x < d->width; x++)
-            store_pixel(s, x - bx, y - by, d->out[pixel_at(d, x, y)]);
+        regress_half(d, s, half, bounds);
+    compare_bandwidths(s, errors);
+    for (int y = by > 0 ? by : 0; y < by + BLOCK && y < d->level->height; y++) {
+        narrow_shares(errors, y - by, shares);
+        for (int x = bx > 0 ? bx : 0; x < bx + BLOCK && x < d->level->width; x++)
+            store_pixel(d->level, s, local_of(x - bx + CHOICE, y - by + CHOICE), pixel_at(d->level, x, y),
+                        shares[x - bx]);
+    }
 }
 
-static void add_glow(void *context, uint32_t y, int worker) {
+/* --- scales --- */
+
+/* Where the pixels of a coarse column or row begin in the finer level, and how many there are. */
+static int finer_from(int coarse, uint32_t coarse0, uint32_t finer0, int limit, int *count) {
+    int from = (int)(2 * ((int64_t)coarse0 + coarse) - (int64_t)finer0), to = from + 2;
+    from = from > 0 ? from : 0;
+    *count = (to < limit ? to : limit) - from;
+    return from;
+}
+
+/* The mean of a plane over the pixels of the finer level that a coarse pixel covers. */
+static float mean_of(const struct level *level, const float *plane, int x, int y, int across, int down) {
+    float sum = 0;
+    for (int j = 0; j < down; j++)
+        for (int i = 0; i < across; i++)
+            sum += plane[pixel_at(level, x + i, y + j)];
+    return sum / (float)(across * down);
+}
+
+/* A row of the level from the one before. */
+static void shrink(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
+    (void)worker;
+    for (int x = 0; x < level->width; x++) {
+        int fx = finer_from(x, level->x0, finer->x0, finer->width, &across);
+        size_t at = pixel_at(level, x, (int)y);
+        for (int c = 0; c < 3; c++) {
+            for (int half = 0; half < 2; half++)
+                level->colour[half][c][at] = mean_of(finer, finer->colour[half][c], fx, fy, across, down);
+            level->variance[c][at] = mean_of(finer, finer->variance[c], fx, fy, across, down) / (float)(across * down);
+        }
+        for (int f = 0; f < DENOISE_FEATURES; f++)
+            level->feature[f][at] = mean_of(finer, finer->feature[f], fx, fy, across, down);
+    }
+}
+
+/* What the level says beyond the one before, in the place of what it says; its colours become the means of what that
+ * one says. */
+static void subtract_finer(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
+    (void)worker;
+    for (int x = 0; x < level->width; x++) {
+        int fx = finer_from(x, level->x0, finer->x0, finer->width, &across);
+        for (int c = 0; c < 3; c++)
+            for (int half = 0; half < 2; half++) {
+                size_t at = pixel_at(level, x, (int)y);
+                float mean = mean_of(finer, finer->estimate[half][c], fx, fy, across, down);
+                level->colour[half][c][at] = mean;
+                level->estimate[half][c][at] -= mean;
+            }
+    }
+}
+
+/* What the level says beyond the finer one at one of its pixels, as far as that is like the pixel of the finer level:
+ * what is known of the other side of an edge does not count. */
+static void add_correction(const struct level *level, int half, size_t from, const float own[3], float factor,
+                           float sum[3]) {
+    float above = 0, below = FLT_MIN;
+    for (int c = 0; c < 3; c++) {
+        float difference = own[c] - level->colour[half][c][from];
+        above += difference * difference;
+        below += level->variance[c][from];
+    }
+    float like = 1 - above / (correction_limit * below);
+    for (int c = 0; c < 3 && like > 0; c++)
+        sum[c] += factor * like * level->estimate[half][c][from];
+}
+
+/* Adds to a row of the finer level what the level says beyond it, interpolated; at most doubles or halves it. */
+static void correct_finer(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    uint32_t whole_y = finer->y0 + y;
+    int near_y = (int)(whole_y / 2 - level->y0), far_y = near_y + (whole_y % 2 ? 1 : -1);
+    (void)worker;
+    for (int x = 0; x < finer->width; x++) {
+        uint32_t whole_x = finer->x0 + (uint32_t)x;
+        int near_x = (int)(whole_x / 2 - level->x0), far_x = near_x + (whole_x % 2 ? 1 : -1);
+        size_t at = pixel_at(finer, x, (int)y);
+        for (int half = 0; half < 2; half++) {
+            float sum[3] = {0};
+            const float own[3] = {finer->estimate[half][0][at], finer->estimate[half][1][at],
+                                  finer->estimate[half][2][at]};
+            add_correction(level, half, nearest_at(level, near_x, near_y), own, 0.5625F, sum);
+            add_correction(level, half, nearest_at(level, far_x, near_y), own, 0.1875F, sum);
+            add_correction(level, half, nearest_at(level, near_x, far_y), own, 0.1875F, sum);
+            add_correction(level, half, nearest_at(level, far_x, far_y), own, 0.0625F, sum);
+            for (int c = 0; c < 3; c++) {
+                float limit = fabsf(own[c]), value = sum[c] < limit ? sum[c] : limit;
+                finer->estimate[half][c][at] += value > -0.5F * limit ? value : -0.5F * limit;
+            }
+        }
+    }
+}
+
+/* The mean of the halves, and glow. */
+static void finish_row(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker);
-    for (int x = 0; x < d->width; x++) {
-        float *out = d->out[pixel_at(d, x, (int)y)], share = row[x].share;
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        float share = row[x].share;
         for (int c = 0; c < 3; c++)
-            out[c] += share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c];
+            d->out[at][c] = 0.5F * (d->level->estimate[0][c][at] + d->level->estimate[1][c][at]) +
+                            (share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c]);
     }
 }
 
 /* --- the whole --- */
 
-static bool make_plane(const struct denoiser *d, float **plane) {
-    *plane = mem_alloc((size_t)d->width * (size_t)d->height * sizeof **plane);
+static bool make_plane(const struct level *level, float **plane) {
+    *plane = mem_alloc((size_t)level->width * (size_t)level->height * sizeof **plane);
     return *plane != NULL;
 }
 
 static void free_plane(float **plane) {
     mem_free(*plane);
     *plane = NULL;
+}
+
+static void free_level(struct level *level) {
+    for (int c = 0; c < 3; c++) {
+        for (int half = 0; half < 2; half++) {
+            free_plane(&level->colour[half][c]);
+            free_plane(&level->estimate[half][c]);
+        }
+        free_plane(&level->variance[c]);
+    }
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        free_plane(&level->feature[f]);
 }
 
 static bool run(struct denoiser *d, uint32_t count, pool_function *fn, struct error *error) {
@@ -623,8 +484,9 @@ static bool no_memory(struct error *error) {
 
 static bool denoise_colours(struct denoiser *d, struct error *error) {
     for (int c = 0; c < 3; c++)
-        if (!make_plane(d, &d->loaded[0][c]) || !make_plane(d, &d->loaded[1][c]) || !make_plane(d, &d->colour[0][c]) ||
-            !make_plane(d, &d->colour[1][c]) || !make_plane(d, &d->variance[c]))
+        if (!make_plane(d->level, &d->loaded[0][c]) || !make_plane(d->level, &d->loaded[1][c]) ||
+            !make_plane(d->level, &d->level->colour[0][c]) || !make_plane(d->level, &d->level->colour[1][c]) ||
+            !make_plane(d->level, &d->sampled[c]) || !make_plane(d->level, &d->level->variance[c]))
             return no_memory(error);
     uint32_t rows = d->source->height;
     if (!run(d, rows, load_colours, error) || !run(d, rows, remove_outliers, error) ||
@@ -633,6 +495,7 @@ static bool denoise_colours(struct denoiser *d, struct error *error) {
     for (int c = 0; c < 3; c++) {
         free_plane(&d->loaded[0][c]);
         free_plane(&d->loaded[1][c]);
+        free_plane(&d->sampled[c]);
     }
     return true;
 }
@@ -640,14 +503,14 @@ static bool denoise_colours(struct denoiser *d, struct error *error) {
 static bool denoise_features(struct denoiser *d, struct error *error) {
     static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
     for (int i = 0; i < 3; i++)
-        if (!make_plane(d, &d->mean[i]) || !make_plane(d, &d->noise[i]))
+        if (!make_plane(d->level, &d->mean[i]) || !make_plane(d->level, &d->noise[i]))
             return no_memory(error);
     uint32_t blocks = (d->source->width + BLOCK - 1) / BLOCK * ((d->source->height + BLOCK - 1) / BLOCK);
     for (int g = 0; g < 3; g++) {
         d->first_feature = groups[g][0];
         d->group = groups[g][1];
         for (int i = 0; i < d->group; i++)
-            if (!make_plane(d, &d->feature[d->first_feature + i]))
+            if (!make_plane(d->level, &d->level->feature[d->first_feature + i]))
                 return no_memory(error);
         if (!run(d, d->source->height, load_features, error) || !run(d, blocks, filter_features, error))
             return false;
@@ -659,6 +522,42 @@ static bool denoise_features(struct denoiser *d, struct error *error) {
     return true;
 }
 
+static const struct denoise_kernels *choose_kernels(void) {
+    switch (cpu_isa()) {
+    case CPU_ISA_BASE:
+        break;
+    case CPU_ISA_AVX2:
+        return &denoise_kernels_avx2;
+    case CPU_ISA_AVX512:
+        return &denoise_kernels_avx512;
+    }
+    return &denoise_kernels_base;
+}
+
+static bool make_estimates(struct denoiser *d, struct error *error) {
+    for (int c = 0; c < 3; c++)
+        for (int half = 0; half < 2; half++)
+            if (!make_plane(d->level, &d->level->estimate[half][c]))
+                return no_memory(error);
+    uint32_t width = (uint32_t)d->level->width, height = (uint32_t)d->level->height;
+    uint32_t across = (width + d->level->x0 % DENOISE_STEP + BLOCK - 1) / BLOCK;
+    uint32_t down = (height + d->level->y0 % DENOISE_STEP + BLOCK - 1) / BLOCK;
+    return run(d, across * down, regress_block, error);
+}
+
+/* The planes that a level takes from the one before. */
+static bool make_coarse(struct denoiser *d, struct error *error) {
+    struct level *level = d->level;
+    for (int c = 0; c < 3; c++)
+        if (!make_plane(level, &level->colour[0][c]) || !make_plane(level, &level->colour[1][c]) ||
+            !make_plane(level, &level->variance[c]))
+            return no_memory(error);
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        if (!make_plane(level, &level->feature[f]))
+            return no_memory(error);
+    return run(d, (uint32_t)level->height, shrink, error);
+}
+
 static bool denoise_all(struct denoiser *d, struct error *error) {
     const struct denoise_source *source = d->source;
     size_t workers = (size_t)pool_workers(d->pool);
@@ -666,29 +565,50 @@ static bool denoise_all(struct denoiser *d, struct error *error) {
     d->scratch = mem_alloc_zero(workers, sizeof *d->scratch);
     if (!d->rows || !d->scratch)
         return no_memory(error);
-    if (!denoise_colours(d, error) || !denoise_features(d, error))
+    if (!denoise_colours(d, error) || !denoise_features(d, error) || !make_estimates(d, error))
         return false;
-    uint32_t across = (source->width + source->x0 % STEP + BLOCK - 1) / BLOCK;
-    uint32_t down = (source->height + source->y0 % STEP + BLOCK - 1) / BLOCK;
-    return run(d, across * down, regress_block, error) && run(d, source->height, add_glow, error);
+    while (d->level < d->levels + LEVELS - 1) {
+        d->level++;
+        if (!make_coarse(d, error) || !make_estimates(d, error))
+            return false;
+    }
+    for (; d->level > d->levels; d->level--) {
+        if (!run(d, (uint32_t)d->level->height, subtract_finer, error) ||
+            !run(d, (uint32_t)d->level[-1].height, correct_finer, error))
+            return false;
+    }
+    return run(d, source->height, finish_row, error);
+}
+
+/* The size of the level after, and its place. */
+static struct level coarser(const struct level *level) {
+    struct level next = {0};
+    next.x0 = level->x0 / 2;
+    next.y0 = level->y0 / 2;
+    next.width = (int)((level->x0 + (uint32_t)level->width + 1) / 2 - next.x0);
+    next.height = (int)((level->y0 + (uint32_t)level->height + 1) / 2 - next.y0);
+    return next;
 }
 
 bool denoise(const struct denoise_source *source, struct pool *pool, float (*out)[3], struct error *error) {
-    struct denoiser d = {.source = source, .out = out, .pool = pool};
-    d.width = (int)source->width;
-    d.height = (int)source->height;
+    struct denoiser d = {.source = source, .out = out, .pool = pool, .kernels = choose_kernels()};
+    d.levels[0].width = (int)source->width;
+    d.levels[0].height = (int)source->height;
+    d.levels[0].x0 = source->x0;
+    d.levels[0].y0 = source->y0;
+    for (int i = 1; i < LEVELS; i++)
+        d.levels[i] = coarser(&d.levels[i - 1]);
+    d.level = d.levels;
     bool ok = denoise_all(&d, error);
     for (int c = 0; c < 3; c++) {
-        for (int half = 0; half < 2; half++) {
-            mem_free(d.loaded[half][c]);
-            mem_free(d.colour[half][c]);
-        }
-        mem_free(d.variance[c]);
+        mem_free(d.loaded[0][c]);
+        mem_free(d.loaded[1][c]);
+        mem_free(d.sampled[c]);
         mem_free(d.mean[c]);
         mem_free(d.noise[c]);
     }
-    for (int f = 0; f < DENOISE_FEATURES; f++)
-        mem_free(d.feature[f]);
+    for (int i = 0; i < LEVELS; i++)
+        free_level(&d.levels[i]);
     mem_free(d.rows);
     mem_free(d.scratch);
     return ok;

@@ -24,8 +24,9 @@ enum denoise_feature {
 struct denoise_pixel {
     float colour[2][3];
     float features[2][DENOISE_FEATURES];
-    float glow[2][3]; /* the part of the colour that needs no denoising: lamps and skies that are seen */
-    float share;      /* of half 0 in the picture, 0 to 1; the rest is that of half 1 */
+    float glow[2][3];  /* the part of the colour that needs no denoising: lamps and skies that are seen */
+    float share;       /* of half 0 in the picture, 0 to 1; the rest is that of half 1 */
+    float variance[3]; /* of the mean of all samples, as if they were independent; at least 0 */
 };
 
 /* A picture, or a part of one. */
@@ -37,7 +38,7 @@ struct denoise_source {
     void *context;
 };
 
-enum { DENOISE_RIM = 28 };
+enum { DENOISE_RIM = 52 };
 
 /* Into out[width * height]. The same bytes for any number of threads. Errors: no memory, cancelled. */
 bool denoise(const struct denoise_source *source, struct pool *pool, float (*out)[3], struct error *error);

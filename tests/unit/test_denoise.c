@@ -1,4 +1,5 @@
 /* The denoiser on synthetic films with known noise. */
+#include "base/isa.h"
 #include "render/denoise.h"
 #include "tests/harness.h"
 
@@ -43,7 +44,8 @@ static void measure(struct synthetic *s, uint64_t seed) {
     struct test_random random = {seed};
     for (int i = 0; i < PIXELS; i++) {
         struct denoise_pixel *pixel = &s->pixels[i];
-        *pixel = (struct denoise_pixel){.share = 0.5F};
+        float variance = s->sigma * s->sigma;
+        *pixel = (struct denoise_pixel){.share = 0.5F, .variance = {variance, variance, variance}};
         for (int h = 0; h < 2; h++) {
             for (int c = 0; c < 3; c++) {
                 pixel->colour[h][c] = s->truth[i][c] + (float)(gaussian(&random) * sqrt(2) * (double)s->sigma);
@@ -177,6 +179,68 @@ TEST(a_denoised_picture_has_the_same_bytes_for_any_number_of_threads) {
     memcpy(one, s.out, sizeof one);
     run_part(&s, 3, 0, 0);
     CHECK(memcmp(one, s.out, sizeof one) == 0);
+}
+
+TEST(a_denoised_picture_has_the_same_bytes_for_any_instruction_set) {
+    static struct synthetic s;
+    static float first[PIXELS][3];
+    static const char *const names[] = {"base", "avx2", "avx512"};
+    begin(&s, 0.5F, 0.2F);
+    measure(&s, 11);
+    for (int i = 0; i < 3; i++) {
+        if (!cpu_select_isa(names[i]))
+            continue;
+        run_part(&s, 2, 0, 0);
+        if (i == 0)
+            memcpy(first, s.out, sizeof first);
+        CHECK(memcmp(first, s.out, sizeof first) == 0);
+    }
+    CHECK(cpu_select_isa("auto"));
+}
+
+/* A sunbeam on a floor: no patch beside its edge looks like any in the dark. */
+TEST(noise_in_the_dark_beside_a_bright_edge_goes_away) {
+    static struct synthetic s;
+    struct test_random random = {12};
+    begin(&s, 0.05F, 0.01F);
+    for (int i = 0; i < PIXELS; i++)
+        if (i % SIDE > 40 + i / SIDE / 3)
+            for (int c = 0; c < 3; c++)
+                s.truth[i][c] = 1;
+    measure(&s, 12);
+    double raw = 0, denoised = 0;
+    for (int y = 8; y < SIDE - 8; y++) {
+        for (int x = 8; x <= 40 + y / 3; x++) {
+            /* Few paths find the light: most pixels are darker than the mean, and some are much brighter. */
+            struct denoise_pixel *pixel = &s.pixels[y * SIDE + x];
+            for (int h = 0; h < 2; h++) {
+                float value = test_uniform(&random, 0, 1) < 0.2 ? 0.25F : 0;
+                for (int c = 0; c < 3; c++) {
+                    pixel->colour[h][c] = value;
+                    pixel->variance[c] = 0.25F * 0.25F * 0.16F / 2;
+                }
+            }
+        }
+    }
+    run_part(&s, 2, 0, 0);
+    for (int y = 8; y < SIDE - 8; y++) {
+        for (int x = 38 + y / 3; x <= 40 + y / 3; x++) {
+            const struct denoise_pixel *pixel = &s.pixels[y * SIDE + x];
+            double before = (double)(pixel->colour[0][0] + pixel->colour[1][0]) / 2 - 0.05;
+            double after = (double)s.out[y * SIDE + x][0] - 0.05;
+            raw += before * before;
+            denoised += after * after;
+        }
+    }
+    CHECK(denoised < raw / 10);
+}
+
+TEST(noise_of_many_pixels_width_goes_away_too) {
+    static struct synthetic s;
+    begin(&s, 0.5F, 0.2F);
+    measure(&s, 13);
+    run_part(&s, 2, 0, 0);
+    CHECK(mean_square_error(&s, false) < mean_square_error(&s, true) / 200);
 }
 
 static void give_later_row(void *context, uint32_t y, struct denoise_pixel *row) {

@@ -1,0 +1,72 @@
+/* The parts of the denoiser that are built for each instruction set (denoise_kernel_internal.h), and what they share
+ * with denoise.c. They compute with vectors, but add in an order that does not depend on their width: the bits are the
+ * same. */
+#ifndef GRAY_RENDER_DENOISE_INTERNAL_H
+#define GRAY_RENDER_DENOISE_INTERNAL_H
+
+#include "render/denoise.h"
+
+enum {
+    DENOISE_BLOCK = 96, /* side of the squares that a worker takes */
+    DENOISE_WINDOW = 7, /* radius of a regression */
+    DENOISE_SIDE = 2 * DENOISE_WINDOW + 1,
+    DENOISE_LANES = 16, /* of a row of a window, of which the last does not count */
+    DENOISE_PATCH = 3,  /* radius of the patches that are compared */
+    DENOISE_STEP = 3,   /* between centres of regressions */
+    DENOISE_CHOICE = 4, /* radius of the mean that chooses between bandwidths */
+    DENOISE_MARGIN = DENOISE_CHOICE + 2 * DENOISE_WINDOW + DENOISE_PATCH,
+    DENOISE_LOCAL = DENOISE_BLOCK + 2 * DENOISE_MARGIN, /* side of a block with everything that it reads */
+    /* Centres that a block needs: their first coordinate, and how many are on a side. */
+    DENOISE_EXTENT = DENOISE_CHOICE + DENOISE_WINDOW,
+    DENOISE_FIRST = DENOISE_MARGIN - DENOISE_EXTENT / DENOISE_STEP * DENOISE_STEP,
+    DENOISE_CENTRES = (DENOISE_MARGIN + DENOISE_BLOCK - 1 + DENOISE_EXTENT - DENOISE_FIRST) / DENOISE_STEP + 1,
+    DENOISE_COMPARED = (DENOISE_CENTRES - 1) * DENOISE_STEP + 1 + 2 * DENOISE_PATCH,
+    DENOISE_TERMS = 1 + DENOISE_FEATURES + 2,     /* of the linear function: constant, features, position */
+    DENOISE_COLUMNS = DENOISE_TERMS + 3,          /* and the colour that it explains */
+    DENOISE_FEATURE_WINDOW = 4,                   /* radius of the filter of features */
+    DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
+    DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
+    DENOISE_BANDWIDTHS = 2,
+};
+
+struct denoise_bandwidth {
+    int radius;  /* of the window, at most DENOISE_WINDOW */
+    float scale; /* of distances */
+};
+
+typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
+typedef float denoise_feature_plane[DENOISE_FEATURE_LOCAL * DENOISE_FEATURE_LOCAL];
+typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
+
+/* Memory of a worker. */
+struct denoise_scratch {
+    denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
+    denoise_plane sums[4]; /* of weighted colours, and of weights */
+    denoise_plane estimates[DENOISE_BANDWIDTHS][2][3];
+    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */
+    float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
+    float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
+    denoise_feature_plane feature_mean[3], feature_noise[3];
+    float feature_sums[4][DENOISE_BLOCK * DENOISE_BLOCK]; /* of weighted features, and of weights */
+    /* Of one regression. */
+    denoise_window columns[DENOISE_COLUMNS], weights;
+};
+
+/* Squares of a picture or part of one: x0, y0, x1, y1 in coordinates of the scratch. */
+struct denoise_bounds {
+    int x0, y0, x1, y1;
+};
+
+struct denoise_kernels {
+    /* Adds up the features of a block, weighted by the likeness of patches; group: how many there are. */
+    void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct denoise_bounds bounds);
+    /* The distances of all centres from their windows, in the colours of a half. */
+    void (*compare)(struct denoise_scratch *s, int half);
+    /* Adds up what the regressions of all centres say about the colours of a half. */
+    void (*regress)(struct denoise_scratch *s, int half, struct denoise_bandwidth bandwidth,
+                    struct denoise_bounds bounds);
+};
+
+extern const struct denoise_kernels denoise_kernels_base, denoise_kernels_avx2, denoise_kernels_avx512;
+
+#endif

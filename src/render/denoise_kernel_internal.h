@@ -1,0 +1,432 @@
+/* The loops of the denoiser over vectors of floats, for the instruction set that its file is compiled for. A window of
+ * a centre is DENOISE_SIDE rows of DENOISE_LANES pixels; sums over it are those of its columns, then of these in a
+ * fixed order. */
+#include "render/denoise_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    LOCAL = DENOISE_LOCAL,
+    COMPARED = DENOISE_COMPARED,
+    LANES = DENOISE_LANES,
+    TERMS = DENOISE_TERMS,
+    COLUMNS = DENOISE_COLUMNS,
+#if defined(__AVX512F__)
+    WIDTH = 16
+#elif defined(__AVX2__)
+    WIDTH = 8
+#else
+    WIDTH = 4
+#endif
+};
+typedef float vector __attribute__((vector_size(WIDTH * sizeof(float))));
+
+/* Found by measurement (bench/denoise.sh). */
+static const float noise_scale = 1.44F;  /* of the variance in distances of patches: k^2 */
+static const float colour_noise = 1e-3F; /* the same of the square of colours */
+/* A patch beside an edge is like those without one, but a pixel is not like one that differs by far itself. */
+static const float unlikeness_limit = 4;            /* of each pixel of a patch */
+static const float own_limit = 4, own_share = 0.5F; /* of the pixel itself: from where on, and how much it counts */
+static const double ridge = 5e-4;                   /* of the sum of weights */
+
+typedef int32_t mask __attribute__((vector_size(WIDTH * sizeof(int32_t)))); /* -1 for true, 0 */
+
+static inline vector load(const float *from) {
+    vector v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+static inline void store(float *to, vector v) {
+    memcpy(to, &v, sizeof v);
+}
+
+static inline vector all(float x) {
+    return (vector){0} + x;
+}
+
+static inline vector choose(mask m, vector yes, vector no) {
+    return (vector)((m & (mask)yes) | (~m & (mask)no));
+}
+
+static inline vector smaller(vector a, vector b) {
+    return choose(a < b, a, b);
+}
+
+static inline vector larger(vector a, vector b) {
+    return choose(a > b, a, b);
+}
+
+/* exp(-x) of a distance x, nearly; 0 from 8 on. */
+static inline float weight_of(float distance) {
+    float x = 1 - (distance > 0 ? distance : 0) * 0.125F;
+    x = x > 0 ? x : 0;
+    x *= x;
+    x *= x;
+    return x * x;
+}
+
+/* --- features --- */
+
+/* Squared differences of the block and what lies (dx, dy) farther, less what noise explains, in units of noise; noise
+ * is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
+static void compare_features(struct denoise_scratch *s, int group, bool depth, int dx, int dy) {
+    enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW, STRIDE = DENOISE_FEATURE_LOCAL };
+    float relative = depth ? 1e-6F : 0;
+    for (int y = 0; y < SIDE; y++) {
+        int p = (FIRST + y) * STRIDE + FIRST, q = p + dy * STRIDE + dx;
+        float above[SIDE] = {0}, below[SIDE] = {0}, *out = s->unlikeness + y * SIDE;
+        for (int i = 0; i < group; i++) {
+            const float *mean = s->feature_mean[i], *noise = s->feature_noise[i];
+            for (int x = 0; x < SIDE; x++) {
+                float vp = noise[p + x], vq = noise[q + x], u = mean[p + x], delta = u - mean[q + x];
+                above[x] += delta * delta - (vp + (vp < vq ? vp : vq));
+                below[x] += vp + vq + relative * u * u;
+            }
+        }
+        for (int x = 0; x < SIDE; x++)
+            out[x] = above[x] / (below[x] + 1e-5F);
+    }
+}
+
+/* Adds what lies (dx, dy) farther by the likeness of patches of 3 x 3 pixels. */
+static void add_features(struct denoise_scratch *s, int group, int dx, int dy, struct denoise_bounds bounds) {
+    enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW + 1, STRIDE = DENOISE_FEATURE_LOCAL };
+    int x0 = bounds.x0 - dx > 0 ? bounds.x0 - dx : 0;
+    int x1 = bounds.x1 - dx < DENOISE_BLOCK ? bounds.x1 - dx : DENOISE_BLOCK;
+    for (int y = 0; y < DENOISE_BLOCK; y++) {
+        const float *above = s->unlikeness + y * SIDE, *row = above + SIDE, *under = row + SIDE;
+        int q = (FIRST + y + dy) * STRIDE + FIRST + dx, at = y * DENOISE_BLOCK;
+        float columns[SIDE], weights[DENOISE_BLOCK];
+        if (y + dy < bounds.y0 || y + dy >= bounds.y1)
+            continue;
+        for (int x = 0; x < SIDE; x++)
+            columns[x] = above[x] + row[x] + under[x];
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float w = weight_of((columns[x] + columns[x + 1] + columns[x + 2]) / 9);
+            weights[x] = x >= x0 && x < x1 ? w : 0;
+        }
+        for (int x = 0; x < DENOISE_BLOCK; x++)
+            s->feature_sums[3][at + x] += weights[x];
+        for (int i = 0; i < group; i++)
+            for (int x = 0; x < DENOISE_BLOCK; x++)
+                s->feature_sums[i][at + x] += weights[x] * s->feature_mean[i][q + x];
+    }
+}
+
+static void filter_features(struct denoise_scratch *s, int group, bool depth, struct denoise_bounds bounds) {
+    enum { WINDOW = DENOISE_FEATURE_WINDOW };
+    memset(s->feature_sums, 0, sizeof s->feature_sums);
+    for (int dy = -WINDOW; dy <= WINDOW; dy++) {
+        for (int dx = -WINDOW; dx <= WINDOW; dx++) {
+            compare_features(s, group, depth, dx, dy);
+            add_features(s, group, dx, dy, bounds);
+        }
+    }
+}
+
+/* --- distances of patches --- */
+
+/* How unlike the pixels of the block are those that lie (dx, dy) farther: squared difference of colours less what
+ * variance explains, in units of variance (Rousselle et al. 2012, equation 9). */
+static void compare_pixels(struct denoise_scratch *s, int half, int dx, int dy) {
+    enum { FIRST = DENOISE_FIRST - DENOISE_PATCH };
+    for (int y = 0; y < COMPARED; y++) {
+        int p = (FIRST + y) * LOCAL + FIRST, q = p + dy * LOCAL + dx;
+        float above[COMPARED] = {0}, below[COMPARED] = {0}, own[COMPARED], *out = s->unlikeness + y * COMPARED;
+        for (int c = 0; c < 3; c++) {
+            const float *up = s->colour[half][c] + p, *uq = s->colour[half][c] + q;
+            const float *vp = s->variance[c] + p, *vq = s->variance[c] + q;
+            for (int x = 0; x < COMPARED; x++) {
+                float delta = up[x] - uq[x];
+                above[x] += delta * delta - (vp[x] + (vp[x] < vq[x] ? vp[x] : vq[x]));
+                below[x] += noise_scale * (vp[x] + vq[x]) + colour_noise * (up[x] * up[x] + uq[x] * uq[x]);
+            }
+        }
+        for (int x = 0; x < COMPARED; x++)
+            own[x] = above[x] / (below[x] + FLT_MIN);
+        for (int x = 0; x < COMPARED; x++)
+            out[x] = own[x] < unlikeness_limit ? own[x] : unlikeness_limit;
+        int row = y - DENOISE_PATCH;
+        if (row >= 0 && row % DENOISE_STEP == 0 && row / DENOISE_STEP < DENOISE_CENTRES)
+            memcpy(s->own[row / DENOISE_STEP], own + DENOISE_PATCH, sizeof s->own[0]);
+    }
+}
+
+/* Of patches round all centres, for the pixel at (row, lane) of their windows. */
+static void average_patches(struct denoise_scratch *s, int row, int lane) {
+    enum { SIDE = 2 * DENOISE_PATCH + 1 };
+    for (int j = 0; j < DENOISE_CENTRES; j++) {
+        const float *at = s->unlikeness + j * DENOISE_STEP * COMPARED;
+        denoise_window *to = s->distances + j * DENOISE_CENTRES;
+        float columns[COMPARED];
+        for (int x = 0; x < COMPARED; x++)
+            columns[x] = ((at[x] + at[COMPARED + x]) + (at[2 * COMPARED + x] + at[3 * COMPARED + x])) +
+                         ((at[4 * COMPARED + x] + at[5 * COMPARED + x]) + at[6 * COMPARED + x]);
+        for (int i = 0; i < DENOISE_CENTRES; i++) {
+            const float *c = columns + i * DENOISE_STEP;
+            float own = s->own[j][i * DENOISE_STEP] - own_limit;
+            to[i][row][lane] = (((c[0] + c[1]) + (c[2] + c[3])) + ((c[4] + c[5]) + c[6])) / (SIDE * SIDE) +
+                               own_share * (own > 0 ? own : 0);
+        }
+    }
+}
+_Static_assert((int)DENOISE_PATCH == 3, "the sums of average_patches are of seven numbers");
+
+static void compare(struct denoise_scratch *s, int half) {
+    for (int row = 0; row < DENOISE_SIDE; row++) {
+        for (int lane = 0; lane < DENOISE_SIDE; lane++) {
+            compare_pixels(s, half, lane - DENOISE_WINDOW, row - DENOISE_WINDOW);
+            average_patches(s, row, lane);
+        }
+    }
+}
+
+/* --- regressions --- */
+
+/* The rows of a window that are in the picture, and in those the lanes. */
+struct window {
+    int x, y; /* the centre */
+    int row0, row1;
+    float inside[LANES]; /* 1 or 0 */
+};
+
+static struct window find_window(int cx, int cy, int radius, struct denoise_bounds bounds) {
+    struct window w = {.x = cx, .y = cy};
+    int low = cy - radius > bounds.y0 ? cy - radius : bounds.y0;
+    int high = cy + radius + 1 < bounds.y1 ? cy + radius + 1 : bounds.y1;
+    w.row0 = low - cy + DENOISE_WINDOW;
+    w.row1 = high - cy + DENOISE_WINDOW;
+    for (int l = 0; l < LANES; l++) {
+        int dx = l - DENOISE_WINDOW, x = cx + dx;
+        w.inside[l] = dx >= -radius && dx <= radius && x >= bounds.x0 && x < bounds.x1 ? 1 : 0;
+    }
+    return w;
+}
+
+/* Where a row of a window begins in a plane. */
+static inline int row_at(const struct window *w, int row) {
+    return (w->y + row - DENOISE_WINDOW) * LOCAL + w->x - DENOISE_WINDOW;
+}
+
+/* Weights below a thousandth are none. */
+static void weigh(struct denoise_scratch *s, const struct window *w, denoise_window *distances, float scale) {
+    const vector none = {0};
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector inside = load(w->inside + at);
+        for (int r = w->row0; r < w->row1; r++) {
+            vector x = 1 - larger(scale * load((*distances)[r] + at), none) * 0.125F;
+            x = larger(x, none);
+            x *= x;
+            x *= x;
+            x *= x * inside;
+            store(s->weights[r] + at, choose(x > 1e-3F, x, none));
+        }
+    }
+}
+
+/* Differences of a feature to the centre; returns the largest one of pixels that count. */
+static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature) {
+    const float *plane = s->feature[feature];
+    float middle = plane[w->y * LOCAL + w->x], result = 0, lanes[LANES];
+    vector found[LANES / WIDTH];
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector largest = {0};
+        for (int r = w->row0; r < w->row1; r++) {
+            vector difference = load(plane + row_at(w, r) + at) - middle;
+            vector size = larger(difference, -difference);
+            store(s->columns[1 + feature][r] + at, difference);
+            largest = larger(choose(load(s->weights[r] + at) > 0, size, largest), largest);
+        }
+        found[at / WIDTH] = largest;
+    }
+    memcpy(lanes, found, sizeof lanes);
+    for (int l = 0; l < LANES; l++)
+        result = lanes[l] > result ? lanes[l] : result;
+    return result;
+}
+
+/* The colours, and the range of those that count. */
+static void fill_colour(struct denoise_scratch *s, const struct window *w, int half, int channel, float range[2]) {
+    const float *plane = s->colour[half][channel];
+    float middle = plane[w->y * LOCAL + w->x], lowest[LANES], highest[LANES];
+    vector lows[LANES / WIDTH], highs[LANES / WIDTH];
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector low = all(middle), high = low;
+        for (int r = w->row0; r < w->row1; r++) {
+            vector value = load(plane + row_at(w, r) + at);
+            vector counting = choose(load(s->weights[r] + at) > 0, value, low);
+            store(s->columns[TERMS + channel][r] + at, value);
+            low = smaller(counting, low);
+            high = larger(counting, high);
+        }
+        lows[at / WIDTH] = low;
+        highs[at / WIDTH] = high;
+    }
+    memcpy(lowest, lows, sizeof lowest);
+    memcpy(highest, highs, sizeof highest);
+    range[0] = range[1] = middle;
+    for (int l = 0; l < LANES; l++) {
+        range[0] = lowest[l] < range[0] ? lowest[l] : range[0];
+        range[1] = highest[l] > range[1] ? highest[l] : range[1];
+    }
+}
+
+/* The sums over the window of weight * column i * column j, for j from i on, by lane. */
+static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, int row0, int row1, int i,
+                                                           float sums[COLUMNS][LANES]) {
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector sum[COLUMNS];
+        for (int j = i; j < COLUMNS; j++)
+            sum[j] = (vector){0};
+        for (int r = row0; r < row1; r++) {
+            vector weighted = load(s->weights[r] + at) * load(s->columns[i][r] + at);
+            for (int j = i; j < COLUMNS; j++)
+                sum[j] += weighted * load(s->columns[j][r] + at);
+        }
+        for (int j = i; j < COLUMNS; j++)
+            store(sums[j] + at, sum[j]);
+    }
+}
+
+typedef float four __attribute__((vector_size(16)));
+
+static inline float sum_lanes(const float lanes[LANES]) {
+    four a[4];
+    memcpy(a, lanes, sizeof a);
+    four sum = (a[0] + a[2]) + (a[1] + a[3]);
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+/* The normal equations, with terms in units of `scale`: the lower triangle of the matrix, and three right sides. */
+static void build_equations(const struct denoise_scratch *s, const struct window *w, const double scale[TERMS],
+                            double matrix[TERMS][TERMS], double right[TERMS][3]) {
+    float sums[TERMS][COLUMNS][LANES];
+#define MULTIPLY(i) multiply(s, w->row0, w->row1, i, sums[i])
+    MULTIPLY(0);
+    MULTIPLY(1);
+    MULTIPLY(2);
+    MULTIPLY(3);
+    MULTIPLY(4);
+    MULTIPLY(5);
+    MULTIPLY(6);
+    MULTIPLY(7);
+    MULTIPLY(8);
+    MULTIPLY(9);
+#undef MULTIPLY
+    _Static_assert((int)TERMS == 10, "a line for each term");
+    for (int i = 0; i < TERMS; i++) {
+        for (int j = i; j < TERMS; j++)
+            matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
+        for (int c = 0; c < 3; c++)
+            right[i][c] = (double)sum_lanes(sums[i][TERMS + c]) * scale[i];
+    }
+}
+
+/* Cholesky; the matrix is symmetric and positive, and its lower triangle is replaced. Solves for three right sides in
+ * place. */
+static bool solve(double m[TERMS][TERMS], double r[TERMS][3]) {
+    double inverse[TERMS]; /* of the diagonal */
+    for (int i = 0; i < TERMS; i++) {
+        for (int j = 0; j < i; j++) {
+            double sum = m[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= m[i][k] * m[j][k];
+            m[i][j] = sum * inverse[j];
+        }
+        double sum = m[i][i];
+        for (int k = 0; k < i; k++)
+            sum -= m[i][k] * m[i][k];
+        if (!(sum > 0))
+            return false;
+        inverse[i] = 1 / sqrt(sum);
+    }
+    for (int i = 0; i < TERMS; i++)
+        for (int c = 0; c < 3; c++) {
+            double sum = r[i][c];
+            for (int k = 0; k < i; k++)
+                sum -= m[i][k] * r[k][c];
+            r[i][c] = sum * inverse[i];
+        }
+    for (int i = TERMS - 1; i >= 0; i--)
+        for (int c = 0; c < 3; c++) {
+            double sum = r[i][c];
+            for (int k = i + 1; k < TERMS; k++)
+                sum -= m[k][i] * r[k][c];
+            r[i][c] = sum * inverse[i];
+        }
+    return true;
+}
+
+/* Adds what a regression says about the pixels of its window, which is never darker or brighter than those that it was
+ * made of: regressions overshoot beside lights. */
+static void predict(struct denoise_scratch *s, const struct window *w, int channel, double right[TERMS][3],
+                    const float range[2]) {
+    vector factor[TERMS], low = all(range[0]), high = all(range[1]);
+    for (int i = 0; i < TERMS; i++)
+        factor[i] = all((float)right[i][channel]);
+    for (int r = w->row0; r < w->row1; r++) {
+        float *to = s->sums[channel] + row_at(w, r);
+        for (int at = 0; at < LANES; at += WIDTH) {
+            vector value = factor[0];
+            for (int i = 1; i < TERMS; i++)
+                value += factor[i] * load(s->columns[i][r] + at);
+            store(to + at, load(to + at) + load(s->weights[r] + at) * smaller(larger(value, low), high));
+        }
+    }
+}
+
+static void regress_centre(struct denoise_scratch *s, int half, const struct window *w) {
+    double scale[TERMS], matrix[TERMS][TERMS], right[TERMS][3];
+    float range[3][2];
+    scale[0] = scale[TERMS - 2] = scale[TERMS - 1] = 1;
+    for (int f = 0; f < DENOISE_FEATURES; f++) {
+        /* In units of the largest difference, or of a small one if that is larger: 0.02 of albedo and normals, 1/200 of
+         * a depth. */
+        float middle = s->feature[f][w->y * LOCAL + w->x], largest = fill_feature(s, w, f);
+        float smallest = f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
+        scale[1 + f] = 1 / (double)(largest > smallest ? largest : smallest);
+    }
+    for (int c = 0; c < 3; c++)
+        fill_colour(s, w, half, c, range[c]);
+    build_equations(s, w, scale, matrix, right);
+    for (int i = 1; i < TERMS; i++)
+        matrix[i][i] += ridge * matrix[0][0]; /* keeps terms small that the window does not determine */
+    if (!solve(matrix, right))
+        return;
+    for (int i = 0; i < TERMS; i++)
+        for (int c = 0; c < 3; c++)
+            right[i][c] *= scale[i];
+    for (int c = 0; c < 3; c++)
+        predict(s, w, c, right, range[c]);
+    for (int r = w->row0; r < w->row1; r++) {
+        float *to = s->sums[3] + row_at(w, r);
+        for (int at = 0; at < LANES; at += WIDTH)
+            store(to + at, load(to + at) + load(s->weights[r] + at));
+    }
+}
+
+static void regress(struct denoise_scratch *s, int half, struct denoise_bandwidth bandwidth,
+                    struct denoise_bounds bounds) {
+    memset(s->sums, 0, sizeof s->sums);
+    for (int r = 0; r < DENOISE_SIDE; r++) {
+        for (int l = 0; l < LANES; l++) {
+            s->columns[0][r][l] = 1;
+            s->columns[TERMS - 2][r][l] = (float)(l - DENOISE_WINDOW) / DENOISE_WINDOW;
+            s->columns[TERMS - 1][r][l] = (float)(r - DENOISE_WINDOW) / DENOISE_WINDOW;
+        }
+    }
+    for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
+        int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
+        int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP;
+        if (cx < bounds.x0 || cy < bounds.y0 || cx >= bounds.x1 || cy >= bounds.y1)
+            continue;
+        struct window w = find_window(cx, cy, bandwidth.radius, bounds);
+        weigh(s, &w, &s->distances[i], bandwidth.scale);
+        regress_centre(s, half, &w);
+    }
+}
+
+const struct denoise_kernels KERNELS = {filter_features, compare, regress};
