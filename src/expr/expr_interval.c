@@ -558,3 +558,49 @@ void expr_evaluate_interval(const struct expr_program *program, const struct exp
     for (int i = 0; i < program->output_count; i++)
         outputs[i] = OPERAND_F(program->outputs[i]);
 }
+
+/* --- many boxes --- */
+
+size_t expr_intervals_size(const struct expr_program *program) {
+    return (size_t)program->register_count * (2 * EXPR_BOXES * sizeof(double) + sizeof(struct expr_flags));
+}
+
+static void put_inputs(const struct expr_program *program, const struct expr_boxes *boxes, uint32_t width, double *rows,
+                       struct expr_flags *flags) {
+    for (int i = 0; i < program->input_count; i++) {
+        uint32_t number = (uint32_t)program->inputs[i].value - program->constant_count;
+        double *low = rows + (size_t)number * 2 * EXPR_BOXES, *high = low + EXPR_BOXES;
+        for (uint32_t k = 0; k < width; k++) {
+            low[k] = k < boxes->count ? boxes->low[program->inputs[i].input][k] : 0;
+            high[k] = k < boxes->count ? boxes->high[program->inputs[i].input][k] : 0;
+        }
+        flags[number] = (struct expr_flags){0, 0};
+    }
+}
+
+void expr_evaluate_intervals(const struct expr_program *program, const struct expr_boxes *boxes,
+                             struct expr_bounds outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows) {
+    static void (*const run[])(const struct expr_program *, uint32_t, double *, struct expr_flags *,
+                               struct expr_choice *) = {[CPU_ISA_BASE] = expr_run_intervals_base,
+                                                        [CPU_ISA_AVX2] = expr_run_intervals_avx2,
+                                                        [CPU_ISA_AVX512] = expr_run_intervals_avx512};
+    uint32_t width = (boxes->count + 7) & ~7U;
+    double *values = rows;
+    struct expr_flags *flags = (struct expr_flags *)(void *)(values + (size_t)program->register_count * 2 * EXPR_BOXES);
+    put_inputs(program, boxes, width, values, flags);
+    run[cpu_isa()](program, width, values, flags, choices);
+    for (int i = 0; i < program->output_count; i++) {
+        uint16_t value = program->outputs[i];
+        bool is_constant = value < program->constant_count;
+        uint32_t number = (uint32_t)value - program->constant_count;
+        struct expr_interval constant = {0, 0, false};
+        if (is_constant)
+            constant = expr_interval_of_float(program->constants[value].f);
+        const double *low = values + (size_t)number * 2 * EXPR_BOXES;
+        for (uint32_t k = 0; k < boxes->count; k++) {
+            outputs[i].low[k] = is_constant ? constant.low : low[k];
+            outputs[i].high[k] = is_constant ? constant.high : low[k + EXPR_BOXES];
+        }
+        outputs[i].may_be_nan = is_constant ? -(uint64_t)constant.may_be_nan : flags[number].first;
+    }
+}

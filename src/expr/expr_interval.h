@@ -39,4 +39,24 @@ size_t expr_interval_size(const struct expr_program *program);
 void expr_evaluate_interval(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                             struct expr_interval outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows);
 
+/* Up to EXPR_BOXES boxes: the ends of input i are low[i] and high[i], one for each box. The program ignores inputs that
+ * it does not read; they may be NULL. */
+struct expr_boxes {
+    uint32_t count;
+    const double *low[EXPR_INPUT_COUNT], *high[EXPR_INPUT_COUNT];
+};
+
+/* Bounds of one output over the boxes. */
+struct expr_bounds {
+    double low[EXPR_BOXES], high[EXPR_BOXES];
+    uint64_t may_be_nan; /* bit i: in box i */
+};
+
+/* The size in bytes of the memory that expr_evaluate_intervals needs. */
+size_t expr_intervals_size(const struct expr_program *program);
+/* The same as expr_evaluate_interval for each of the boxes, which are lanes of the choices. choices: one for each
+ * instruction, or NULL. rows: expr_intervals_size bytes, aligned to 64, with any contents. */
+void expr_evaluate_intervals(const struct expr_program *program, const struct expr_boxes *boxes,
+                             struct expr_bounds outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows);
+
 #endif

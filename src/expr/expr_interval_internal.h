@@ -2,6 +2,7 @@
 #ifndef GRAY_EXPR_EXPR_INTERVAL_INTERNAL_H
 #define GRAY_EXPR_EXPR_INTERVAL_INTERNAL_H
 
+#include "base/isa.h"
 #include "expr/expr_interval.h"
 
 /* A constant NaN allows any number, too. */
@@ -20,5 +21,20 @@ struct expr_interval expr_interval_square(struct expr_interval a);
 
 /* The decision for one box, in lane 0; a and b are the first two operands. */
 struct expr_choice expr_interval_decide(enum expr_operation operation, struct expr_interval a, struct expr_interval b);
+
+/* The flags of a register in all boxes: of numbers whether they may be NaN (first), of truth values whether they
+ * certainly (first) or possibly (second) hold. */
+struct expr_flags {
+    uint64_t first, second;
+};
+
+/* The evaluator of many boxes in each instruction set. rows: for each register EXPR_BOXES lower ends and as many upper
+ * ones; flags: one for each register. Boxes up to `width`, a multiple of 8, are computed; choices: or NULL. */
+void expr_run_intervals_base(const struct expr_program *program, uint32_t width, double *rows, struct expr_flags *flags,
+                             struct expr_choice *choices);
+void expr_run_intervals_avx2(const struct expr_program *program, uint32_t width, double *rows, struct expr_flags *flags,
+                             struct expr_choice *choices);
+void expr_run_intervals_avx512(const struct expr_program *program, uint32_t width, double *rows,
+                               struct expr_flags *flags, struct expr_choice *choices);
 
 #endif

@@ -1,4 +1,5 @@
 /* Bounds, derivatives and shortened programs of expressions, against values at points. */
+#include "base/isa.h"
 #include "base/mem.h"
 #include "base/random.h"
 #include "expr/expr_derivative.h"
@@ -230,6 +231,58 @@ TEST(shortened_programs_and_bounds_of_random_programs_hold_in_their_boxes) {
 
 TEST_LONG(shortened_programs_and_bounds_of_many_random_programs_hold_in_their_boxes) {
     check_programs(50000);
+}
+
+/* Of up to 64 boxes, in the instruction set that is selected. */
+static void check_lanes(const struct expr_program *program, uint64_t key, uint32_t count, const char *name) {
+    static struct expr_bounds bounds[EXPR_OUTPUTS];
+    double ends[2][3][EXPR_BOXES];
+    struct expr_boxes boxes = {.count = count};
+    struct expr_interval all[EXPR_BOXES][EXPR_INPUT_COUNT], single[EXPR_OUTPUTS];
+    struct expr_choice choices[256], of_one[256];
+    void *rows = mem_alloc_aligned(64, expr_intervals_size(program));
+    void *one_row = mem_alloc_aligned(64, expr_interval_size(program));
+    for (uint32_t i = 0; i < count; i++) {
+        random_box(random_combine(key, i), all[i]);
+        for (int k = 0; k < 3; k++) {
+            if (i == 3)
+                all[i][k].high = INFINITY;
+            ends[0][k][i] = all[i][k].low;
+            ends[1][k][i] = all[i][k].high;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        boxes.low[k] = ends[0][k];
+        boxes.high[k] = ends[1][k];
+    }
+    expr_evaluate_intervals(program, &boxes, bounds, choices, rows);
+    for (uint32_t i = 0; i < count; i++) {
+        expr_evaluate_interval(program, all[i], single, of_one, one_row);
+        for (int o = 0; o < program->output_count; o++)
+            if (single[o].low != bounds[o].low[i] || single[o].high != bounds[o].high[i] ||
+                single[o].may_be_nan != (bounds[o].may_be_nan >> i & 1))
+                test_fail(__FILE__, __LINE__, "%s: %a..%a, not %a..%a", name, bounds[o].low[i], bounds[o].high[i],
+                          single[o].low, single[o].high);
+        for (uint32_t n = 0; n < program->count; n++)
+            CHECK((choices[n].first >> i & 1) == (of_one[n].first & 1) &&
+                  (choices[n].second >> i & 1) == (of_one[n].second & 1));
+    }
+    mem_free(one_row);
+    mem_free(rows);
+}
+
+TEST(bounds_of_many_boxes_are_those_of_each_box) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    for (uint64_t i = 0; i < 100; i++) {
+        struct random_program p;
+        random_program_init(&p, random_combine(41, i), 60, i % 2);
+        CHECK(p.program.count < 256);
+        for (size_t set = 0; set < sizeof sets / sizeof sets[0]; set++)
+            if (cpu_select_isa(sets[set]))
+                check_lanes(&p.program, i, i % 3 ? EXPR_BOXES : 1 + (uint32_t)(i % 63), sets[set]);
+        random_program_destroy(&p);
+    }
+    CHECK(cpu_select_isa("auto"));
 }
 
 TEST(shortening_without_room_changes_nothing) {

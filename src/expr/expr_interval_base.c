@@ -1,0 +1,3 @@
+/* Bounds for every x86-64 processor. */
+#define KERNEL(name) expr_##name##_base
+#include "expr/expr_interval_kernel_internal.h"
