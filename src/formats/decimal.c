@@ -1,11 +1,15 @@
-/* Decimal to double, correctly rounded (to nearest, ties to even).
+/* Conversion of decimal numbers to doubles, correctly rounded (to nearest, ties to even).
  *
- * A number is w * 10^e with a whole w. Three ways, each exact up to one final rounding:
- *   1. w < 2^53 and |e| <= 22: w and 10^|e| are doubles, one multiplication or division rounds once (W. D. Clinger,
- *      "How to read floating point numbers accurately", PLDI 1990). Nearly every number in mesh files.
- *   2. w of up to 19 digits and -27 <= e < 0 (doubles printed with 17 digits): w / 5^-e in whole numbers of 128 bits;
- * what the remainder says goes into the last bit of the quotient, which has ten bits more than a double keeps.
- *   3. everything else through the C library's strtod on a copy of the token. */
+ * A number is w * 10^e with an integer w. There are three methods, each exact up to one final rounding:
+ *
+ * 1. w < 2^53 and |e| <= 22: w and 10^|e| are doubles, and one multiplication or division rounds once (W. D.
+ * Clinger, "How to read floating point numbers accurately", PLDI 1990). Nearly every number in mesh files is of this
+ * kind.
+ *
+ * 2. w of up to 19 digits and -27 <= e < 0 (doubles printed with 17 digits): w / 5^-e in integers of 128 bits. The
+ * quotient has ten bits more than a double keeps; a remainder sets its last bit.
+ *
+ * 3. All other numbers: the C library's strtod on a copy of the token. */
 #include "formats/decimal_internal.h"
 
 #include <assert.h>
@@ -39,7 +43,7 @@ static double divide_by_power_of_ten(uint64_t w, int n) {
     return ldexp((double)quotient, shift_d - shift_w - 63 - n);
 }
 
-/* strtod wants a NUL behind the token, and the decimal point of the locale in it. */
+/* strtod needs a NUL after the token, and the decimal point of the locale in it. */
 static bool read_slowly(const char *at, size_t length, double *out) {
     char token[TOKEN_LIMIT + 1];
     if (length > TOKEN_LIMIT)
@@ -51,7 +55,7 @@ static bool read_slowly(const char *at, size_t length, double *out) {
         *point = localeconv()->decimal_point[0];
     char *rest;
     *out = strtod(token, &rest);
-    assert(*rest == '\0'); /* what was found to be a number is one to the C library */
+    assert(*rest == '\0'); /* strtod accepts every token that was recognised as a number */
     return isfinite(*out);
 }
 
@@ -61,7 +65,7 @@ const char *decimal_read(const char *at, const char *end, double *out) {
     if (p < end && (*p == '-' || *p == '+'))
         p++;
 
-    /* Digits into w, as long as they surely fit; zeros in front do not count. */
+    /* Reads digits into w while they surely fit; leading zeros do not count. */
     uint64_t w = 0;
     int digits = 0, exponent = 0;
     bool any = false, fits = true, after_point = false;
@@ -96,7 +100,7 @@ const char *decimal_read(const char *at, const char *end, double *out) {
         for (; q < end && (unsigned)(unsigned char)*q - '0' <= 9; q++)
             if (shift < 100000)
                 shift = shift * 10 + (*q - '0');
-        if (q > first) { /* else the e belongs to something else */
+        if (q > first) { /* otherwise the e belongs to the next word */
             exponent += down ? -shift : shift;
             p = q;
         }

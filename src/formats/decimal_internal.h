@@ -2,9 +2,9 @@
 #ifndef GRAY_FORMATS_DECIMAL_INTERNAL_H
 #define GRAY_FORMATS_DECIMAL_INTERNAL_H
 
-/* Reads [+-] digits [. digits] [(e|E) [+-] digits], with a digit before or after the point, as far as it goes. Returns
- * the place after it, or NULL when there is no number at `at` or it is too long or too large for a double. Never reads
- * at or behind `end`; no final NUL needed. */
+/* Reads [+-] digits [. digits] [(e|E) [+-] digits], with a digit before or after the point, as far as possible.
+ * Returns the position after the number. Returns NULL if there is no number at `at`, or if it is too long or too
+ * large for a double. Never reads at or after `end`; needs no final NUL. */
 const char *decimal_read(const char *at, const char *end, double *out);
 
 #endif

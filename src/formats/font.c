@@ -1,9 +1,9 @@
-/* Letters out of font files by FreeType. Outlines are taken in font units, neither scaled nor hinted: they are the
- * designer's numbers whatever the version of the library, and no program inside a font is run. Kerning is that of the
+/* Letters from font files by FreeType. Outlines are read in font units, neither scaled nor hinted: they are the
+ * designer's numbers in every version of the library, and no program inside a font runs. Kerning is that of the
  * font's kern table. Source: Apple, "TrueType Reference Manual"; FreeType's documentation.
  *
- * FreeType gets its memory from base/mem.h through a memory of our own, which counts: a file that asks for more than a
- * generous multiple of what fonts need is refused. */
+ * FreeType allocates from base/mem.h through callbacks that count. They refuse memory to a file that requests more
+ * than a generous multiple of what fonts need. */
 #include "formats/font.h"
 
 #ifndef HAVE_FREETYPE
@@ -37,17 +37,17 @@ enum { MEMORY_LIMIT = 1 << 28, HEADER = alignof(max_align_t) };
 #define TEXT_OF(x) #x
 #define TEXT(x) TEXT_OF(x)
 
-/* Blocks are preceded by their size, since FreeType does not say it when it gives one back. */
+/* The size of each block is stored in front of it, because FreeType does not pass it when it frees the block. */
 struct memory {
     struct FT_MemoryRec_ hooks;
     size_t used;
-    bool beyond;  /* a request was beyond the limit */
+    bool beyond;  /* a request exceeded the limit */
     bool refused; /* there was no memory */
 };
 
 static void *take(FT_Memory hooks, long size) {
     struct memory *memory = hooks->user;
-    assert(size > 0); /* FreeType asks for nothing without us */
+    assert(size > 0); /* FreeType requests no empty blocks */
     size_t wanted = (size_t)size;
     if (wanted > MEMORY_LIMIT - memory->used) {
         memory->beyond = true;
@@ -76,13 +76,13 @@ static void *change(FT_Memory hooks, long old_size, long size, void *block) {
     void *other = take(hooks, size);
     if (!other)
         return NULL;
-    assert(block && old_size > 0); /* FreeType takes a new block otherwise */
+    assert(block && old_size > 0); /* otherwise FreeType allocates or frees a block */
     memcpy(other, block, (size_t)(old_size < size ? old_size : size));
     give(hooks, block);
     return other;
 }
 
-/* Everything that must be given back, and what is being made. */
+/* Everything that must be freed, and the result so far. */
 struct setting {
     struct memory memory;
     FT_Library library;
@@ -90,7 +90,7 @@ struct setting {
     const char *path;
     struct arena *arena;
     struct error *error;
-    /* The glyph whose outline is being walked along. */
+    /* The glyph with the outline that FreeType reports. */
     double scale;
     double (*points)[2];
     uint32_t *starts;
@@ -114,7 +114,8 @@ static void add(struct setting *s, double x, double y) {
     s->point_count++;
 }
 
-/* The piece from `at` to `to`: its first point and the two between; the last is the next piece's first. */
+/* The piece from `at` to `to`: its first point and the two between; the last point is the first one of the next
+ * piece. */
 static void add_piece(struct setting *s, double ax, double ay, double bx, double by, const FT_Vector *to) {
     add(s, (double)s->at.x, (double)s->at.y);
     add(s, ax, ay);
@@ -122,7 +123,7 @@ static void add_piece(struct setting *s, double ax, double ay, double bx, double
     s->at = *to;
 }
 
-/* What has been walked along is a contour, unless it has no length. */
+/* The pieces so far become a contour, unless it has no length. */
 static void end_contour(struct setting *s) {
     if (s->point_count > s->starts[s->contour_count])
         s->starts[++s->contour_count] = s->point_count;
@@ -163,11 +164,11 @@ static bool outline_of(struct setting *s, FT_UInt index, struct font_glyph *glyp
         return fail(s, code);
     FT_GlyphSlot slot = s->face->glyph;
     glyph->advance = (double)slot->metrics.horiAdvance * s->scale;
-    assert(slot->format == FT_GLYPH_FORMAT_OUTLINE); /* as FT_LOAD_NO_BITMAP asks of a scalable face */
+    assert(slot->format == FT_GLYPH_FORMAT_OUTLINE); /* FT_LOAD_NO_BITMAP needs a scalable face */
     FT_Outline *outline = &slot->outline;
     if (outline->n_points <= 0)
         return true;
-    /* A point makes at most one piece, and a contour is closed by one more. */
+    /* A point makes at most one piece, and one more closes a contour. */
     size_t pieces = (size_t)outline->n_points + (size_t)outline->n_contours;
     s->points = arena_alloc_array(s->arena, 3 * pieces, sizeof *s->points);
     s->starts = arena_alloc_array(s->arena, (size_t)outline->n_contours + 1, sizeof *s->starts);
@@ -184,7 +185,7 @@ static bool outline_of(struct setting *s, FT_UInt index, struct font_glyph *glyp
     return true;
 }
 
-/* The next letter of UTF-8 (RFC 3629); false for what is none. */
+/* The next letter of UTF-8 (RFC 3629); false if the bytes are not valid. */
 static bool next_letter(const uint8_t **text, uint32_t *code) {
     static const uint32_t min[] = {0, 0x80, 0x800, 0x10000};
     const uint8_t *p = *text;
@@ -258,7 +259,7 @@ static bool open_and_set(struct setting *s, const uint8_t *data, size_t size, co
     code = FT_New_Memory_Face(s->library, data, (FT_Long)size, 0, &s->face);
     if (code)
         return fail(s, code);
-    int units = MAY_FAIL(s->face->units_per_EM); /* FreeType has refused 0, as far as is known */
+    int units = MAY_FAIL(s->face->units_per_EM); /* FreeType is expected to refuse 0 */
     if (!FT_IS_SCALABLE(s->face) || units <= 0)
         return error_set(s->error, ERROR_SCENE, "%s: this font has pictures of its letters, not outlines", s->path);
     s->scale = 1.0 / units;

@@ -1,11 +1,11 @@
-/* glTF 2.0, as JSON with buffers beside it or inside it, and as GLB. Source: Khronos Group, "glTF 2.0 Specification"
- * (ISO/IEC 12113:2022). The JSON is parsed by jansson. Read: the nodes of the scene with their transforms, their meshes
- * (triangles, strips, fans; position, normal, first texture coordinates, first colour), materials and pictures. Not
- * read: skins, morphs, animations, cameras, lights. An extension that the file calls required and that is not among
- * those we know is an error.
+/* glTF 2.0, as JSON with buffers in other files or inside it, and as GLB. Source: Khronos Group, "glTF 2.0
+ * Specification" (ISO/IEC 12113:2022). jansson parses the JSON. The reader takes the nodes of the scene with their
+ * transforms, their meshes (triangles, strips, fans; position, normal, first texture coordinates, first colour),
+ * materials and pictures. It ignores skins, morphs, animations, cameras and lights. A required extension that the
+ * reader does not know is an error.
  *
- * One accessor may be used by any number of primitives, so a small file can ask for very large meshes: what is made of
- * it is bounded by a multiple of its bytes. */
+ * Any number of primitives may use one accessor, so a small file can request very large meshes. A multiple of the
+ * size of the file bounds everything that is made from it. */
 #include "formats/model.h"
 
 #ifndef HAVE_JANSSON
@@ -29,9 +29,9 @@ const char *gltf_library(void) {
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Vertices and corners per byte of the file, and what every file may have. */
+/* Vertices and corners per byte of the file, and a minimum for every file. */
 enum { MADE_PER_BYTE = 8, MADE_FREE = 1 << 20 };
-/* jansson needs some 40 bytes for a number and 300 for an object. */
+/* jansson needs about 40 bytes for a number and 300 for an object. */
 enum { OBJECT_LIMIT = 1 << 20, VALUE_LIMIT = 1 << 24 };
 
 bool gltf_fail(const struct gltf *g, const char *where, const char *format, ...) {
@@ -88,7 +88,7 @@ bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, d
         return gltf_fail(g, where, "%s is not an array of %d numbers", key, count);
     for (int i = 0; i < count; i++) {
         const json_t *value = json_array_get(array, (size_t)i);
-        assert(isfinite(json_number_value(value))); /* JSON has no others; 0 if it is not a number */
+        assert(isfinite(json_number_value(value))); /* JSON has only finite numbers; 0 if it is not a number */
         if (!json_is_number(value))
             return gltf_fail(g, where, "%s[%d] is not a finite number", key, i);
         out[i] = json_number_value(value);
@@ -124,11 +124,11 @@ static bool produce(struct gltf *g, uint64_t count, const char *where) {
     return true;
 }
 
-/* The vertices that a primitive uses, as a list and as a range. */
+/* The vertices that a primitive uses, as a list or as a range. */
 struct corners {
     uint32_t *index; /* NULL: 0, 1, 2 ... */
     uint64_t count, first, vertices;
-    uint64_t available; /* vertices that the accessors have */
+    uint64_t available; /* number of vertices in the accessors */
 };
 
 static bool read_corners(struct gltf *g, const struct primitive *p, uint64_t available, struct corners *out) {
@@ -157,7 +157,7 @@ static bool read_corners(struct gltf *g, const struct primitive *p, uint64_t ava
     return produce(g, out->vertices, p->where);
 }
 
-/* The numbers of one attribute for the vertices of the primitive, `kept` of each. */
+/* Reads one attribute for the vertices of the primitive, `kept` numbers of each. */
 struct attribute {
     double *numbers;
     int components; /* of each vertex */
@@ -173,7 +173,7 @@ static bool read_attribute(struct gltf *g, const struct primitive *p, uint32_t a
     if (a.count != corners->available)
         return gltf_fail(g, p->where, "accessors[%u] has %llu elements for %llu vertices", accessor,
                          (unsigned long long)a.count, (unsigned long long)corners->available);
-    /* The sparse part is walked through once for every primitive that uses it. */
+    /* Every primitive that uses the accessor reads its sparse part once. */
     if (!produce(g, a.sparse_count, p->where))
         return false;
     size_t count;
@@ -211,7 +211,7 @@ static bool append_colours(struct gltf *g, struct list *list, const double *from
     return true;
 }
 
-/* What all primitives of a mesh must have so that its tables stay parallel. */
+/* The attributes that all primitives of a mesh must have so that its tables stay parallel. */
 struct mesh_plan {
     bool normals, uvs, colours;
 };
@@ -247,7 +247,7 @@ static bool add_vertices(struct gltf *g, const struct primitive *p, const struct
     return true;
 }
 
-/* Places of the tables at which the vertices of this primitive begin, and its material. */
+/* The first indices of this primitive's vertices in the tables, and its material. */
 struct buffer_bases {
     uint32_t vertex, normal, uv;
     uint32_t slot;
@@ -315,7 +315,7 @@ static bool add_primitive(struct gltf *g, const struct primitive *p, const struc
     return ok;
 }
 
-/* The slot of a material in this mesh; the few that a mesh has are searched in order. */
+/* The slot of a material in this mesh. A mesh has few materials: a linear search finds them. */
 static bool slot_of(struct gltf *g, struct model_mesh *mesh, uint32_t material, uint32_t *slot) {
     uint32_t *slots = mesh->slots.items;
     if (material == MODEL_NONE)
@@ -415,7 +415,7 @@ struct visit {
     uint32_t node, parent; /* in the file; in the model */
 };
 
-/* One node into the model, its children onto the stack. */
+/* Adds one node to the model and its children to the stack. */
 static bool read_node(struct gltf *g, struct visit visit, uint8_t *seen, struct list *stack) {
     char where[64];
     (void)snprintf(where, sizeof where, "nodes[%u]", visit.node);
@@ -457,7 +457,7 @@ static bool read_node(struct gltf *g, struct visit visit, uint8_t *seen, struct 
     return true;
 }
 
-/* The roots: those of the scene, or in a file without scenes all nodes without a parent. */
+/* The roots: those of the scene; in a file without scenes, all nodes without a parent. */
 static bool push_roots(struct gltf *g, struct list *stack) {
     const json_t *nodes = gltf_array(g, "nodes"), *scenes = gltf_array(g, "scenes");
     size_t count = json_array_size(nodes);
@@ -514,7 +514,7 @@ static bool read_nodes(struct gltf *g) {
     list_destroy(&stack);
     if (!ok || g->model->nodes.count)
         return ok;
-    /* A library of meshes: all of them, in their own places. */
+    /* A library of meshes: all of them, at their own positions. */
     for (uint32_t i = 0; i < g->model->meshes.count; i++) {
         struct model_node *node = model_add_node(g->model, g->error);
         if (!node)
@@ -567,7 +567,7 @@ static bool load(struct gltf *g) {
     return read_nodes(g);
 }
 
-/* What jansson would need is bounded before it starts. */
+/* Bounds the memory that jansson needs before it starts. */
 static bool check_json(const struct gltf *g, const char *text, size_t size) {
     size_t objects = 0, values = 0;
     bool string = false;
@@ -586,8 +586,8 @@ static bool check_json(const struct gltf *g, const char *text, size_t size) {
     return true;
 }
 
-/* jansson reports lack of memory as broken text, and its allocator has no context for an error: hence this one
- * variable, which lives from the start of a parse to its end. */
+/* jansson reports lack of memory as a syntax error, and its allocator has no context for an error. Hence this
+ * variable outside of struct gltf; it is valid from the start of a parse to its end. */
 static _Thread_local bool json_memory_failed;
 
 static void *json_memory(size_t size) {
@@ -599,14 +599,14 @@ static void *json_memory(size_t size) {
 static bool parse_json(struct gltf *g, const char *text, size_t size) {
     if (!check_json(g, text, size))
         return false;
-    /* Its memory comes from our room, its hash from the file: a file cannot choose names that collide, and the
-     * library needs no random numbers. */
+    /* jansson allocates from base/mem.h. Its hash seed depends on all bytes of the file, so that a file cannot contain
+     * names that collide, and the library needs no random numbers. */
     json_set_alloc_funcs(json_memory, mem_free);
     json_object_seed((size_t)hash_bytes(text, size, 1) | 1);
     json_error_t error;
     json_memory_failed = false;
     g->root = json_loadb(text, size, 0, &error);
-    if (json_memory_failed) /* even a text that seems whole may lack characters then */
+    if (json_memory_failed) /* characters may be missing then even if the text seems complete */
         return error_no_memory(g->error, g->path);
     if (g->root)
         return json_is_object(g->root) || gltf_fail(g, "its JSON", "an object must be at the top");
@@ -616,7 +616,7 @@ static bool parse_json(struct gltf *g, const char *text, size_t size) {
     return error_set(g->error, ERROR_SCENE, "%s:%d: broken JSON: %s", g->path, error.line, error.text);
 }
 
-/* The two chunks of a GLB (section 4.4); a file that begins otherwise is JSON as a whole. */
+/* The two chunks of a GLB (section 4.4); a file with another start is JSON as a whole. */
 static bool split(struct gltf *g, const uint8_t *data, size_t size, const char **text, size_t *length) {
     *text = (const char *)data;
     *length = size;

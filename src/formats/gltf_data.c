@@ -1,6 +1,6 @@
-/* Buffers, views and accessors of glTF: the position and the meaning of numbers. Source: Khronos Group, "glTF 2.0
- * Specification" (ISO/IEC 12113:2022), sections 3.6 and 4.4. Every range is checked against the bytes that are there,
- * once, when an accessor is made; reading then checks nothing but the numbers themselves. */
+/* Buffers, views and accessors of glTF: the positions and the meaning of numbers. Source: Khronos Group, "glTF 2.0
+ * Specification" (ISO/IEC 12113:2022), sections 3.6 and 4.4. Every range is checked against the available bytes
+ * once, when an accessor is made; reading then checks only the numbers. */
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf_internal.h"
@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* All the files that one model may draw in. */
+/* The size of all files together that one model may read. */
 #define FETCH_LIMIT (UINT64_C(1) << 33)
 
 static int digit64(char c) {
@@ -155,8 +155,8 @@ static bool type_of(const struct gltf *g, const json_t *object, enum number_type
     return true;
 }
 
-/* `count` elements of `element` bytes from an offset on must be inside the view; *data then points at the first. */
-/* Elements that a view is to hold, and where they are found in it. */
+/* `count` elements of `element` bytes from an offset on must be inside the view; *data is set to the first one. */
+/* The elements that a view contains, and their positions in it. */
 struct view_part {
     uint64_t count;
     size_t element; /* bytes of each */
@@ -236,7 +236,7 @@ bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out) {
     return !sparse || sparse_part(g, sparse, out, where);
 }
 
-/* Section 3.6.2.2: how whole numbers represent 0..1 or -1..1; others are not converted. */
+/* Section 3.6.2.2: integers that represent 0..1 or -1..1; other numbers are not converted. */
 static double value_of(const uint8_t *p, enum number_type type, bool normalized) {
     static const double one[NUMBER_TYPES] = {
         [NUMBER_I8] = 127, [NUMBER_U8] = 255, [NUMBER_I16] = 32767, [NUMBER_U16] = 65535};
@@ -285,6 +285,6 @@ bool gltf_accessor_read_whole(struct gltf *g, uint32_t index, const struct gltf_
 }
 
 #else
-/* Without jansson there is nothing in here. */
+/* This file is empty without jansson. */
 typedef int gltf_data_is_empty;
 #endif

@@ -1,4 +1,4 @@
-/* What the files of the glTF reader share; no other file includes this. */
+/* Declarations that only the files of the glTF reader use. */
 #ifndef GRAY_FORMATS_GLTF_INTERNAL_H
 #define GRAY_FORMATS_GLTF_INTERNAL_H
 
@@ -8,13 +8,13 @@
 
 #include <jansson.h>
 
-/* A buffer is fetched when something first looks into it. */
+/* A buffer is read at its first use. */
 struct gltf_buffer {
     const uint8_t *data;
     size_t size;
     bool fetched;
     uint8_t *decoded;       /* ours, from a data URI */
-    struct file_bytes file; /* ours, from a file beside the model */
+    struct file_bytes file; /* owned: from a file in the model's folder */
 };
 
 struct gltf {
@@ -26,13 +26,13 @@ struct gltf {
     size_t binary_size;
     struct gltf_buffer *buffers;
     size_t buffer_count;
-    struct image **images; /* embedded ones, once decoded */
+    struct image **images; /* embedded buffers, once decoded */
     size_t image_count;
-    uint64_t bytes;    /* of the file and all that was fetched for it */
+    uint64_t bytes;    /* of the file and of everything it refers to */
     uint64_t produced; /* vertices and corners so far */
 };
 
-/* Some numbers of the file: count elements of a few components each. */
+/* An array of elements with a few numbers each. */
 struct gltf_accessor {
     const uint8_t *data; /* NULL: zeros */
     size_t stride;
@@ -45,17 +45,17 @@ struct gltf_accessor {
     enum number_type sparse_type;
 };
 
-/* "FILE: WHERE: what", false. */
+/* Sets the error "FILE: WHERE: what" and returns false. */
 bool gltf_fail(const struct gltf *g, const char *where, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* The array of that name at the root, or NULL. */
 json_t *gltf_array(const struct gltf *g, const char *name);
-/* A whole number >= 0; absent gives `otherwise`. False: something else stands there. */
+/* An integer >= 0; `otherwise` if it is absent. False: the value is something else. */
 bool gltf_whole(const struct gltf *g, const json_t *object, const char *key, uint64_t otherwise, uint64_t *out,
                 const char *where);
-/* The same as an index into the array `of` at the root; absent gives MODEL_NONE. */
+/* The same as an index into the root array `of`; MODEL_NONE if it is absent. */
 bool gltf_index(const struct gltf *g, const json_t *object, const char *key, const char *of, uint32_t *out,
                 const char *where);
-/* The numbers of an array, all or none of them; what is not there stays as it was. */
+/* The numbers of an array, all of them or none; `out` does not change if there is no array. */
 bool gltf_numbers(const struct gltf *g, const json_t *object, const char *key, double *out, int count,
                   const char *where);
 
@@ -66,7 +66,7 @@ bool gltf_accessor(struct gltf *g, uint32_t index, struct gltf_accessor *out);
 bool gltf_accessor_read(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint64_t first, uint64_t count,
                         double *out);
 bool gltf_accessor_read_whole(struct gltf *g, uint32_t index, const struct gltf_accessor *a, uint32_t *out);
-/* Percent signs decoded, in the model's arena; NULL without memory. */
+/* Decodes percent signs, into the model's arena; NULL: no memory. */
 char *gltf_decode_uri(const struct gltf *g, const char *uri);
 bool gltf_decode_data(const struct gltf *g, const char *uri, uint8_t **out, size_t *size, const char *where);
 

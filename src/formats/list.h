@@ -1,4 +1,4 @@
-/* A growing array, and the bytes of a file while they are read. Lists grow by half. */
+/* A growing array for readers of files. It grows by half of its size. */
 #ifndef GRAY_FORMATS_LIST_H
 #define GRAY_FORMATS_LIST_H
 
@@ -8,18 +8,18 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Owner: whoever holds it, list_destroy gives it back. Zero value: empty. */
+/* Owner: its holder, who calls list_destroy. Zero value: empty. */
 struct list {
     void *items;
     size_t count, capacity;
 };
 
-/* Room for `more` items of `size` bytes behind the last one; NULL without memory. The caller raises count. */
+/* Room for `more` items of `size` bytes after the last one; NULL: no memory. The caller increases count. */
 static inline void *list_room(struct list *list, size_t more, size_t size) {
     if (!list->items || list->capacity - list->count < more) {
         size_t min, capacity = list->capacity + list->capacity / 2 + 64;
         bool beyond = __builtin_add_overflow(list->count, more, &min);
-        assert(!beyond); /* both are bounded by the bytes of a file */
+        assert(!beyond); /* the size of a file bounds both */
         (void)beyond;
         if (capacity < min)
             capacity = min;

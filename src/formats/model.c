@@ -1,6 +1,6 @@
-/* The common part of all mesh files: recognising them, collecting tables, building meshes. Tables live from the
- * reader to model_finish and not longer: a big file is in memory as bytes, as tables and as a mesh, never twice as one
- * of them. */
+/* The common part of all mesh readers: recognising files, collecting tables, making meshes. Tables exist from the
+ * reader until model_finish. At any time, a large file is in memory at most once as bytes, once as tables and once
+ * as a mesh. */
 #include "formats/model.h"
 
 #include "base/file.h"
@@ -15,11 +15,11 @@
 #include <string.h>
 #include <strings.h>
 
-/* gzip out of memory into memory, through zlib (RFC 1951, 1952). Deflate can grow a thousandfold, so what comes out is
- * bounded by what a mesh file can reasonably be: a small hostile file costs little memory. A file may be several
- * members one behind the other; zeros behind the last one are padding. */
+/* gzip from memory into memory, through zlib (RFC 1951, 1952). Deflate can expand by a factor of a thousand, so the
+ * result is limited to a reasonable size of mesh files: a small hostile file uses little memory. A file may consist
+ * of several members in succession; zeros after the last one are padding. */
 
-/* zlib counts in 32 bits: long files go through it piece by piece (small ones in test builds). */
+/* zlib counts in 32 bits: long files are processed in pieces (small ones in test builds). */
 #ifdef GRAY_FAULTS
 enum { PIECE = 1 << 12 };
 #else
@@ -31,7 +31,7 @@ static size_t consumed(const z_stream *stream, const uint8_t *data) {
     return (size_t)(stream->next_in - data);
 }
 
-/* One member from stream->next_in on, appended to *out. */
+/* Appends one member, which starts at stream->next_in, to *out. */
 static bool member(z_stream *stream, const char *path, struct file_bytes from, struct list *out, size_t limit,
                    struct error *error) {
     for (;;) {
@@ -52,7 +52,7 @@ static bool member(z_stream *stream, const char *path, struct file_bytes from, s
         if (status == Z_MEM_ERROR)
             return error_no_memory(error, path);
         if (status != Z_OK && status != Z_BUF_ERROR) {
-            assert(stream->msg); /* zlib gives the reason of every error in the data */
+            assert(stream->msg); /* zlib states a reason for every error in the data */
             return error_set(error, ERROR_SCENE, "%s: byte %zu: the gzip data are broken: %s", path,
                              consumed(stream, from.data), stream->msg);
         }
@@ -152,7 +152,7 @@ void model_warn(struct model *model, const char *format, ...) {
     va_start(arguments, format);
     (void)vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    for (char *c = text; *c; c++) /* names from the file may hold anything */
+    for (char *c = text; *c; c++) /* names from the file may contain any bytes */
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
             *c = '?';
     char *copy = arena_copy_text(&model->arena, text, strlen(text));
@@ -176,7 +176,7 @@ bool model_find(struct model *model, const char *name, size_t length, const char
             *c = '/';
     const char *last = strrchr(plain, '/');
     last = last ? last + 1 : plain;
-    /* Beside the model; where it says; by its bare name beside the model. */
+    /* In the model's folder; at the stated path; with its bare name in the model's folder. */
     for (int attempt = 0; attempt < 3; attempt++) {
         char *tried =
             attempt == 1 ? plain : arena_format(&model->arena, "%.*s%s", folder, model->path, attempt ? last : plain);
@@ -257,7 +257,7 @@ static bool finish_mesh(struct model *model, struct model_mesh *m, struct error 
 
 /* --- the range of numbers --- */
 
-/* A row of that many doubles with one beyond the limit; SIZE_MAX: there is none. */
+/* The first row of that many doubles with one beyond the limit; SIZE_MAX: there is none. */
 static size_t row_beyond(const struct list *rows, size_t width) {
     const double *numbers = rows->items;
     for (size_t i = 0; i < rows->count * width; i++)
@@ -302,7 +302,7 @@ static bool node_in_range(const struct model_node *node) {
     return fine;
 }
 
-/* Whatever the format: what is beyond the limit for scripts is none of a file either. */
+/* For every format: numbers beyond the limit of scripts are errors in files, too. */
 static bool check_numbers(const struct model *model, struct error *error) {
     for (size_t i = 0; i < model->meshes.count; i++)
         if (!check_tables(model, &model_meshes(model)[i], error))
@@ -411,7 +411,7 @@ static bool load(struct model *model, const uint8_t *data, size_t size, struct e
     UNREACHABLE("a file of no kind");
 }
 
-/* Bytes from file_map are unmapped before the meshes are made. */
+/* The bytes of file_map are unmapped before the meshes are made. */
 static bool parse(struct model *model, const char *path, struct file_bytes file, bool is_mapped,
                   const struct model_options *options, struct error *error) {
     const uint8_t *data = file.data;

@@ -1,7 +1,7 @@
-/* Wavefront MTL: materials as lines of a keyword and its values, each belonging to the last newmtl. Source: D. Ramey,
- * L. Rose, L. Tyerman, "MTL material format (Lightwave, OBJ)", 1995, and what exporters of today write (map_bump, norm,
- * Ke, Pr). Unknown keywords are skipped. A name runs to the end of its line, blanks included; that of a picture begins
- * behind its options. */
+/* Wavefront MTL: each line is a keyword and its values, which belong to the last newmtl. Source: D. Ramey, L. Rose,
+ * L. Tyerman, "MTL material format (Lightwave, OBJ)", 1995, and the keywords of current exporters (map_bump, norm,
+ * Ke, Pr). Unknown keywords are skipped. A name extends to the end of its line, including blanks; the name of a
+ * picture follows its options. */
 #include "formats/model.h"
 
 #include "formats/decimal_internal.h"
@@ -66,7 +66,7 @@ static bool read_number(struct library *l, double *out) {
     return true;
 }
 
-/* One number for all three, three, or something we have no use for (spectral, xyz). */
+/* Reads one number for all three, or three numbers; false for other forms (spectral, xyz). */
 static bool read_colour(struct library *l, struct vec3 *out) {
     size_t length = next_word(l);
     if (is_word(l, length, "spectral") || is_word(l, length, "xyz"))
@@ -93,7 +93,7 @@ static const char *rest(struct library *l, size_t *length) {
     return l->at;
 }
 
-/* Up to three numbers behind an option; those that are given replace what is in `out`. */
+/* Reads up to three numbers after an option; they replace the first ones in `out`. */
 static void option_numbers(struct library *l, double out[3], int max) {
     for (int i = 0; i < max; i++) {
         size_t length = next_word(l);
@@ -153,7 +153,7 @@ static bool read_map(struct library *l, struct model_texture *map) {
     map->name = arena_copy_text(&l->model->arena, name, length);
     if (!map->name)
         return error_no_memory(l->error, l->path);
-    /* Names in a library are relative to the library, which is usually beside the model. */
+    /* Names in a library are relative to the library, which is usually in the model's folder. */
     const char *slash = strrchr(l->path, '/');
     if (slash && !l->model->options.single_file && name[0] != '/') {
         int folder = (int)(slash + 1 - l->path);

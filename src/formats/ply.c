@@ -1,10 +1,11 @@
-/* PLY: a header in text names elements and their properties, then come the elements, in text or in binary numbers of
- * either order. Source: G. Turk, "The PLY Polygon File Format", 1994, and its reference reader's names of types.
+/* PLY: a header in text names elements and their properties; then follow the elements, as text or as binary numbers
+ * of either byte order. Source: G. Turk, "The PLY Polygon File Format", 1994, and the type names of its reference
+ * reader.
  *
- * The header is turned into a list of properties per element, each with what it means to us; one loop over elements,
- * rows and properties then reads everything, and what means nothing is passed over by its size. A row of text is a
- * line. Nothing is trusted: a count claims at least so many bytes and is refused when the file has fewer, before any
- * memory is taken, so memory is a small multiple of the file. */
+ * The header becomes a list of properties per element, each with its meaning for the mesh. One loop over elements,
+ * rows and properties then reads everything, and skips data without meaning by its size. A row of text is one line.
+ * Counts are checked before memory is allocated: each count needs a minimum number of bytes, and the file is refused
+ * if it has fewer. So memory is a small multiple of the file's size. */
 #include "formats/decimal_internal.h"
 #include "formats/model.h"
 #include "formats/scan_internal.h"
@@ -14,7 +15,7 @@
 
 enum { ELEMENTS = 64, PROPERTIES = 512 };
 
-/* What a property means. Up to BLUE: a number of a vertex. */
+/* The meaning of a property. Up to BLUE: a number of a vertex. */
 enum ply_property {
     NOTHING,
     X,
@@ -65,9 +66,9 @@ struct ply {
     int property_count;
     struct model_mesh *mesh;
     bool has[SCALARS];     /* of the vertices */
-    double colour_scale;   /* from the type's range to 0 .. 1 */
-    struct list values;    /* uint32_t: the list that was read last */
-    struct list pending;   /* double: the uvs of one face */
+    double colour_scale;   /* from the range of the type to 0 .. 1 */
+    struct list values;    /* uint32_t: the last list read */
+    struct list pending;   /* double: the texture coordinates of one face */
     uint64_t vertex_total; /* what the header says */
 };
 
@@ -89,7 +90,7 @@ struct words {
     int count;
 };
 
-/* The next line of the header, cut into words; false at the end of the file. */
+/* The next line of the header, split into words; false at the end of the file. */
 static bool header_line(struct ply *ply, struct words *words) {
     *words = (struct words){0};
     if (ply->at >= ply->end)
@@ -208,7 +209,7 @@ static bool read_property(struct ply *ply, const struct words *words) {
         ply->colour_scale = p.type == NUMBER_U8 ? 1 / 255.0 : p.type == NUMBER_U16 ? 1 / 65535.0 : 1 / 255.0;
     ply->properties[ply->property_count++] = p;
     element->property_count++;
-    /* In text every number is a digit and a blank or line end at least. */
+    /* In text every number needs at least a digit and a blank or line end. */
     element->min += ply->format == ASCII ? 2 : number_size(p.is_list ? p.count_type : p.type);
     return true;
 }
@@ -282,7 +283,7 @@ static bool is_blank(uint8_t c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
-/* Text: to the next word of this line; false when the line ends first. */
+/* Text: moves to the next word of this line; false if the line ends first. */
 static bool on_word(struct ply *ply) {
     while (ply->at < ply->end && is_blank(*ply->at))
         ply->at++;
@@ -319,8 +320,8 @@ static bool read_number(struct ply *ply, enum number_type type, double *out) {
     return true;
 }
 
-/* Counts and vertices of text are nearly always a few digits and a blank. False: it is something else, nothing was
- * read. */
+/* Counts and vertices in text are nearly always a few digits and a blank. False: it is something else, and nothing
+ * was read. */
 static bool read_quick_whole(struct ply *ply, uint32_t *out) {
     const uint8_t *p = ply->at, *end = ply->end;
     while (p < end && is_blank(*p))
@@ -339,7 +340,7 @@ static bool read_quick_whole(struct ply *ply, uint32_t *out) {
     return true;
 }
 
-/* The number of entries of a list, which the file can surely hold. */
+/* The number of entries of a list; the rest of the file can contain as many. */
 static bool read_count(struct ply *ply, const struct property *p, uint32_t *out) {
     double count;
     uint32_t whole;
@@ -409,7 +410,7 @@ static float colour_of(const struct ply *ply, double value) {
 static bool add_vertex(struct ply *ply, const double value[SCALARS]) {
     struct model_mesh *mesh = ply->mesh;
     double *v = list_room(&mesh->vertices, 1, 3 * sizeof *v);
-    assert(v); /* of the room that reserve() made */
+    assert(v); /* of the capacity that reserve() allocated */
     v[0] = value[X], v[1] = value[Y], v[2] = value[Z];
     mesh->vertices.count++;
     if (mesh->normals_by_vertex) {
@@ -451,7 +452,7 @@ static bool add_face(struct ply *ply, const uint32_t *corners, uint32_t count) {
     return true;
 }
 
-/* A list of vertices into ply->values; MODEL_NONE for -1 where that is allowed. */
+/* Reads a list of vertices into ply->values; MODEL_NONE stands for -1 where that is allowed. */
 static bool read_indices(struct ply *ply, const struct property *p, bool restarts) {
     uint32_t count;
     if (!read_count(ply, p, &count))
@@ -460,7 +461,7 @@ static bool read_indices(struct ply *ply, const struct property *p, bool restart
     uint32_t *out = list_room(&ply->values, count ? count : 1, sizeof *out);
     if (!out)
         return no_memory(ply);
-    /* The usual case, 4-byte numbers in the order of this machine, without a call for each. */
+    /* A fast path for the usual case: 4-byte numbers in the byte order of this machine. */
     unsigned size = number_size(p->type);
     bool quick = ply->format != ASCII && size == 4;
     uint32_t whole;
@@ -514,7 +515,7 @@ static bool read_corner_uvs(struct ply *ply, const struct property *p) {
     return true;
 }
 
-/* Triangles of strips have no uvs of their own corners: the list says so up to this corner. */
+/* The corners of triangles from strips have no texture coordinates of their own: fills the list up to this corner. */
 static bool pad_corner_uvs(struct ply *ply, size_t corner) {
     struct list *index = &ply->mesh->uv_index;
     while (index->count < corner)
@@ -564,7 +565,7 @@ static bool read_face(struct ply *ply, const struct element *element, bool corne
     return add_face(ply, ply->values.items, count) && (!corner_uvs || add_corner_uvs(ply, count));
 }
 
-/* Every vertex from the third on makes a triangle, reversed at every second one. */
+/* Each vertex from the third on makes a triangle; every second triangle is reversed. */
 static bool add_strips(struct ply *ply) {
     const uint32_t *v = ply->values.items;
     size_t first = 0;
@@ -577,7 +578,7 @@ static bool add_strips(struct ply *ply) {
             continue;
         bool odd = (i - first) % 2;
         const uint32_t corners[3] = {v[i - 2], odd ? v[i] : v[i - 1], odd ? v[i - 1] : v[i]};
-        /* Strips are joined by triangles that are lines. */
+        /* Degenerate triangles join strips. */
         if (corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2] &&
             !add_face(ply, corners, 3))
             return false;
@@ -604,7 +605,7 @@ static bool read_row(struct ply *ply, const struct element *element, bool corner
     return true;
 }
 
-/* Rows of binary numbers without lists that mean nothing to us go by at once. */
+/* Skips rows of binary numbers without lists and without meaning for the mesh all at once. */
 static bool skip_at_once(struct ply *ply, const struct element *element) {
     for (int k = 0; k < element->property_count; k++)
         if (ply->properties[element->first + k].is_list)
@@ -612,7 +613,8 @@ static bool skip_at_once(struct ply *ply, const struct element *element) {
     return ply->format != ASCII && element->kind == OTHER;
 }
 
-/* Room for what the header promises and the bytes that are left can hold, so that lists need not grow. */
+/* Reserves memory for the number of elements that the header states and the remaining bytes can contain, so that
+ * lists need not grow. */
 static bool reserve(struct ply *ply, const struct element *element) {
     struct model_mesh *mesh = ply->mesh;
     if (element->kind == VERTICES)

@@ -1,7 +1,8 @@
-/* STL, text and binary. Source of both: 3D Systems, "StereoLithography Interface Specification", 1988-1989 (binary: 80
- * bytes of anything, a count, per triangle twelve little-endian floats and two bytes of attributes). The file repeats
- * every corner, so corners in one place become one vertex, exactly: closed solids are closed. The normals in the file
- * say no more than the order of the corners does, are often zero or wrong, and are not used. */
+/* STL, text and binary. Source of both: 3D Systems, "StereoLithography Interface Specification", 1988-1989 (binary:
+ * any 80 bytes, a count, then per triangle twelve little-endian floats and two bytes of attributes). The file
+ * repeats every corner. Corners at exactly the same position become one vertex, so that closed solids are closed.
+ * The normals in the file are not used: they contain no more than the order of the corners, and are often zero or
+ * wrong. */
 #include "formats/decimal_internal.h"
 #include "formats/model.h"
 #include "formats/scan_internal.h"
@@ -14,7 +15,7 @@
 
 enum { HEADER = 84, FACET = 50 };
 
-/* One vertex for each place, numbered by first use. mesh->vertices has a vertex for each corner. */
+/* One vertex for each position, numbered by first use. mesh->vertices has a vertex for each corner. */
 static bool weld(struct model *model, struct model_mesh *mesh, struct error *error) {
     size_t corners = mesh->vertices.count;
     double(*vertices)[3] = mesh->vertices.items;
@@ -121,7 +122,7 @@ static bool read_point(struct text *t, double out[3]) {
     return true;
 }
 
-/* Three words that are skipped: exporters write nan there. */
+/* Skips three words: some exporters write nan there. */
 static bool skip_normal(struct text *t) {
     for (int k = 0; k < 3; k++) {
         size_t length = next_word(t);
@@ -153,7 +154,7 @@ static void skip_line(struct text *t) {
 static bool load_text(struct model *model, struct model_mesh *mesh, const char *data, size_t size,
                       struct error *error) {
     struct text t = {.path = model->path, .at = data, .end = data + size, .line = 1, .error = error};
-    assert(size >= 3); /* a text begins with "solid", else it is none */
+    assert(size >= 3); /* a text begins with "solid"; other texts are errors */
     if (memcmp(data, "\xef\xbb\xbf", 3) == 0)
         t.at += 3;
     bool inside = false;
