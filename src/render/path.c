@@ -58,6 +58,7 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->samples = samples_of(settings);
     renderer->pass = (struct sample_pass){.end = tracer->samples};
     tracer->max_depth = settings->max_depth;
+    tracer->roulette_depth = settings->roulette_depth;
     tracer->noise = settings->noise;
     tracer->clamp = settings->clamp;
     filter_init(&tracer->filter, settings->filter);

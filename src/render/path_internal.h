@@ -15,8 +15,9 @@
 
 /* Of a run. Owns the arena. */
 struct path_tracer {
-    uint32_t samples; /* of a pixel, at most */
-    int max_depth;    /* scattering events of a path: 0 emission, 1 direct light */
+    uint32_t samples;   /* of a pixel, at most */
+    int max_depth;      /* scattering events of a path: 0 emission, 1 direct light */
+    int roulette_depth; /* scattering events after which roulette may end a path */
     enum path_strategy strategy;
     struct filter filter;
     double noise; /* a tile with this noise is finished; 0: every tile takes all samples */

@@ -12,7 +12,6 @@
 #include <string.h>
 
 enum { HOLE_LIMIT = 200 };           /* holes that a ray passes in succession, as in Whitted's integrator */
-enum { ROULETTE_FROM = 2 };          /* scattering events before Russian roulette begins */
 static const double survival = 0.95; /* at most */
 
 struct path {
@@ -268,7 +267,7 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     path->depth++;
     if (transmits)
         path->radiance_scale *= bsdf->eta * bsdf->eta;
-    if (path->depth > ROULETTE_FROM ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
+    if (path->depth > tracer->roulette_depth ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
         return false;
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;

@@ -436,6 +436,7 @@ struct settings settings_default(void) {
                              .corner_tolerance = 0.01,
                              .area_samples = 4,
                              .max_depth = DEPTH_DEFAULT,
+                             .roulette_depth = ROULETTE_DEPTH_DEFAULT,
                              .specular = SPECULAR_PHONG,
                              .accel = ACCEL_AUTO,
                              .shutter = {0, 1},

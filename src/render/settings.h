@@ -76,6 +76,7 @@ enum {
     PATH_SAMPLES_NOISE = 1 << 16,
     PATH_SAMPLES_MAX = 1 << 24,
     DEPTH_DEFAULT = 16,
+    ROULETTE_DEPTH_DEFAULT = 2,
     DEPTH_MAX = 1000000
 };
 /* What makes noise of few samples invisible, where the picture is written. GRAY: render/denoise.h; OIDN: the program
@@ -123,9 +124,10 @@ struct settings {
     int reflect_limit, refract_limit;        /* 0..1000 */
     double side_tolerance, corner_tolerance; /* squared RGB distance, >= 0 */
     bool use_tir;
-    int area_samples; /* -al-samples: N x N shadow rays; 1..64 */
-    int path_samples; /* --spp: samples of a pixel; 0: not set, PATH_SAMPLES_DEFAULT */
-    int max_depth;    /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
+    int area_samples;   /* -al-samples: N x N shadow rays; 1..64 */
+    int path_samples;   /* --spp: samples of a pixel; 0: not set, PATH_SAMPLES_DEFAULT */
+    int max_depth;      /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
+    int roulette_depth; /* scattering events after which Russian roulette may end a path, 0..DEPTH_MAX */
     enum filter_kind filter;
     double noise;          /* --noise: a tile whose relative standard error is not larger is done; 0: all samples */
     double time_limit;     /* --time-limit: seconds, for whole passes of paths over the picture; 0: none */

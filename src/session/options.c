@@ -427,6 +427,7 @@ struct digest options_digest(const struct options *options) {
         bool path = option->offset == offsetof(struct options, settings.integrator) ||
                     option->offset == offsetof(struct options, settings.path_samples) ||
                     option->offset == offsetof(struct options, settings.max_depth) ||
+                    option->offset == offsetof(struct options, settings.roulette_depth) ||
                     option->offset == offsetof(struct options, settings.noise) ||
                     option->offset == offsetof(struct options, settings.time_limit) ||
                     option->offset == offsetof(struct options, settings.clamp) ||
@@ -443,6 +444,8 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->path_samples, sizeof settings->path_samples, digest);
     if (settings->max_depth != DEPTH_DEFAULT)
         digest = digest_bytes(&settings->max_depth, sizeof settings->max_depth, digest);
+    if (settings->roulette_depth != ROULETTE_DEPTH_DEFAULT)
+        digest = digest_bytes(&settings->roulette_depth, sizeof settings->roulette_depth, digest);
     if (settings->colour != COLOUR_AUTO)
         digest = digest_bytes(&settings->colour, sizeof settings->colour, digest);
     if (settings->filter != FILTER_BOX)

@@ -55,6 +55,8 @@ const struct option option_table[] = {
      "N samples for a pixel, with --integrator path"},
     {OPTION_GROUP_PICTURE, "--max-depth", OPTION_INTEGER, "N", 0, DEPTH_MAX, FIELD(settings.max_depth), "16",
      "a path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one bounce more"},
+    {OPTION_GROUP_PICTURE, "--roulette-depth", OPTION_INTEGER, "N", 0, DEPTH_MAX, FIELD(settings.roulette_depth), "2",
+     "Russian roulette may end a path after N scattering events"},
     {OPTION_GROUP_PICTURE, "--noise", OPTION_NUMBER, "X", 1e-6, 10, FIELD(settings.noise), "all samples",
      "with --integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative "
      "standard error is X"},
