@@ -35,6 +35,9 @@ static wide product(double a, double b, int *exponent) {
 double triangle_edge_exact(double ax, double ay, double bx, double by) {
     if (!(isfinite(ax) && isfinite(ay) && isfinite(bx) && isfinite(by)))
         return NAN;
+    /* Products of zeros, as for triangles along the axes, are exact. */
+    if ((ax == 0 || by == 0) && (ay == 0 || bx == 0))
+        return ax * by - ay * bx;
     int ep, eq;
     wide p = product(ax, by, &ep), q = product(ay, bx, &eq);
     bool p_negative = signbit(ax) != signbit(by), q_negative = signbit(ay) != signbit(bx);
