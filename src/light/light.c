@@ -102,9 +102,10 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
         out->edge1 = light->edge1;
         out->edge2 = light->edge2;
         out->weight = intensity_of(vec3_length(normal));
-        out->axis = vec3_normalize(normal);
         out->by_angle =
             light->emissive && spherical_rectangle_make(light->corner, light->edge1, light->edge2, from, &out->seen);
+        if (!out->by_angle)
+            out->axis = vec3_normalize(normal);
         return !light_planar_is_behind(light, normal, from);
     }
     case LIGHT_DISC:

@@ -217,7 +217,7 @@ static bool lobe_counts(const struct bsdf *bsdf, const struct lobe *lobe) {
 }
 
 static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    double n_l = classic_cosine(bsdf, wi);
+    double n_l = lobe_flags(lobe->kind) & BSDF_CLASSIC ? classic_cosine(bsdf, wi) : 0;
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         return n_l > 0 ? n_l / PI : 0;
@@ -247,7 +247,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
 
 /* f |cos| over the weight, as light; transmission by the rules of IMPORTANCE. */
 static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wo, struct vec3 wi) {
-    double n_l = classic_cosine(bsdf, wi);
+    double n_l = lobe_flags(lobe->kind) & BSDF_CLASSIC ? classic_cosine(bsdf, wi) : 0;
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         return n_l > 0 ? intensity_of(n_l) : 0;
@@ -378,14 +378,34 @@ static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
 /* Lobes are chosen in proportion to it. Without a boundary no facet reflects. */
 static double lobe_chance(const struct bsdf *bsdf, uint32_t lobes, int i) {
     const struct lobe *lobe = &bsdf->lobes[i];
-    if (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1)
+    if (!(lobes >> i & 1) || !lobe_counts(bsdf, lobe) ||
+        (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1))
         return 0;
-    return lobes >> i & 1 && lobe_counts(bsdf, lobe) ? vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe) : 0;
+    return vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe);
 }
-static double all_chances(const struct bsdf *bsdf, uint32_t lobes) {
+
+/* The chances of all lobes, and their sum. */
+struct lobe_chances {
+    double of[BSDF_LOBES], all;
+};
+static void lobe_chances_make(const struct bsdf *bsdf, uint32_t lobes, struct lobe_chances *out) {
+    out->all = 0;
+    for (int i = 0; i < bsdf->count; i++) {
+        out->of[i] = lobe_chance(bsdf, lobes, i);
+        out->all += out->of[i];
+    }
+}
+/* A lobe without others needs no division. */
+static double lobe_share(const struct lobe_chances *chances, int i) {
+    return chances->of[i] == chances->all ? chances->all > 0 : chances->of[i] / chances->all;
+}
+
+static double pdf_of_chances(const struct bsdf *bsdf, const struct lobe_chances *chances, struct vec3 wo,
+                             struct vec3 wi) {
     double sum = 0;
     for (int i = 0; i < bsdf->count; i++)
-        sum += lobe_chance(bsdf, lobes, i);
+        if (chances->of[i] > 0)
+            sum += lobe_share(chances, i) * lobe_pdf(bsdf, &bsdf->lobes[i], wo, wi);
     return sum;
 }
 
@@ -405,22 +425,20 @@ struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mo
 }
 
 double bsdf_pdf(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi) {
-    double all = all_chances(bsdf, lobes), sum = 0;
-    for (int i = 0; i < bsdf->count; i++) {
-        double chance = lobe_chance(bsdf, lobes, i);
-        if (chance > 0)
-            sum += chance / all * lobe_pdf(bsdf, &bsdf->lobes[i], wo, wi);
-    }
-    return sum;
+    struct lobe_chances chances;
+    lobe_chances_make(bsdf, lobes, &chances);
+    return pdf_of_chances(bsdf, &chances, wo, wi);
 }
 
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out) {
     /* Choose a lobe; the rest of u.x is reused. */
-    double all = all_chances(bsdf, lobes), from = 0;
+    struct lobe_chances chances;
+    double from = 0;
     int chosen = -1;
+    lobe_chances_make(bsdf, lobes, &chances);
     for (int i = 0; i < bsdf->count; i++) {
-        double share = lobe_chance(bsdf, lobes, i) / all;
+        double share = lobe_share(&chances, i);
         if (!(share > 0))
             continue;
         if (chosen >= 0 && u.x < from)
@@ -432,8 +450,10 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
     if (chosen < 0)
         return false;
     const struct lobe *lobe = &bsdf->lobes[chosen];
-    double within = (u.x - (from - out->pdf)) / out->pdf;
-    u.x = within > 0 ? within < 1 ? within : 0x1.fffffffffffffp-1 : 0;
+    if (out->pdf < 1) {
+        double within = (u.x - (from - out->pdf)) / out->pdf;
+        u.x = within > 0 ? within < 1 ? within : 0x1.fffffffffffffp-1 : 0;
+    }
 
     struct lobe_direction sampled;
     if (!lobe_sample(bsdf, lobe, wo, u, &sampled))
@@ -445,7 +465,7 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
         out->weight = vec3_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }
-    out->pdf = bsdf_pdf(bsdf, lobes, wo, out->direction);
+    out->pdf = pdf_of_chances(bsdf, &chances, wo, out->direction);
     if (!(out->pdf > 0))
         return false;
     out->weight = vec3_scale(bsdf_eval(bsdf, lobes, mode, wo, out->direction), 1 / out->pdf);

@@ -79,9 +79,14 @@ static double limited(double x, double low, double high) {
     return x < low ? low : x > high ? high : x;
 }
 
-/* The angle between two neighbouring planes through the point, from their normals. */
-static double corner_angle(struct vec3 a, struct vec3 b) {
-    return el_acos(limited(-vec3_dot(a, b), -1, 1));
+/* The plane through the point and an edge: the z of its unit normal (x, 0, z) or (0, y, z). */
+static double plane_z(double xy, double z) {
+    return vec3_normalize((struct vec3){0, xy, z}).z;
+}
+
+/* The angle between two neighbouring planes, whose normals have only z in common. */
+static double corner_angle(double a, double b) {
+    return el_acos(limited(-(a * b), -1, 1));
 }
 
 bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
@@ -105,13 +110,13 @@ bool spherical_rectangle_make(struct vec3 corner, struct vec3 edge1, struct vec3
     out->y1 = out->y0 + length2;
     if (!(out->z0 < 0))
         return false;
-    struct vec3 v00 = {out->x0, out->y0, out->z0}, v01 = {out->x0, out->y1, out->z0};
-    struct vec3 v10 = {out->x1, out->y0, out->z0}, v11 = {out->x1, out->y1, out->z0};
-    struct vec3 n0 = vec3_normalize(vec3_cross(v00, v10)), n1 = vec3_normalize(vec3_cross(v10, v11));
-    struct vec3 n2 = vec3_normalize(vec3_cross(v11, v01)), n3 = vec3_normalize(vec3_cross(v01, v00));
+    double x0 = out->x0, x1 = out->x1, y0 = out->y0, y1 = out->y1, z0 = out->z0;
+    /* Cross products of the corners, in the order in which they surround the rectangle. */
+    double n0 = plane_z(z0 * x1 - x0 * z0, x0 * y0 - y0 * x1), n1 = plane_z(y0 * z0 - z0 * y1, x1 * y1 - y0 * x1);
+    double n2 = plane_z(z0 * x0 - x1 * z0, x1 * y1 - y1 * x0), n3 = plane_z(y1 * z0 - z0 * y0, x0 * y0 - y1 * x0);
     double g0 = corner_angle(n0, n1), g1 = corner_angle(n1, n2), g2 = corner_angle(n2, n3), g3 = corner_angle(n3, n0);
-    out->b0 = n0.z;
-    out->b1 = n2.z;
+    out->b0 = n0;
+    out->b1 = n2;
     out->k = 2 * PI - g2 - g3;
     out->angle = g0 + g1 - out->k;
     return out->angle > min_angle;

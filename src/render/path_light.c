@@ -179,6 +179,8 @@ static double met_weight(const struct path_tracer *tracer, const struct path_seg
 struct vec3 path_emission(const struct path_tracer *tracer, const struct path_segment *segment, const struct hit *hit,
                           struct vec3 emission) {
     const struct world_lights *lights = &tracer->lights;
+    if (lights->of_primitive[hit->primitive] == LIGHT_NONE && is_black(emission))
+        return emission;
     struct vec3 radiance = world_lights_radiance(lights, segment->receiver->primitive, hit, emission);
     radiance = without_thrown(tracer, lights->of_primitive[hit->primitive], segment->thrown, radiance);
     if (is_black(radiance) || segment->pdf == 0)
@@ -192,10 +194,10 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
     struct vec3 sum = {0, 0, 0};
     struct world_lights_traversal traversal;
     struct light_hit hit;
-    struct ray ray = *segment->ray;
     uint32_t number;
     if (lights->area_light_count == 0)
         return sum;
+    struct ray ray = *segment->ray;
     ray.t_max = t_max;
     world_lights_met_begin(&traversal, lights, &ray);
     while (world_lights_met_next(&traversal, &number, &hit)) {
@@ -231,11 +233,11 @@ struct vec3 path_environment(const struct path_tracer *tracer, const struct path
 bool path_area_light_seen(const struct path_tracer *tracer, const struct ray *ray, double t_max, double *t,
                           struct vec3 *radiance) {
     const struct world_lights *lights = &tracer->lights;
-    struct ray limited = *ray;
     struct light_hit hit;
     uint32_t number;
     if (lights->area_light_count == 0)
         return false;
+    struct ray limited = *ray;
     limited.t_max = t_max;
     if (!world_lights_seen(lights, &limited, &number, &hit))
         return false;

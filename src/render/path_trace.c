@@ -127,12 +127,14 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
     bool seen = false;
     if (path->sight)
         seen = path_area_light_seen(tracer, &path->ray, end, &end, &radiance);
-    else
+    else if (tracer->lights.area_light_count > 0)
         add_light(path, path_area_lights(
                             tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown}, end));
+    const struct fog *fog = path->sight ? state->job->fog : NULL;
+    if (!seen && !fog && path->media.count == 0)
+        return true;
     double distance = hit || seen ? end * vec3_length(path->ray.direction) : INFINITY;
     struct medium_effect effect;
-    const struct fog *fog = path->sight ? state->job->fog : NULL;
     if (medium_transmittance(MEDIUM_RAY_SIGHT, fog, &path->ray, distance, &effect)) {
         add_light(path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
         path->weight = vec3_mul(path->weight, effect.transmittance);
@@ -318,9 +320,10 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         add_photons(tracer, state, path, &vertex);
         vertex.thrown = vec3_add(path->received, path->thrown);
     }
-    struct sample2 choice = sampler_point(sampler, dimension);
-    add_direct(tracer, state, path, &vertex, choice.x, sampler_point(sampler, dimension + 1));
-    return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
+    struct sample2 choice = sampler_point(sampler, dimension), on_light = sampler_point(sampler, dimension + 1),
+                   direction = sampler_point(sampler, dimension + 2);
+    add_direct(tracer, state, path, &vertex, choice.x, on_light);
+    return scatter(tracer, state, path, &vertex, direction, choice.y);
 }
 
 /* --clamp: the colour is kept. Pictures become darker where samples differ much. */

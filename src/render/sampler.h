@@ -28,6 +28,16 @@ static inline uint32_t sobol_reversed(uint32_t x) {
     return __builtin_bswap32(x);
 }
 
+/* Both numbers reversed. */
+static inline struct sample2 sobol_reversed_pair(uint32_t x, uint32_t y) {
+    uint64_t both = (uint64_t)x << 32 | y;
+    both = (both & UINT64_C(0x5555555555555555)) << 1 | (both >> 1 & UINT64_C(0x5555555555555555));
+    both = (both & UINT64_C(0x3333333333333333)) << 2 | (both >> 2 & UINT64_C(0x3333333333333333));
+    both = (both & UINT64_C(0x0f0f0f0f0f0f0f0f)) << 4 | (both >> 4 & UINT64_C(0x0f0f0f0f0f0f0f0f));
+    both = __builtin_bswap64(both);
+    return (struct sample2){(double)(uint32_t)both * 0x1p-32, (double)(uint32_t)(both >> 32) * 0x1p-32};
+}
+
 /* Bit k of the result depends on the bits up to k of x only: on reversed bits this is Owen's scrambling. */
 static inline uint32_t sobol_permuted(uint32_t x, uint32_t seed) {
     x += seed;
@@ -54,9 +64,8 @@ static inline uint32_t sobol_pascal(uint32_t index) {
 static inline struct sample2 sobol_point(uint32_t index, uint64_t seed) {
     uint64_t more = random_mix(seed + UINT64_C(0x9e3779b97f4a7c15));
     index = sobol_reversed(sobol_permuted(sobol_reversed(index), (uint32_t)seed));
-    uint32_t x = sobol_reversed(sobol_permuted(index, (uint32_t)more));
-    uint32_t y = sobol_reversed(sobol_permuted(sobol_pascal(index), (uint32_t)(more >> 32)));
-    return (struct sample2){(double)x * 0x1p-32, (double)y * 0x1p-32};
+    return sobol_reversed_pair(sobol_permuted(index, (uint32_t)more),
+                               sobol_permuted(sobol_pascal(index), (uint32_t)(more >> 32)));
 }
 
 /* A sample of a pixel of the whole picture. */
