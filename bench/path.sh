@@ -1,0 +1,202 @@
+#!/bin/sh
+# Path tracing beside Cycles (blender) and Embree's tutorial pathtracer (embree-tools). One thread each, runs interleaved,
+# medians of RUNS (default 5), processor time. Rows whose peer is not installed are left out, with a line that says so.
+#   speed    samples a second against Cycles at depth 8 without Russian roulette: the Cornell box with blocks, and with a
+#            mirror and a ball of glass
+#   error    relMSE, the mean of (x - r)^2 / (r^2 + .01), after SECONDS (default 10) of rendering at 128 x 128 against
+#            REFERENCE samples (default 16384) of the same program, which are kept in OUT
+#   embree   samples a second against `pathtracer --max-path-length 8` on its Cornell box
+#   denoise  the error of 64 denoised samples against that of 512 raw ones (bench/denoise.sh); seconds for 1280 x 960
+#   threads  the speed of two threads over that of one
+#   memory   bytes a pixel beyond Whitted's, at 1280 x 960
+# Both programs: box filter, all caustics, no clamps, no adaptive sampling; Cycles as bench/path/cycles.py sets it.
+# Errors are scaled to exactly SECONDS, since they fall with the number of samples.
+# Arguments: rows (default: all). GRAY: the program; OUT: pictures and times (default build/bench/path); SHORT=1: one run of
+# 2 seconds against 1024 samples.
+cd "$(dirname "$0")/.." || exit 1
+gray=${GRAY:-./gray}
+if [ -n "$SHORT" ]; then RUNS=${RUNS:-1} SECONDS_EACH=${SECONDS_EACH:-2} REFERENCE=${REFERENCE:-1024}; fi
+runs=${RUNS:-5}
+seconds=${SECONDS_EACH:-10}
+reference=${REFERENCE:-16384}
+out=${OUT:-build/bench/path}
+depth=8
+models=/usr/share/doc/embree3/models
+[ -x "$gray" ] || { echo "no program $gray: make first"; exit 1; }
+mkdir -p "$out" || exit 1
+[ $# -gt 0 ] || set -- speed error embree denoise threads memory
+[ -x /usr/bin/time ] && timer=/usr/bin/time || timer=
+
+median() { sort -g | awk '{ v[NR] = $1 } END { print NR ? v[int((NR + 1) / 2)] : "-" }'; }
+installed() { command -v "$1" >/dev/null 2>&1 || { echo "$1 is not installed: $2 left out"; return 1; }; }
+
+script_of() {
+    case $1 in
+    cornell) echo data/path/cornell.lua ;;
+    spheres) echo bench/path/spheres.lua ;;
+    *) echo "bench/denoise/$1.lua" ;;
+    esac
+}
+
+# gray_run SCRIPT PICTURE SPP SEED [options]: prints processor seconds of rendering, and scattering events of a sample.
+gray_run() {
+    script=$1 picture=$2 spp=$3 seed=$4
+    shift 4
+    "$gray" -q --no-fork -j 1 --stats=json --integrator path --size 128x128 --allow-read textures --max-depth "$depth" \
+        --spp "$spp" --seed "$seed" -o "$out/$picture.pfm" "$@" "$script" |
+        awk 'function figure(key) { return substr($0, index($0, "\"" key "\":") + length(key) + 3) + 0 }
+             { printf "%.3f %.3f\n", figure("render_processor_seconds"),
+                      (figure("reflected_rays") + figure("refracted_rays")) / figure("camera_rays") }'
+}
+
+# cycles_run SCENE NAME:SPP:SEED:ROULETTE...: prints a line "NAME SPP processor-seconds wall-seconds" for each.
+cycles_run() {
+    scene=$1
+    shift
+    blender -b -noaudio --factory-startup -P bench/path/cycles.py -- "$scene" "$out" "$depth" "$@" 2>/dev/null |
+        sed -n 's/^cycles //p'
+}
+
+# Processor seconds of one more sample a pixel, from the lines of the last two runs.
+per_pass() { awk '{ t0 = t; n0 = n; t = $3; n = $2 } END { print (t - t0 > 1e-4 ? t - t0 : 1e-4) / (n - n0) }'; }
+
+prepare() {
+    [ -s "$out/sky.hdr" ] || "$gray" -q -o "$out/sky.hdr" bench/path/sky.lua || exit 1
+    [ -s "$out/meshes.obj" ] || "$gray" -q bench/path/meshes.lua >"$out/meshes.obj" || exit 1
+}
+
+speed() {
+    installed blender 'samples a second against Cycles' || return
+    echo 'thousands of samples a second, no roulette; events: scattering events of a sample of gray'
+    printf '%-12s %9s %9s %6s %7s\n' scene gray Cycles ratio events
+    for scene in cornell spheres; do
+        spp=$(gray_run "$(script_of $scene)" speed 8 1 --roulette-depth $depth |
+            awk -v s="$seconds" '{ n = int(8 * s / ($1 > .01 ? $1 : .01)); print (n > 8 ? n : 8) }')
+        run=0
+        : >"$out/speed.cycles"
+        : >"$out/speed.gray"
+        while [ $run -lt "$runs" ]; do
+            run=$((run + 1))
+            gray_run "$(script_of $scene)" speed "$spp" $run --roulette-depth $depth >>"$out/speed.gray"
+            cycles_run $scene speed:2:1:0 speed:1:1:0 "speed:$spp:$run:0" | per_pass >>"$out/speed.cycles"
+        done
+        g=$(awk -v n="$spp" '{ print 16.384 * n / $1 }' "$out/speed.gray" | median)
+        c=$(awk '{ print 16.384 / $1 }' "$out/speed.cycles" | median)
+        awk -v scene=$scene -v g="$g" -v c="$c" -v e="$(cut -d ' ' -f 2 "$out/speed.gray" | median)" \
+            'BEGIN { printf "%-12s %9.1f %9.1f %6.2f %7.2f\n", scene, g, c, g / c, e }'
+    done
+}
+
+# error_of REFERENCE PICTURE SECONDS: relMSE scaled to the time of the row, and the mean of the reference.
+error_of() {
+    python3 bench/path/compare.py "$out/$1" "$out/$2" | awk -v t="$3" -v s="$seconds" '{ print $1 * t / s, $2 }'
+}
+
+error() {
+    installed blender 'error at equal time against Cycles' || return
+    prepare
+    echo "relMSE after $seconds s against $reference samples, with roulette; spp: samples a pixel in that time"
+    printf '%-12s %9s %6s %9s %6s %6s %9s %9s\n' scene gray spp Cycles spp ratio 'mean gray' Cycles
+    : >"$out/error.ratios"
+    for scene in cornell spheres mesh_sky lamps glossy; do
+        script=$(script_of $scene)
+        cref=cycles-$scene-$reference gref=gray-$scene-$reference
+        [ -s "$out/$gref.pfm" ] || gray_run "$script" "$gref" "$reference" 1000 >/dev/null
+        [ -s "$out/$cref.exr" ] || cycles_run $scene "$cref:$reference:1000:1" >/dev/null
+        gspp=$(gray_run "$script" trial 8 1 | awk -v s="$seconds" '{ n = int(8 * s / ($1 > .01 ? $1 : .01)); print (n > 1 ? n : 1) }')
+        cspp=$(cycles_run $scene trial:1:1:1 trial:2:1:1 trial:18:1:1 | per_pass | awk -v s="$seconds" '{ n = int(s / $1); print (n > 1 ? n : 1) }')
+        run=0
+        : >"$out/error.lines"
+        while [ $run -lt "$runs" ]; do
+            run=$((run + 1))
+            g=$(gray_run "$script" trial "$gspp" $run | cut -d ' ' -f 1)
+            c=$(cycles_run $scene trial:2:1:1 trial:1:1:1 "trial:$cspp:$run:1" | per_pass)
+            c=$(awk -v c="$c" -v n="$cspp" 'BEGIN { print c * n }')
+            echo "$(error_of "$gref.pfm" trial.pfm "$g") $(error_of "$cref.exr" trial.exr "$c")" >>"$out/error.lines"
+        done
+        awk -v scene=$scene -v g="$(cut -d ' ' -f 1 "$out/error.lines" | median)" \
+            -v c="$(cut -d ' ' -f 3 "$out/error.lines" | median)" -v gs="$gspp" -v cs="$cspp" \
+            -v gm="$(cut -d ' ' -f 2 "$out/error.lines" | median)" -v cm="$(cut -d ' ' -f 4 "$out/error.lines" | median)" \
+            -v ratios="$out/error.ratios" 'BEGIN {
+                printf "%-12s %9.6f %6d %9.6f %6d %6.2f %9.4f %9.4f\n", scene, g, gs, c, cs, g / c, gm, cm
+                print g / c >>ratios
+            }'
+    done
+    awk '{ s += log($1); n += $1 <= 1 } END { printf "geometric mean %.2f; %d of %d at most 1\n", exp(s / NR), n, NR }' "$out/error.ratios"
+}
+
+embree() {
+    installed pathtracer "samples a second against Embree's pathtracer" || return
+    [ -r $models/cornell_box.ecs ] || { echo "no $models/cornell_box.ecs: Embree's pathtracer left out"; return; }
+    [ -n "$timer" ] || { echo "GNU time is not installed: Embree's pathtracer left out"; return; }
+    echo "thousands of samples a second on Embree's Cornell box, no roulette"
+    printf '%-12s %9s %9s %6s %7s\n' scene gray Embree ratio events
+    embree_once() {
+        $timer -f %U -o "$out/embree.time" pathtracer -c $models/cornell_box.ecs --threads 1 --size 128 128 --spp "$1" \
+            --max-path-length $depth -o "$out/embree.ppm" >/dev/null 2>&1
+        echo "embree $1 $(tail -n 1 "$out/embree.time")"
+    }
+    spp=$(gray_run bench/path/embree_box.lua speed 8 1 --roulette-depth $depth |
+        awk -v s="$seconds" '{ n = int(8 * s / ($1 > .01 ? $1 : .01)); print (n > 8 ? n : 8) }')
+    run=0
+    : >"$out/speed.embree"
+    : >"$out/speed.gray"
+    while [ $run -lt "$runs" ]; do
+        run=$((run + 1))
+        gray_run bench/path/embree_box.lua speed "$spp" $run --roulette-depth $depth >>"$out/speed.gray"
+        { embree_once 1; embree_once "$spp"; } | per_pass >>"$out/speed.embree"
+    done
+    g=$(awk -v n="$spp" '{ print 16.384 * n / $1 }' "$out/speed.gray" | median)
+    c=$(awk '{ print 16.384 / $1 }' "$out/speed.embree" | median)
+    awk -v g="$g" -v c="$c" -v e="$(cut -d ' ' -f 2 "$out/speed.gray" | median)" \
+        'BEGIN { printf "%-12s %9.1f %9.1f %6.2f %7.2f\n", "embree box", g, c, g / c, e }'
+}
+
+large() {
+    "$gray" -q --no-fork --stats=json --size 1280x960 -o "$out/large.pfm" "$@" data/path/cornell.lua
+}
+
+denoise() {
+    echo 'denoised 64 samples against raw ones'
+    GRAY=$gray REFERENCE=${SHORT:+1024} bench/denoise.sh data/path/cornell.lua bench/path/spheres.lua bench/denoise/*.lua
+    large --integrator path --spp 4 --denoise -j 2 |
+        awk '{ printf "denoising 1280 x 960, two threads: %.1f s\n", substr($0, index($0, "\"write_seconds\":") + 16) + 0 }'
+}
+
+threads() {
+    run=0
+    : >"$out/threads"
+    while [ $run -lt "$runs" ]; do
+        run=$((run + 1))
+        for j in 1 2; do
+            large --integrator path --spp 4 -j $j |
+                awk '{ printf "%f ", substr($0, index($0, "\"render_seconds\":") + 17) + 0 }'
+        done >>"$out/threads"
+        echo >>"$out/threads"
+    done
+    echo "two threads: $(awk '{ print $1 / $2 }' "$out/threads" | median) times the speed of one (elapsed time: needs an idle machine)"
+}
+
+memory() {
+    [ -n "$timer" ] || { echo 'GNU time is not installed: memory left out'; return; }
+    kb() {
+        $timer -f %M -o "$out/memory.kb" "$gray" -q --no-fork --size 1280x960 -o "$out/large.pfm" "$@" data/path/cornell.lua &&
+            tail -n 1 "$out/memory.kb"
+    }
+    whitted=$(kb --integrator whitted -ss 1 -j 1)
+    path=$(kb --integrator path --spp 1 -j 1)
+    two=$(kb --integrator path --spp 1 -j 2)
+    denoised=$(kb --integrator path --spp 1 --denoise -j 1)
+    awk -v w="$whitted" -v p="$path" -v t="$two" -v d="$denoised" 'BEGIN {
+        pixels = 1280 * 960 / 1024
+        printf "bytes a pixel beyond Whitted: %.0f; with --denoise %.0f; a second thread: %.1f MB\n", (p - w) / pixels,
+               (d - w) / pixels, (t - p) / 1024
+    }'
+}
+
+for row in "$@"; do
+    case $row in
+    speed | error | embree | denoise | threads | memory) $row ;;
+    *) echo "no row '$row': speed, error, embree, denoise, threads, memory" && exit 1 ;;
+    esac
+done
