@@ -1,17 +1,17 @@
-/* Materials of glTF, turned into ours as they are read. Source: glTF 2.0, section 3.9 and appendix B; extensions
- * KHR_materials_ior, _transmission, _unlit, KHR_texture_transform.
+/* Materials of glTF, turned into layers of OpenPBR as they are read. Source: glTF 2.0, section 3.9 and appendix B;
+ * extensions KHR_materials_ior, _specular, _transmission, _volume, _clearcoat, _sheen, _emissive_strength, _unlit,
+ * KHR_texture_transform.
  *
- * A metallic-roughness surface is not a Phong surface; this is what we take for it. Base colour c, metallic m,
- * roughness r: kd = c (1 - m); ks = F0 (1 - m) + c m, F0 = ((ior - 1) / (ior + 1))^2; the width of the highlight is
- * that of the microfacet distribution at the same roughness, n = 2 / r^4 - 2 (B. Walter et al., "Microfacet Models for
- * Refraction through Rough Surfaces", EGSR 2007, section 5.2), at most 1998; what is smooth mirrors: reflect = (1 -
- * r)^2 for metals, and for others by Fresnel when they let light through. Pictures are used as they are stored, as all
- * ours. */
+ * Both describe a metal and a dielectric over a diffuse base, with facets of width roughness^2. The clear coat of glTF
+ * has the index 1.5 and does not darken what is below it. Without a volume a transmitting surface is a thin wall. Sheen
+ * is fuzz. Textures of extensions are not read. Unlit materials are classic ones. Pictures are used as they are stored,
+ * as all ours. */
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf_internal.h"
 
 #include "image/image.h"
+#include "math/elementary.h"
 
 #include <stdio.h>
 
@@ -130,57 +130,97 @@ static bool read_map(struct gltf *g, const json_t *object, const char *key, stru
     return find_image(g, image, map);
 }
 
+static struct vec3 unit_colour(const double colour[3]) {
+    return vec3_make(unit(colour[0]), unit(colour[1]), unit(colour[2]));
+}
+
+/* A factor of an extension, between 0 and 1. */
+static double share(const json_t *extension, const char *key, double otherwise) {
+    return unit(number_or(extension, key, otherwise));
+}
+
+/* Beer's law: after the distance white light has the colour. */
+static bool read_volume(struct gltf *g, const json_t *volume, struct model_material *m, const char *where) {
+    double colour[3] = {1, 1, 1}, distance = number_or(volume, "attenuationDistance", 0), absorption[3] = {0, 0, 0};
+    if (!gltf_numbers(g, volume, "attenuationColor", colour, 3, where))
+        return false;
+    for (int i = 0; i < 3 && distance > 0 && !m->layers.thin_walled; i++)
+        absorption[i] = colour[i] < 1 ? -el_log(fmax(colour[i], 1e-6)) / distance : 0;
+    m->absorption = vec3_make(absorption[0], absorption[1], absorption[2]);
+    return true;
+}
+
+static bool read_sheen(struct gltf *g, const json_t *sheen, struct model_material *m, const char *where) {
+    double colour[3] = {0, 0, 0};
+    if (!gltf_numbers(g, sheen, "sheenColorFactor", colour, 3, where))
+        return false;
+    double weight = unit(fmax(colour[0], fmax(colour[1], colour[2])));
+    m->layers.fuzz_weight = weight;
+    m->layers.fuzz_roughness = share(sheen, "sheenRoughnessFactor", 0);
+    if (weight > 0)
+        m->layers.fuzz_colour = vec3_make(unit(colour[0] / weight), unit(colour[1] / weight), unit(colour[2] / weight));
+    return true;
+}
+
+static bool read_layers(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
+    const json_t *extensions = json_object_get(source, "extensions");
+    const json_t *rough = json_object_get(source, "pbrMetallicRoughness");
+    const json_t *specular = json_object_get(extensions, "KHR_materials_specular");
+    const json_t *volume = json_object_get(extensions, "KHR_materials_volume");
+    const json_t *coat = json_object_get(extensions, "KHR_materials_clearcoat");
+    double colour[3] = {1, 1, 1}, ior = number_or(json_object_get(extensions, "KHR_materials_ior"), "ior", 1.5);
+    if (!gltf_numbers(g, specular, "specularColorFactor", colour, 3, where))
+        return false;
+    m->layered = true;
+    m->layers = openpbr_defaults();
+    m->layers.base_weight = 1;
+    m->layers.base_metalness = share(rough, "metallicFactor", 1);
+    m->layers.specular_ior = ior >= 1 ? ior : 1.5;
+    m->layers.specular_weight = share(specular, "specularFactor", 1);
+    m->layers.coat_weight = share(coat, "clearcoatFactor", 0);
+    m->layers.coat_roughness = share(coat, "clearcoatRoughnessFactor", 0);
+    m->layers.coat_ior = 1.5;
+    m->layers.coat_darkening = 0;
+    m->layers.transmission_colour = m->kd;
+    m->layers.thin_walled = !(number_or(volume, "thicknessFactor", 0) > 0);
+    m->ks = unit_colour(colour);
+    m->roughness = share(rough, "roughnessFactor", 1);
+    m->transmission = share(json_object_get(extensions, "KHR_materials_transmission"), "transmissionFactor", 0);
+    return read_volume(g, volume, m, where) &&
+           read_sheen(g, json_object_get(extensions, "KHR_materials_sheen"), m, where) &&
+           read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where);
+}
+
+static bool read_emission(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
+    const json_t *strength = json_object_get(json_object_get(source, "extensions"), "KHR_materials_emissive_strength");
+    double emitted[3] = {0, 0, 0};
+    if (!gltf_numbers(g, source, "emissiveFactor", emitted, 3, where))
+        return false;
+    m->ke =
+        vec3_scale(vec3_make(emitted[0], emitted[1], emitted[2]), fmax(number_or(strength, "emissiveStrength", 1), 0));
+    return vec3_max_abs(m->ke) == 0 || read_map(g, source, "emissiveTexture", &m->map_ke, where);
+}
+
 static bool read_material(struct gltf *g, const json_t *source, struct model_material *m, const char *where) {
     const json_t *rough = json_object_get(source, "pbrMetallicRoughness");
-    const json_t *extensions = json_object_get(source, "extensions");
     const char *name = json_string_value(json_object_get(source, "name"));
     const char *alpha_mode = json_string_value(json_object_get(source, "alphaMode"));
-    double base[4] = {1, 1, 1, 1}, emitted[3] = {0, 0, 0};
+    double base[4] = {1, 1, 1, 1};
     if (name)
         m->name = arena_copy_text(&g->model->arena, name, strlen(name));
     if (!m->name)
         return error_no_memory(g->error, g->path);
-    if (!gltf_numbers(g, rough, "baseColorFactor", base, 4, where) ||
-        !gltf_numbers(g, source, "emissiveFactor", emitted, 3, where))
+    if (!gltf_numbers(g, rough, "baseColorFactor", base, 4, where))
         return false;
-    double metallic = unit(number_or(rough, "metallicFactor", 1)), r = unit(number_or(rough, "roughnessFactor", 1));
-    const json_t *glass = json_object_get(extensions, "KHR_materials_transmission");
-    double transmission = unit(number_or(glass, "transmissionFactor", 0)) * (1 - metallic);
-    double ior = number_or(json_object_get(extensions, "KHR_materials_ior"), "ior", 1.5);
-    ior = ior >= 1 ? ior : 1.5;
-    double f0 = (ior - 1) / (ior + 1) * ((ior - 1) / (ior + 1));
-    struct vec3 colour = {base[0], base[1], base[2]};
-    /* Where a picture has a say in it the split is made point by point. */
-    m->by_metal = json_object_get(rough, "metallicRoughnessTexture") ||
-                  (metallic > 0 && json_object_get(rough, "baseColorTexture"));
-    m->metallic = metallic;
-    m->roughness = r;
-    m->f0 = f0;
-    m->kd = m->by_metal ? colour : vec3_scale(colour, 1 - metallic);
-    m->ks = vec3_add(vec3_scale(vec3_all(f0), 1 - metallic), vec3_scale(colour, metallic));
-    double n = 2 / fmax(r * r * r * r, 1e-3) - 2;
-    m->shininess = n < 1 ? 1 : n;
-    m->has_shininess = true;
-    m->reflect = metallic * (1 - r) * (1 - r);
-    m->ke = vec3_make(emitted[0], emitted[1], emitted[2]);
+    m->kd = unit_colour(base);
     m->two_sided = json_is_true(json_object_get(source, "doubleSided"));
     m->by_vertex = true;
-    if (json_object_get(extensions, "KHR_materials_unlit")) {
-        m->ks = vec3_all(0);
-        m->kd = colour;
-        m->by_metal = false;
-        m->unlit = true;
-    }
+    m->unlit = json_object_get(json_object_get(source, "extensions"), "KHR_materials_unlit") != NULL;
+    if (!m->unlit && !read_layers(g, source, m, where))
+        return false;
     bool blend = alpha_mode && strcmp(alpha_mode, "BLEND") == 0, mask = alpha_mode && strcmp(alpha_mode, "MASK") == 0;
     if (blend)
         m->dissolve = unit(base[3]);
-    if (transmission > 0) {
-        m->dissolve = 1 - transmission;
-        m->filter = colour;
-        m->ior = ior;
-        m->has_ior = true;
-        m->fresnel = transmission == 1;
-    }
     m->map_kd.without_alpha = true;
     if (blend || mask) { /* the alpha of the colour's picture; factors below 1 count before the cut */
         double cutoff = number_or(source, "alphaCutoff", 0.5);
@@ -190,9 +230,7 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
             return false;
     }
     return read_map(g, rough, "baseColorTexture", &m->map_kd, where) &&
-           (!m->by_metal || read_map(g, rough, "metallicRoughnessTexture", &m->map_metal, where)) &&
-           read_map(g, source, "normalTexture", &m->map_normal, where) &&
-           (vec3_max_abs(m->ke) == 0 || read_map(g, source, "emissiveTexture", &m->map_ke, where));
+           read_map(g, source, "normalTexture", &m->map_normal, where) && read_emission(g, source, m, where);
 }
 
 bool gltf_read_materials(struct gltf *g) {

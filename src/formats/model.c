@@ -289,6 +289,7 @@ static bool texture_in_range(const struct model_texture *map) {
 static bool material_in_range(const struct model_material *m) {
     return vec3_within(m->ka, NUMBER_LIMIT) && vec3_within(m->kd, NUMBER_LIMIT) && vec3_within(m->ks, NUMBER_LIMIT) &&
            vec3_within(m->ke, NUMBER_LIMIT) && vec3_within(m->filter, NUMBER_LIMIT) && number_in_range(m->shininess) &&
+           vec3_within(m->absorption, NUMBER_LIMIT) && number_in_range(m->layers.specular_ior) &&
            number_in_range(m->ior) && texture_in_range(&m->map_kd) && texture_in_range(&m->map_ks) &&
            texture_in_range(&m->map_ke) && texture_in_range(&m->map_d) && texture_in_range(&m->map_bump) &&
            texture_in_range(&m->map_normal) && texture_in_range(&m->map_metal);

@@ -10,6 +10,7 @@
 #include "base/path_policy.h"
 #include "formats/list.h"
 #include "image/image.h"
+#include "material/openpbr.h"
 #include "math/affine.h"
 #include "mesh/mesh.h"
 
@@ -29,14 +30,18 @@ struct model_texture {
     enum image_filter filter;
 };
 
-/* As Wavefront's MTL has it; the metallic-roughness materials of glTF are turned into this as they are read. */
+/* As Wavefront's MTL has it, or, where `layered` is set, with the layers of OpenPBR: those of glTF. */
 struct model_material {
     const char *name;
     struct vec3 ka, kd, ks, ke, filter; /* filter: Tf, the colour of what passes through */
     double shininess, dissolve, ior, reflect;
-    bool by_metal; /* kd is the colour of metal and non-metal alike; map_metal and these split it */
-    double metallic, roughness, f0;
-    bool has_shininess, has_ior, fresnel, two_sided, unlit;
+    /* Of layers kd is the colour of the base, ks that of the specular layer, dissolve the opacity; map_metal multiplies
+     * roughness by its green and metalness by its blue. */
+    bool layered;
+    struct openpbr layers;
+    double roughness, transmission;
+    struct vec3 absorption;
+    bool has_shininess, has_ior, two_sided, unlit;
     bool by_vertex; /* kd is multiplied by the colours of the vertices */
     int illum;
     struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;

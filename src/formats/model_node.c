@@ -3,7 +3,8 @@
  * it mirror. d or Tr below 1: refract = 1 - d, filtered by Tf, with the index Ni where illum (6, 7, or none) asks for
  * refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke is emission. map_Ks and map_Ke are
  * multiplied by Ks and Ke (by 1 where those are black or missing), map_d cuts holes. map_bump has no unit in files: -bm
- * times a fiftieth of the picture's size on the surface; norm and glTF's normalTexture are normal maps. */
+ * times a fiftieth of the picture's size on the surface; norm and glTF's normalTexture are normal maps.
+ * Materials of glTF have the layers of OpenPBR (gltf_material.c). */
 #include "formats/model_node.h"
 
 #include "material/bump.h"
@@ -129,29 +130,11 @@ static bool add_bump_map(struct scene *scene, const struct model_texture *map, e
     return true;
 }
 
-static bool split_metal(struct scene *scene, const struct model_material *from, const struct material **top,
-                        struct error *error) {
-    struct texture_image image;
-    bool there;
-    if (!find_map(scene, &from->map_metal, &image, &there, error))
-        return false;
-    if (!there && !from->by_metal)
-        return true;
-    struct material *m = scene_material(scene, MATERIAL_METAL, *top, error);
-    if (!m ||
-        !material_split_metal(m, there ? &image : NULL,
-                              (struct metal_numbers){from->metallic, from->roughness, from->f0}, &scene->arena, error))
-        return false;
-    *top = m;
-    return true;
-}
-
 /* The maps of everything but kd, one above the other. */
 static const struct material *with_maps(struct scene *scene, const struct model_material *from,
                                         const struct material *top, struct error *error) {
-    bool shiny = from->illum != 0 && from->illum != 1 && !from->by_metal;
-    bool ok = split_metal(scene, from, &top, error) &&
-              (!shiny || cover(scene, &from->map_ks, INPUT_KS, or_white(from->ks), &top, error)) &&
+    bool shiny = from->illum != 0 && from->illum != 1;
+    bool ok = (!shiny || cover(scene, &from->map_ks, INPUT_KS, or_white(from->ks), &top, error)) &&
               cover(scene, &from->map_ke, INPUT_EMISSION, or_white(from->ke), &top, error) &&
               cut(scene, &from->map_d, &top, error) &&
               add_bump_map(scene, &from->map_bump, MATERIAL_BUMP, &top, error) &&
@@ -165,8 +148,85 @@ static bool by_vertex(struct scene *scene, struct material *m, struct error *err
     return colours && material_multiply(m, INPUT_KD, colours, &scene->arena, error);
 }
 
+/* --- layers --- */
+
+/* Colour and transmitted colour are multiplied by a picture. */
+static bool multiply_by_colours(struct scene *scene, const struct model_material *from, struct material *m,
+                                struct error *error) {
+    struct texture_image image;
+    bool there;
+    if (!find_map(scene, &from->map_kd, &image, &there, error) || !there)
+        return !there;
+    image.alpha = ALPHA_IGNORED;
+    struct arena *arena = &scene->arena;
+    const struct texture *white = texture_keep(arena, texture_number(1), error);
+    const struct texture *picture = white ? texture_keep(arena, texture_image(&image, white), error) : NULL;
+    return picture && material_multiply(m, INPUT_KD, picture, arena, error) &&
+           (m->phong.refract == 0 ||
+            (material_multiply_constant(m, INPUT_TRANSMISSION_COLOUR, texture_constant(from->kd), arena, error) &&
+             material_multiply(m, INPUT_TRANSMISSION_COLOUR, picture, arena, error)));
+}
+
+/* Roughness is multiplied by green, metalness by blue. */
+static bool multiply_by_metal(struct scene *scene, const struct model_material *from, struct material *m,
+                              struct error *error) {
+    struct texture_image image;
+    bool there;
+    if (!find_map(scene, &from->map_metal, &image, &there, error) || !there)
+        return !there;
+    image.alpha = ALPHA_STRAIGHT;
+    struct arena *arena = &scene->arena;
+    const struct texture *white = texture_keep(arena, texture_number(1), error);
+    struct texture both = white ? texture_image(&image, white) : texture_number(1);
+    both.shared = true;
+    const struct texture *picture = white ? texture_keep(arena, both, error) : NULL;
+    const struct texture *green = picture ? texture_keep(arena, texture_map(picture, FUNCTION_GREEN, 0), error) : NULL;
+    const struct texture *blue = green ? texture_keep(arena, texture_map(picture, FUNCTION_BLUE, 0), error) : NULL;
+    return blue && material_multiply(m, INPUT_ROUGHNESS, green, arena, error) &&
+           material_multiply_constant(m, INPUT_METALNESS, texture_number(from->layers.base_metalness), arena, error) &&
+           material_multiply(m, INPUT_METALNESS, blue, arena, error);
+}
+
+/* Opacity below 1 is that of a surface with holes. */
+static bool multiply_by_opacity(struct scene *scene, const struct model_material *from, struct material *m,
+                                struct error *error) {
+    return from->dissolve >= 1 ||
+           material_multiply_constant(m, INPUT_OPACITY, texture_number(from->dissolve), &scene->arena, error);
+}
+
+static const struct material *make_layers(struct scene *scene, const struct model_material *from, struct error *error) {
+    struct material *m = scene_material(scene, MATERIAL_OPENPBR, NULL, error);
+    struct openpbr *layers = m ? arena_alloc(&scene->arena, sizeof *layers) : NULL;
+    if (!layers) {
+        if (m)
+            error_no_memory(error, "a material");
+        return NULL;
+    }
+    *layers = from->layers;
+    m->name = from->name;
+    m->openpbr = layers;
+    m->phong.kd = from->kd;
+    m->phong.ks = from->ks;
+    m->phong.shininess = 1;
+    m->phong.roughness = from->roughness;
+    m->phong.reflect = layers->base_metalness;
+    m->phong.refract = from->transmission;
+    m->phong.has_ior = from->transmission > 0 && !layers->thin_walled;
+    m->phong.ior = m->phong.has_ior ? openpbr_ior(layers->specular_ior, layers->specular_weight) : 1;
+    m->phong.absorption = from->absorption;
+    m->phong.two_sided = from->two_sided || from->transmission > 0;
+    m->phong.emission = from->map_ke.image || from->map_ke.path ? vec3_all(0) : from->ke;
+    bool ok = (!from->by_vertex || by_vertex(scene, m, error)) && multiply_by_colours(scene, from, m, error) &&
+              multiply_by_metal(scene, from, m, error) && multiply_by_opacity(scene, from, m, error);
+    return ok ? with_maps(scene, from, m, error) : NULL;
+}
+
+/* --- classic materials --- */
+
 static const struct material *make_material(struct scene *scene, const struct model_material *from,
                                             struct error *error) {
+    if (from->layered)
+        return make_layers(scene, from, error);
     struct material *m = scene_material(scene, MATERIAL_PHONG, NULL, error);
     if (!m)
         return NULL;
@@ -199,7 +259,7 @@ static const struct material *make_material(struct scene *scene, const struct mo
     if (!cover(scene, &from->map_kd, INPUT_KD, tint, &top, error))
         return NULL;
     top = with_maps(scene, from, top, error);
-    if (!top || !clear || (from->illum != 7 && !from->fresnel))
+    if (!top || !clear || from->illum != 7)
         return top;
     return scene_material(scene, MATERIAL_FRESNEL, top, error);
 }

@@ -159,10 +159,9 @@ bool material_has_ior(const struct material *material) {
 /* The highlight's colour from textures is not known here; it may be white. */
 double material_specular(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
-    bool filtered = material_texture(material, INPUT_KS) && !material->is_metal;
+    bool filtered = material_texture(material, INPUT_KS) != NULL;
     double amount = material->fresnel ? 1 : numbers->reflect + numbers->refract;
-    double own = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
-    return own > material->metal ? own : material->metal;
+    return amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
 }
 
 /* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */

@@ -26,7 +26,6 @@ enum { MATERIAL_DEPTH = 1000 };
     X(MATERIAL_IMAGE, "image")                                                                                         \
     X(MATERIAL_BUMP, "bump")                                                                                           \
     X(MATERIAL_NORMAL, "normal map")                                                                                   \
-    X(MATERIAL_METAL, "metal")                                                                                         \
     X(MATERIAL_FRESNEL, "fresnel")                                                                                     \
     X(MATERIAL_OPENPBR, "openpbr")
 enum material_kind { MATERIAL_KINDS(LIST_MEMBER) };
@@ -82,9 +81,8 @@ struct material {
     /* The tables that `inputs` and `bump` are indices of, those of a world; NULL: the material is authored. */
     const struct texture *textures;
     const struct bump *bumps;
-    double metal;                /* of MATERIAL_METAL: its largest reflectance */
     enum material_input changed; /* of MATERIAL_IMAGE */
-    bool is_metal, fresnel;
+    bool fresnel;
     struct phong phong; /* of a base */
     /* The layers of OpenPBR Surface, which take the place of the classic lobes; NULL: none (openpbr.h). */
     const struct openpbr *openpbr;

@@ -1,9 +1,8 @@
 /* A decorator of the language is one function here: it replaces an input by a texture that contains the previous
  * texture. So a chain of decorators becomes one tree for each input, and only inputs with textures take time at a hit.
+ * The language and the readers of files build their materials by these functions.
  */
 #include "material/material_inputs.h"
-
-#include <float.h>
 
 void material_derive(struct material *material, enum material_kind kind, const struct material *base) {
     *material = base ? *base : (struct material){0};
@@ -33,6 +32,12 @@ static bool put(struct material *material, enum material_input input, struct tex
 bool material_multiply(struct material *material, enum material_input input, const struct texture *by,
                        struct arena *arena, struct error *error) {
     return put(material, input, texture_multiply(material_input(material, input), by), arena, error);
+}
+
+bool material_multiply_constant(struct material *material, enum material_input input, struct texture constant,
+                                struct arena *arena, struct error *error) {
+    const struct texture *factor = texture_keep(arena, constant, error);
+    return factor && material_multiply(material, input, factor, arena, error);
 }
 
 bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
@@ -79,28 +84,11 @@ static const struct texture *keep_shared(struct arena *arena, struct texture val
     return texture_keep(arena, value, error);
 }
 
-/* number * component of the picture, or the number alone. */
-static const struct texture *packed(const struct texture *picture, enum texture_function component, double number,
-                                    struct arena *arena, struct error *error) {
-    const struct texture *factor = texture_keep(arena, texture_number(number), error);
-    if (!factor || !picture)
-        return factor;
-    const struct texture *part = texture_keep(arena, texture_map(picture, component, 0), error);
-    return part ? keep_shared(arena, texture_multiply(factor, part), error) : NULL;
-}
-
 /* kd * (1 - metalness). */
 static bool put_rest_of_metal(struct material *material, const struct texture *colour, const struct texture *metalness,
                               struct arena *arena, struct error *error) {
     const struct texture *rest = texture_keep(arena, texture_map(metalness, FUNCTION_COMPLEMENT, 0), error);
     return rest && put(material, INPUT_KD, texture_multiply(colour, rest), arena, error);
-}
-
-/* The input where `kept` is 1, the texture where it is 0. */
-static bool put_unless(struct material *material, enum material_input input, struct texture texture,
-                       const struct texture *kept, struct arena *arena, struct error *error) {
-    const struct texture *other = texture_keep(arena, texture, error);
-    return other && put(material, input, texture_mix(material_input(material, input), other, kept), arena, error);
 }
 
 bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
@@ -109,35 +97,4 @@ bool material_mix_metal(struct material *material, const struct texture *metalne
     const struct texture *share = keep_shared(arena, *metalness, error);
     return colour && share && put_rest_of_metal(material, colour, share, arena, error) &&
            put(material, INPUT_KS, texture_mix(colour, material_input(material, INPUT_KS), share), arena, error);
-}
-
-/* The formulas of formats/gltf_material.c, point by point. */
-bool material_split_metal(struct material *material, const struct texture_image *image, struct metal_numbers numbers,
-                          struct arena *arena, struct error *error) {
-    const struct texture *picture = NULL, *white = texture_keep(arena, texture_number(1), error);
-    if (image && white) {
-        struct texture_image own = *image;
-        own.alpha = ALPHA_STRAIGHT;
-        picture = keep_shared(arena, texture_image(&own, white), error);
-    }
-    if (!white || (image && !picture))
-        return false;
-    const struct texture *metal = packed(picture, FUNCTION_BLUE, numbers.metalness, arena, error);
-    const struct texture *rough = packed(picture, FUNCTION_GREEN, numbers.roughness, arena, error);
-    const struct texture *colour = keep_shared(arena, *material_input(material, INPUT_KD), error);
-    const struct texture *plain = texture_keep(arena, texture_constant(vec3_all(numbers.f0)), error);
-    if (!metal || !rough || !colour || !plain)
-        return false;
-    material->is_metal = true;
-    material->metal = image ? 1 : numbers.metalness * (1 - numbers.roughness);
-    /* Transmitted light has its filter in ks; refract may change after this. */
-    const struct texture *refract = material_input(material, INPUT_REFRACT);
-    const struct texture *transmits = texture_keep(arena, texture_map(refract, FUNCTION_STEP, DBL_TRUE_MIN), error);
-    const struct texture *smooth = texture_keep(arena, texture_map(rough, FUNCTION_COMPLEMENT, 0), error);
-    const struct texture *half = smooth ? texture_keep(arena, texture_multiply(metal, smooth), error) : NULL;
-    return transmits && half && put_rest_of_metal(material, colour, metal, arena, error) &&
-           put_unless(material, INPUT_KS, texture_mix(colour, plain, metal), transmits, arena, error) &&
-           put_unless(material, INPUT_SHININESS, texture_map(rough, FUNCTION_PHONG_EXPONENT, 0), transmits, arena,
-                      error) &&
-           put_unless(material, INPUT_REFLECT, texture_multiply(half, smooth), transmits, arena, error);
 }

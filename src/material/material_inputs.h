@@ -14,6 +14,9 @@ const struct texture *material_input(const struct material *material, enum mater
 /* The input times the texture. */
 bool material_multiply(struct material *material, enum material_input input, const struct texture *by,
                        struct arena *arena, struct error *error);
+/* The input times a constant; for numbers of struct openpbr, which do not multiply the textures of their inputs. */
+bool material_multiply_constant(struct material *material, enum material_input input, struct texture constant,
+                                struct arena *arena, struct error *error);
 /* kd * pattern + mix * (1 - pattern): marble and wood. */
 bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
                      struct error *error);
@@ -28,13 +31,5 @@ bool material_add_bump(struct material *material, const struct bump *bump, struc
 /* The share `metalness` of kd becomes the colour of highlight and mirror and replaces that share of ks. */
 bool material_mix_metal(struct material *material, const struct texture *metalness, struct arena *arena,
                         struct error *error);
-struct metal_numbers {
-    double metalness, roughness;
-    double f0; /* the reflectance of the non-metal part */
-};
-/* kd is split into metal and the rest after glTF 2.0. The image (or NULL) has metalness in blue and roughness in green,
- * the numbers are multiplied by it. */
-bool material_split_metal(struct material *material, const struct texture_image *image, struct metal_numbers numbers,
-                          struct arena *arena, struct error *error);
 
 #endif

@@ -235,10 +235,6 @@ static double function_of(enum texture_function function, double amount, double 
         return x > 1 ? 1 : x > 0 ? x : 0;
     case FUNCTION_STEP:
         return x >= amount ? 1 : 0;
-    case FUNCTION_PHONG_EXPONENT: {
-        double r4 = x * x * x * x, n = 2 / fmax(r4, 1e-3) - 2;
-        return n < 1 ? 1 : n > 2000 ? 2000 : n;
-    }
     }
     return x;
 }
@@ -472,7 +468,7 @@ struct vec3 texture_estimate(const struct texture *texture, const struct texture
         if (takes_component(function, of, &component))
             return vec3_all(component);
         if (largest)
-            return vec3_all(function == FUNCTION_PHONG_EXPONENT ? 2000 : 1);
+            return vec3_all(1);
         return vec3_make(function_of(function, amount, of.x), function_of(function, amount, of.y),
                          function_of(function, amount, of.z));
     }

@@ -93,8 +93,7 @@ struct texture_image {
     X(FUNCTION_BLUE)                                                                                                   \
     X(FUNCTION_COMPLEMENT)                                                                                             \
     X(FUNCTION_SATURATE)                                                                                               \
-    X(FUNCTION_STEP)                                                                                                   \
-    X(FUNCTION_PHONG_EXPONENT)
+    X(FUNCTION_STEP)
 enum texture_function { TEXTURE_FUNCTIONS(LIST_MEMBER) };
 enum { FUNCTION_COUNT = LIST_COUNT(TEXTURE_FUNCTIONS) };
 

@@ -317,12 +317,13 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     CHECK_EQ_INT(m[0].map_kd.filter, IMAGE_NEAREST);
     CHECK_NEAR(m[0].map_kd.offset[1], 1 - 3 - 0.25, 0);
     CHECK_NEAR(m[0].kd.x, 0.5, 0);
-    CHECK_NEAR(m[0].ks.x, 0.04, 1e-15);
+    CHECK(m[0].layered && m[1].layered && !m[2].layered);
+    CHECK_NEAR(m[0].layers.base_metalness, 0, 0);
     CHECK(m[0].two_sided);
-    CHECK_NEAR(m[0].shininess, 30, 1e-12);
-    CHECK_NEAR(m[1].kd.x, 0, 0);
-    CHECK_NEAR(m[1].ks.y, 0.5, 0);
-    CHECK_NEAR(m[1].reflect, 1, 0);
+    CHECK_NEAR(m[0].roughness, 0.5, 0);
+    CHECK_NEAR(m[1].kd.y, 0.5, 0);
+    CHECK_NEAR(m[1].layers.base_metalness, 1, 0);
+    CHECK_NEAR(m[1].roughness, 0, 0);
     struct assets assets = {0};
     struct scene scene;
     struct model_placing placing = {.name = "m"};

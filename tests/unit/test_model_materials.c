@@ -4,7 +4,9 @@
 
 #include "formats/model_node.h"
 #include "image/png_write.h"
+#include "material/material_eval.h"
 #include "material/material_inputs.h"
+#include "material/openpbr.h"
 
 static void even_row(void *context, uint32_t y, uint8_t *line) {
     const uint8_t *colour = context;
@@ -38,7 +40,8 @@ static struct hit middle(void) {
                         .dpdv = {0, 1, 0}};
 }
 
-static bool inputs_of_file(const char *name, const char *material, struct surface_inputs *inputs) {
+/* inputs, bsdf: what a hit in the middle has. */
+static bool surface_of_file(const char *name, const char *material, struct surface_inputs *inputs, struct bsdf *bsdf) {
     struct assets assets = {0};
     struct scene scene;
     struct error error = {0};
@@ -53,13 +56,21 @@ static bool inputs_of_file(const char *name, const char *material, struct surfac
         if (!node->slots[i] || strcmp(node->slot_names[i], material) != 0)
             continue;
         struct hit hit = middle();
+        hit.view = (struct vec3){0, 0, 1};
+        hit.front = true;
         material_inputs_at(node->slots[i], &hit, inputs);
+        material_eval(node->slots[i], &hit, NULL, NULL, bsdf);
         found = true;
     }
     scene_destroy(&scene);
     assets_destroy(&assets);
     CHECK(found);
     return found;
+}
+
+static bool inputs_of_file(const char *name, const char *material, struct surface_inputs *inputs) {
+    struct bsdf bsdf;
+    return surface_of_file(name, material, inputs, &bsdf);
 }
 
 TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
@@ -137,6 +148,14 @@ static void write_two_materials(const char *materials) {
     test_write_text(in_folder("m.gltf"), text);
 }
 
+static struct vec3 weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
+    struct vec3 sum = {0, 0, 0};
+    for (int i = 0; i < bsdf->count; i++)
+        if (bsdf->lobes[i].kind == kind)
+            sum = vec3_add(sum, bsdf->lobes[i].weight);
+    return sum;
+}
+
 TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
     write_even("colour 1.png", 51, 102, 255);
     write_even("tilt.png", 204, 128, 230);
@@ -147,51 +166,73 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
         "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.5,0.25,0.8],"
         "\"baseColorTexture\":{\"index\":0}},\"emissiveTexture\":{\"index\":0},\"alphaMode\":\"MASK\"}");
     struct surface_inputs inputs = {0};
-    if (inputs_of_file("m.gltf", "a", &inputs)) {
-        double metal = 0.75, rough = 0.5 * 0.4, r4 = rough * rough * rough * rough;
-        CHECK_NEAR(inputs.kd.y, 0.5 * (1 - metal), 1e-12);
-        CHECK_NEAR(inputs.ks.z, 0.04 * (1 - metal) + 0.25 * metal, 1e-12);
-        CHECK_NEAR(inputs.shininess, fmin(2 / fmax(r4, 1e-3) - 2, 2000), 1e-9);
-        CHECK_NEAR(inputs.reflect, metal * (1 - rough) * (1 - rough), 1e-12);
+    struct bsdf bsdf;
+    if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
+        CHECK_NEAR(inputs.kd.y, 0.5, 1e-12);
+        CHECK_NEAR(inputs.ks.z, 1, 0);
+        CHECK_NEAR(inputs.roughness, 0.5 * 0.4, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 0.75, 1e-12); /* times 1, the blue of the picture */
         CHECK_NEAR(inputs.emission.x, 0.2, 1e-12);
         CHECK_NEAR(inputs.emission.z, 0.5, 1e-12);
         CHECK_NEAR(inputs.normal.x / inputs.normal.z, 0.5 * (2 * 76.0 / 255) / (2 * 230.0 / 255 - 1), 1e-12);
         CHECK_NEAR(inputs.opacity, 1, 0);
     }
-    if (inputs_of_file("m.gltf", "b", &inputs)) {
+    if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) {
         CHECK_NEAR(inputs.emission.x, 0, 0); /* the factor is black */
         CHECK_NEAR(inputs.opacity, 1, 0);    /* alpha 0.8 is not cut at 0.5 */
-        CHECK_NEAR(inputs.kd.x, 0, 0);       /* metal */
-        CHECK_NEAR(inputs.ks.y, 0.5 * 0.4, 1e-12);
+        CHECK_NEAR(inputs.kd.x, 0.2, 1e-12);
+        CHECK_NEAR(inputs.kd.y, 0.5 * 0.4, 1e-12);
+        CHECK_NEAR(weight_of(&bsdf, LOBE_METAL).x, 1, 1e-12);
+    }
+}
+
+/* By the parameters of gr.openpbr_material. */
+TEST(extensions_of_gltf_materials_are_layers_of_openpbr) {
+    write_two_materials(
+        "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0.25,0.25],\"metallicFactor\":0,"
+        "\"roughnessFactor\":0.25},\"alphaMode\":\"BLEND\",\"emissiveFactor\":[1,0.5,0],\"extensions\":{"
+        "\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75,\"clearcoatRoughnessFactor\":0.125},"
+        "\"KHR_materials_sheen\":{\"sheenColorFactor\":[0.5,0.25,0],\"sheenRoughnessFactor\":0.75},"
+        "\"KHR_materials_specular\":{\"specularFactor\":0.5,\"specularColorFactor\":[1,0.5,0]},"
+        "\"KHR_materials_emissive_strength\":{\"emissiveStrength\":8}}},"
+        "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"metallicFactor\":0,\"roughnessFactor\":0},\"extensions\":{"
+        "\"KHR_materials_transmission\":{\"transmissionFactor\":1},\"KHR_materials_ior\":{\"ior\":1.25},"
+        "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+        "\"attenuationColor\":[1,0.5,0.25]}}}");
+    struct model model = {0};
+    struct model_options options = {0};
+    struct error error = {0};
+    CHECK(model_read(&model, in_folder("m.gltf"), &options, &error));
+    CHECK_TEXT(error.text, "");
+    const struct model_material *m = model_materials(&model);
+    CHECK_NEAR(m[0].layers.coat_weight, 0.75, 0);
+    CHECK_NEAR(m[0].layers.coat_roughness, 0.125, 0);
+    CHECK_NEAR(m[0].layers.coat_ior, 1.5, 0);
+    CHECK_NEAR(m[0].layers.coat_darkening, 0, 0);
+    CHECK_NEAR(m[0].layers.fuzz_weight, 0.5, 0);
+    CHECK_NEAR(m[0].layers.fuzz_colour.y, 0.5, 0);
+    CHECK_NEAR(m[0].layers.fuzz_roughness, 0.75, 0);
+    CHECK_NEAR(m[0].layers.specular_weight, 0.5, 0);
+    CHECK_NEAR(m[0].ks.y, 0.5, 0);
+    CHECK(m[0].layers.thin_walled && !m[1].layers.thin_walled);
+    CHECK_NEAR(m[1].layers.specular_ior, 1.25, 0);
+    model_destroy(&model);
+    struct surface_inputs inputs = {0};
+    struct bsdf bsdf;
+    if (surface_of_file("m.gltf", "a", &inputs, &bsdf)) {
+        CHECK_NEAR(inputs.opacity, 0.25, 0);
+        CHECK_NEAR(inputs.emission.y, 4, 0);
+        CHECK(weight_of(&bsdf, LOBE_FUZZ).x > 0);
+    }
+    if (surface_of_file("m.gltf", "b", &inputs, &bsdf)) {
+        CHECK(bsdf.transmits);
+        CHECK_NEAR(bsdf.eta, 1 / 1.25, 1e-12);
+        CHECK_NEAR(bsdf.boundary.medium.absorption.x, 0, 0);
+        CHECK_NEAR(bsdf.boundary.medium.absorption.z, log(4) / 2, 1e-12);
     }
 }
 
 #endif
-
-/* The window changes numbers of the base material after the material was made. */
-TEST(metal_that_begins_to_let_light_through_keeps_the_filter_of_its_base) {
-    struct arena arena = {0};
-    struct error error = {0};
-    struct material base, metal;
-    struct surface_inputs inputs;
-    struct hit hit = middle();
-    material_derive(&base, MATERIAL_PHONG, NULL);
-    base.phong = (struct phong){.kd = {0.8, 0.4, 0.2}, .ks = {0.9, 0.7, 0.5}, .shininess = 9, .reflect = 0.75};
-    for (int created = 0; created < 2; created++) {
-        base.phong.refract = created;
-        material_derive(&metal, MATERIAL_METAL, &base);
-        CHECK(material_split_metal(&metal, NULL, (struct metal_numbers){0.5, 0.5, 0.04}, &arena, &error));
-        for (int transmits = 0; transmits < 2; transmits++) {
-            base.phong.refract = 0.25 * transmits;
-            material_inputs_at(&metal, &hit, &inputs);
-            CHECK_NEAR(inputs.kd.y, 0.2, 1e-15);
-            CHECK_NEAR(inputs.ks.x, transmits ? 0.9 : 0.42, 1e-15);
-            CHECK_NEAR(inputs.shininess, transmits ? 9 : 30, 1e-12);
-            CHECK_NEAR(inputs.reflect, transmits ? 0.75 : 0.125, 1e-15);
-        }
-    }
-    arena_destroy(&arena);
-}
 
 TEST(opacity_by_alpha_is_cut_where_a_mask_says) {
     static const double cutoffs[] = {0, 0.3, 0.6}, wanted[] = {0.4, 1, 0};
