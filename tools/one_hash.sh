@@ -1,9 +1,11 @@
 #!/bin/bash
-# tools/one_hash.sh [PROGRAM [SCENE]]: renders one picture under every condition that must not matter, and prints a
+# tools/one_hash.sh [PROGRAM [SCENE [OPTION ...]]]: renders one picture under every condition that must not matter, and prints a
 # table of the conditions and the hashes of the files; fails if two hashes differ. Conditions that this machine does not
 # support are skipped with a message.
 gray=$(realpath "${1:-build/release/gray}") || exit 2
 scene=$(realpath "${2:-$(dirname "$0")/../tests/scripts/one_hash.lua}") || exit 2
+[ $# -lt 2 ] || shift 2
+common=("$@") # options of every run
 folder=$(mktemp -d) || exit 2
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 2
@@ -11,7 +13,7 @@ cp "$scene" scene.lua
 status=0
 
 hash_of() { sha256sum "$1" 2>/dev/null | cut -c 1-16; }
-"$gray" -q scene.lua -o first.png || exit 2
+"$gray" -q "${common[@]}" scene.lua -o first.png || exit 2
 first=$(hash_of first.png)
 
 # row WHAT HASH...: one line of the table.
@@ -28,7 +30,7 @@ hashes() {
     for options in "$@"; do
         rm -f out.png
         # shellcheck disable=SC2086
-        "$gray" -q scene.lua -o out.png $options || { echo "failed:$options" | tr ' ' _; continue; }
+        "$gray" -q "${common[@]}" scene.lua -o out.png $options || { echo "failed:$options" | tr ' ' _; continue; }
         hash_of out.png
     done
 }
@@ -53,7 +55,7 @@ shards=
 for count in $(seq 16); do
     rm -f out.png*
     for i in $(seq "$count"); do
-        "$gray" -q scene.lua -o out.png -j $((i % 8 + 1)) --shard "$i/$count" || break
+        "$gray" -q "${common[@]}" scene.lua -o out.png -j $((i % 8 + 1)) --shard "$i/$count" || break
     done
     "$gray" merge -q out.png.*-of-"$count".part && shards="$shards $(hash_of out.png)" || shards="$shards failed"
 done
@@ -64,13 +66,13 @@ resumed=
 before=0 among=0 after=0
 for moment in 0.02 0.05 0.1 0.2 0.3 0.4 0.6 0.8 1 1.3 1.7 2.2; do
     rm -f out.png c.tiles
-    "$gray" -q scene.lua -o out.png -j 2 --checkpoint c.tiles --checkpoint-every 0 &
+    "$gray" -q "${common[@]}" scene.lua -o out.png -j 2 --checkpoint c.tiles --checkpoint-every 0 &
     run=$!
     disown $run
     sleep $moment
     kill -9 $run 2>/dev/null
     if [ -s out.png ]; then after=$((after + 1)); elif [ -s c.tiles ]; then among=$((among + 1)); else before=$((before + 1)); fi
-    "$gray" -q scene.lua -o out.png -j 3 --checkpoint c.tiles --resume && resumed="$resumed $(hash_of out.png)" ||
+    "$gray" -q "${common[@]}" scene.lua -o out.png -j 3 --checkpoint c.tiles --resume && resumed="$resumed $(hash_of out.png)" ||
         resumed="$resumed failed"
 done
 # shellcheck disable=SC2086
@@ -81,7 +83,7 @@ if [ -x "$gray-mpi" ] && command -v mpirun >/dev/null; then
     for count in 1 2 3 4; do
         rm -f out.png
         OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 TMPDIR=/tmp \
-            mpirun --oversubscribe -n $count "$gray" --mpi -q -j $((count % 2 + 1)) scene.lua -o out.png &&
+            mpirun --oversubscribe -n $count "$gray" --mpi -q "${common[@]}" -j $((count % 2 + 1)) scene.lua -o out.png &&
             ranks="$ranks $(hash_of out.png)" || ranks="$ranks failed"
     done
     # shellcheck disable=SC2086

@@ -252,6 +252,14 @@ TEST(options_that_contradict_each_other_are_refused) {
     refused("-o - --stats=json s.lua", "-o - and --stats=json both write to standard output");
 }
 
+TEST(numbers_of_paths_that_mean_nothing_are_refused) {
+    refused("--spp 0 s.lua", "--spp needs a whole number from 1 to 16777216, not '0'");
+    refused("--noise 0 s.lua", "--noise needs a number of at least 1e-06, not '0'");
+    refused("--noise nan s.lua", "--noise needs a number of at least 1e-06, not 'nan'");
+    refused("--max-depth -1 s.lua", "--max-depth needs a whole number from 0 to 1000000, not '-1'");
+    refused("--clamp -1 s.lua", "--clamp needs a number of at least 0, not '-1'");
+}
+
 TEST(help_needs_no_script) {
     static const char *const lines[] = {"--help", "-h", "--man", "--version", "--annotations"};
     static const enum options_action actions[] = {ACTION_HELP, ACTION_HELP, ACTION_MANUAL, ACTION_VERSION,

@@ -169,15 +169,15 @@ TEST(merge_writes_only_where_a_script_might) {
 }
 
 /* Kills the run after a moment, again and again, until it finishes. */
-static void resume_until_done(int tries, double from, double step) {
+static void resume_until_done(const char *options, int tries, double from, double step) {
     char line[1024];
     (void)snprintf(line, sizeof line,
                    "at=%g; for i in $(seq %d); do "
-                   "$gray scene.lua -q -j 1 -full -ss 3 --resume --checkpoint c.tiles --checkpoint-every 0 & pid=$!; "
+                   "$gray scene.lua -q -j 1 %s --resume --checkpoint c.tiles --checkpoint-every 0 & pid=$!; "
                    "sleep $at; kill -9 $pid 2>kill.txt; wait $pid; "
                    "at=$(awk \"BEGIN{print $at+%g}\"); test -e out.png && exit 0; done; "
-                   "$gray scene.lua -q -j 1 -full -ss 3 --resume --checkpoint c.tiles",
-                   from, tries, step);
+                   "$gray scene.lua -q -j 1 %s --resume --checkpoint c.tiles",
+                   from, tries, options, step, options);
     int status = shell(line);
     CHECK_EQ_INT(status, 0);
 }
@@ -188,9 +188,16 @@ static void resume_until_done(int tries, double from, double step) {
 TEST(killed_runs_that_go_on_give_the_bytes_of_one_run) {
     put("scene.lua", ONE);
     gives("$gray scene.lua -q -full -ss 3 -o whole.png", 0, NULL);
-    resume_until_done(20, 0.02, 0.01);
+    resume_until_done("-full -ss 3", 20, 0.02, 0.01);
     CHECK(shell("cmp out.png whole.png") == 0);
     CHECK(shell(NO_LEFTOVERS) == 0);
+}
+
+TEST(killed_runs_of_paths_that_go_on_give_the_bytes_of_one_run) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -q --integrator path --spp 4 -o whole.png", 0, NULL);
+    resume_until_done("--integrator path --spp 4", 20, 0.05, 0.02);
+    CHECK(shell("cmp out.png whole.png") == 0);
 }
 
 /* Starts the program in the folder of the test; its words as in test_gray. */
@@ -290,10 +297,10 @@ TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
 }
 
 /* The table of docs/reliability.md. */
-TEST_LONG(one_picture_made_with_every_option_has_one_hash) {
+static void check_one_hash(const char *options) {
     char *folder = getcwd(NULL, 0), *line = NULL;
-    CHECK(folder && asprintf(&line, "bash %s/tools/one_hash.sh $gray %s/tests/scripts/one_hash.lua >table.txt", folder,
-                             folder) > 0);
+    CHECK(folder && asprintf(&line, "bash %s/tools/one_hash.sh $gray %s/tests/scripts/one_hash.lua %s >table.txt",
+                             folder, folder, options) > 0);
     gives(line, 0, NULL);
     char *path = path_in("table.txt"), *table = test_read_file(path, NULL);
     fprintf(stderr, "%s", table ? table : "");
@@ -302,6 +309,13 @@ TEST_LONG(one_picture_made_with_every_option_has_one_hash) {
     free(path);
     free(line);
     free(folder);
+}
+
+TEST_LONG(one_picture_made_with_every_option_has_one_hash) {
+    check_one_hash("");
+}
+TEST_LONG(one_picture_of_paths_made_with_every_option_has_one_hash) {
+    check_one_hash("--integrator path --spp 4");
 }
 
 /* Leaves a checkpoint behind: the picture takes seconds, the signal comes as soon as there is one tile. */
@@ -461,6 +475,13 @@ TEST(one_to_four_ranks_give_the_bytes_of_one_run) {
             ranks);
         gives(line, 0, "");
     }
+}
+
+TEST(ranks_trace_paths_to_the_bytes_of_one_run) {
+    need_mpi();
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -q --integrator path --spp 4 -o whole.png", 0, NULL);
+    gives("export gray; sh farm.sh 3 scene.lua --integrator path --spp 4 && cmp out.png whole.png", 0, "");
 }
 
 TEST(a_rank_that_falls_out_is_done_without) {

@@ -48,7 +48,8 @@ static void begin_plates(struct stage *s) {
     }
 }
 
-static void check_plates(struct effort effort, double precision) {
+/* BSDFs alone rarely hit the small lamps. */
+static void check_plates(struct effort effort, double precision, double of_bsdfs) {
     static const char *const claims[] = {"plates: both and lights alone", "plates: both and BSDFs alone"};
     for (int seed = 1; seed <= effort.seeds; seed++) {
         struct estimate by[3];
@@ -60,17 +61,18 @@ static void check_plates(struct effort effort, double precision) {
             stage_end(&s);
         }
         for (int i = 0; i < 2; i++)
-            estimate_check_equal(claims[i], by[PATH_STRATEGY_MIS], by[PATH_STRATEGY_LIGHTS + i], seed, precision);
+            estimate_check_equal(claims[i], by[PATH_STRATEGY_MIS], by[PATH_STRATEGY_LIGHTS + i], seed,
+                                 i == 0 ? precision : of_bsdfs);
         CHECK(by[PATH_STRATEGY_MIS].error < by[PATH_STRATEGY_LIGHTS].error);
         CHECK(by[PATH_STRATEGY_MIS].error < by[PATH_STRATEGY_BSDF].error);
     }
 }
 
 TEST(sampling_lights_and_bsdfs_and_both_agree_on_the_plates) {
-    check_plates((struct effort){16, 512, 1}, 0.02);
+    check_plates((struct effort){16, 512, 1}, 0.005, 0.02);
 }
 TEST_LONG(sampling_lights_and_bsdfs_and_both_agree_on_the_plates_for_every_seed) {
-    check_plates((struct effort){16, 32768, 3}, 0.001);
+    check_plates((struct effort){16, 8192, 3}, 0.001, 0.004);
 }
 
 /* --- brute force --- */
@@ -177,7 +179,7 @@ TEST(brute_force_agrees_where_all_lights_have_bodies_or_are_skies) {
     check_brute_force((struct effort){8, 256, 1}, 150000, 0.1);
 }
 TEST_LONG(brute_force_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
-    check_brute_force((struct effort){8, 1024, 3}, 4000000, 0.02);
+    check_brute_force((struct effort){8, 1024, 3}, 2000000, 0.03);
 }
 
 /* The same with directions of the BSDF, of which less have no light. */
@@ -201,7 +203,7 @@ TEST(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies) {
     check_bsdf_sampling((struct effort){8, 256, 1}, (struct effort){8, 512, 1}, 0.02);
 }
 TEST_LONG(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
-    check_bsdf_sampling((struct effort){16, 2048, 3}, (struct effort){16, 16384, 3}, 0.002);
+    check_bsdf_sampling((struct effort){16, 2048, 3}, (struct effort){16, 8192, 3}, 0.003);
 }
 
 /* --- a thousand lamps --- */
