@@ -835,8 +835,8 @@ function gr.mix_texture(a, b, ratio) end
 function gr.multiply_texture(a, b) end
 
 ---@class gr.material.fields
----@field kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@field ks? gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@field kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@field ks? gr.triple|string|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
 ---@field shininess? number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@field reflect? number|gr.texture|function reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
 ---@field refract? number|gr.texture|function refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
@@ -844,25 +844,25 @@ function gr.multiply_texture(a, b) end
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit, too.
 ---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): Formula of the highlight.
 ---@field lit? boolean lit (true or false; default true): Whether light affects it; false: it shows kd unchanged.
----@field emission? gr.triple|gr.texture|function emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
+---@field emission? gr.triple|string|gr.texture|function emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
 ---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness of reflection and refraction; 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from a rough surface; after the first rough surface of a path, one ray.
----@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Absorption inside the solid: factor exp(-absorption * distance).
+---@field absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Absorption inside the solid: factor exp(-absorption * distance).
 ---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
 ---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
 
 ---A Phong material.
----@param kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@param ks gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@param ks gr.triple|string|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
 ---@param shininess number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@return gr.material
 ---@overload fun(fields: gr.material.fields): gr.material
 function gr.material(kd, ks, shininess) end
 
 ---@class gr.rr_material.fields
----@field kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@field ks? gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@field kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@field ks? gr.triple|string|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
 ---@field shininess? number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@field reflect? number|gr.texture|function reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
 ---@field refract? number|gr.texture|function refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
@@ -870,17 +870,17 @@ function gr.material(kd, ks, shininess) end
 ---@field two_sided? boolean two_sided (true or false; default false): Whether faces seen from behind are lit, too.
 ---@field highlight? 'phong'|'blinn' highlight ('phong'|'blinn'; default specular of the render): Formula of the highlight.
 ---@field lit? boolean lit (true or false; default true): Whether light affects it; false: it shows kd unchanged.
----@field emission? gr.triple|gr.texture|function emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
+---@field emission? gr.triple|string|gr.texture|function emission (a colour {r, g, b} or a texture; default {0, 0, 0}): Emitted light, added to reflected light.
 ---@field roughness? number|gr.texture|function roughness (a number or a texture, 0 to 1; default 0): Roughness of reflection and refraction; 0 is polished.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from a rough surface; after the first rough surface of a path, one ray.
----@field absorption? gr.triple absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Absorption inside the solid: factor exp(-absorption * distance).
+---@field absorption? gr.triple|string absorption (a colour {r, g, b}, >= 0; default {0, 0, 0}): Absorption inside the solid: factor exp(-absorption * distance).
 ---@field opacity? number|gr.texture|function opacity (a number or a texture, 0 to 1; default 1): Opacity of the surface; below 1 it has holes.
 ---@field metalness? number|gr.texture|function metalness (a number or a texture, 0 to 1; default 0): Fraction of kd that replaces ks.
 ---@field bump? string|gr.texture|function bump (the name of a picture file or a texture; default none): Heights: a result of gr.bump, a file or a texture.
 
 ---A Phong material that reflects and refracts.
----@param kd gr.triple|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@param ks gr.triple|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
+---@param ks gr.triple|string|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
 ---@param shininess number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@param reflect number|gr.texture|function reflect (a number or a texture, 0 to 1; default 0): Amount of reflection.
 ---@param refract number|gr.texture|function refract (a number or a texture, 0 to 1; default 0): Amount of refraction.
@@ -895,7 +895,7 @@ function gr.rr_material(kd, ks, shininess, reflect, refract, ior) end
 ---@field multiplier number multiplier (a number): Strength of the noise in the veins.
 ---@field vein_frequency number vein_frequency (a number): Frequency of the veins along y.
 ---@field interp? integer interp (a whole number, 0 to 1; default 0): Interpolation of the noise: 0 linear, 1 cosine.
----@field mix gr.triple mix (a colour {r, g, b}): Colour to mix with kd.
+---@field mix gr.triple|string mix (a colour {r, g, b}): Colour to mix with kd.
 
 ---Marble over another material.
 ---@param material gr.material material (a material): The base material.
@@ -903,7 +903,7 @@ function gr.rr_material(kd, ks, shininess, reflect, refract, ior) end
 ---@param multiplier number multiplier (a number): Strength of the noise in the veins.
 ---@param vein_frequency number vein_frequency (a number): Frequency of the veins along y.
 ---@param interp integer interp (a whole number, 0 to 1; default 0): Interpolation of the noise: 0 linear, 1 cosine.
----@param mix gr.triple mix (a colour {r, g, b}): Colour to mix with kd.
+---@param mix gr.triple|string mix (a colour {r, g, b}): Colour to mix with kd.
 ---@return gr.material
 ---@overload fun(fields: gr.marble_pnd_material.fields): gr.material
 function gr.marble_pnd_material(material, f, multiplier, vein_frequency, interp, mix) end
@@ -913,14 +913,14 @@ function gr.marble_pnd_material(material, f, multiplier, vein_frequency, interp,
 ---@field f number f (a number): Factor of the point before the noise.
 ---@field density number density (a number): Density of the grain.
 ---@field interp? integer interp (a whole number, 0 to 1; default 0): Interpolation of the noise: 0 linear, 1 cosine.
----@field mix gr.triple mix (a colour {r, g, b}): Colour to mix with kd.
+---@field mix gr.triple|string mix (a colour {r, g, b}): Colour to mix with kd.
 
 ---Wood over another material.
 ---@param material gr.material material (a material): The base material.
 ---@param f number f (a number): Factor of the point before the noise.
 ---@param density number density (a number): Density of the grain.
 ---@param interp integer interp (a whole number, 0 to 1; default 0): Interpolation of the noise: 0 linear, 1 cosine.
----@param mix gr.triple mix (a colour {r, g, b}): Colour to mix with kd.
+---@param mix gr.triple|string mix (a colour {r, g, b}): Colour to mix with kd.
 ---@return gr.material
 ---@overload fun(fields: gr.wood_pnd_material.fields): gr.material
 function gr.wood_pnd_material(material, f, density, interp, mix) end
@@ -976,7 +976,7 @@ function gr.difresneld_material(material) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
 
 ---An image texture for node:set_texture and for inputs of gr.material.
 ---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
@@ -991,7 +991,7 @@ function gr.texture(file) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
@@ -1010,7 +1010,7 @@ function gr.bump(file, height) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
 ---@field channel? 'kd'|'ks'|'emission'|'opacity' channel ('kd'|'ks'|'emission'|'opacity'; default 'kd'): The input that the image replaces; where opacity is below 1, the surface has holes.
 
 ---An image mapped by the texture coordinates of the shape, over another material.
@@ -1028,7 +1028,7 @@ function gr.image_material(material, image) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear' encoding ('auto'|'srgb'|'linear'; default 'auto'): What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
@@ -1053,37 +1053,37 @@ function gr.glyphs(font, text) end
 
 ---@class gr.openpbr_material.fields
 ---@field base_weight? number|gr.texture|function base_weight (a number or a texture, 0 to 1; default 1): Factor of base_color.
----@field base_color? gr.triple|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@field base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
 ---@field base_diffuse_roughness? number|gr.texture|function base_diffuse_roughness (a number or a texture, 0 to 1; default 0): Roughness of the diffuse base; 0 is Lambert's.
 ---@field base_metalness? number|gr.texture|function base_metalness (a number or a texture, 0 to 1; default 0): Share of the base that is metal.
 ---@field specular_weight? number|gr.texture|function specular_weight (a number or a texture, >= 0; default 1): Factor of the reflectance head on (by the index), and of metal's reflection.
----@field specular_color? gr.triple|gr.texture|function specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the gloss; of metals the tint at 82 degrees.
+---@field specular_color? gr.triple|string|gr.texture|function specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the gloss; of metals the tint at 82 degrees.
 ---@field specular_roughness? number|gr.texture|function specular_roughness (a number or a texture, 0 to 1; default 0.3): Roughness of gloss, metal and glass; 0 is polished.
 ---@field specular_roughness_anisotropy? number|gr.texture|function specular_roughness_anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
 ---@field specular_ior? number|gr.texture|function specular_ior (a number or a texture, > 0; default 1.5): Index of refraction of the base.
 ---@field transmission_weight? number|gr.texture|function transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that light passes.
----@field transmission_color? gr.triple|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the surface, or transmission_depth.
+---@field transmission_color? gr.triple|string|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the surface, or transmission_depth.
 ---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Length of the way inside after which white light has transmission_color; 0: any.
----@field transmission_scatter? gr.triple transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside: not there yet, but for black.
+---@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside: not there yet, but for black.
 ---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Without effect while transmission_scatter is black.
 ---@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0): Not there yet.
 ---@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, >= 0; default 20): Not there yet.
 ---@field subsurface_weight? number subsurface_weight (a number, >= 0; default 0): Not there yet.
----@field subsurface_color? gr.triple subsurface_color (a colour {r, g, b}, >= 0; default {0.8, 0.8, 0.8}): Not there yet.
+---@field subsurface_color? gr.triple|string subsurface_color (a colour {r, g, b}, >= 0; default {0.8, 0.8, 0.8}): Not there yet.
 ---@field subsurface_radius? number subsurface_radius (a number, >= 0; default 1): Not there yet.
----@field subsurface_radius_scale? gr.triple subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Not there yet.
+---@field subsurface_radius_scale? gr.triple|string subsurface_radius_scale (a colour {r, g, b}, >= 0; default {1, 0.5, 0.25}): Not there yet.
 ---@field subsurface_scatter_anisotropy? number subsurface_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Not there yet.
 ---@field coat_weight? number|gr.texture|function coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
----@field coat_color? gr.triple|gr.texture|function coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
+---@field coat_color? gr.triple|string|gr.texture|function coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
 ---@field coat_roughness? number|gr.texture|function coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
 ---@field coat_roughness_anisotropy? number|gr.texture|function coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): Likewise for the coat.
 ---@field coat_ior? number|gr.texture|function coat_ior (a number or a texture, > 0; default 1.6): Index of refraction of the coat.
 ---@field coat_darkening? number|gr.texture|function coat_darkening (a number or a texture, 0 to 1; default 1): How much the coat darkens the base by reflections inside.
 ---@field fuzz_weight? number|gr.texture|function fuzz_weight (a number or a texture, 0 to 1; default 0): Share of the surface with fuzz.
----@field fuzz_color? gr.triple|gr.texture|function fuzz_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the fuzz.
+---@field fuzz_color? gr.triple|string|gr.texture|function fuzz_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the fuzz.
 ---@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz: how far it shows from the rim inwards.
 ---@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 is the radiance 1.
----@field emission_color? gr.triple|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
+---@field emission_color? gr.triple|string|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
 ---@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not there yet.
 ---@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not there yet.
 ---@field thin_film_ior? number thin_film_ior (a number, >= 0; default 1.4): Not there yet.
@@ -1096,7 +1096,7 @@ function gr.glyphs(font, text) end
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
 
 ---Layers of metal, glass, gloss over a diffuse base, clear coat and fuzz: OpenPBR Surface 1.1.
----@param base_color? gr.triple|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@param base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
 ---@return gr.material
 ---@overload fun(fields: gr.openpbr_material.fields): gr.material
 function gr.openpbr_material(base_color) end
@@ -1117,7 +1117,7 @@ function gr.openpbr_material(base_color) end
 function gr.metal_material(metal, roughness) end
 
 ---@class gr.light.fields
----@field colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@field colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1127,20 +1127,20 @@ function gr.metal_material(metal, roughness) end
 
 ---A point light.
 ---@param position gr.triple position (a point {x, y, z}): Position.
----@param colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@return gr.light
 ---@overload fun(fields: gr.light.fields): gr.light
 function gr.light(position, colour, falloff) end
 
 ---@class gr.area_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@field range? number range (a number, > 0; optional): Range, instead of falloff: the light is multiplied by 1 - d / range, and is 0 beyond.
 ---@field intensity? number intensity (a number, >= 0; optional): Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2.
----@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff.
+---@field emission? gr.triple|string emission (a colour {r, g, b}; optional): Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff.
 ---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
 ---@field visible? boolean visible (true or false; default false): Whether the light itself is visible.
 ---@field corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
@@ -1152,20 +1152,20 @@ function gr.light(position, colour, falloff) end
 ---@param corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
 ---@param v1 gr.triple v1 (a direction {x, y, z}): Edge from that corner.
 ---@param v2 gr.triple v2 (a direction {x, y, z}): The other edge from that corner.
----@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@return gr.light
 ---@overload fun(fields: gr.area_light.fields): gr.light
 function gr.area_light(corner, v1, v2, colour, falloff) end
 
 ---@class gr.spherical_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@field range? number range (a number, > 0; optional): Range, instead of falloff: the light is multiplied by 1 - d / range, and is 0 beyond.
 ---@field intensity? number intensity (a number, >= 0; optional): Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2.
----@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff.
+---@field emission? gr.triple|string emission (a colour {r, g, b}; optional): Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff.
 ---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
 ---@field visible? boolean visible (true or false; default false): Whether the light itself is visible.
 ---@field position gr.triple position (a point {x, y, z}): Its centre.
@@ -1173,7 +1173,7 @@ function gr.area_light(corner, v1, v2, colour, falloff) end
 
 ---A sphere as a light, with soft shadows.
 ---@param position gr.triple position (a point {x, y, z}): Its centre.
----@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@param falloff gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@param radius number radius (a number, > 0): Its radius.
 ---@return gr.light
@@ -1181,13 +1181,13 @@ function gr.area_light(corner, v1, v2, colour, falloff) end
 function gr.spherical_light(position, colour, falloff, radius) end
 
 ---@class gr.disc_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@field range? number range (a number, > 0; optional): Range, instead of falloff: the light is multiplied by 1 - d / range, and is 0 beyond.
 ---@field intensity? number intensity (a number, >= 0; optional): Inverse square falloff, instead of falloff: the light is multiplied by intensity / d^2.
----@field emission? gr.triple emission (a colour {r, g, b}; optional): Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff.
+---@field emission? gr.triple|string emission (a colour {r, g, b}; optional): Radiance of its surface, multiplied by colour; the light then depends on its true shape, without falloff.
 ---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
 ---@field visible? boolean visible (true or false; default false): Whether the light itself is visible.
 ---@field position gr.triple position (a point {x, y, z}): Its centre.
@@ -1199,27 +1199,27 @@ function gr.spherical_light(position, colour, falloff, radius) end
 ---@param position gr.triple position (a point {x, y, z}): Its centre.
 ---@param normal gr.triple normal (a direction {x, y, z}): The direction it faces.
 ---@param radius number radius (a number, > 0): Its radius.
----@param colour gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@return gr.light
 ---@overload fun(fields: gr.disc_light.fields): gr.light
 function gr.disc_light(position, normal, radius, colour, falloff) end
 
 ---@class gr.directional_light.fields
----@field colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@field colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field direction gr.triple direction (a direction {x, y, z}): Direction in which the light travels.
 
 ---A light at infinity: all its rays are parallel.
 ---@param direction gr.triple direction (a direction {x, y, z}): Direction in which the light travels.
----@param colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@return gr.light
 ---@overload fun(fields: gr.directional_light.fields): gr.light
 function gr.directional_light(direction, colour) end
 
 ---@class gr.spot_light.fields
----@field colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@field colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1234,7 +1234,7 @@ function gr.directional_light(direction, colour) end
 ---A point light that shines into a cone.
 ---@param position gr.triple position (a point {x, y, z}): Position.
 ---@param direction gr.triple direction (a direction {x, y, z}; default {0, -1, 0}): The axis of its cone.
----@param colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@param inner number inner (a number, 0 to 180, in degrees; default three quarters of outer): Angle from the axis where the light begins to fall off.
 ---@param outer number outer (a number, > 0 and <= 180, in degrees; default 30, or inner if that is more): Angle from the axis where the light ends.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1243,29 +1243,29 @@ function gr.directional_light(direction, colour) end
 function gr.spot_light(position, direction, colour, inner, outer, falloff) end
 
 ---@class gr.mesh_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
----@field emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, multiplied by colour.
+---@field emission? gr.triple|string emission (a colour {r, g, b}; default its materials'): Radiance of its surface, multiplied by colour.
 ---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
 ---@field mesh gr.node mesh (a node): A mesh, or a node with meshes below it. It emits at each of its positions in the scene; if it is not in the scene, it emits invisibly at its own transforms.
 
 ---The triangles of a mesh as a light.
 ---@param mesh gr.node mesh (a node): A mesh, or a node with meshes below it. It emits at each of its positions in the scene; if it is not in the scene, it emits invisibly at its own transforms.
----@param emission? gr.triple emission (a colour {r, g, b}; default its materials'): Radiance of its surface, multiplied by colour.
+---@param emission? gr.triple|string emission (a colour {r, g, b}; default its materials'): Radiance of its surface, multiplied by colour.
 ---@return gr.light
 ---@overload fun(fields: gr.mesh_light.fields): gr.light
 function gr.mesh_light(mesh, emission) end
 
 ---@class gr.sky_light.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
----@field sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, a colour, or 'gradient'.
+---@field sky gr.triple|string|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, a colour, or 'gradient'.
 ---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
 
 ---A sky as a light; bright parts get more shadow rays.
----@param sky gr.triple|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, a colour, or 'gradient'.
+---@param sky gr.triple|string|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, a colour, or 'gradient'.
 ---@return gr.light
 ---@overload fun(fields: gr.sky_light.fields): gr.light
 function gr.sky_light(sky) end
@@ -1296,25 +1296,25 @@ function gr.change_delete(name, serial) end
 ---@field name string name (a string): Name of the parent node.
 ---@field serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.
 ---@field shape 'sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy' shape ('sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy'): Shape of the new node, about the size of a unit sphere, or a copy of a node.
----@field colour? gr.triple colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
 ---@field source? integer source (a whole number, 0 to 4294967295; default 0): For a copy: the number of the node to copy.
 
 ---Adds a node to all later pictures; gr.change_node places it.
 ---@param name string name (a string): Name of the parent node.
 ---@param serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.
 ---@param shape 'sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy' shape ('sphere'|'cube'|'cylinder'|'cone'|'torus'|'copy'): Shape of the new node, about the size of a unit sphere, or a copy of a node.
----@param colour? gr.triple colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.7, 0.7, 0.7}): Its colour.
 ---@param source? integer source (a whole number, 0 to 4294967295; default 0): For a copy: the number of the node to copy.
 ---@overload fun(fields: gr.change_add.fields)
 function gr.change_add(name, serial, shape, colour, source) end
 
 ---@class gr.change_material.fields
 ---@field serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
----@field colour gr.triple colour (a colour {r, g, b}): New kd of its base material.
+---@field colour gr.triple|string colour (a colour {r, g, b}): New kd of its base material.
 
 ---Changes the colour of a material in all later pictures.
 ---@param serial integer serial (a whole number, 0 to 4294967295): Number of the material in order of creation, from 1.
----@param colour gr.triple colour (a colour {r, g, b}): New kd of its base material.
+---@param colour gr.triple|string colour (a colour {r, g, b}): New kd of its base material.
 ---@overload fun(fields: gr.change_material.fields)
 function gr.change_material(serial, colour) end
 
@@ -1347,14 +1347,14 @@ function gr.change_own(name, serial, like) end
 ---@field move gr.triple move (a table of 3 numbers): Translation.
 ---@field factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): Factor of its colour.
 ---@field linear? number|number[] linear (a number or a table of numbers; default none): Three rows of a matrix, 9 numbers: rotation and scale about its position.
----@field colour? gr.triple colour (a colour {r, g, b}; default its own): New colour, before the factor.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default its own): New colour, before the factor.
 
 ---Moves, rotates, scales or recolours a light in all later pictures.
 ---@param number integer number (a whole number, 1 to 4294967295): Index in the list of lights of gr.render, from 1.
 ---@param move gr.triple move (a table of 3 numbers): Translation.
 ---@param factor? gr.triple factor (a table of 3 numbers; default {1, 1, 1}): Factor of its colour.
 ---@param linear? number|number[] linear (a number or a table of numbers; default none): Three rows of a matrix, 9 numbers: rotation and scale about its position.
----@param colour? gr.triple colour (a colour {r, g, b}; default its own): New colour, before the factor.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default its own): New colour, before the factor.
 ---@overload fun(fields: gr.change_light.fields)
 function gr.change_light(number, move, factor, linear, colour) end
 
@@ -1368,11 +1368,11 @@ function gr.change_delete_light(number) end
 
 ---@class gr.change_add_light.fields
 ---@field position gr.triple position (a point {x, y, z}): Where it is.
----@field colour gr.triple colour (a colour {r, g, b}): Its colour.
+---@field colour gr.triple|string colour (a colour {r, g, b}): Its colour.
 
 ---Adds a point light to all later pictures.
 ---@param position gr.triple position (a point {x, y, z}): Where it is.
----@param colour gr.triple colour (a colour {r, g, b}): Its colour.
+---@param colour gr.triple|string colour (a colour {r, g, b}): Its colour.
 ---@overload fun(fields: gr.change_add_light.fields)
 function gr.change_add_light(position, colour) end
 
@@ -1415,7 +1415,7 @@ function gr.change_view(picture, eye, view, up, fov) end
 function gr.change_exposure(picture, stops) end
 
 ---@class gr.sun_light.fields
----@field colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@field colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field sun? gr.triple sun (a direction {x, y, z}; optional): Direction to the sun, instead of time and position.
@@ -1427,7 +1427,7 @@ function gr.change_exposure(picture, stops) end
 
 ---A directional light from the position of the sun.
 ---@param sun gr.triple sun (a direction {x, y, z}; optional): Direction to the sun, instead of time and position.
----@param colour gr.triple colour (a colour {r, g, b}): Colour and strength.
+---@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@return gr.light
 ---@overload fun(fields: gr.sun_light.fields): gr.light
 function gr.sun_light(sun, colour) end
@@ -1497,7 +1497,7 @@ function gr.sky_gradient(stops) end
 ---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): Positive is east.
 ---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): Difference of the local time to Greenwich; positive is east.
 ---@field turbidity? number turbidity (a number, 1.7 to 10; default 2.5): Turbidity of the air: 2 is very clear, 10 is hazy.
----@field ground? gr.triple ground (a colour {r, g, b}; default {0.15, 0.15, 0.15}): Colour below the horizon.
+---@field ground? gr.triple|string ground (a colour {r, g, b}; default {0.15, 0.15, 0.15}): Colour below the horizon.
 
 ---The clear sky model of Preetham, Shirley and Smits (1999).
 ---@param sun gr.triple sun (a direction {x, y, z}; optional): Direction to the sun, instead of time and position.
@@ -1507,20 +1507,20 @@ function gr.sky_gradient(stops) end
 function gr.clear_sky(sun, turbidity) end
 
 ---@class gr.uniform_fog.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
 ---@field density number density (a number, >= 0): Transmittance over distance d is exp(-density d).
 ---@field squared? boolean squared (true or false; default false): Transmittance is exp(-(density d)^2) instead.
 
 ---Fog of constant density.
 ---@param density number density (a number, >= 0): Transmittance over distance d is exp(-density d).
----@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@return gr.fog
 ---@overload fun(fields: gr.uniform_fog.fields): gr.fog
 function gr.uniform_fog(density, colour) end
 
 ---@class gr.linear_fog.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
 ---@field near? number near (a number, >= 0; default 0): Distance where the fog begins.
 ---@field far number far (a number, > 0): Distance where the transmittance is 0.
@@ -1528,13 +1528,13 @@ function gr.uniform_fog(density, colour) end
 ---Fog whose transmittance falls linearly with distance.
 ---@param near number near (a number, >= 0; default 0): Distance where the fog begins.
 ---@param far number far (a number, > 0): Distance where the transmittance is 0.
----@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@return gr.fog
 ---@overload fun(fields: gr.linear_fog.fields): gr.fog
 function gr.linear_fog(near, far, colour) end
 
 ---@class gr.height_fog.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
 ---@field density number density (a number, >= 0): Density at the base.
 ---@field base? number base (a number; default 0): Height y of the base.
@@ -1544,25 +1544,25 @@ function gr.linear_fog(near, far, colour) end
 ---@param density number density (a number, >= 0): Density at the base.
 ---@param base number base (a number; default 0): Height y of the base.
 ---@param scale number scale (a number, > 0; default 1): Height over which the density falls by the factor e.
----@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@return gr.fog
 ---@overload fun(fields: gr.height_fog.fields): gr.fog
 function gr.height_fog(density, base, scale, colour) end
 
 ---@class gr.fog_profile.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
 ---@field profile number[][] profile (a table of pairs {u, v}): Densities by height, {y, density}; linear between the entries, constant beyond them.
 
 ---Fog with a density by height.
 ---@param profile number[][] profile (a table of pairs {u, v}): Densities by height, {y, density}; linear between the entries, constant beyond them.
----@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@return gr.fog
 ---@overload fun(fields: gr.fog_profile.fields): gr.fog
 function gr.fog_profile(profile, colour) end
 
 ---@class gr.fog_grid.fields
----@field colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@field colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
 ---@field corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
 ---@field size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
@@ -1574,7 +1574,7 @@ function gr.fog_profile(profile, colour) end
 ---@param size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
 ---@param cells gr.triple cells (a table of 3 numbers, 1 to 1024): Number of cells along x, y and z.
 ---@param densities number|number[] densities (a number or a table of numbers, >= 0): Density of each cell; x varies fastest, then y, then z.
----@param colour? gr.triple colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
+---@param colour? gr.triple|string colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour.
 ---@return gr.fog
 ---@overload fun(fields: gr.fog_grid.fields): gr.fog
 function gr.fog_grid(corner, size, cells, densities, colour) end
@@ -1589,10 +1589,10 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@field ambient? gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1648,7 +1648,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@param ambient gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@param ambient gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(fields: gr.render.fields)
 function gr.render(node, file, width, height, eye, view, up, fov, ambient, lights) end
@@ -1663,10 +1663,10 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@field ambient? gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1723,7 +1723,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@param ambient gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@param ambient gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(fields: gr.render_skybox.fields)
 function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, ambient, lights) end
@@ -1822,7 +1822,7 @@ function node:translate(x, y, z) end
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@param ambient gr.triple ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@param ambient gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(self: gr.node, fields: gr.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
@@ -1880,6 +1880,12 @@ function gr.cells(p) end
 
 ---A random number in 0..1 for each point.
 function gr.hash(p) end
+
+---A colour of the screen: '#rrggbb', {r, g, b} or r, g, b; linear colours decode it.
+function gr.srgb(colour) end
+
+---The light of a colour of the screen, a vector of numbers, by the sRGB function.
+function gr.linear(colour) end
 
 ---Whether x is a number of a recorded function, whose value is not known yet.
 function gr.is_recorded(x) end

@@ -247,6 +247,7 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                                       .shutter = work->job.settings.shutter,
                                       .accel = work->job.settings.accel,
                                       .linear_colours = settings_linear(&work->job.settings),
+                                      .encodes = work->job.settings.tone.srgb,
                                       .warn = warn_of_scene,
                                       .warn_context = process};
     bool ok = world_build(&work->world, &input, &process->job, process->pool, error);

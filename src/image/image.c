@@ -193,14 +193,12 @@ struct image *image_create(const char *name, uint32_t width, uint32_t height, in
     return image;
 }
 
-static uint16_t decoded(uint32_t units) {
-    double c = units / 65535.0, light = c <= 0.04045 ? c / 12.92 : el_pow((c + 0.055) / 1.055, 2.4);
+static uint16_t decoded(struct transfer transfer, uint32_t units) {
+    double light = transfer_decode(transfer, units / 65535.0);
     return (uint16_t)(65535 * light + 0.5);
 }
 
-struct image *image_linear(struct image *image, struct error *error) {
-    if (image->bits == 32 || image->linear)
-        return image->bits == 32 ? image : image->linear;
+static struct image *decode(const struct image *image, struct transfer transfer, struct error *error) {
     const struct image_level *from = &image->levels[0];
     size_t count = (size_t)from->width * from->height * 4;
     struct image *out = image_allocate(image->name, from->width, from->height, 16, error);
@@ -210,20 +208,46 @@ struct image *image_linear(struct image *image, struct error *error) {
     const uint16_t *words = from->texels;
     uint16_t *texels = out->levels[0].texels, of_byte[256];
     for (uint32_t i = 0; i < 256; i++)
-        of_byte[i] = decoded(i * 257);
+        of_byte[i] = decoded(transfer, i * 257);
     for (size_t i = 0; i < count; i++) {
         bool alpha = i % 4 == 3;
         if (image->bits == 8)
             texels[i] = alpha ? (uint16_t)(bytes[i] * 257) : of_byte[bytes[i]];
         else
-            texels[i] = alpha ? words[i] : decoded(words[i]);
+            texels[i] = alpha ? words[i] : decoded(transfer, words[i]);
     }
-    if (!image_build_levels(out, error)) {
-        image_release(out);
+    out->transfer = transfer;
+    if (image_build_levels(out, error))
+        return out;
+    image_release(out);
+    return NULL;
+}
+
+struct image *image_decode(struct image *image, struct transfer transfer, struct error *error) {
+    if (image->bits == 32 || transfer_is_linear(transfer))
+        return image;
+    for (struct image *known = image->decoded; known; known = known->decoded)
+        if (transfer_same(known->transfer, transfer))
+            return known;
+    struct image *out = decode(image, transfer, error);
+    if (!out)
         return NULL;
-    }
-    image->linear = out;
-    return out;
+    out->decoded = image->decoded;
+    return image->decoded = out;
+}
+
+struct transfer image_transfer(const struct image *image) {
+    return image->transfer;
+}
+
+struct transfer image_colour_transfer(const struct image *image) {
+    if (image->transfer.kind != TRANSFER_UNSTATED || image->bits != 8)
+        return image->transfer;
+    return (struct transfer){TRANSFER_SRGB, 0};
+}
+
+const char *image_colours(const struct image *image) {
+    return image->colours;
 }
 
 struct image *image_share(struct image *image) {
@@ -234,7 +258,8 @@ struct image *image_share(struct image *image) {
 void image_release(struct image *image) {
     if (!image || atomic_fetch_sub_explicit(&image->owners, 1, memory_order_acq_rel) != 1)
         return;
-    image_release(image->linear);
+    image_release(image->decoded);
+    mem_free(image->colours);
     mem_free(image->block);
     mem_free(image->name);
     mem_free(image);
@@ -253,8 +278,8 @@ int image_bits(const struct image *image) {
 }
 
 size_t image_memory(const struct image *image) {
-    size_t linear = image->linear ? image_memory(image->linear) : 0;
-    return sizeof *image + image->block_size + strlen(image->name) + 1 + linear;
+    size_t decoded_memory = image->decoded ? image_memory(image->decoded) : 0;
+    return sizeof *image + image->block_size + strlen(image->name) + 1 + decoded_memory;
 }
 
 const char *image_name(const struct image *image) {

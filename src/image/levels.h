@@ -31,13 +31,17 @@ struct image {
     void *block;
     size_t block_size;
     char *name;
-    struct image *linear; /* of image_linear, or NULL before its first call; owned */
+    struct transfer transfer; /* as its file states it; of the results of image_decode: that which was decoded */
+    char *colours;            /* what image_colours returns, or NULL; owned */
+    struct image *decoded;    /* the first result of image_decode, in which it is the next one; owned */
 };
 
 /* All levels allocated, texels not yet set: fill level 0, then call image_build_levels. NULL without memory or when the
  * size is refused. */
 struct image *image_allocate(const char *name, uint32_t width, uint32_t height, int bits, struct error *error);
 bool image_build_levels(struct image *image, struct error *error);
+/* Sets what the file states about its colours: `transfer` and `colours`. False: no memory. */
+bool png_colour_read(struct image *image, const uint8_t *data, size_t size);
 /* As image_read_png, from memory; `path` is for messages. */
 struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
 

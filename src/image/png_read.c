@@ -3,8 +3,8 @@
  * libpng reports errors by longjmp. So one struct reader in image_parse_png owns everything that must be freed; decode,
  * the function with the setjmp, has no local variables that change after it. Nothing is used before it is checked:
  * invalid sizes are refused before memory is allocated, and so is a picture that the bytes of the file cannot fill
- * (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little memory. Chunks that do not change texels
- * are skipped, except for their checksums. */
+ * (deflate shrinks by 1032 : 1 at most), so a small hostile file costs little memory. libpng
+ * skips chunks that do not change texels, except for their checksums; png_colour.c reads those about colours. */
 #include "image/levels.h"
 
 #include "base/file.h"
@@ -188,6 +188,8 @@ struct image *image_parse_png(const char *path, const uint8_t *data, size_t size
                       reader.position);
     }
     png_destroy_read_struct(&reader.png, &reader.info, NULL);
+    if (ok && !png_colour_read(reader.image, data, size))
+        ok = error_no_memory(error, path);
     ok = ok && image_build_levels(reader.image, error);
     if (ok)
         return reader.image;

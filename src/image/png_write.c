@@ -133,11 +133,13 @@ static bool write_small(struct text_writer *writer, const char *kind, const uint
 static bool write_head(struct text_writer *writer, struct error *error) {
     static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t stream_head[2] = {0x78, 0x5e}; /* deflate, a window of 32 kB, a fast level (RFC 1950) */
+    static const uint8_t intent = 0;                    /* perceptual */
     uint8_t header[13] = {[8] = writer->rows->words ? 16 : 8, [9] = 2 /* red, green, blue */};
     put_word(header, writer->rows->width);
     put_word(header + 4, writer->rows->height);
     return file_output_write(&writer->output, signature, sizeof signature, error) &&
            write_small(writer, "IHDR", header, sizeof header, error) &&
+           (!writer->rows->srgb || write_small(writer, "sRGB", &intent, 1, error)) &&
            write_small(writer, "IDAT", stream_head, sizeof stream_head, error);
 }
 

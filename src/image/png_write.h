@@ -16,6 +16,7 @@ struct png_source {
     void (*bytes)(void *context, uint32_t y, uint8_t *line);
     void (*words)(void *context, uint32_t y, uint16_t *line);
     void *context;
+    bool srgb; /* the numbers are encoded with the sRGB function: the file states it */
 };
 
 /* Creates missing folders of the target. The bytes of the file depend only on the pixels. With a pool, its threads

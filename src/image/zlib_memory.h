@@ -4,6 +4,7 @@
 
 #include "base/mem.h"
 
+#define ZLIB_CONST /* input is not written */
 #include <zlib.h>
 
 static inline voidpf zlib_alloc(voidpf context, uInt count, uInt size) {

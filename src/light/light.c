@@ -7,6 +7,7 @@
 #include "light/light.h"
 
 #include "base/error.h"
+#include "image/transfer.h"
 #include "light/light_internal.h"
 #include "light/light_mesh.h"
 #include "light/sky_light_internal.h"
@@ -17,6 +18,16 @@
 /* A disc whose square fills more than this solid angle is sampled by that of the square, although a fifth of the square
  * is outside the disc: bench/area_lights.c. */
 static const double disc_by_angle = 1.5;
+
+void light_decode(struct light *light) {
+    if (!light->has_display)
+        return;
+    struct vec3 c = light->colour, d = light->display;
+    struct vec3 decoded = transfer_decode_colour((struct transfer){TRANSFER_SRGB, 0}, d);
+    light->colour = vec3_make(d.x != 0 ? c.x / d.x * decoded.x : 0, d.y != 0 ? c.y / d.y * decoded.y : 0,
+                              d.z != 0 ? c.z / d.z * decoded.z : 0);
+    light->has_display = false;
+}
 
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error) {
     switch (light->kind) {

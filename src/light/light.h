@@ -49,6 +49,9 @@ struct light {
     struct vec3 position; /* of a parallelogram, disc, sphere: its centre */
     struct vec3 corner, edge1, edge2;
     struct vec3 colour; /* of a lamp: its radiance */
+    /* `colour` has this factor, a colour of the screen. light_decode makes it light and clears has_display. */
+    struct vec3 display;
+    bool has_display;
     double falloff[3];
     enum light_attenuation attenuation;
     double range, intensity;
@@ -65,6 +68,8 @@ struct light {
     const uint8_t *lit;            /* by primitive, made by world_build; NULL: it lights everything */
 };
 
+/* For linear colours. */
+void light_decode(struct light *light);
 /* Creates data that queries of a light need (the table of a sky), in the arena. Errors: no memory. */
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error);
 

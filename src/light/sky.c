@@ -377,14 +377,19 @@ void sky_turn(struct sky *sky, double sine, double cosine) {
 }
 
 static bool decode(struct image **image, struct error *error) {
-    if (!*image || image_bits(*image) != 8)
-        return true;
-    *image = image_linear(*image, error);
+    if (*image)
+        *image = image_decode(*image, image_colour_transfer(*image), error);
     return *image != NULL;
 }
 
 bool sky_decode(struct sky *sky, struct error *error) {
     bool ok = true;
+    if (sky->display) {
+        const struct transfer srgb = {TRANSFER_SRGB, 0};
+        sky->colour = transfer_decode_colour(srgb, sky->colour);
+        sky->clear.ground = transfer_decode_colour(srgb, sky->clear.ground);
+        sky->display = false;
+    }
     switch (sky->kind) {
     case SKY_CROSS:
     case SKY_MAP:

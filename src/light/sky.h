@@ -36,6 +36,7 @@ struct sky {
     /* A rotation of the whole sky about the y axis and a factor; used only if `adjusted`. */
     bool adjusted;
     double turn_sine, turn_cosine, intensity;
+    bool display; /* `colour` and `ground` are colours of the screen */
 };
 
 /* Checks the proportions of the cross. */
@@ -49,7 +50,7 @@ void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struc
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
 /* Rotates it further about the y axis: light from +x then comes from (cosine, 0, -sine). */
 void sky_turn(struct sky *sky, double sine, double cosine);
-/* Its 8-bit images are decoded from sRGB (image_linear). False: no memory. */
+/* For linear colours: its images (image_colour_transfer) and colours of the screen are decoded. False: no memory. */
 bool sky_decode(struct sky *sky, struct error *error);
 /* Whether they are the same function, of the same images and stops. */
 bool sky_same(const struct sky *a, const struct sky *b);

@@ -40,10 +40,10 @@ bool material_multiply_constant(struct material *material, enum material_input i
     return factor && material_multiply(material, input, factor, arena, error);
 }
 
-bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
+bool material_mix_kd(struct material *material, struct texture pattern, struct texture mix, struct arena *arena,
                      struct error *error) {
     const struct texture *ratio = texture_keep(arena, pattern, error);
-    const struct texture *other = ratio ? texture_keep(arena, texture_constant(mix), error) : NULL;
+    const struct texture *other = ratio ? texture_keep(arena, mix, error) : NULL;
     return other &&
            put(material, INPUT_KD, texture_mix(material_input(material, INPUT_KD), other, ratio), arena, error);
 }

@@ -18,7 +18,7 @@ bool material_multiply(struct material *material, enum material_input input, con
 bool material_multiply_constant(struct material *material, enum material_input input, struct texture constant,
                                 struct arena *arena, struct error *error);
 /* kd * pattern + mix * (1 - pattern): marble and wood. */
-bool material_mix_kd(struct material *material, struct texture pattern, struct vec3 mix, struct arena *arena,
+bool material_mix_kd(struct material *material, struct texture pattern, struct texture mix, struct arena *arena,
                      struct error *error);
 /* The image over the input. Not for INPUT_OPACITY. */
 bool material_cover(struct material *material, enum material_input input, const struct texture_image *image,

@@ -67,6 +67,7 @@ enum fog_kind {
 struct fog {
     enum fog_kind kind;
     struct vec3 colour;
+    bool display; /* `colour` is one of the screen */
     double density;
     double near, far;
     double base, scale;

@@ -9,11 +9,17 @@
 
 struct texture texture_constant(struct vec3 colour) {
     return (struct texture){
-        .kind = TEXTURE_CONSTANT, .size = 1, .constant = {colour, (colour.x + colour.y + colour.z) / 3}};
+        .kind = TEXTURE_CONSTANT, .size = 1, .constant = {colour, (colour.x + colour.y + colour.z) / 3, false}};
+}
+
+struct texture texture_display_colour(struct vec3 colour) {
+    struct texture texture = texture_constant(colour);
+    texture.constant.display = true;
+    return texture;
 }
 
 struct texture texture_number(double number) {
-    return (struct texture){.kind = TEXTURE_CONSTANT, .size = 1, .constant = {vec3_all(number), number}};
+    return (struct texture){.kind = TEXTURE_CONSTANT, .size = 1, .constant = {vec3_all(number), number, false}};
 }
 
 struct texture texture_vertex_colour(void) {

@@ -83,6 +83,7 @@ struct texture_image {
     struct vec3 tint;
     enum texture_alpha alpha;
     enum texture_encoding encoding;
+    double gamma; /* in place of `encoding`, where it is above 0: light is the number to this power */
 };
 
 /* RED, GREEN, BLUE: one component, as a number. COMPLEMENT: 1 - x. SATURATE: between 0 and 1. STEP: 1 from `amount` on,
@@ -159,6 +160,7 @@ struct texture {
         struct {
             struct vec3 colour;
             double number;
+            bool display; /* decoded from sRGB in linear colours */
         } constant;
         enum material_input parameter;
         struct {
@@ -201,6 +203,8 @@ static inline const struct texture *texture_at(const struct texture *textures, u
 }
 
 struct texture texture_constant(struct vec3 colour);
+/* A colour as a screen shows it: decoded from sRGB where colours are linear. */
+struct texture texture_display_colour(struct vec3 colour);
 struct texture texture_number(double number);
 struct texture texture_vertex_colour(void);
 /* The arguments of noise_marble and noise_wood (math/noise.h). */

@@ -69,7 +69,7 @@ double picture_packing_time(const struct picture *picture, uint32_t *pixels) {
             packing_sample.tiles[packing_sample.count++] = tile;
         tile += done ? count / PACKING_SAMPLE_TILES : step;
     }
-    struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample};
+    struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample, false};
     double seconds = packing_sample.count > 0 ? png_write_trial(&source) : -1;
     *pixels = source.width * source.height;
     return request->deep ? 2 * seconds : seconds;
@@ -89,7 +89,7 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
         return layers_write_exr(target, &picture->film, error);
     if (format == PICTURE_EXR)
         return exr_write(target, request->width, request->height, row_linear, &rows, error);
-    struct png_source source = {.width = request->width, .height = request->height, .context = &rows};
+    struct png_source source = {.width = request->width, .height = request->height, .context = &rows, .srgb = tone.srgb};
     if (request->deep)
         source.words = row_16;
     else

@@ -509,15 +509,23 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     case KIND_CHOICE:
     case KIND_AXIS:
-        value->choice = read_choice(c, index, &argument_path);
+        if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
+            value->number = read_number(c, index, &argument_path);
+        else
+            value->choice = read_choice(c, index, &argument_path);
+        return true;
+    case KIND_COLOUR:
+        if (!display_colour_read(c, index, p, value))
+            value->vector = read_vector(c, index, &argument_path);
         return true;
     case KIND_POINT:
     case KIND_DIRECTION:
-    case KIND_COLOUR:
     case KIND_TRIPLE:
         value->vector = read_vector(c, index, &argument_path);
         return true;
     case KIND_SIZE:
+        if ((p->flags & OR_TEXTURE) && display_colour_read(c, index, p, value))
+            return true;
         value->vector = lua_istable(L, index) ? read_vector(c, index, &argument_path)
                                               : vec3_all(read_number(c, index, &argument_path));
         return true;
@@ -564,6 +572,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
             value->sky = read_handle(c, index, &argument_path, HANDLE_SKY);
             return value->sky != NULL;
         }
+        if (display_colour_read(c, index, p, value))
+            return true;
         if (lua_type(L, index) != LUA_TSTRING)
             value->vector = read_vector(c, index, &argument_path);
         else if (strcmp(value->text = lua_tostring(L, index), "gradient") != 0)
@@ -670,7 +680,7 @@ static bool resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
         [KIND_AXIS] = LIKE_TEXT,
         [KIND_POINT] = LIKE_TABLE,
         [KIND_DIRECTION] = LIKE_TABLE,
-        [KIND_COLOUR] = LIKE_TABLE,
+        [KIND_COLOUR] = LIKE_TABLE | LIKE_TEXT,
         [KIND_TRIPLE] = LIKE_TABLE,
         [KIND_SIZE] = LIKE_TABLE | LIKE_NUMBER,
         [KIND_INTERVAL] = LIKE_TABLE,

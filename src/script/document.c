@@ -181,10 +181,13 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     case KIND_CHOICE:
     case KIND_AXIS:
         choices_words(p, "|", out, CHOICES_SIZE);
+        if (p->flags & OR_NUMBER)
+            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
         return out;
+    case KIND_COLOUR:
+        return "gr.triple|string";
     case KIND_POINT:
     case KIND_DIRECTION:
-    case KIND_COLOUR:
     case KIND_TRIPLE:
         return "gr.triple";
     case KIND_INTERVAL:
@@ -204,7 +207,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     case KIND_IMAGE:
         return p->flags & OR_TEXTURE ? "string|gr.texture|function" : "string|gr.texture";
     case KIND_BACKGROUND:
-        return "gr.triple|gr.sky|'gradient'";
+        return "gr.triple|string|gr.sky|'gradient'";
     case KIND_FOG:
         return "gr.fog";
     case KIND_CAUSTICS:

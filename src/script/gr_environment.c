@@ -88,6 +88,7 @@ bool gr_clear_sky(struct script_context *context, const struct script_value *arg
         return false;
     sky_make_clear(sun, args[CLEAR_TURBIDITY].given ? args[CLEAR_TURBIDITY].number : 2.5,
                    args[CLEAR_GROUND].given ? args[CLEAR_GROUND].vector : vec3_all(0.15), &sky);
+    sky.display = args[CLEAR_GROUND].display;
     return give_sky(context, &sky, args, result, error);
 }
 
@@ -110,6 +111,7 @@ static bool give_fog(struct script_context *context, struct fog *fog, const stru
     if (!kept)
         return error_no_memory(error, "a fog");
     fog->colour = args[FOG_COLOUR].given ? args[FOG_COLOUR].vector : vec3_all(0.5);
+    fog->display = args[FOG_COLOUR].display;
     fog->clear_sky = args[FOG_CLEAR_SKY].boolean;
     *kept = *fog;
     result->pointer = kept;

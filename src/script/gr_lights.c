@@ -144,6 +144,8 @@ static bool give_light(struct script_context *context, const struct light *light
         return error_no_memory(error, "a light");
     kept->light = *light;
     kept->light.colour = args[LIGHT_COLOUR].vector;
+    kept->light.has_display = args[LIGHT_COLOUR].display;
+    kept->light.display = kept->light.colour;
     result->pointer = kept;
     return true;
 }
@@ -178,9 +180,12 @@ static bool make_area_light(struct script_context *context, struct light *light,
         return error_set(error, ERROR_SCENE, "a light with emission has no falloff, range or intensity");
     if (light->emissive && !args[LIGHT_COLOUR].given)
         area_light[LIGHT_COLOUR].vector = vec3_all(1);
+    if (!set_attenuation(light, args, error) || !give_light(context, light, area_light, result, error))
+        return false;
+    struct scene_light *kept = result->pointer;
     if (light->emissive)
-        area_light[LIGHT_COLOUR].vector = vec3_mul(area_light[LIGHT_COLOUR].vector, args[LIGHT_EMISSION].vector);
-    return set_attenuation(light, args, error) && give_light(context, light, area_light, result, error);
+        kept->light.colour = vec3_mul(kept->light.colour, args[LIGHT_EMISSION].vector);
+    return true;
 }
 
 static bool set_direction(struct light *light, struct vec3 direction, const char *name, struct error *error) {
@@ -284,7 +289,8 @@ static bool gr_sky_light(struct script_context *context, const struct script_val
     if (args[SKYLIGHT_SKY].sky)
         *sky = *args[SKYLIGHT_SKY].sky;
     else if (!args[SKYLIGHT_SKY].text)
-        *sky = (struct sky){.kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector};
+        *sky = (struct sky){
+            .kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector, .display = args[SKYLIGHT_SKY].display};
     light.sky = sky;
     for (int i = 0; i < SKYLIGHT_COUNT; i++)
         area_light[i] = args[i];

@@ -99,9 +99,10 @@ bool gr_rr_material(struct script_context *context, const struct script_value *a
 }
 
 /* The pattern mixes kd with another colour. */
-static bool pattern_over(struct script_context *context, struct material *m, struct texture pattern, struct vec3 mix,
-                         struct script_result *result, struct error *error) {
-    return m && material_mix_kd(m, pattern, mix, &context->scene.arena, error) && give(result, m);
+static bool pattern_over(struct script_context *context, struct material *m, struct texture pattern,
+                         const struct script_value *mix, struct script_result *result, struct error *error) {
+    struct texture other = mix->display ? texture_display_colour(mix->vector) : texture_constant(mix->vector);
+    return m && material_mix_kd(m, pattern, other, &context->scene.arena, error) && give(result, m);
 }
 
 bool gr_marble(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -110,7 +111,7 @@ bool gr_marble(struct script_context *context, const struct script_value *args, 
                                             args[MARBLE_VEIN].number, (int)args[MARBLE_INTERP].number);
     return pattern_over(context,
                         scene_material(&context->scene, MATERIAL_MARBLE, args[MARBLE_MATERIAL].material, error),
-                        pattern, args[MARBLE_MIX].vector, result, error);
+                        pattern, &args[MARBLE_MIX], result, error);
 }
 
 bool gr_wood(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -118,7 +119,7 @@ bool gr_wood(struct script_context *context, const struct script_value *args, st
     struct texture pattern =
         texture_wood(args[WOOD_F].number, args[WOOD_DENSITY].number, (int)args[WOOD_INTERP].number);
     return pattern_over(context, scene_material(&context->scene, MATERIAL_WOOD, args[WOOD_MATERIAL].material, error),
-                        pattern, args[WOOD_MIX].vector, result, error);
+                        pattern, &args[WOOD_MIX], result, error);
 }
 
 bool gr_fresnel(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -168,8 +169,10 @@ static bool read_image(struct script_context *context, const struct script_value
         out->wrap = out->wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
     if (lookup[LOOKUP_FLIP_U].given)
         out->flip_u = lookup[LOOKUP_FLIP_U].boolean;
-    if (lookup[LOOKUP_ENCODING].given)
+    if (lookup[LOOKUP_ENCODING].given) {
         out->encoding = (enum texture_encoding)lookup[LOOKUP_ENCODING].choice;
+        out->gamma = lookup[LOOKUP_ENCODING].number;
+    }
     const struct script_value *tiles = &lookup[LOOKUP_TILES], *offset = &lookup[LOOKUP_OFFSET];
     if ((tiles->given || offset->given) && !out->apart) {
         out->apart = true;

@@ -1,4 +1,5 @@
 /* gr.render. */
+#include "image/transfer.h"
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
@@ -18,6 +19,7 @@ static bool choose_sky(struct script_context *context, const struct script_value
     } else if (background->given && !background->text) {
         sky->kind = SKY_CONSTANT;
         sky->colour = background->vector;
+        sky->display = background->display;
     }
     return true;
 }
@@ -152,8 +154,21 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .fog = args[RENDER_FOG].fog,
         .settings = context->host->settings,
     };
+    const struct transfer srgb = {TRANSFER_SRGB, 0};
     request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
     apply_settings(args, &request.settings);
+    bool linear = settings_linear(&request.settings);
+    if (linear && args[RENDER_AMBIENT].display)
+        request.ambient = transfer_decode_colour(srgb, request.ambient);
+    if (linear && request.fog && request.fog->display) {
+        struct fog *fog = arena_alloc(&context->scene.arena, sizeof *fog);
+        if (!fog)
+            return error_no_memory(error, "a fog");
+        *fog = *request.fog;
+        fog->colour = transfer_decode_colour(srgb, fog->colour);
+        fog->display = false;
+        request.fog = fog;
+    }
     if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))

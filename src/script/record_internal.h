@@ -83,4 +83,11 @@ void recorder_destroy(struct recorder *recorder);
  * argument in front. */
 const struct script_texture *record_texture(struct script_context *context, int index, const char *name);
 
+/* display_colour.c */
+/* An argument that is a colour of the screen; where textures are accepted it is one. False: it is something else. */
+bool display_colour_read(struct script_context *c, int index, const struct script_parameter *p,
+                         struct script_value *value);
+int display_colour_make(lua_State *L);     /* gr.srgb */
+int display_colour_to_light(lua_State *L); /* gr.linear */
+
 #endif

@@ -404,7 +404,7 @@ static const struct script_parameter rr_parameters[] = {
 #define INTERP                                                                                                         \
     { "interp", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
 #define MIX                                                                                                            \
-    { "mix", KIND_COLOUR, 0, ANY, NULL, NULL, "Colour to mix with kd." }
+    { "mix", KIND_COLOUR, OR_DISPLAY, ANY, NULL, NULL, "Colour to mix with kd." }
 
 static const struct script_parameter marble_parameters[] = {
     [MARBLE_MATERIAL] = BASE,
@@ -443,8 +443,9 @@ static const struct script_parameter image_parameters[] = {
     { "offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "Shift in units of the image: one number, or {across, up}." }
 #define ENCODING                                                                                                       \
     {                                                                                                                  \
-        "encoding", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TEXTURE_ENCODINGS), NULL, "'auto'",                       \
-            "What its numbers mean with linear colours; auto: sRGB where 8 bits are read as a colour."                 \
+        "encoding", KIND_CHOICE, OPTIONAL | OR_NUMBER | LOW_OPEN, 0, 10, LIST_BLANKS(TEXTURE_ENCODINGS), NULL,         \
+            "'auto'",                                                                                                  \
+            "What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma."  \
     }
 #define LOOKUP_FIELDS(first)                                                                                           \
     [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
@@ -555,7 +556,8 @@ static const struct script_parameter clear_sky_parameters[] = {
     SUN(CLEAR_SUN),
     [CLEAR_TURBIDITY] = {"turbidity", KIND_NUMBER, OPTIONAL, IN_RANGE(1.7, 10), NULL, "2.5",
                          "Turbidity of the air: 2 is very clear, 10 is hazy."},
-    [CLEAR_GROUND] = {"ground", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.15, 0.15, 0.15}", "Colour below the horizon."},
+    [CLEAR_GROUND] = {"ground", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0.15, 0.15, 0.15}",
+                      "Colour below the horizon."},
 };
 
 static const struct script_parameter sun_light_parameters[] = {
@@ -564,7 +566,7 @@ static const struct script_parameter sun_light_parameters[] = {
 };
 
 #define FOG_FIELDS                                                                                                     \
-    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},                     \
+    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},        \
     [FOG_CLEAR_SKY] = {                                                                                                \
         "clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the fog leaves the sky unchanged."}
 #define FOG_DENSITY(text) [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
@@ -618,7 +620,7 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Direction that is up in the picture."},
     [RENDER_FOV] = {"fov", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, 0, 180, NULL, "degrees", "50",
                     "Full vertical angle of view."},
-    [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Ambient light."},
+    [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0, 0, 0}", "Ambient light."},
     [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "The lights."},
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
     [RENDER_BACKGROUND] =

@@ -86,7 +86,8 @@ struct script_value {
     const struct sky *sky;
     const uint32_t *starts, *indices;
     const double *numbers;
-    bool single; /* a number alone; of a REST parameter: arguments behind a form */
+    bool display; /* `vector` is a colour of the screen */
+    bool single;  /* a number alone; of a REST parameter: arguments behind a form */
 };
 
 enum {
@@ -95,7 +96,9 @@ enum {
     HIGH_OPEN = 4,
     NOT_ZERO = 8,
     OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
-    REST = 32,       /* takes the arguments after a positional form, and entries without names of the table form */
+    OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
+    OR_DISPLAY = 128,  /* of KIND_COLOUR without OR_TEXTURE: a colour of the screen is accepted: `display` is set */
+    REST = 32,         /* takes the arguments after a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16 /* with --lenient: a ghost is treated as missing, and the call continues */
 };
 

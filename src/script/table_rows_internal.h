@@ -35,7 +35,7 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
 #define LIGHT_FIELDS(colour_flags)                                                                                     \
     [LIGHT_COLOUR] = {"colour",                                                                                        \
                       KIND_COLOUR,                                                                                     \
-                      colour_flags,                                                                                    \
+                      (colour_flags) | OR_DISPLAY,                                                                     \
                       ANY,                                                                                             \
                       NULL,                                                                                            \
                       colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \

@@ -577,6 +577,10 @@ static const struct {
     {{"cells", "p", "Distances from the nearest and the second nearest of random points, and a number of the nearest."},
      cells},
     {{"hash", "p", "A random number in 0..1 for each point."}, hash},
+    {{"srgb", "colour", "A colour of the screen: '#rrggbb', {r, g, b} or r, g, b; linear colours decode it."},
+     display_colour_make},
+    {{"linear", "colour", "The light of a colour of the screen, a vector of numbers, by the sRGB function."},
+     display_colour_to_light},
     {{"is_recorded", "x", "Whether x is a number of a recorded function, whose value is not known yet."}, is_recorded},
 };
 

@@ -33,7 +33,7 @@ struct flattening {
     struct scene *scene; /* its nodes are only read */
     struct world *world;
     struct pool *pool;
-    bool linear_colours; /* as in struct world_input */
+    bool linear_colours, encodes; /* as in struct world_input */
     world_warning *warn; /* or NULL */
     void *warn_context;
     struct error *error;
@@ -65,7 +65,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
                       uint32_t *count);
 /* The tables of textures and bumps that the authored materials read; the world's materials, flat copies of these, refer
  * to them by index from now on. Errors: no memory. */
-bool flatten_textures(struct world *world, bool linear_colours, struct arena *arena, struct error *error);
+bool flatten_textures(struct flattening *f);
 /* False: the map of a node into the world, or into its solid, exceeds the range of doubles. */
 bool flatten_check_transform(struct flattening *f, const struct node *node, const struct transform *t);
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape);

@@ -6,6 +6,9 @@
 #include "base/random.h"
 #include "world/flatten_internal.h"
 
+#include <stdio.h>
+#include <string.h>
+
 struct numbered {
     const void *authored; /* NULL: free */
     uint32_t index;
@@ -186,28 +189,81 @@ static void mark_colours(const struct texture *table, union texture_ref ref, boo
     }
 }
 
-/* Images that a colour is read of become linear, and those that say that they are sRGB. */
-static bool decode_colours(const struct world *world, struct texture *table, struct error *error) {
-    bool *is_read = mem_alloc_zero((size_t)world->texture_count + 1, sizeof *is_read), ok = is_read != NULL;
-    for (uint32_t i = 0; ok && i < world->material_count; i++)
+/* How an image becomes light; colour: it is read as one. */
+static struct transfer image_transfer_in(const struct texture_image *lookup, bool colour) {
+    if (lookup->gamma > 0)
+        return (struct transfer){TRANSFER_POWER, lookup->gamma};
+    switch (lookup->encoding) {
+    case ENCODING_AUTO:
+        break;
+    case ENCODING_SRGB:
+        return (struct transfer){TRANSFER_SRGB, 0};
+    case ENCODING_LINEAR:
+        return (struct transfer){TRANSFER_POWER, 1};
+    }
+    return colour ? image_colour_transfer(lookup->image) : (struct transfer){TRANSFER_UNSTATED, 0};
+}
+
+/* Of the first texture that reads the image. */
+static void warn_of_colours(const struct flattening *f, const struct texture *table, uint32_t index) {
+    const struct image *image = table[index].image.lookup.image;
+    char text[1024];
+    if (!f->warn || !image_colours(image))
+        return;
+    for (uint32_t i = 0; i < index; i++)
+        if (table[i].kind == TEXTURE_IMAGE && strcmp(image_name(table[i].image.lookup.image), image_name(image)) == 0)
+            return;
+    (void)snprintf(text, sizeof text,
+                   "warning: %s has %s, which is taken as sRGB; encoding of gr.texture names another transfer function",
+                   image_name(image), image_colours(image));
+    f->warn(f->warn_context, text);
+}
+
+/* Which textures of the table are read as colours; NULL: no memory. */
+static bool *find_colours(const struct world *world, const struct texture *table) {
+    bool *is_read = mem_alloc_zero((size_t)world->texture_count + 1, sizeof *is_read);
+    for (uint32_t i = 0; is_read && i < world->material_count; i++)
         for (int k = 0; k < INPUT_COUNT; k++)
             if (is_colour((enum material_input)k))
                 mark_colours(table, world->materials[i].inputs[k], is_read);
-    for (uint32_t i = 0; ok && i < world->texture_count; i++) {
+    return is_read;
+}
+
+/* Images that a colour is read of become linear, those that say what they are, and colours of the screen. */
+static bool decode_colours(const struct flattening *f, struct texture *table) {
+    bool *is_read = find_colours(f->world, table), ok = is_read != NULL;
+    for (uint32_t i = 0; ok && i < f->world->texture_count; i++) {
         struct texture_image *lookup = &table[i].image.lookup;
+        if (table[i].kind == TEXTURE_CONSTANT && table[i].constant.display)
+            table[i] =
+                texture_constant(transfer_decode_colour((struct transfer){TRANSFER_SRGB, 0}, table[i].constant.colour));
         if (table[i].kind != TEXTURE_IMAGE)
             continue;
-        bool as_colour = lookup->encoding == ENCODING_AUTO && is_read[i] && image_bits(lookup->image) == 8;
-        if (!as_colour && lookup->encoding != ENCODING_SRGB)
-            continue;
-        lookup->image = image_linear(lookup->image, error);
+        struct transfer transfer = image_transfer_in(lookup, is_read[i]);
+        if (is_read[i] && lookup->encoding == ENCODING_AUTO && !(lookup->gamma > 0))
+            warn_of_colours(f, table, i);
+        lookup->image = image_decode(lookup->image, transfer, f->error);
         ok = lookup->image != NULL;
     }
     mem_free(is_read);
     return ok;
 }
 
-bool flatten_textures(struct world *world, bool linear_colours, struct arena *arena, struct error *error) {
+/* Classic colours whose output is encoded: pictures become lighter than they are. */
+static bool warn_of_encoding(const struct flattening *f, const struct texture *table) {
+    bool *is_read = find_colours(f->world, table), found = false;
+    for (uint32_t i = 0; is_read && i < f->world->texture_count; i++)
+        found = found || (is_read[i] && table[i].kind == TEXTURE_IMAGE && image_bits(table[i].image.lookup.image) == 8);
+    if (found)
+        f->warn(f->warn_context, "note: --srgb encodes pictures that were not decoded: 128 of a texture becomes 188; "
+                                 "--colour linear decodes them");
+    mem_free(is_read);
+    return is_read != NULL;
+}
+
+bool flatten_textures(struct flattening *f) {
+    struct world *world = f->world;
+    struct arena *arena = f->arena;
     struct numbering textures = {.count = 0}, bumps = {.count = 0};
     bool ok = number_all(world, &textures, &bumps);
     struct texture *texture_table =
@@ -222,9 +278,12 @@ bool flatten_textures(struct world *world, bool linear_colours, struct arena *ar
         world->texture_count = textures.count;
         world->bump_count = bumps.count;
         refer(world, &textures, &bumps);
-        ok = !linear_colours || decode_colours(world, texture_table, error);
+        if (f->linear_colours)
+            ok = decode_colours(f, texture_table);
+        else if (f->encodes && f->warn)
+            ok = warn_of_encoding(f, texture_table);
     }
     mem_free(textures.entries);
     mem_free(bumps.entries);
-    return ok || error_no_memory(error, "the textures of the scene");
+    return ok || error_no_memory(f->error, "the textures of the scene");
 }

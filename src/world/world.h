@@ -119,7 +119,8 @@ struct world_input {
     const struct sky *sky;
     struct shutter shutter;
     enum accel_kind accel; /* of the world and of the meshes */
-    bool linear_colours;   /* pictures that are read as colours are decoded from sRGB (docs/colour.md) */
+    bool linear_colours;   /* pictures and display colours are decoded (docs/colour.md) */
+    bool encodes;          /* the sRGB function is applied to the result */
     world_warning *warn;   /* or NULL */
     void *warn_context;
 };

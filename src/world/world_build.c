@@ -17,7 +17,9 @@ void world_update_materials(struct world *world) {
 }
 
 /* The tables of materials and of the media inside. */
-static bool make_materials(struct world *world, bool linear_colours, struct arena *arena, struct error *error) {
+static bool make_materials(struct flattening *f) {
+    struct world *world = f->world;
+    struct arena *arena = f->arena;
     uint32_t count = world->material_count;
     world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
@@ -26,10 +28,10 @@ static bool make_materials(struct world *world, bool linear_colours, struct aren
     world->media = arena_alloc_array(arena, count, sizeof *world->media);
     if (!world->materials || !world->material_has_image || !world->material_has_bump || !world->material_medium ||
         !world->media)
-        return error_no_memory(error, "the materials of the scene");
+        return error_no_memory(f->error, "the materials of the scene");
     for (uint32_t i = 0; i < count; i++)
         world->materials[i] = material_flatten(world->authored.materials[i]);
-    if (!flatten_textures(world, linear_colours, arena, error))
+    if (!flatten_textures(f))
         return false;
     for (uint32_t i = 0; i < count; i++) {
         const struct material *material = &world->materials[i];
@@ -53,14 +55,18 @@ static bool build(struct world *world, const struct world_input *input, struct a
     struct light *copied = arena_alloc_array(arena, input->light_count, sizeof *copied);
     if (!copied)
         return error_no_memory(error, "the lights of the scene");
-    for (uint32_t i = 0; i < input->light_count; i++)
+    for (uint32_t i = 0; i < input->light_count; i++) {
         copied[i] = input->lights[i].light;
+        if (input->linear_colours)
+            light_decode(&copied[i]);
+    }
     world->lights = copied;
     struct flattening flattening = {.arena = arena,
                                     .scene = input->scene,
                                     .world = world,
                                     .pool = pool,
                                     .linear_colours = input->linear_colours,
+                                    .encodes = input->encodes,
                                     .warn = input->warn,
                                     .warn_context = input->warn_context,
                                     .error = error};
@@ -73,7 +79,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
         return error_no_memory(error, "the boxes of the scene");
     if (input->linear_colours && !sky_decode(&world->sky, error))
         return false;
-    if (!make_materials(world, input->linear_colours, arena, error) ||
+    if (!make_materials(&flattening) ||
         !world_primitive_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);

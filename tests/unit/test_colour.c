@@ -2,12 +2,19 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 
+#include "base/file.h"
 #include "image/levels.h"
+#include "image/png_write.h"
 #include "image/tone.h"
+#include "light/light.h"
 #include "material/material_inputs.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <zlib.h>
+
+static const struct transfer srgb_transfer = {TRANSFER_SRGB, 0};
 
 static double decoded(double c) {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
@@ -24,8 +31,8 @@ static struct image *ramp(struct error *error) {
 TEST(a_decoded_picture_gives_back_its_bytes_where_it_is_encoded) {
     struct error error = {.kind = ERROR_NONE};
     const struct tone srgb = {.srgb = true};
-    struct image *image = ramp(&error), *linear = image_linear(image, &error);
-    CHECK(linear != NULL && linear != image && image_linear(image, &error) == linear);
+    struct image *image = ramp(&error), *linear = image_decode(image, srgb_transfer, &error);
+    CHECK(linear != NULL && linear != image && image_decode(image, srgb_transfer, &error) == linear);
     CHECK_EQ_INT(image_bits(linear), 16);
     for (uint32_t i = 0; i < 256; i++) {
         struct rgba texel = image_texel(linear, i, 0);
@@ -40,7 +47,8 @@ TEST(a_decoded_picture_gives_back_its_bytes_where_it_is_encoded) {
 TEST(black_and_white_average_as_light_in_the_levels_of_a_decoded_picture) {
     struct error error = {.kind = ERROR_NONE};
     static const uint8_t texels[8] = {0, 0, 0, 255, 255, 255, 255, 255};
-    struct image *image = image_create("two", 2, 1, 8, texels, &error), *linear = image_linear(image, &error);
+    struct image *image = image_create("two", 2, 1, 8, texels, &error),
+                 *linear = image_decode(image, srgb_transfer, &error);
     const struct image_point all = {0.5, 0.5, 1, 1};
     const struct image_sampling sampling = {IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP};
     CHECK_NEAR(image_lookup(linear, all, sampling).r, 0.5, 1e-4);
@@ -51,7 +59,7 @@ TEST(pictures_of_light_are_linear_already) {
     struct error error = {.kind = ERROR_NONE};
     static const float texels[4] = {0.25f, 2, 0.5f, 1};
     struct image *image = image_create("light", 1, 1, 32, texels, &error);
-    CHECK(image_linear(image, &error) == image);
+    CHECK(image_decode(image, srgb_transfer, &error) == image);
     image_release(image);
 }
 
@@ -110,6 +118,218 @@ static int background_byte(const char *field, const char *options) {
     int byte = image ? (int)(255 * image_texel(image, 0, 0).r + 0.5) : -1;
     image_release(image);
     return byte;
+}
+
+/* --- what a PNG file states --- */
+
+static void one_colour(void *context, uint32_t y, uint8_t *line) {
+    (void)y;
+    memcpy(line, context, 3);
+}
+
+/* A picture of one pixel with a chunk before its texels. */
+static void write_stated(const char *path, uint8_t colour[3], const char *kind, const void *bytes, size_t size) {
+    struct error error;
+    struct file_bytes file;
+    CHECK(png_write(FILE_AT(path), 1, 1, one_colour, colour, &error));
+    if (!kind)
+        return;
+    CHECK(file_map(path, 1 << 20, &file, &error));
+    uint8_t chunk[4096];
+    uint32_t crc = (uint32_t)crc32_z(crc32_z(0, (const uint8_t *)kind, 4), bytes, size);
+    for (int k = 0; k < 4; k++) {
+        chunk[k] = (uint8_t)(size >> (24 - 8 * k));
+        chunk[8 + size + (size_t)k] = (uint8_t)(crc >> (24 - 8 * k));
+    }
+    memcpy(chunk + 4, kind, 4);
+    memcpy(chunk + 8, bytes, size);
+    FILE *out = fopen(path, "wb");
+    CHECK(out && fwrite(file.data, 33, 1, out) == 1 && fwrite(chunk, size + 12, 1, out) == 1 &&
+          fwrite(file.data + 33, file.size - 33, 1, out) == 1 && fclose(out) == 0);
+    file_unmap(&file);
+}
+
+TEST(a_png_file_states_its_transfer_function) {
+    static const struct {
+        const char *kind, *bytes;
+        size_t size;
+        struct transfer transfer;
+        const char *warning;
+    } rows[] = {
+        {NULL, NULL, 0, {TRANSFER_UNSTATED, 0}, NULL},
+        {"sRGB", "\0", 1, {TRANSFER_SRGB, 0}, NULL},
+        {"gAMA", "\0\1\x86\xa0", 4, {TRANSFER_POWER, 1}, NULL}, /* 100000 */
+        {"gAMA", "\0\0\xc3\x50", 4, {TRANSFER_POWER, 2}, NULL}, /* 50000 */
+        {"gAMA", "\0\0\0\0", 4, {TRANSFER_UNSTATED, 0}, NULL},  /* invalid */
+        {"cICP", "\1\x0d\0\1", 4, {TRANSFER_SRGB, 0}, NULL},
+        {"cICP", "\1\x08\0\1", 4, {TRANSFER_POWER, 1}, NULL},
+        {"cICP", "\1\1\0\1", 4, {TRANSFER_BT709, 0}, NULL},
+        {"cICP", "\x0c\x0d\0\1", 4, {TRANSFER_SRGB, 0}, "primaries"}, /* Display P3 */
+        {"cICP", "\x09\x10\0\1", 4, {TRANSFER_SRGB, 0}, "PQ"},
+        {"iCCP", "Adobe RGB (1998)\0\0broken", 24, {TRANSFER_SRGB, 0}, "'Adobe RGB (1998)'"},
+        {"iCCP", "sRGB IEC61966-2.1\0\0broken", 25, {TRANSFER_SRGB, 0}, NULL},
+    };
+    char path[512];
+    struct error error = {.kind = ERROR_NONE};
+    (void)snprintf(path, sizeof path, "%s/stated.png", test_folder());
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        write_stated(path, (uint8_t[]){192, 128, 64}, rows[i].kind, rows[i].bytes, rows[i].size);
+        struct image *image = image_read_png(path, &error);
+        CHECK(image != NULL);
+        CHECK(transfer_same(image_transfer(image), rows[i].transfer));
+        CHECK((image_colours(image) != NULL) == (rows[i].warning != NULL));
+        CHECK(!rows[i].warning || strstr(image_colours(image), rows[i].warning));
+        image_release(image);
+    }
+}
+
+/* The bytes of the middle of a picture that an unlit square fills. */
+static void unlit_bytes(const char *material, const char *options, int out[3]) {
+    char text[1024], path[512];
+    struct error error;
+    (void)snprintf(text, sizeof text,
+                   "local m = gr.material{kd = %s, lit = false}\n"
+                   "local square = gr.cube{name = 'square', material = m, corner = {-2, -2, -4}, size = {4, 4, 4}}\n"
+                   "gr.render{node = square, file = 'x.png', width = 3, height = 3, eye = {0, 0, 5}, fov = 20, "
+                   "background = {0, 0, 0}}\n",
+                   material);
+    struct test_result result = test_gray_scene(text, options, NULL);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
+    (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
+    struct image *image = image_read_png(path, &error);
+    CHECK(image != NULL);
+    struct rgba texel = image_texel(image, 1, 1);
+    out[0] = (int)(255 * texel.r + 0.5);
+    out[1] = (int)(255 * texel.g + 0.5);
+    out[2] = (int)(255 * texel.b + 0.5);
+    image_release(image);
+}
+
+TEST(an_unlit_square_gives_back_the_bytes_of_its_colour_in_both_pipelines) {
+    static const char *const same[] = {"'#c08040'",
+                                       "gr.srgb('#c08040')",
+                                       "gr.srgb(192 / 255, 128 / 255, 64 / 255)",
+                                       "gr.srgb{192 / 255, 128 / 255, 64 / 255}",
+                                       "gr.texture('plain.png')",
+                                       "gr.texture{file = 'plain.png', encoding = 'srgb'}",
+                                       "gr.texture('stated.png')",
+                                       "gr.mix_texture('#c08040', '#c08040', 0.5)",
+                                       "gr.multiply_texture('#c08040', 1)"};
+    static const char *const options[] = {"-q scene.lua", "-q --colour linear scene.lua",
+                                          "-q --integrator path --spp 1 scene.lua"};
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/plain.png", test_folder());
+    write_stated(path, (uint8_t[]){192, 128, 64}, NULL, NULL, 0);
+    (void)snprintf(path, sizeof path, "%s/stated.png", test_folder());
+    write_stated(path, (uint8_t[]){192, 128, 64}, "sRGB", "\0", 1);
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++) {
+        for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
+            int bytes[3];
+            unlit_bytes(same[i], options[k], bytes);
+            CHECK_EQ_INT(bytes[0], 192);
+            CHECK_EQ_INT(bytes[1], 128);
+            CHECK_EQ_INT(bytes[2], 64);
+        }
+    }
+}
+
+TEST(numbers_are_light_in_linear_colours_and_files_may_say_that_they_are) {
+    static const struct {
+        const char *colour;
+        double power; /* light is the number of the file to this power; 0: sRGB */
+    } rows[] = {{"{128 / 255, 128 / 255, 128 / 255}", 1},
+                {"gr.linear('#808080')", 0},
+                {"gr.texture{file = 'plain.png', encoding = 'linear'}", 1},
+                {"gr.texture{file = 'plain.png', encoding = 2}", 2},
+                {"gr.texture('light.png')", 1},
+                {"gr.texture{file = 'light.png', encoding = 'srgb'}", 0},
+                {"gr.texture('square.png')", 2}};
+    static const struct tone srgb = {.srgb = true};
+    uint8_t grey[] = {128, 128, 128};
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/plain.png", test_folder());
+    write_stated(path, grey, NULL, NULL, 0);
+    (void)snprintf(path, sizeof path, "%s/light.png", test_folder());
+    write_stated(path, grey, "gAMA", "\0\1\x86\xa0", 4);
+    (void)snprintf(path, sizeof path, "%s/square.png", test_folder());
+    write_stated(path, grey, "gAMA", "\0\0\xc3\x50", 4);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        int bytes[3];
+        double light = rows[i].power > 0 ? pow(128 / 255.0, rows[i].power) : decoded(128 / 255.0);
+        unlit_bytes(rows[i].colour, "-q --colour linear scene.lua", bytes);
+        CHECK_EQ_INT(bytes[1], (int)(255 * tone_apply(&srgb, light) + 0.5));
+    }
+}
+
+TEST(colours_of_the_screen_are_accepted_for_lights_fogs_and_skies) {
+    static const char *const fields[] = {
+        "background = '#404040'", "background = gr.srgb('#404040')",
+        "background = {0, 0, 0}, fog = gr.uniform_fog{colour = '#404040', density = 1e6}"};
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+        for (int linear = 0; linear < 2; linear++) {
+            char text[512], path[512];
+            struct error error;
+            (void)snprintf(text, sizeof text,
+                           "gr.render{node = gr.node('n'), file = 'x.png', width = 2, height = 2, eye = {0, 0, 5}, "
+                           "%s}\n",
+                           fields[i]);
+            struct test_result result =
+                test_gray_scene(text, linear ? "-q --colour linear scene.lua" : "-q scene.lua", NULL);
+            CHECK_EQ_INT(result.status, 0);
+            free(result.out);
+            free(result.err);
+            (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
+            struct image *image = image_read_png(path, &error);
+            CHECK(image != NULL);
+            CHECK_EQ_INT((int)(255 * image_texel(image, 0, 0).r + 0.5), 64);
+            image_release(image);
+        }
+    }
+    struct light light = {.colour = {0.5, 0, 2}, .display = {0.25, 0, 1}, .has_display = true};
+    light_decode(&light);
+    CHECK_NEAR(light.colour.x, 2 * decoded(0.25), 1e-12);
+    CHECK_NEAR(light.colour.y, 0, 0);
+    CHECK_NEAR(light.colour.z, 2, 1e-12);
+}
+
+TEST(errors_of_colours_of_the_screen_name_what_is_accepted) {
+    static const char *const rows[][2] = {
+        {"gr.material{kd = '#12345'}", "scene.lua:1: gr.material: '#12345' is not a colour: '#rgb' and '#rrggbb'"},
+        {"gr.material{kd = {1, 0, 0}, absorption = '#123456'}", "absorption must be light: gr.linear"},
+        {"gr.material{kd = 'red'}", "kd must be a colour {r, g, b}"},
+        {"gr.srgb(1)", "a colour is needed"},
+        {"gr.texture{file = 'x.png', encoding = -1}", "encoding must be"},
+        {"gr.texture{file = 'x.png', encoding = 'rgb'}", "encoding must be 'auto', 'srgb' or 'linear'"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct test_result result = test_gray_scene(rows[i][0], "-q scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 1);
+        CHECK(strstr(result.err, rows[i][1]) != NULL);
+        free(result.out);
+        free(result.err);
+    }
+}
+
+TEST(encoding_classic_pictures_is_reported_and_so_are_unknown_colours) {
+    char path[512];
+    (void)snprintf(path, sizeof path, "%s/adobe.png", test_folder());
+    write_stated(path, (uint8_t[]){192, 128, 64}, "iCCP", "Adobe RGB (1998)\0\0broken", 24);
+    static const struct {
+        const char *options, *report;
+    } rows[] = {{"--srgb scene.lua", "--colour linear"},
+                {"scene.lua", NULL},
+                {"--colour linear scene.lua", "adobe.png has the colour profile 'Adobe RGB (1998)'"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        struct test_result result =
+            test_gray_scene("local c = gr.cube{name = 'c', material = gr.material{kd = gr.texture('adobe.png')}}\n"
+                            "gr.render{node = c, file = 'x.png', width = 2, height = 2, eye = {0, 0, 5}}\n",
+                            rows[i].options, NULL);
+        CHECK_EQ_INT(result.status, 0);
+        CHECK(rows[i].report ? strstr(result.err, rows[i].report) != NULL : strstr(result.err, "linear") == NULL);
+        free(result.out);
+        free(result.err);
+    }
 }
 
 TEST(paths_mean_linear_colours_unless_something_else_is_said) {

@@ -125,7 +125,8 @@ static void fill_stage(struct stage *s) {
     struct material *mirror = stage_phong(s, vec3_make(0.2, 0.3, 0.2), vec3_all(0.7), 30);
     mirror->phong.reflect = 0.6;
     struct material *marble = scene_material(&s->scene, MATERIAL_MARBLE, mirror, &s->error);
-    CHECK(material_mix_kd(marble, texture_marble(0.7, 3, 2, 1), vec3_make(0.9, 0.2, 0.1), &s->scene.arena, &s->error));
+    CHECK(material_mix_kd(marble, texture_marble(0.7, 3, 2, 1), texture_constant(vec3_make(0.9, 0.2, 0.1)),
+                          &s->scene.arena, &s->error));
     struct material *glass = stage_glass(s, 0.2, 0.7, 1.5);
     glass->phong.absorption = vec3_make(0.3, 0.1, 0.05);
     struct material *rough = stage_phong(s, vec3_all(0.4), vec3_all(0.5), 10);

@@ -181,7 +181,8 @@ static void busy_scene(struct stage *s, double unit, bool mirrored) {
     struct material *glass = stage_glass(s, 0.3, 0.8, 1.5);
     struct material *shiny = stage_phong(s, vec3_make(0.8, 0.3, 0.2), vec3_all(0.5), 20);
     struct material *marble = scene_material(&s->scene, MATERIAL_MARBLE, shiny, &s->error);
-    CHECK(material_mix_kd(marble, texture_marble(2, 3, 4, 0), vec3_make(0.1, 0.2, 0.9), &s->scene.arena, &s->error));
+    CHECK(material_mix_kd(marble, texture_marble(2, 3, 4, 0), texture_constant(vec3_make(0.1, 0.2, 0.9)),
+                          &s->scene.arena, &s->error));
     struct material *chrome = stage_glass(s, 0.9, 0, 1);
     struct material *dielectric = scene_material(&s->scene, MATERIAL_FRESNEL, glass, &s->error);
     struct node *ball = stage_sphere(s, top, dielectric);

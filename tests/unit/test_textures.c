@@ -391,9 +391,9 @@ TEST(marble_over_wood_over_an_image_is_what_the_decorators_made_bit_by_bit) {
     material_derive(&image, MATERIAL_IMAGE, &base);
     CHECK(material_cover(&image, INPUT_KD, &even, &p.arena, &p.error));
     material_derive(&wood, MATERIAL_WOOD, &image);
-    CHECK(material_mix_kd(&wood, texture_wood(3, 5, 1), brown, &p.arena, &p.error));
+    CHECK(material_mix_kd(&wood, texture_wood(3, 5, 1), texture_constant(brown), &p.arena, &p.error));
     material_derive(&marble, MATERIAL_MARBLE, &wood);
-    CHECK(material_mix_kd(&marble, texture_marble(2, 3, 4, 1), blue, &p.arena, &p.error));
+    CHECK(material_mix_kd(&marble, texture_marble(2, 3, 4, 1), texture_constant(blue), &p.arena, &p.error));
     for (int i = 0; i < 1000; i++) {
         struct hit hit = random_hit(&random);
         struct vec3 at = hit.pattern_point, kd = base.phong.kd;
@@ -421,7 +421,7 @@ TEST(a_thousand_decorators_are_evaluated_in_order) {
     chain[0] = base_material();
     for (int i = 1; i < MATERIAL_DEPTH; i++) {
         material_derive(&chain[i], MATERIAL_WOOD, &chain[i - 1]);
-        CHECK(material_mix_kd(&chain[i], texture_wood(3, 5, 1), vec3_all(i % 2), &p.arena, &p.error));
+        CHECK(material_mix_kd(&chain[i], texture_wood(3, 5, 1), texture_constant(vec3_all(i % 2)), &p.arena, &p.error));
         kd = kd * ratio + (i % 2) * (1 - ratio);
     }
     struct surface_inputs inputs;

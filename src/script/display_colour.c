@@ -1,0 +1,126 @@
+/* Colours as a screen shows them: '#rgb', '#rrggbb', and the results of gr.srgb, which are tables {r, g, b, encoding =
+ * 'srgb'}. Classic colours are these numbers; linear colours decode them (docs/colour.md). */
+#include "script/context_internal.h"
+#include "script/record_internal.h"
+
+#include "image/transfer.h"
+
+#include <lauxlib.h>
+#include <string.h>
+
+static const char *const digits = "0123456789abcdefABCDEF";
+
+static double digit(char c) {
+    return c >= 'a' ? c - 'a' + 10 : c >= 'A' ? c - 'A' + 10 : c - '0';
+}
+
+/* '#rgb' or '#rrggbb'. */
+static bool read_hexadecimal(const char *text, struct vec3 *out) {
+    size_t count = strspn(text + 1, digits), each = count / 3;
+    double x[3];
+    if (text[1 + count] != '\0' || (count != 3 && count != 6))
+        return false;
+    for (size_t k = 0; k < 3; k++) {
+        const char *at = text + 1 + k * each;
+        x[k] = each == 1 ? digit(at[0]) / 15 : (16 * digit(at[0]) + digit(at[1])) / 255;
+    }
+    *out = vec3_make(x[0], x[1], x[2]);
+    return true;
+}
+
+/* A table of three numbers whose encoding is 'srgb'. */
+static bool read_marked(lua_State *L, int index, struct vec3 *out) {
+    double x[3];
+    bool ok = lua_rawlen(L, index) == 3;
+    lua_pushliteral(L, "encoding");
+    ok = lua_rawget(L, index) == LUA_TSTRING && strcmp(lua_tostring(L, -1), "srgb") == 0 && ok;
+    lua_pop(L, 1);
+    for (int k = 0; ok && k < 3; k++) {
+        ok = lua_rawgeti(L, index, k + 1) == LUA_TNUMBER;
+        x[k] = lua_tonumber(L, -1);
+        ok = ok && isfinite(x[k]);
+        lua_pop(L, 1);
+    }
+    if (ok)
+        *out = vec3_make(x[0], x[1], x[2]);
+    return ok;
+}
+
+/* Raises an error for a string '#...' that is no colour. */
+static bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
+    index = lua_absindex(L, index);
+    if (lua_type(L, index) == LUA_TTABLE)
+        return read_marked(L, index, out);
+    if (lua_type(L, index) != LUA_TSTRING || lua_tostring(L, index)[0] != '#')
+        return false;
+    if (!read_hexadecimal(lua_tostring(L, index), out))
+        context_raise(context_of(L), "'%.40s' is not a colour: '#rgb' and '#rrggbb' with hexadecimal digits are",
+                      lua_tostring(L, index));
+    return true;
+}
+
+bool display_colour_read(struct script_context *c, int index, const struct script_parameter *p,
+                         struct script_value *value) {
+    struct vec3 colour;
+    struct error error;
+    if (!display_colour_at(c->lua, index, &colour))
+        return false;
+    if (!(p->flags & (OR_TEXTURE | OR_DISPLAY)) && p->kind != KIND_BACKGROUND)
+        context_raise(c, "%s must be light: gr.linear makes it of a colour of the screen", p->name);
+    value->vector = colour;
+    value->display = true;
+    if (!(p->flags & OR_TEXTURE))
+        return true;
+    struct arena *arena = &c->scene.arena;
+    struct script_texture texture = {.texture = texture_keep(arena, texture_display_colour(colour), &error)};
+    value->texture = texture.texture ? gr_keep_texture(c, &texture, &error) : NULL;
+    if (!value->texture)
+        context_raise_no_memory(c);
+    value->number = 1;
+    value->vector = vec3_all(1);
+    return true;
+}
+
+/* The colour of a call: a string, a table of three numbers, or three numbers. */
+static struct vec3 colour_of_call(lua_State *L) {
+    struct vec3 colour;
+    if (lua_gettop(L) == 1 && display_colour_at(L, 1, &colour))
+        return colour;
+    bool is_table = lua_type(L, 1) == LUA_TTABLE;
+    double x[3];
+    for (int k = 0; k < 3; k++) {
+        if (is_table)
+            (void)lua_rawgeti(L, 1, k + 1);
+        else if (lua_gettop(L) == 3)
+            lua_pushvalue(L, k + 1);
+        else
+            lua_pushnil(L);
+        if (lua_type(L, -1) != LUA_TNUMBER)
+            context_raise(context_of(L), "a colour is needed: '#rrggbb', {r, g, b} or r, g, b");
+        x[k] = lua_tonumber(L, -1);
+        lua_pop(L, 1);
+    }
+    return vec3_make(x[0], x[1], x[2]);
+}
+
+int display_colour_make(lua_State *L) {
+    struct vec3 colour = colour_of_call(L);
+    const double x[3] = {colour.x, colour.y, colour.z};
+    lua_createtable(L, 3, 1);
+    for (int k = 0; k < 3; k++) {
+        lua_pushnumber(L, x[k]);
+        lua_rawseti(L, -2, k + 1);
+    }
+    lua_pushliteral(L, "srgb");
+    lua_setfield(L, -2, "encoding");
+    return 1;
+}
+
+int display_colour_to_light(lua_State *L) {
+    struct vec3 light = transfer_decode_colour((struct transfer){TRANSFER_SRGB, 0}, colour_of_call(L));
+    lua_pushnumber(L, light.x);
+    lua_pushnumber(L, light.y);
+    lua_pushnumber(L, light.z);
+    push_vector(L);
+    return 1;
+}
