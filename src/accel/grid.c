@@ -19,7 +19,7 @@
 #include "math/elementary.h"
 
 enum { FLY_UNBOUNDED, FLY_VOXELS, FLY_EVERYTHING, FLY_DONE };
-enum { POLL_ITEMS = 4096 }; /* how often building asks whether it was cancelled */
+enum { POLL_ITEMS = 4096 }; /* how often building checks for cancellation */
 
 #define SLACK 0x1p-12   /* of a voxel */
 #define FAR_AWAY 0x1p26 /* voxels between the origin of a traversing ray and the origin of the space */
@@ -326,7 +326,7 @@ bool grid_traversal_begin(struct grid_traversal *traversal, const struct grid *g
         traversal->items = grid->unbounded;
         traversal->count = grid->unbounded_count;
         traversal->t_exit = -INFINITY;
-        return true; /* voxels == 0 tells grid_traversal_next that the first voxel is still to be offered */
+        return true; /* voxels == 0: grid_traversal_next has not returned the first voxel yet */
     }
     if (!inside)
         return false;

@@ -123,7 +123,7 @@ struct search {
     /* In local space, single numbers: spreading one over a vector costs no more than loading the vector. */
     _Alignas(16) float origin[4], direction[4];
     simd4 reciprocal; /* 1 / direction */
-    simd4 middle;     /* origin / direction: a plane is met at plane * reciprocal - middle */
+    simd4 middle;     /* origin / direction: the ray crosses a plane at plane * reciprocal - middle */
     float widen[4];   /* for rays from far away: the additional growth of boxes, in local t */
     float longest;    /* the largest size of the direction's components, M */
     uint32_t octant;  /* bit k: the direction is negative along axis k */

@@ -11,7 +11,7 @@
 void *mem_alloc(size_t size);                           /* uninitialised; a size of 0 gives a valid block */
 void *mem_alloc_zero(size_t count, size_t size);        /* count * size zeroed bytes; NULL on overflow too */
 void *mem_alloc_aligned(size_t alignment, size_t size); /* released with mem_free; alignment a power of two >= 8 */
-/* An alignment of MEM_LARGE_PAGE or more also asks the system for large pages. */
+/* An alignment of MEM_LARGE_PAGE or more also requests large pages from the system. */
 #define MEM_LARGE_PAGE ((size_t)1 << 21)
 void *mem_resize(void *block, size_t size);                     /* as realloc: the old block survives a failure */
 void *mem_resize_array(void *block, size_t count, size_t size); /* the same with the product checked */

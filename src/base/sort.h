@@ -1,5 +1,5 @@
-/* Sorting in place. Never allocates, never slower than n log n whatever the order. Not stable: where the result must be
- * one, the order is total. */
+/* Sorting in place. Never allocates; at most n log n steps for every input. Not stable: callers that need a unique
+ * result use a total order. */
 #ifndef GRAY_BASE_SORT_H
 #define GRAY_BASE_SORT_H
 

@@ -90,7 +90,7 @@ struct sweep {
     const struct csg *csg;
     const struct csg_plan *plan;
     const struct ray *ray;
-    struct crossing *items; /* the crossings of the leaves asked so far, by t; on top of the scratch */
+    struct crossing *items; /* the crossings of the leaves tested so far, by t; on top of the scratch */
     uint32_t count, next;
     struct geom_scratch *scratch;
     struct pending_leaves *pending; /* NULL: all leaves have been tested */

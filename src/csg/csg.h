@@ -45,7 +45,7 @@ struct csg {
     uint32_t stack_depth;
     uint32_t max_crossings; /* scratch items one ray needs, a guess when meshes are leaves */
     const bool *convexity;  /* of each leaf: it is convex, and the solid lies in it */
-    const void *plan;       /* whatever csg_build prepares for the search (private to csg.c) */
+    const void *plan;       /* data that csg_build prepares for the search (private to csg.c) */
 };
 
 /* Leaves, and the operations on them in postfix order. */
@@ -68,7 +68,7 @@ bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scrat
 bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch);
 bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
                    struct crossing_list *out);
-/* Of a clipped surface: false everywhere. */
+/* A clipped surface contains no point. */
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch);
 void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out);
 

@@ -74,7 +74,7 @@ struct pending {
     bool negated;
 };
 
-/* Reads a program backwards, which meets the root first and a right operand before the left one. is_all[n] says whether
+/* Reads a program backwards, so that the root comes first and a right operand before the left one. is_all[n]: whether
  * node n is an AND. Returns the root. */
 static uint32_t build_nodes(const struct csg *csg, struct csg_plan *plan, uint32_t first, uint32_t end,
                             struct pending *stack, bool *is_all) {
@@ -228,8 +228,8 @@ static double box_middle(const struct box *b, int axis) {
     return isfinite(middle) ? middle : 0;
 }
 
-/* Quickselect (Hoare, "Algorithm 65: Find", 1961): afterwards the k-th leaf by its middle stands at k, lesser ones
- * before it, greater ones behind it. Equal middles go by index, so the order is total. */
+/* Quickselect (Hoare, "Algorithm 65: Find", 1961): afterwards the k-th leaf by its middle is at k, lesser ones before
+ * it, greater ones behind it. Equal middles go by index, so the order is total. */
 static void select_middle(const struct csg_plan *plan, uint32_t *order, uint32_t count, uint32_t k, int axis) {
     uint32_t lo = 0, hi = count - 1;
     while (lo < hi) {
@@ -291,8 +291,8 @@ static double half_surface(const struct box *b) {
     return box_is_empty(b) ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/* The root, a single leaf, whose own box is tried, and bounds that are nearly as large as what is round them are not
- * tried. */
+/* Not tried: the root, bounds of a single leaf, whose own box is tried, and bounds nearly as large as the ones around
+ * them. */
 static void choose_probes(struct csg_plan *plan) {
     plan->bounds[0].unprobed = true;
     for (uint32_t b = 0; b < plan->bound_count; b++) {

@@ -38,7 +38,8 @@ struct csg_plan {
     bool *as_it_is;        /* csg_from_leaf of a leaf changes nothing */
     struct csg_bound *bounds;
     uint32_t *order;
-    uint32_t *needed; /* leaves outside of which the solid is nowhere; asked first, what is soonest missed before */
+    uint32_t *needed; /* leaves that contain the whole solid; tested first, the ones that rays miss most often before
+                         the others */
     bool *is_needed, *is_convex;
     uint32_t node_count, bound_count, needed_count;
     uint32_t state_items; /* scratch items that hold the truth of all nodes and leaves */

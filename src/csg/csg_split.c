@@ -186,7 +186,7 @@ static const struct csg *build_part(struct splitting *s, struct arena *arena, ui
     return csg_build(arena, leaves, leaf_count, program, length, error);
 }
 
-/* How the operands fall into parts; s holds what must be freed whatever the answer. False: no memory. */
+/* Divides the operands into parts. The caller frees the contents of s in every case. False: no memory. */
 static bool analyse(struct splitting *s, uint32_t length, uint32_t *parts) {
     *s = (struct splitting){.leaves = s->leaves,
                             .program = s->program,

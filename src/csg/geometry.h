@@ -27,7 +27,7 @@ static inline const struct shape *geometry_shape(const struct geometry *geometry
     return geometry->csg ? &geometry->csg->leaves[leaf].shape : &geometry->shape;
 }
 
-/* Of a shape its kind's name, else "csg". */
+/* The name of the kind of a shape; "csg" for a solid. */
 static inline const char *geometry_kind_name(const struct geometry *geometry) {
     return geometry->csg ? "csg" : shape_kind_name(geometry->shape.kind);
 }
@@ -40,7 +40,7 @@ static inline struct box geometry_bounds_under(const struct geometry *geometry, 
 static inline bool geometry_is_closed(const struct geometry *geometry) {
     return geometry->csg ? !geometry->csg->clipped : shape_is_closed(&geometry->shape);
 }
-/* Of a solid CONVEXITY_NONE: its leaves have their own (csg->convexity). */
+/* CONVEXITY_NONE for a solid: its leaves have their own convexity (csg->convexity). */
 static inline enum hit_convexity geometry_convexity(const struct geometry *geometry) {
     return geometry->csg ? CONVEXITY_NONE : shape_convexity(&geometry->shape);
 }

@@ -6,9 +6,9 @@
 
 enum { BERNSTEIN_MAX_DEGREE = 12 };
 
-/* Roots inside [0, 1], ascending; at most `degree`. A coefficient of zero counts as positive, so the count is odd just
- * if exactly one of b[0] and b[degree] is negative, whatever rounding does; two roots closer than the rounding error
- * may be missed together. */
+/* Roots inside [0, 1], ascending; at most `degree`. A coefficient of zero counts as positive, so the count is odd if
+ * and only if exactly one of b[0] and b[degree] is negative, in spite of rounding; two roots closer than the rounding
+ * error may be missed together. */
 int bernstein_roots(const double *b, int degree, double *out);
 double bernstein_value(const double *b, int degree, double x);
 /* b restricted to [0, x] and [x, 1]; left[degree] and right[0] are the same number. Outputs may not alias b. */

@@ -67,7 +67,7 @@ static inline double cubic_slope(const double b[4], double x) {
 }
 /* Widens lo..hi by the values of a cubic on [0, 1]. */
 void outline_range(const double b[4], double *lo, double *hi);
-/* The direction of the curve at x, the chord where it stands still. */
+/* The direction of the curve at x; the direction of the chord where the derivative is zero. */
 void outline_tangent(const struct outline_piece *piece, double x, double *dp, double *dq);
 
 #endif

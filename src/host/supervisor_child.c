@@ -88,9 +88,9 @@ static _Noreturn void give_up(const struct process_work *work, const struct erro
     _exit(0);
 }
 
-/* Whether the child of a farm has stood still for too long: it has used no processor time though it was not short of
- * one. While a picture is open there is always something that it does; a script may wait for whoever reads what it
- * prints, but it does not stop. Time in which this process did not look, since it was stopped itself, does not count.
+/* Whether the child of a farm has hung for too long: it used no processor time although a processor was available.
+ * While a picture is open, the child always has work. A script may wait for the reader of its output, but it must not
+ * be stopped. Time in which this process was stopped itself does not count.
  */
 bool supervisor_child_is_stalled(struct supervisor *supervisor) {
     double limit = supervisor->options->farm_stall, now = progress_clock(), pause = limit / 32;
@@ -249,7 +249,7 @@ static bool tries_again(struct supervisor *supervisor, int how) {
 void supervisor_judge_end(struct supervisor *supervisor, int how) {
     bool all_ended = supervisor->next_script >= supervisor->options->script_count;
     if (supervisor->deadline > 0) {
-        /* It was asked to stop; how it did does not matter. */
+        /* It has received a request to stop; its exit status does not matter. */
     } else if (!all_ended && !supervisor->stop && tries_again(supervisor, how)) {
         return;
     } else if (!all_ended && !supervisor->stop) {

@@ -80,7 +80,7 @@ void supervisor_note_error(struct supervisor *supervisor, const struct error *er
 /* supervisor_signals.c */
 bool supervisor_listen(struct supervisor *supervisor, struct error *error);
 void supervisor_read_signals(struct supervisor *supervisor);
-/* Everything ends: the child is asked to, and killed soon; a second call kills it at once. */
+/* Ends everything: requests the child to stop, and kills it soon after; a second call kills it at once. */
 void supervisor_interrupt(struct supervisor *supervisor);
 /* While a picture waits for the reader of a pipe; context: the supervisor. */
 bool supervisor_is_stopped(void *context);
@@ -97,7 +97,7 @@ void supervisor_stop_script_clock(struct supervisor *supervisor);
 void supervisor_start_script_clock(struct supervisor *supervisor);
 /* Milliseconds until the script could have used up its time; -1: no limit; 0: it has. */
 int supervisor_script_patience(const struct supervisor *supervisor);
-/* Whether the child of a farm has stood still for too long. */
+/* Whether the child of a farm has hung for too long. */
 bool supervisor_child_is_stalled(struct supervisor *supervisor);
 
 /* supervisor_messages.c */

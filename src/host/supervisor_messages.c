@@ -12,7 +12,7 @@ static const double patience_quit = 0.01;
 /* Seconds for the scripts to end before they run again; afterwards the process is started again. */
 static const double patience_again = 0.3;
 
-/* Without its answer the child would wait for ever, unless it is gone: that is met at the end of the channel. */
+/* Without its answer the child would wait for ever. If the child has ended, the end of the channel reports it. */
 static void note_unsent(struct supervisor *supervisor) {
     struct pollfd peer = {.fd = supervisor->channel.descriptor};
     bool gone = poll(&peer, 1, 0) == 1 && (peer.revents & POLLHUP) != 0;
@@ -35,7 +35,8 @@ static void forget_stop(const struct supervisor *supervisor) {
     (void)atomic_compare_exchange_strong(&supervisor->control->cancel, &stop, CANCEL_NOTHING);
 }
 
-/* For a script that starts again: nothing is left to do for this picture. Without memory it is made again. */
+/* For a script that starts again: this picture is finished. If there is no memory for this note, the picture is
+ * rendered again. */
 static void settle(struct supervisor *supervisor, uint32_t number) {
     uint32_t room = supervisor->retry.settled_count;
     if (!supervisor->output.farm)

@@ -11,8 +11,8 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-/* SIGINT, SIGTERM and SIGHUP are read from a descriptor, except those that whoever started us wanted ignored. A write
- * to a closed pipe or past a size limit is an error like any other, not the end of the process. */
+/* SIGINT, SIGTERM and SIGHUP are read from a descriptor, except those that the parent process set to be ignored. A
+ * write to a closed pipe or past a size limit is an error like any other, not the end of the process. */
 bool supervisor_listen(struct supervisor *supervisor, struct error *error) {
     static const int wanted[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
     sigset_t set;

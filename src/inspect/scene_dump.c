@@ -155,7 +155,7 @@ static void dump_rest(const struct dump *d) {
     const struct world *world = d->world;
     text_writer_print(d->writer, d->json ? "],\"materials\":[" : "\n  number  material\n");
     for (uint32_t i = 0, numbers = 0; i < world->material_count; i++) {
-        if (world->material_numbers[i] != numbers) /* already listed, since another shape has it */
+        if (world->material_numbers[i] != numbers) /* already listed for another shape */
             continue;
         dump_material(d, i);
         numbers++;
@@ -191,7 +191,7 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
 
 /* --- functions of textures --- */
 
-/* Its instructions, one a line, between the inputs that stand in registers and the registers of the results. */
+/* Prints the registers of the inputs, the instructions, one per line, and the registers of the results. */
 static void dump_program(struct text_writer *writer, const struct expr_program *program, bool json) {
     const char *before = json ? "\"" : "    ", *after = json ? "\"," : "\n";
     char line[256];

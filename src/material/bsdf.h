@@ -86,7 +86,7 @@ struct bsdf {
     struct vec3 lit;                  /* the same, turned to the viewer where the surface has two sides */
     struct vec3 side, geometric_side; /* on the ray's side; `side` has an angle below 90 degrees to the view */
     bool dark;                        /* seen from behind: classic lobes reflect no light */
-    struct vec3 albedo;               /* kd, whatever the lobes are */
+    struct vec3 albedo;               /* kd, also without a diffuse lobe */
     struct vec3 ambient;              /* multiplied with the scene's ambient colour */
     struct vec3 emission;             /* added as it is */
     double opacity;                   /* the rest is a hole, through which the ray continues unchanged */

@@ -101,7 +101,7 @@ struct surface_inputs {
     struct vec3 absorption; /* inside: the logarithm of light decreases by this per unit */
     double roughness;       /* of reflection and refraction; 0: a mirror */
     int glossy_samples;     /* N x N rays where it is rough; 0: the default */
-    bool fresnel;           /* material_eval, which knows the media, replaces reflect and refract by F and 1 - F */
+    bool fresnel;           /* material_eval, which has the media, replaces reflect and refract by F and 1 - F */
 };
 
 /* A copy that refers to no other material: it has its own copy of the numbers of the base at the end of its chain.

@@ -13,7 +13,7 @@ struct material_context {
     bool total_reflection;       /* at total reflection, refracted light is reflected; else it is lost */
     material_observer *observer; /* called for every link of `authored`, or NULL */
     void *observer_context;
-    const struct material *authored; /* of the material, where told is set: the one that the scene has */
+    const struct material *authored; /* if observer is set: the material of the scene that `material` was made from */
 };
 
 /* media: those that contain the ray; NULL: none. A surface with opacity 0 has no lobes. */

@@ -214,8 +214,8 @@ struct texture texture_image(const struct texture_image *image, const struct tex
 struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio);
 struct texture texture_multiply(const struct texture *a, const struct texture *b);
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
-/* A function of what EXPR_INPUTS lists, with one output or three; NaN is read as 0. has_coordinates: it reads u or v.
- * The estimates are what texture_estimate says. */
+/* A function of the inputs in EXPR_INPUTS, with one output or three; NaN counts as 0. has_coordinates: it reads u or v.
+ * The estimates are the results of texture_estimate. */
 struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
                                 struct vec3 largest);
 /* The number of that input of the evaluated material. */

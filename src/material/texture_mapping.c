@@ -42,7 +42,7 @@ static void on_ball(const struct hit *hit, bool classic, struct texcoord *at) {
     at->dpdv = hit->dpdv;
 }
 
-/* A box brings the parameters of on_cube itself. */
+/* A hit of a box contains the parameters of on_cube already. */
 static void on_faces(const struct hit *hit, struct texcoord *at) {
     double du = vec3_length(hit->dpdu), dv = vec3_length(hit->dpdv);
     *at = (struct texcoord){.u = hit->u,

@@ -247,8 +247,8 @@ static bool before(const struct crossing *a, const struct crossing *b) {
 }
 
 /* The signs of the triangle test make a line enter a closed mesh as often as it leaves it, but where it touches an edge
- * or passes a thin wall the two t are equal up to rounding and may stand in the wrong order. Within that rounding error
- * entries and exits are made to alternate. */
+ * or passes a thin wall the two t are equal up to rounding and may be in the wrong order. Within that rounding error,
+ * this makes entries and exits alternate. */
 static void alternate(struct crossing *items, uint32_t count, bool enter_first, double slack) {
     for (uint32_t i = 0; i < count; i++) {
         bool want = i ? !items[i - 1].enter : enter_first;

@@ -92,8 +92,8 @@ bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input);
 
 bool mesh_nearest(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                   struct crossing *out);
-/* The same for the rays of one origin whose bit is set in `active` (accel/triangle_packet.h says which go well
- * together); the bits of those that hit, and out. */
+/* The same for the rays of one origin whose bit is set in `active` (accel/triangle_packet.h recommends which rays to
+ * combine). Returns the bits of those that hit, with their results in out. */
 uint64_t mesh_nearest_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active,
                              enum accel_kind accel, struct geom_scratch *scratch, struct packet_hits *out);
 uint64_t mesh_any_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active, enum accel_kind accel,

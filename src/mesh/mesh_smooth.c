@@ -120,7 +120,7 @@ bool mesh_input_flip(struct mesh_input *input, struct mesh_tables *own, struct e
 /* Everything that mesh_input_smooth works with; freed as a whole. */
 struct smoothing {
     const struct mesh_input *input;
-    double unit; /* power of two that brings lengths to about 1 */
+    double unit; /* power of two that scales lengths to about 1 */
     uint32_t *same, *face_of, *set, *start;
     struct vec3 *normals; /* of faces, unit or zero */
     uint64_t *uses;       /* edges: (other vertex) << 32 | corner it starts at */
@@ -215,7 +215,7 @@ static void unite_across(struct smoothing *s, uint32_t c, uint32_t d, double min
 }
 
 static void unite_smooth_edges(struct smoothing *s, double degrees) {
-    /* A little more than the angle, so that rounding splits no edge that has it exactly; 180 takes everything. */
+    /* A little more than the angle, so that rounding splits no edge of exactly this angle; 180 includes every edge. */
     double min = degrees >= 180 ? -2 : el_cos(degrees * (PI / 180)) - 0x1p-40;
     for (uint32_t v = 0; v < s->input->vertex_count; v++) {
         uint64_t *uses = s->uses + s->start[v];

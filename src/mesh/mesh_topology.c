@@ -1,5 +1,5 @@
-/* Whether a mesh is closed: every edge is used by exactly two triangles, in opposite directions. Vertices count as the
- * same when their positions are equal, whatever their indices. Edges are gathered at their lower vertex: count, prefix
+/* Whether a mesh is closed: every edge is used by exactly two triangles, in opposite directions. Vertices with equal
+ * positions count as the same, also with different indices. Edges are gathered at their lower vertex: count, prefix
  * sum, fill; then each vertex sorts its own few. */
 #include "base/random.h"
 #include "mesh/mesh_internal.h"

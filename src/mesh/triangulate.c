@@ -192,7 +192,7 @@ bool triangulate_polygon(const double (*vertices)[3], const uint32_t *vertex, ui
         c[i].next = i + 1 < count ? i + 1 : 0;
         c[i].blocker = NOT_LISTED;
     }
-    /* Convex: turns left everywhere and goes round once, that is, x runs forwards once and backwards once. */
+    /* Convex: it turns left everywhere and goes around once, that is, x increases once and decreases once. */
     uint32_t x_turns = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (!(turn_at(&clipper, i) > 0))

@@ -59,7 +59,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
     return true;
 }
 
-/* From then on nothing is written: the file is not changed. */
+/* Nothing is written after that: the file does not change. */
 static bool refuse(struct checkpoint *checkpoint, const char *why, struct error *error) {
     error_set(&checkpoint->refused, ERROR_SCENE, "%.400s: cannot be resumed: %s", checkpoint->path, why);
     checkpoint->opened = false;

@@ -10,8 +10,8 @@ enum picture_format { PICTURE_PNG, PICTURE_PFM, PICTURE_HDR, PICTURE_EXR, PICTUR
 enum picture_format picture_format(const char *name);
 
 /* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. An EXR picture
- * contains them (layers_write_exr), so that there is nothing to do. Depth is always written with 16 bits, the others
- * with the bit depth of the picture. */
+ * contains them already (layers_write_exr). Depth is always written with 16 bits, the others with the bit depth of the
+ * picture. */
 bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error);
 
 /* Light as R, G, B, and the layers as channels with their names: depth.Z, normal.X ... */

@@ -52,7 +52,7 @@ static void list_missing(const struct part *parts, size_t count, char out[256]) 
         (void)snprintf(out + length, 256 - length, " and %u more", missing - shown);
 }
 
-/* Checks that there are as many tiles as the picture has: its size is taken from a part, its film from the tiles. */
+/* Checks that the parts have all tiles of the picture: the size comes from a part, the film from the tiles. */
 static bool check_tiles(const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *picture = &parts[0].picture;
     const struct film film = {.width = picture->width, .height = picture->height, .x0 = picture->x0, .y0 = picture->y0};

@@ -160,7 +160,7 @@ static bool make_film(struct output_session *output, struct picture *picture, st
     return true;
 }
 
-/* With --resume: whether the part is there, finished, and of this very picture. */
+/* With --resume: whether the part exists, is finished, and belongs to this picture. */
 static bool part_is_written(const struct output_session *output, const char *name) {
     struct tile_file file;
     struct error ignored;
@@ -173,7 +173,7 @@ static bool part_is_written(const struct output_session *output, const char *nam
     return there;
 }
 
-/* In a farm: what the others say to it. */
+/* In a farm: compares the picture with those of the other ranks. */
 static bool join_farm(struct output_session *output, bool *already, struct error *error) {
     struct picture *picture = &output->current;
     if (!output->farm)
@@ -465,7 +465,7 @@ void output_report(struct output_session *output, enum line_kind kind, const cha
     if (output->farm && kind == LINE_ERROR)
         farm_report(output->farm, text);
     if (output->farm && !farm_is_first(output->farm))
-        return; /* the first one says the same, or passes it on at the end */
+        return; /* the first rank has the same line, or prints it at the end */
     switch (kind) {
     case LINE_ERROR:
         shown = true;

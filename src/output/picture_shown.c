@@ -1,6 +1,6 @@
 /* The film of a crop that is denoised has a rim that its files do not show (DENOISE_RIM). Denoising happens here, where
  * the picture is written, so that merged parts and resumed pictures are denoised as a whole. The film is shared with
- * the render process, whose numbers are not trusted: whatever they are, denoising them is safe. */
+ * the render process, whose numbers are not trusted: denoising is safe for all numbers. */
 #include "output/picture_shown_internal.h"
 
 #include "base/mem.h"

@@ -1,6 +1,6 @@
 /* Layers and their colours. Colours do not depend on the picture where that can be avoided, so that two pictures can be
  * compared: cost goes by its logarithm from black (1) over blue, red and yellow to white (2^20); numbers of nodes and
- * materials get colours by a hash. Depth is nearest / distance, as depth buffers have it. */
+ * materials get colours by a hash. Depth is nearest / distance, as in depth buffers. */
 #include "render/aov.h"
 
 #include "base/random.h"

@@ -13,7 +13,7 @@
 /* Each layer, with its name for --aov and in names of files, and the letters of its channels in an EXR file. */
 #define AOVS(X)                                                                                                        \
     X(AOV_DEPTH, "depth", "Z")       /* distance from the eye along the ray, world units; 0: nothing met */            \
-    X(AOV_NORMAL, "normal", "XYZ")   /* unit, world, on the outward side, as shading has it; {0, 0, 0}: nothing met */ \
+    X(AOV_NORMAL, "normal", "XYZ")   /* unit vector in world space, the outward shading normal; {0, 0, 0}: no hit */   \
     X(AOV_ALBEDO, "albedo", "RGB")   /* kd of the surface */                                                           \
     X(AOV_UV, "uv", "UV")            /* u, v, 1; {0, 0, 0}: nothing met or no image coordinates */                     \
     X(AOV_NODE, "node", "N")         /* the node's number by order of creation, from 1; 0: nothing met */              \

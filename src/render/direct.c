@@ -128,7 +128,7 @@ static uint32_t without_highlight(const struct bsdf *bsdf) {
     return traced ? BSDF_ALL & ~(traced | bsdf_lobes_with(bsdf, BSDF_EXPONENT)) : BSDF_ALL;
 }
 
-/* An area light: every shadow ray is shaded separately, with the cosine at the light. Rays that cannot bring light are
+/* An area light: every shadow ray is shaded separately, with the cosine at the light. Rays that cannot carry light are
  * not traced.
  */
 static struct vec3 light_of_samples(struct integrator_state *state, const struct light *light, uint32_t number,

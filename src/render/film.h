@@ -26,7 +26,7 @@ struct film_pixel {
 
 /* The additional record of a pixel: the integrator of the picture defines it (integrator_record). */
 struct film_record {
-    uint32_t floats; /* at most FILM_RECORD_FLOATS; the integrator knows what they are, and they are finite */
+    uint32_t floats; /* at most FILM_RECORD_FLOATS, all finite; the integrator defines their meaning */
     uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the floats; else 0 */
 };
 enum { FILM_RECORD_FLOATS = 80 };
@@ -105,8 +105,8 @@ bool film_holds_largest(const struct film *film);
  * or there are no marks, the floats. At most FILM_PACKED_LIMIT bytes, little-endian. */
 enum { FILM_PACKED_LIMIT = FILM_TILE * FILM_TILE * ((3 + FILM_RECORD_FLOATS) * 4) + FILM_TILE * FILM_TILE / 8 };
 size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
-/* Whether the bytes have the size that their own mask asks for, and all colours are finite; needs no more of the film
- * than its rectangle and record. */
+/* Whether the size of the bytes agrees with their own mask, and all colours are finite; only needs the rectangle and
+ * the record of the film. */
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 /* Unpacks it and marks the tile as done; false: not the bytes of such a tile, and nothing changes. */
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
@@ -117,7 +117,7 @@ enum film_view {
     FILM_TARGETS
 }; /* TARGETS: first pass with marked pixels in pure red. Without a first pass
     * (no marks) it is the picture. */
-/* 3 * width numbers of row y: through a tone with 8 or 16 bits, and as the film has it. */
+/* 3 * width numbers of row y: tone-mapped to 8 or 16 bits, and as in the film. */
 void film_row_toned(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint8_t *line);
 void film_row_16(const struct film *film, enum film_view view, const struct tone *tone, uint32_t y, uint16_t *line);
 void film_row_linear(const struct film *film, enum film_view view, uint32_t y, float *line);

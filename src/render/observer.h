@@ -44,7 +44,7 @@ struct observation {
         double part;
         struct {
             enum ray_kind kind;
-            struct vec3 weight; /* of what it brings, in the surface it starts from */
+            struct vec3 weight; /* the factor of its radiance in the surface where it starts */
             enum ray_cut cut;   /* other than RAY_FOLLOWED: it does not begin */
         } sent;
         struct observed_begin {
@@ -79,7 +79,7 @@ struct observation {
         } direct;
         struct observed_end {
             bool evaluated;                               /* its hit was evaluated; else it was too weak */
-            struct vec3 seen, left, in_scattered, brings; /* brings: left * seen + veil */
+            struct vec3 seen, left, in_scattered, brings; /* brings, its radiance: left * seen + in_scattered */
         } end;
         struct observed_mark {
             int x, y;                   /* the neighbour from the pixel, -1..1 */

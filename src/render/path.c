@@ -224,7 +224,7 @@ void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *rende
     }
 }
 
-/* --- what the scene language says and paths take otherwise --- */
+/* --- parts of the scene language with another meaning for paths --- */
 
 /* The first node with this material; operands of CSG are not searched. */
 static const char *user_of(const struct world *world, uint32_t material) {

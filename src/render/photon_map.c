@@ -341,8 +341,9 @@ static float pilot_squared(const struct photon_map *map, const float at[3], floa
     return n.bound;
 }
 
-/* Neighbours in the tree are neighbours in space: the last answer, moved, bounds the next one. A photon much nearer to
- * the last one that was asked than that one's radius takes it over: its own is between half of it and one and a half.
+/* Neighbours in the tree are neighbours in space: the last result, plus the distance, bounds the next one. A photon
+ * that is much closer to the last searched one than that one's radius gets the same radius: its own is between half of
+ * it and one and a half times it.
  */
 static void find_radii(void *context, uint32_t chunk, int worker) {
     (void)worker;
@@ -501,8 +502,8 @@ struct density_query {
     struct vec3 sum;
 };
 
-/* Photons fall on the geometric surface, so each brings its power over n.l of that; the lobes hold their own cosine. At
- * grazing light the quotient is bounded. */
+/* Photons fall on the geometric surface, so each photon counts with its power divided by n.l of that surface; the lobes
+ * contain their own cosine. At grazing light the quotient is bounded. */
 static void add_photon(struct density_query *g, uint32_t i, double weight) {
     const struct photon_light *light = &g->map->lights[i];
     if (g->map->listed) {

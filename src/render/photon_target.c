@@ -550,7 +550,7 @@ static const struct photon_cell *cell_at(const struct photon_target *target, dou
     return &target->cells[low];
 }
 
-/* In the part of a square that a cell is. */
+/* A point in the part of a square that belongs to a cell. */
 static struct light_photon start_across(const struct photon_target *target, const struct photon_cell *cell,
                                         struct sample2 xi, double *weight) {
     struct light_photon photon = light_photon(&target->emitter, vec3_all(0), xi);

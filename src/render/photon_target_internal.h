@@ -10,7 +10,7 @@
 
 struct photon_cell {
     double until;          /* sum of the importance of all cells up to this one */
-    uint32_t face, i, j;   /* of a cube round the light; of a distant light face 0 */
+    uint32_t face, i, j;   /* of a cube around the light; face 0 for a distant light */
     float strength, shine; /* reflectance of the strongest specular object there; the light's own in its middle */
 };
 
@@ -20,11 +20,12 @@ struct photon_target {
     uint32_t number;                /* of the light */
     double corner[2], size, behind; /* PARALLEL: the square across, and where photons start along the direction; of an
                                        ENVIRONMENT size is that of the scene */
-    struct box across, scene;       /* ENVIRONMENT: what photons are to meet, and before what they start */
-    uint32_t level, cell_count;     /* 2^level cells along the side of a face */
+    struct box across,
+        scene; /* ENVIRONMENT: boxes of the specular objects and of the whole scene, outside of which photons start */
+    uint32_t level, cell_count; /* 2^level cells along the side of a face */
     struct photon_cell *cells;
     double total;              /* importance of all cells */
-    double flux;               /* what they emit, as far as it is known before */
+    double flux;               /* the emitted flux, estimated before tracing */
     uint32_t first, count;     /* photons of the whole map that are its own */
     struct medium_stack media; /* round the centre */
 };

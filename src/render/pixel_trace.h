@@ -50,8 +50,8 @@ struct pixel_trace_ray {
     uint32_t number; /* in the order in which they were begun, from 1 */
     struct vec3 origin, direction;
     double time;
-    double share;       /* how much of what it brings can arrive in the pixel, at most */
-    struct vec3 weight; /* of what it brings, in the surface it started from */
+    double share;       /* upper bound of the fraction of its radiance that arrives in the pixel */
+    struct vec3 weight; /* the factor of its radiance in the surface where it started */
     uint32_t media_count;
     double media_ior; /* of where it starts */
     /* What it hit: a surface, else a visible light, else the sky. */
@@ -69,7 +69,7 @@ struct pixel_trace_ray {
     struct pixel_trace_light *lights, *last_light;
     struct pixel_trace_ray *first, *last; /* those that it sent on */
     double part;                          /* of their weight, where several share one */
-    /* What it brings: left * seen + veil. */
+    /* Its radiance: brings = left * seen + in_scattered. */
     struct vec3 seen, left, in_scattered, brings;
     struct pixel_trace_ray *parent, *next;
 };

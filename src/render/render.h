@@ -51,7 +51,7 @@ struct film_record integrator_record(enum integrator_kind integrator);
 struct film_record render_record(const struct settings *settings);
 /* Warnings about parts of the scene that the integrator interprets differently; the world is built. */
 void integrator_warn(const struct render_job *job, world_warning *warn, void *context);
-/* False: cancelled or out of memory (error says which). The film then holds what was finished. */
+/* False: cancelled or out of memory, see `error`. The film then contains the finished tiles. */
 bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
                 struct error *error);
 struct pixel_list {

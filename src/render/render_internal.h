@@ -53,8 +53,8 @@ struct renderer {
     struct sample_pass pass;  /* the integrator states all samples as one pass; paths only */
     _Atomic bool unsatisfied; /* a tile of the pass is to have more samples (--noise) */
     double begun;             /* seconds of the clock that never jumps */
-    double sample_share;      /* of a pixel's width, what a sample stands for; SAMPLER_STRATA: as the settings say */
-    uint32_t *closed;         /* the solids that can contain the eye */
+    double sample_share; /* footprint of a sample as a fraction of a pixel's width; SAMPLER_STRATA: from the settings */
+    uint32_t *closed;    /* the solids that can contain the eye */
     uint32_t closed_count;
     struct integrator *integrator;
     struct worker *workers;
@@ -63,10 +63,10 @@ struct renderer {
     uint32_t *order;           /* of the tiles; NULL: as they are numbered */
     uint32_t whole_tiles;      /* so many are made as a whole, the others of the order in quarters */
     _Atomic uint8_t *quarters; /* of each of the others, how many are done; and QUARTER_FAILED */
-    bool estimated;            /* the tiles have been looked at */
+    bool estimated;            /* the cost of the tiles has been estimated */
     struct time_estimate time_estimate;
     uint64_t worked;           /* processor time when the first tile began */
-    _Atomic uint64_t reported; /* when the progress estimate was told, nanoseconds */
+    _Atomic uint64_t reported; /* time of the last progress report in nanoseconds */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };
@@ -82,7 +82,7 @@ bool renderer_prepare_at(const struct render_job *job, double ray_time, struct c
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);
 struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, const struct pixel_sample *position);
-/* The samples of a batch, as renderer_sample would bring them. What the camera rays meet is looked for together. */
+/* The samples of a batch, equal to those of renderer_sample. The hits of the camera rays are found together. */
 void renderer_sample_batch(struct renderer *renderer, struct worker *worker);
 static inline bool renderer_stopped(const struct renderer *renderer, const struct worker *worker) {
     return pool_cancelled(renderer->pool) || worker->scratch.failed;

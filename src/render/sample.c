@@ -71,7 +71,7 @@ static void begin_sample(const struct renderer *renderer, struct worker *worker,
     }
 }
 
-/* Of the pixel's width, what a sample stands for: its footprint on textures. */
+/* The footprint of a sample on textures, as a fraction of the pixel's width. */
 static double sample_share(const struct renderer *renderer, uint64_t number) {
     if (renderer->sampler == SAMPLER_SOBOL)
         return renderer->sample_share;
@@ -106,7 +106,7 @@ struct vec3 renderer_sample(struct renderer *renderer, struct worker *worker, co
     return colour;
 }
 
-/* The samples of a batch, as renderer_sample would bring them. What the camera rays meet is looked for together. */
+/* The samples of a batch, equal to those of renderer_sample. The hits of the camera rays are found together. */
 void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     struct batch *batch = &worker->batch;
     if (!renderer->together || batch->count == 1) {

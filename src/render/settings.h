@@ -70,7 +70,7 @@ enum colour_pipeline { COLOUR_PIPELINES(LIST_MEMBER) };
     X(INTEGRATOR_WHITTED, "whitted")                                                                                   \
     X(INTEGRATOR_PATH, "path")
 enum integrator_kind { INTEGRATORS(LIST_MEMBER) };
-/* NOISE: where --noise alone says when it is enough. */
+/* NOISE: the limit with --noise and without --spp. */
 enum {
     PATH_SAMPLES_DEFAULT = 64,
     PATH_SAMPLES_NOISE = 1 << 16,
@@ -145,8 +145,8 @@ struct settings {
     enum order order;     /* of the tiles; the picture does not depend on it */
     uint32_t aov;         /* layers beside the picture: a mask of render/aov.h */
     bool keep_first;      /* the first pass is wanted even where -full makes it needless */
-    bool coarse;          /* rough surfaces send one ray, lights as many as area_samples says, whatever they ask for */
-    bool show_refined;    /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
+    bool coarse;       /* rough surfaces send one ray, and lights area_samples of them, instead of their own numbers */
+    bool show_refined; /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */
     bool cropped;
     int64_t crop_x, crop_y, crop_width, crop_height;
 };

@@ -62,7 +62,7 @@ struct tile_file {
 };
 /* Whether bytes begin like a file of tiles. */
 bool tile_file_is(const uint8_t *head, size_t size);
-/* False: `error` says which record is wrong and how; ERROR_SCENE unless memory ran out. */
+/* False: `error` names the record and its fault; ERROR_SCENE unless there was no memory. */
 bool tile_file_read(const char *path, struct tile_file *out, struct error *error);
 /* The same of bytes in memory, which are taken over when that succeeds. */
 bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error);

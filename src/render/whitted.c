@@ -6,14 +6,14 @@
 #include "math/range.h"
 #include "render/direct_internal.h"
 
-/* Of the colour that a secondary ray brings: no filter makes an infinity of it, so infinity times 0 cannot arise. */
+/* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
 static const double light_limit = 1e200;
 
 struct path {
     uint64_t key;
     int reflections, refractions; /* so far, from the camera */
     bool rough;                   /* after a rough surface: the next ones get one ray each */
-    double weight;                /* how much of what this ray brings can arrive in the pixel */
+    double weight;                /* the fraction of this ray's radiance that can arrive in the pixel */
     double cutoff;                /* a ray of less weight is not followed */
     int holes;                    /* went through so far */
 };

@@ -38,7 +38,7 @@ void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, st
 void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
                             struct render_statistics *out);
 
-/* The colour a camera ray brings, clamped to the range of float; key: the random key of this pixel and sample. */
+/* The radiance along a camera ray, clamped to the range of float; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key);
 /* The same for a ray that went with a packet: what it has met, or NULL. */

@@ -1,6 +1,6 @@
-/* Adaptive anti-aliasing. A part of a tile samples its pixels and the rim of one pixel round them once (a pixel's first
- * sample is a function of the pixel alone, so two parts that share a rim agree), marks by neighbours' differences,
- * samples what is marked N x N times, and is final. */
+/* Adaptive anti-aliasing. A part of a tile samples its pixels and the rim of one pixel around them once (a pixel's
+ * first sample depends only on the pixel, so two parts that share a rim agree). It marks pixels by the differences of
+ * neighbours, samples the marked ones N x N times, and is final. */
 #include "render/whitted_internal.h"
 
 #include "base/mem.h"

@@ -101,7 +101,7 @@ struct asset_image {
     char *path;
     struct asset_image *next;
 };
-/* Anything else that was made from a file and is kept: who made it knows what it is. */
+/* Any other object that was made from a file and is kept; only its maker knows its type. */
 struct asset_object {
     void *object;
     void (*destroy)(void *object);

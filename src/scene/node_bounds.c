@@ -11,7 +11,7 @@ struct measuring {
     struct error *error;
 };
 
-/* Of every node on the path; box: of what has been visited of it so far. */
+/* The state of every node on the path; box: that of its visited part. */
 struct measure_frame {
     struct transform from_node, of_children;
     struct box box;
@@ -78,7 +78,7 @@ static void leave(const struct scene_traversal *t) {
                                        : with_operand(t->steps[t->depth - 2].node, number, above->box, frame->box);
 }
 
-/* Of a difference or an inverse the first operand alone is measured. */
+/* A difference or an inverse has the bounds of its first operand. */
 static bool is_measured(const struct scene_traversal *t) {
     uint32_t number = scene_traversal_operand(t);
     if (number == SCENE_CHILD || number == 0)

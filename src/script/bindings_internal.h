@@ -122,7 +122,7 @@ binding gr_bump, gr_image_material, gr_bump_material;
 /* The image of an argument, from the store or from its file; NULL with an error. */
 struct image *gr_find_image(struct script_context *context, const struct script_value *value, struct error *error);
 
-/* The image for node:set_texture: looked up as its texture says, else mip-mapped and repeated; NULL with an error. */
+/* The image for node:set_texture: with the lookup of its texture, else mip-mapped and repeated; NULL with an error. */
 const struct texture_image *gr_image(struct script_context *context, const struct script_value *value,
                                      struct error *error);
 /* The bump map for node:set_bump: a result of gr.bump, or any other image with the default height. */

@@ -84,7 +84,7 @@ struct script_context {
     const char *path;       /* the scene as the user named it */
     char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
     struct source_name *sources;
-    struct file_search search;       /* for files that are not where the script says */
+    struct file_search search;       /* for files that are not at the path in the script */
     struct source_name *found_names; /* the names of those that were found, with a notice for each */
     const void *metatables[HANDLE_TYPES];
     uint32_t handle_count;

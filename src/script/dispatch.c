@@ -1,5 +1,5 @@
-/* The one C function behind every gr function and node method: reads the arguments as the table's row says, runs the
- * row's plain C function, and returns its result. Names that do not exist are errors with a suggestion, or with
+/* The one C function behind every gr function and node method: reads the arguments that the table's row describes, runs
+ * the row's plain C function, and returns its result. Names that do not exist are errors with a suggestion, or with
  * --lenient ghosts. */
 #include "script/context_internal.h"
 

@@ -61,7 +61,7 @@ const char *files_repair_number(struct script_context *context, const char *name
     return repaired;
 }
 
-/* No file has a longer name; the error says so, since it cannot show the whole name. */
+/* No file has a longer name; the error does not show the whole name. */
 static bool name_fits(const char *name, struct error *error) {
     if (strlen(name) >= PATH_MAX)
         return error_set(error, ERROR_SCENE, "cannot find '%.60s...': a path has at most %d bytes", name, PATH_MAX - 1);
@@ -311,7 +311,7 @@ static int search_module(lua_State *L) {
             lua_pushfstring(L, "no file '%s.lua' on package.path", module);
             return 1;
         }
-        found = templates[0] ? search_elsewhere(context, file) : NULL; /* '': the script wants no file */
+        found = templates[0] ? search_elsewhere(context, file) : NULL; /* '': the script requests no file */
         if (!found)
             no_module(context, module);
     }

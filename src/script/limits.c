@@ -1,6 +1,6 @@
 /* The limits of a script: memory, processor time, output. From limits_begin to limits_end an account of base/mem.h
- * counts every block of the process, as malloc rounds it: the Lua state, the scene, and whatever reads a file or makes
- * a mesh. A hook reads the clock every few thousand steps. Lua's own C functions run without the hook, so the
+ * counts every block of the process, as malloc rounds it: the Lua state, the scene, and readers of files and makers of
+ * meshes. A hook reads the clock every few thousand steps. Lua's own C functions run without the hook, so the
  * supervisor watches the same clock from outside (host/supervisor.c): the hook gives a good message with a line number,
  * the supervisor ends the script in any case.
  *

@@ -288,7 +288,7 @@ struct search {
     const char *visited[FILES];
     int visited_count;
     struct evidence evidence;
-    struct file_search files; /* for those that are not where the script says */
+    struct file_search files; /* for those that are not at the path in the script */
     bool no_memory;
 };
 

@@ -166,7 +166,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
     recorder->taken = 0;
     recorder->path++;
     bool fine = call_function(L, function, first) && is_result(L, &result.count);
-    if (recorder->gave_up) /* whatever the function made of the error */
+    if (recorder->gave_up) /* even if the function caught the error */
         fine = false;
     if (!fine) {
         result.count = 0;
@@ -405,7 +405,7 @@ const struct script_texture *record_texture(struct script_context *context, int 
     if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
-        lua_error(L); /* a fatal one, which the context knows */
+        lua_error(L); /* a fatal error, which the context has recorded */
     struct script_texture out = {.texture = texture_keep(&context->scene.arena, texture_of(&recording), &error)};
     const struct script_texture *kept = out.texture ? gr_keep_texture(context, &out, &error) : NULL;
     if (!kept)

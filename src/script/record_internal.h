@@ -14,8 +14,9 @@
 
 enum { RECORD_PATHS = 4096, RECORD_LOOP = 10000, RECORD_ERROR = PATH_SIZE + 512 };
 
-/* What a value of Lua is in a recording. The node of an integer is an integer; that of the others a float. EITHER:
- * math.max(x, 0) gives an integer or a float; its node is the float of it, is_integer the node that says which. */
+/* The kind of a Lua value in a recording. The node of an integer is an integer; the node of the others is a float.
+ * EITHER: math.max(x, 0) gives an integer or a float; its node is the float of it, is_integer the node that says which.
+ */
 enum number_type { NUMBER_FLOAT, NUMBER_INTEGER, NUMBER_EITHER };
 struct number {
     enum number_type type;
@@ -34,7 +35,8 @@ struct decision {
     struct path_result if_true; /* where the answer is false: of the paths with the other one */
 };
 
-/* Of a script. Owner: the context; recorder_destroy gives back what a script that ended within a recording left. */
+/* The recorder of a script. Owner: the context. recorder_destroy also frees the data of a recording that did not
+ * finish. */
 struct recorder {
     struct expr_graph graph;
     struct decision *decisions; /* of the path, RECORD_PATHS of them */
@@ -44,7 +46,7 @@ struct recorder {
     uint32_t serial;            /* of the recording: symbols of others are refused */
     bool active;                /* symbols may be used */
     bool busy;                  /* a function is recorded or compared: no other function of gr may run */
-    bool gave_up;               /* at a limit; `error` says where and at which */
+    bool gave_up;               /* at a limit; `error` names it and the line */
     char error[RECORD_ERROR];
     const void *symbol_metatable, *vector_metatable;
 };

@@ -1,4 +1,4 @@
-/* The files below the scene's folder and the folder above it, for names that are not where a scene says. */
+/* The files below the scene's folder and the folder above it, for names that are not at the path in a scene. */
 #ifndef GRAY_SCRIPT_SEARCH_INTERNAL_H
 #define GRAY_SCRIPT_SEARCH_INTERNAL_H
 

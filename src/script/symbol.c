@@ -105,7 +105,7 @@ static const struct expr_node *node_of(const struct recorder *recorder, uint32_t
     return &recorder->graph.nodes[node];
 }
 
-/* Of an integer that math.floor or math.ceil has made the float is that of the C function: Lua gives a float where no
+/* The float of an integer from math.floor or math.ceil is the result of the C function. Lua returns a float where no
  * integer is large enough, and never -0. */
 uint32_t number_float(struct recorder *recorder, struct number number) {
     struct expr_graph *graph = &recorder->graph;

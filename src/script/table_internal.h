@@ -163,8 +163,8 @@ int function_count(void);
 const struct script_function *function_at(int index);
 int function_index(const struct script_function *function);
 
-/* The functions of gr on numbers and vectors (vector.c). They take values of Lua as they are and have no rows in the
- * table: what they are called with, and what they do, in words. NULL behind the last. */
+/* The functions of gr on numbers and vectors (vector.c). They read Lua values directly and have no rows in the table;
+ * their arguments and effects are described in text. NULL after the last one. */
 struct value_function {
     const char *name, *parameters, *help;
 };

@@ -524,7 +524,7 @@ static int turbulence(lua_State *L) {
     return 1;
 }
 
-/* Of any number of arguments, from the left. */
+/* Combines any number of arguments, from the left. */
 static int all_of(lua_State *L, lua_CFunction of_two) {
     luaL_checkany(L, 1);
     for (int k = 2, count = lua_gettop(L); k <= count; k++) {

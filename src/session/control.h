@@ -9,7 +9,7 @@
 #include <stdatomic.h>
 #include <stdint.h>
 
-/* In a farm tiles are distributed while the picture is rendered; the picture ends when the gate is closed. */
+/* In a farm tiles are distributed while the picture is rendered; the picture ends at HANDOUT_CLOSED. */
 enum handout { HANDOUT_NONE, HANDOUT_OPEN, HANDOUT_CLOSED };
 
 enum cancel { CANCEL_NOTHING, CANCEL_ALL /* cancel the picture, end the script */, CANCEL_PASS /* of a window */ };

@@ -133,7 +133,7 @@ struct picture_report {
 struct pass_view {
     struct camera camera; /* its view a direction */
     double exposure;      /* stops: it decides which pixels are sampled again */
-    uint32_t divide;      /* one pixel stands for a square with this side; from 1 */
+    uint32_t divide;      /* one pixel represents a square with this side; from 1 */
     bool plain;           /* one sample a pixel, coarse soft light */
     bool own;             /* the camera, lens and motion of the script */
 };

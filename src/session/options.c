@@ -1,6 +1,6 @@
-/* The table of options controls parsing: the kind of a row says how its value is read, `offset` where it is stored. The
- * long spelling of an option may have one dash or two, and '_' is read as '-'; `--name value` and `--name=value` are
- * the same. Words that are no options are scripts; after "--" all words are. */
+/* The table of options controls parsing: the kind of a row determines how its value is read, `offset` where it is
+ * stored. The long spelling of an option may have one dash or two, and '_' is read as '-'; `--name value` and
+ * `--name=value` are the same. Words that are no options are scripts; after "--" all words are. */
 #include "session/options_internal.h"
 
 #include "base/error.h"

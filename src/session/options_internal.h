@@ -11,13 +11,13 @@ enum option_kind {
     OPTION_BYTES,   /* uint64_t in low..high: a size with its unit, in MiB without one */
     OPTION_CHOICE,  /* enum or bool: the position of the word in `value`, words separated by '|' */
     OPTION_TEXT,    /* const char *, not empty */
-    OPTION_ACTION,  /* options.action; `low` says which */
+    OPTION_ACTION,  /* options.action; `low` is the action */
     OPTION_SIZE,    /* --size */
     OPTION_CROP,    /* --crop */
     OPTION_PIXEL,   /* --pixel */
     OPTION_SEED,    /* --seed */
     OPTION_DEFINE,  /* -D */
-    OPTION_FOLDER,  /* --allow-read, --allow-write: `low` says which */
+    OPTION_FOLDER,  /* --allow-read, --allow-write: `low` selects one */
     OPTION_SHARD,   /* I/N: two uint32_t from the field on */
     OPTION_LAYERS,  /* --aov */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */

@@ -40,8 +40,9 @@ bool box_shape_contains(const struct box *box, struct vec3 p) {
            p.z < box->max.z;
 }
 
-/* The cube image: fraction of columns from the left and of rows from the top on each face, from the place q in the unit
- * cube, and how the place changes with them. The sides stand upright; front (+z), top and bottom meet at the edges. */
+/* The cube image: fraction of columns from the left and of rows from the top on each face, from the point q in the unit
+ * cube, and the derivatives of the point by them. Images on the sides are upright; front (+z), top and bottom join at
+ * the edges. */
 static void face_image(enum box_face face, struct vec3 q, struct vec3 size, struct surface *out) {
     struct vec3 x = {size.x, 0, 0}, y = {0, size.y, 0}, z = {0, 0, size.z};
     switch (face) {

@@ -40,7 +40,7 @@ static struct vec3 curve_point(const struct curve_piece *piece, double x) {
     return vec3_make(cubic_value(piece->c[0], x), cubic_value(piece->c[1], x), cubic_value(piece->c[2], x));
 }
 
-/* Along the curve; where it stands still, along the chord. */
+/* Along the curve; where its derivative is zero, along the chord. */
 static struct vec3 tangent(const struct curve_piece *piece, double x) {
     struct vec3 t = {cubic_slope(piece->c[0], x), cubic_slope(piece->c[1], x), cubic_slope(piece->c[2], x)};
     struct vec3 chord = vec3_sub(control(piece, 3), control(piece, 0));

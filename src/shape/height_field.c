@@ -198,7 +198,7 @@ static double phi(const struct cell_traversal *w, double s, uint32_t column, uin
     return (w->y + s * w->dy) - (plane.h0 + plane.a * (w->x + s * w->dx - column) + plane.b * (w->z + s * w->dz - row));
 }
 
-/* Of numbers; fmin and fmax are calls, which NaN needs. */
+/* For numbers; fmin and fmax are function calls because of NaN. */
 static inline double lesser(double a, double b) {
     return a < b ? a : b;
 }

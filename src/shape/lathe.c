@@ -344,7 +344,7 @@ static void cut_span(const double b[4], double lo, double hi, double out[4]) {
     bernstein_split(rest, 3, lo / hi, unused, out);
 }
 
-/* Whether G may turn round in the span; `none`: it may, but cannot reach zero. */
+/* Whether G may have an extremum in the span; `none`: it may, but cannot reach zero. */
 static bool may_turn(const struct hyperbola *hy, double sign, const struct span *span, bool *none) {
     double dy0, dy1, dr0, dr1, a0, a1, b0, b1;
     slope_range(span->q, &dy0, &dy1);

@@ -1,9 +1,10 @@
-/* A tree over the boxes of a shape's parts, in the order in which a line visits it: a node, what is below its first
- * half, what is below its second, and in each node where to go on when its box is missed. No stack is needed.
+/* A tree over the boxes of a shape's parts, stored in the order of a visit: a node, the nodes below its first half, the
+ * nodes below its second half. Each node has the index of the next node if a line misses its box, so the traversal
+ * needs no stack.
  *
- * The tree is split at the median of the boxes' middles along the longest axis of the box that holds them, which keeps
- * the depth at the logarithm of the number of parts. Parts of splines come in order along a curve; the median of a few
- * thousand is found by a heap sort per level, which is quick enough at build time and has no bad case. */
+ * Each node is split at the median of the boxes' middles along the longest axis of its box, so the depth is the
+ * logarithm of the number of parts. A heap sort per level finds the median: it is fast enough for a few thousand parts
+ * and has no bad case. */
 #include "shape/part_tree_internal.h"
 
 #include <assert.h>

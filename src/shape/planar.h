@@ -21,8 +21,8 @@ struct planar {
     const struct polygon *polygon;
 };
 
-/* Two unit vectors across the unit vector n, so that an image on the front stands upright: the first is level, the
- * second goes up. x and -z for n = y. */
+/* Two unit vectors perpendicular to the unit vector n, so that an image on the front is upright: the first is
+ * horizontal, the second points up. x and -z for n = y. */
 void planar_across(struct vec3 n, struct vec3 *level, struct vec3 *up);
 
 /* 0 or 1 crossings; of the plane as a half-space, one more at t = -INFINITY or INFINITY where the line is inside. A
@@ -42,7 +42,7 @@ struct planar planar_plane(struct vec3 normal, double distance);
 /* --- The square, the rectangle and the parallelogram --- */
 
 /* From a corner along two edges that are not parallel; the front is where `along` turns to `up` counter-clockwise, and
- * there an image stands upright. */
+ * an image on it is upright. */
 struct planar planar_parallelogram(struct vec3 corner, struct vec3 along, struct vec3 up);
 /* The square of docs/language.md 3.3: -0.5 .. 0.5 in x and z at y = 0, normal +y. */
 struct planar planar_square(void);

@@ -1,4 +1,4 @@
-/* The general quadric. Along a line its polynomial is of degree two, whatever the coefficients: the part of the line
+/* The general quadric. Along a line its polynomial has degree two for all coefficients: the part of the line
  * where it is negative, cut by the box that limits it, gives the crossings (span_internal.h; Cychosz and Waggenspack,
  * "Intersecting a ray with a quadric surface", Graphics Gems III, 1992). A described point is put back on the surface
  * by two Newton steps along the gradient. An ellipsoid among them is known by its matrix, which is positive definite;
@@ -94,8 +94,9 @@ static struct centred centred(const struct quadric *q) {
                             .definite = xx > 0 && cz > 0 && det > min};
 }
 
-/* Of a positive definite one whose solid is not empty the reach along g is the square root of g . M g, M the inverse
- * matrix times minus the value at the centre. M is scaled by the determinant, which the value is divided by. */
+/* For a positive definite quadric with a solid that is not empty, the extent along g is the square root of g . M g,
+ * where M is the inverse matrix times minus the value at the centre. M is multiplied by the determinant, and the value
+ * is divided by it. */
 struct ellipsoid_form {
     struct centred part;
     double value; /* minus that at the centre over the determinant; <= 0: empty */

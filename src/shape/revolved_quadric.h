@@ -32,7 +32,7 @@ bool revolved_quadric_is_closed(const struct revolved_quadric *revolved_quadric)
 bool revolved_quadric_is_convex(
     const struct revolved_quadric *revolved_quadric); /* up to rounding; false where it is not known */
 bool revolved_quadric_contains(const struct revolved_quadric *revolved_quadric, struct vec3 point);
-/* u runs round the axis, to the right seen from outside with the axis upwards, v along it. */
+/* u runs around the axis, to the right seen from outside with the axis upwards, v along it. */
 void revolved_quadric_describe(const struct revolved_quadric *revolved_quadric, const struct ray *ray,
                                const struct crossing *crossing, struct surface *out);
 /* The least and the greatest dot(g, p) over the shape; lo > hi when it is empty. */

@@ -21,7 +21,7 @@ const char *shape_kind_name(enum shape_kind kind) {
     return names[kind];
 }
 
-/* The least and the greatest dot(g, p) over a shape that knows it in closed form; false for the others. */
+/* The minimum and the maximum of dot(g, p) over a shape with a closed form for it; false for the others. */
 static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, double *hi) {
     switch (shape->kind) {
     case SHAPE_SPHERE: {

@@ -1,6 +1,6 @@
 /* The superellipsoid (Barr, "Superquadrics and Angle-Preserving Transformations", IEEE CG&A 1981), written as N(p) < 1
  * with N = |(|(x, z)|_p, y)|_q, p = 2/e, q = 2/n, where |(a, b)|_p = (a^p + b^p)^(1/p). N is homogeneous of degree one,
- * so it is well scaled whatever the exponents, and it grows with |x|, |y| and |z|.
+ * so it is well scaled for all exponents, and it grows with |x|, |y| and |z|.
  *
  * p, q >= 1: N is a norm, hence convex along the line. Newton's steps from outside then never pass the nearest root:
  * each tangent lies below N. They reach it, or come to where N no longer falls, and then there is none. Both ends are

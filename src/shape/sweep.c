@@ -296,8 +296,8 @@ static struct stretch cover(const struct view *view, struct polynomial d, struct
         largest = fmax(largest, fmax(4 * fabs(left[k]), right[k]));
     for (int k = 0; k <= total; k++) {
         left[k] = 4 * left[k] - right[k];
-        if (fabs(left[k]) <
-            0x1p-48 * largest) /* rounding: where the path stands still all is zero to the fourth order */
+        if (fabs(left[k]) < 0x1p-48 * largest) /* rounding: where the derivative of the path is zero, everything is zero
+                                                  to the fourth order */
             left[k] = 0;
     }
     int count = bernstein_roots(left, total, roots);

@@ -29,7 +29,7 @@ void sweep_extent(const struct sweep_path *sweep, struct vec3 g, double *lo, dou
 bool sweep_crossings(const struct sweep_path *sweep, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
 bool sweep_contains(const struct sweep_path *sweep, struct vec3 point);
-/* v runs along the path, one unit over all of it; u goes round it (from where a fixed axis points). */
+/* v runs along the path, one unit over all of it; u runs around it, from the direction of a fixed axis. */
 void sweep_describe(const struct sweep_path *sweep, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t sweep_scratch_need(const struct sweep_path *sweep);

@@ -15,7 +15,7 @@ struct torus {
 /* All crossings of the whole line in order: 0, 2 or 4. */
 int torus_crossings(const struct torus *torus, const struct ray *ray, struct crossing out[4]);
 bool torus_contains(const struct torus *torus, struct vec3 point);
-/* u runs round the axis, to the right seen from outside, v round the tube, upwards on the outer side; from and to the
+/* u runs around the axis, to the right seen from outside, v around the tube, upwards on the outer side; from and to the
  * inner equator. */
 void torus_describe(const struct torus *torus, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);

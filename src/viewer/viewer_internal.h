@@ -17,8 +17,8 @@ void viewer_halt(struct viewer *viewer, bool on);
 void viewer_render(struct viewer *viewer); /* renders renders again, from coarse to fine */
 
 /* viewer_edit.c */
-/* A click on the picture, at pixels of the window: a visible light mark there is selected, else the render process is
- * asked. operand: selects the operand of a combined solid whose surface is there. */
+/* A click on the picture, at pixels of the window: selects a visible light mark there, else sends a request to the
+ * render process. operand: selects the operand of a combined solid whose surface is there. */
 void viewer_click(struct viewer *viewer, double x, double y, bool operand);
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y);
 void viewer_take_picked(struct viewer *viewer, const struct picked *picked);

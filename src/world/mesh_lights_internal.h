@@ -17,7 +17,7 @@ bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct
                            struct error *error);
 /* Replaces `mesh` of a light over primitives of the world: each triangle has its own mean emission, as far as a few
  * filtered points show it, and at least a small part of that of its material. For textures, whose mean over a whole
- * mesh says little about one triangle. Errors: no memory, cancelled. */
+ * mesh is a poor estimate for one triangle. Errors: no memory, cancelled. */
 bool mesh_lights_estimate(const struct world *world, struct light *light, struct arena *arena, struct pool *pool,
                           struct error *error);
 

@@ -1,5 +1,5 @@
-/* The path from the root to a primitive. A primitive knows its node, but a node may have several parents and many
- * placements: the path is found by the same traversal as in flattening. */
+/* The path from the root to a primitive. A primitive has its node, but a node may have several parents and many
+ * transforms: the traversal of flattening finds the path. */
 #ifndef GRAY_WORLD_PATH_H
 #define GRAY_WORLD_PATH_H
 

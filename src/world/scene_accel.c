@@ -1,7 +1,7 @@
-/* How many voxels has the frame? Voxels save a ray the upper levels of the hierarchy and cost a step each. In a cloud
- * of similar primitives without other objects, with three voxels to each of them, steps win by a tenth (10,000 spheres)
- * to a fifth (200,000) of the whole picture. But one floor around the cloud makes voxels of the floor's size, which
- * contain everything at once: 25 times slower at 10,000, 190 times at 200,000. No uniform resolution suits both.
+/* The number of voxels of the outer grid. Voxels save a ray the upper levels of the hierarchy and cost a step each. In
+ * a cloud of similar primitives without other objects, with three voxels to each of them, steps win by a tenth (10,000
+ * spheres) to a fifth (200,000) of the whole picture. But one floor around the cloud makes voxels of the floor's size,
+ * which contain everything at once: 25 times slower at 10,000, 190 times at 200,000. No uniform resolution suits both.
  * ACCEL_AUTO asks the cost model of accel/accel_cost.c, which estimates from a sample of the boxes how many voxels a
  * line visits, the length of their lists, and the length for rays to the crowd: voxels with lists where they cost
  * clearly less, else one voxel with the hierarchy of box_tree.c in it, which also lets packets and shafts through.

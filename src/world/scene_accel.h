@@ -1,5 +1,5 @@
-/* The accelerator over the primitives of a world: one value of one kind. It knows boxes and numbers of primitives only;
- * the traversals that test primitives are in world_search.c and packet.c. */
+/* The accelerator over the primitives of a world: one value of one kind. It only contains boxes and numbers of
+ * primitives; the traversals that test primitives are in world_search.c and packet.c. */
 #ifndef GRAY_WORLD_SCENE_ACCEL_H
 #define GRAY_WORLD_SCENE_ACCEL_H
 
@@ -17,8 +17,8 @@ struct scene_accel {
     struct kd_tree kd_tree;
 };
 
-/* Of ACCEL_AUTO becomes what the cost model chooses, ACCEL_GRID or ACCEL_BVH. `boxes` in the world, by primitive; they
- * are not kept. Errors: no memory, cancelled; then the caller destroys partial results. */
+/* For ACCEL_AUTO the cost model chooses ACCEL_GRID or ACCEL_BVH. `boxes` in world space, by primitive; they are not
+ * kept. Errors: no memory, cancelled; the caller then destroys partial results. */
 bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const struct box *boxes, uint32_t count,
                        struct pool *pool, struct error *error);
 void scene_accel_destroy(struct scene_accel *accel);
