@@ -1,11 +1,10 @@
-/* Materials of glTF, turned into layers of OpenPBR as they are read. Source: glTF 2.0, section 3.9 and appendix B;
- * extensions KHR_materials_ior, _specular, _transmission, _volume, _clearcoat, _sheen, _emissive_strength, _unlit,
- * KHR_texture_transform.
+/* Materials of glTF, converted to layers of OpenPBR while they are read. Source: glTF 2.0, section 3.9 and appendix
+ * B; extensions KHR_materials_ior, _specular, _transmission, _volume, _clearcoat, _sheen, _emissive_strength,
+ * _unlit, KHR_texture_transform.
  *
- * Both describe a metal and a dielectric over a diffuse base, with facets of width roughness^2. The clear coat of glTF
- * has the index 1.5 and does not darken what is below it. Without a volume a transmitting surface is a thin wall. Sheen
- * is fuzz. Textures of extensions are not read. Unlit materials are classic ones. Pictures are used as they are stored,
- * as all ours. */
+ * Both describe a metal and a dielectric over a diffuse base, with facets of width roughness^2. The clear coat of
+ * glTF has the index 1.5 and does not darken the layers below it. A transmitting surface without a volume is a thin
+ * wall. Sheen is fuzz. Textures of extensions are not read. Unlit materials are classic ones. */
 #ifdef HAVE_JANSSON
 
 #include "formats/gltf_internal.h"
@@ -26,7 +25,7 @@ static double unit(double x) {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* The picture of images[index] into the map: decoded when it is inside the file, else its path. */
+/* Adds the picture images[index] to the map: decoded if it is inside the file, otherwise its path. */
 static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map) {
     char where[64];
     (void)snprintf(where, sizeof where, "images[%u]", index);
@@ -79,7 +78,7 @@ static enum image_wrap wrap_of(uint64_t code) {
     return code == 33071 ? IMAGE_CLAMP : code == 33648 ? IMAGE_MIRROR : IMAGE_REPEAT;
 }
 
-/* A texture reference such as baseColorTexture; nothing when it is absent. */
+/* Reads a texture reference such as baseColorTexture; does nothing if it is absent. */
 static bool read_map(struct gltf *g, const json_t *object, const char *key, struct model_texture *map,
                      const char *where) {
     const json_t *info = json_object_get(object, key);
@@ -123,7 +122,8 @@ static bool read_map(struct gltf *g, const json_t *object, const char *key, stru
             return false;
         if (number_or(transform, "rotation", 0) != 0)
             model_warn(g->model, "%s: %s: a turned texture is shown unturned", g->path, where);
-        /* glTF counts v from above, we from below: v' = 1 - (s (1 - v) + o) = s v + (1 - s - o). */
+        /* v starts at the upper edge in glTF, at the lower edge in gray: v' = 1 - (s (1 - v) + o) = s v + (1 - s -
+         * o). */
         map->scale[0] = scale[0], map->scale[1] = scale[1];
         map->offset[0] = offset[0], map->offset[1] = 1 - scale[1] - offset[1];
     }
@@ -139,7 +139,7 @@ static double share(const json_t *extension, const char *key, double otherwise) 
     return unit(number_or(extension, key, otherwise));
 }
 
-/* Beer's law: after the distance white light has the colour. */
+/* Beer's law: white light has this colour after the distance. */
 static bool read_volume(struct gltf *g, const json_t *volume, struct model_material *m, const char *where) {
     double colour[3] = {1, 1, 1}, distance = number_or(volume, "attenuationDistance", 0), absorption[3] = {0, 0, 0};
     if (!gltf_numbers(g, volume, "attenuationColor", colour, 3, where))
@@ -222,7 +222,7 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     if (blend)
         m->dissolve = unit(base[3]);
     m->map_kd.without_alpha = true;
-    if (blend || mask) { /* the alpha of the colour's picture; factors below 1 count before the cut */
+    if (blend || mask) { /* the alpha channel of the colour's picture; factors below 1 apply before the cut */
         double cutoff = number_or(source, "alphaCutoff", 0.5);
         m->map_d.by_alpha = true;
         m->map_d.cutoff = blend ? 0 : base[3] > 0 ? fmax(cutoff / base[3], 1e-9) : INFINITY;
@@ -248,7 +248,7 @@ bool gltf_read_materials(struct gltf *g) {
         if (!m || !read_material(g, json_array_get(materials, i), m, where))
             return false;
     }
-    /* The last one is that of primitives without any: white and rough. */
+    /* The last material is that of primitives without a material: white and rough. */
     struct model_material *m = model_add_material(g->model, g->error);
     if (!m)
         return false;
@@ -258,6 +258,6 @@ bool gltf_read_materials(struct gltf *g) {
 }
 
 #else
-/* Without jansson there is nothing in here. */
+/* This file is empty without jansson. */
 typedef int gltf_material_is_default;
 #endif

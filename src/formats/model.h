@@ -1,7 +1,7 @@
-/* What a mesh file holds: meshes with a material slot per face, materials, and a tree of nodes that place the meshes.
- * The reader is chosen by content, then by the extension: glTF and GLB, PLY, STL, else OBJ; each of them may be
- * compressed with gzip. A model is an asset like the meshes it owns: immutable once read, without anything of a script
- * in it. */
+/* The contents of a mesh file: meshes with a material slot per face, materials, and a tree of nodes that position
+ * the meshes. The contents of the file, then its extension select the reader: glTF and GLB, PLY, STL, otherwise OBJ;
+ * each of them may be compressed with gzip. A model is an asset like the meshes that it owns: immutable after
+ * reading, and independent of scripts. */
 #ifndef GRAY_FORMATS_MODEL_H
 #define GRAY_FORMATS_MODEL_H
 
@@ -18,45 +18,45 @@
 
 /* A picture that a material names. */
 struct model_texture {
-    const char *name;           /* as the file has it; NULL: none */
-    const char *path;           /* where it was found; NULL: embedded or missing */
-    struct image *image;        /* embedded ones, owned by the model */
-    double scale[2], offset[2]; /* place on the picture = scale * uv + offset, v counted from below */
+    const char *name;           /* as written in the file; NULL: none */
+    const char *path;           /* the path of the file found; NULL: embedded or missing */
+    struct image *image;        /* the bytes of an embedded picture, owned by the model */
+    double scale[2], offset[2]; /* position on the picture = scale * uv + offset; v starts at the lower edge */
     double strength;            /* of bumps and normals */
-    double cutoff;              /* of opacities: > 0: all or nothing */
-    bool by_alpha;              /* alpha says it, not the colour */
-    bool without_alpha;         /* what alpha says is nothing */
+    double cutoff;              /* for opacities: values above 0 are all or nothing */
+    bool by_alpha;              /* the alpha channel contains it, not the colour */
+    bool without_alpha;         /* the alpha channel is ignored */
     enum image_wrap wrap_u, wrap_v;
     enum image_filter filter;
 };
 
-/* As Wavefront's MTL has it, or, where `layered` is set, with the layers of OpenPBR: those of glTF. */
+/* As in Wavefront's MTL; materials of glTF set `layered` and have the layers of OpenPBR. */
 struct model_material {
     const char *name;
-    struct vec3 ka, kd, ks, ke, filter; /* filter: Tf, the colour of what passes through */
+    struct vec3 ka, kd, ks, ke, filter; /* filter: Tf, the colour of transmitted light */
     double shininess, dissolve, ior, reflect;
-    /* Of layers kd is the colour of the base, ks that of the specular layer, dissolve the opacity; map_metal multiplies
-     * roughness by its green and metalness by its blue. */
+    /* Of layered materials, kd is the colour of the base, ks that of the specular layer, dissolve the opacity; the
+     * green channel of map_metal multiplies roughness, its blue channel metalness. */
     bool layered;
     struct openpbr layers;
     double roughness, transmission;
     struct vec3 absorption;
     bool has_shininess, has_ior, two_sided, unlit;
-    bool by_vertex; /* kd is multiplied by the colours of the vertices */
+    bool by_vertex; /* the colours of the vertices multiply kd */
     int illum;
     struct model_texture map_kd, map_ks, map_ke, map_d, map_bump, map_normal, map_metal;
 };
 
-/* Tables while the file is read; a finished mesh afterwards. */
+/* Tables while the file is read; afterwards a finished mesh. */
 struct model_mesh {
     const char *name;
     struct list vertices, normals, uvs, colours;      /* double[3], double[3], double[2], float[3] by vertex */
-    struct list starts;                               /* uint32_t: faces, and once finished the end */
+    struct list starts;                               /* uint32_t: faces, and after finishing the end */
     struct list vertex_index, normal_index, uv_index; /* uint32_t per corner; MODEL_NONE: this corner has none */
     struct list face_slot;                            /* uint32_t per face, or empty */
     bool normals_by_vertex, uvs_by_vertex;            /* their index lists are vertex_index */
     struct list slots;                                /* uint32_t: the material of a slot, or MODEL_NONE */
-    struct list slot_names;                           /* const char *, as many, or none */
+    struct list slot_names;                           /* const char *, the same number, or none */
     struct mesh *mesh;
 };
 
@@ -67,19 +67,19 @@ struct model_node {
     struct transform parent_from_node;
 };
 
-/* The zero value: as the file has it. */
+/* Zero values: as in the file. */
 struct model_options {
-    bool smooth;                           /* normals of our own instead of the file's */
-    double smooth_angle;                   /* degrees: faces that meet at less are one smooth surface; 0: flat */
-    bool weld, flip;                       /* one vertex for each place; faces reversed */
-    const struct path_policy *path_policy; /* where files may be read; NULL: everywhere */
-    bool single_file;                      /* no other file is opened (tests of readers with strangers' bytes) */
-    size_t max;                            /* vertices, and corners, of a mesh; 0: as many as an index can name */
+    bool smooth;         /* computed normals instead of the file's */
+    double smooth_angle; /* degrees: faces that meet at a smaller angle form one smooth surface; 0: flat */
+    bool weld, flip;     /* one vertex for each position; faces reversed */
+    const struct path_policy *path_policy; /* the readable folders; NULL: all */
+    bool single_file;                      /* no other file is opened (tests of readers with unknown bytes) */
+    size_t max;                            /* vertices, and corners, of a mesh; 0: the maximum of an index */
 };
 
 enum { MODEL_WARNINGS = 16 };
 
-/* Owner: the caller, or the store it was given to; model_destroy. Zero value: nothing. */
+/* Owner: the caller, or the store that receives it; model_destroy. Zero value: empty. */
 struct model {
     struct arena arena; /* names */
     const char *path;
@@ -89,12 +89,12 @@ struct model {
     int warning_count;
 };
 
-/* How many vertices, and how many corners, a mesh may have: some numbers of 32 bits are kept for other meanings. */
+/* The maximum number of vertices, and of corners, of a mesh: some numbers of 32 bits have other meanings. */
 static inline size_t model_max(const struct model *model) {
     return model->options.max ? model->options.max : MODEL_NONE - 8;
 }
 
-/* Reads the file; meshes are made with the options. Errors are one line: FILE:LINE: what, or FILE: byte N: what. */
+/* Reads the file and makes meshes with the options. Errors are one line: FILE:LINE: what, or FILE: byte N: what. */
 bool model_read(struct model *model, const char *path, const struct model_options *options, struct error *error);
 /* The same from memory; `path` is for messages, for the extension, and for the folder of other files. */
 bool model_parse(struct model *model, const char *path, const uint8_t *data, size_t size,
@@ -113,28 +113,29 @@ static inline struct model_node *model_nodes(const struct model *model) {
 
 /* --- for the readers --- */
 
-/* All answer NULL or false without memory, having told so. */
+/* All of these return NULL or false after reporting lack of memory. */
 struct model_mesh *model_add_mesh(struct model *model, struct error *error);
 struct model_material *model_add_material(struct model *model, struct error *error); /* plain gray, nothing else */
 struct model_node *model_add_node(struct model *model, struct error *error);         /* at the top, no mesh */
-/* The last warnings are forgotten, not the first. */
+/* Warnings beyond the limit are dropped; the first ones are kept. */
 void model_warn(struct model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* A file that the model names: beside it, by whatever spelling of the path; the folder alone as a last resort. */
+/* A file that the model names: in its folder, by any spelling of the path; as a last resort, by the bare name. */
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
 
-/* Meshes from the tables, and the one node of files that have no nodes. */
+/* Makes meshes from the tables, and one node for files without nodes. */
 bool model_finish(struct model *model, struct error *error);
 
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
-/* The text of --version about its JSON parser: "jansson 2.14" or "none". */
+/* The JSON parser for --version: "jansson 2.14" or "none". */
 const char *gltf_library(void);
 bool obj_load(struct model *model, const char *text, size_t size, struct error *error);
-/* A library of materials; `line` of the model names it. */
+/* Reads a library of materials; `line` of the model names it. */
 bool mtl_load(struct model *model, const char *path, const char *text, size_t size, struct error *error);
 
-/* gzip (RFC 1952) in memory; what comes out is from mem.h. Refused when it grows more than 64 times beyond 16 MB. */
+/* Unpacks gzip (RFC 1952) in memory; the result is from mem.h. It is refused if it grows more than 64 times beyond
+ * 16 MB. */
 bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t **out, size_t *out_size, struct error *error);
 
 #endif

@@ -1,4 +1,4 @@
-/* A file's materials speak of more than ours can say. What becomes of them:
+/* Converts the materials of a file, which have more parameters than those of gray:
  *   Kd, Ks, Ns, map_Kd (multiplied by Kd, with its -s, -o, -clamp) as they are; illum 0 and 1 switch Ks off, 3 to 9 let
  * it mirror. d or Tr below 1: refract = 1 - d, filtered by Tf, with the index Ni where illum (6, 7, or none) asks for
  * refraction; illum 7 is a dielectric by Fresnel's equations. Ka is Kd here. Ke is emission. map_Ks and map_Ke are
@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A highlight for what is clear and has none of its own. */
+/* The highlight of transparent materials that have none. */
 enum { CLEAR_SHININESS = 1000 };
 
 static void destroy_model(void *object) {
@@ -54,7 +54,7 @@ const struct model *model_asset(struct assets *assets, const char *path, const c
 
 /* --- materials --- */
 
-/* The image of a map; *there is false where there is none. */
+/* The image of a map; *there is false if there is none. */
 static bool find_map(struct scene *scene, const struct model_texture *map, struct texture_image *out, bool *there,
                      struct error *error) {
     struct image *image = map->image;
@@ -81,7 +81,7 @@ static struct vec3 or_white(struct vec3 colour) {
     return vec3_max_abs(colour) == 0 ? vec3_all(1) : colour;
 }
 
-/* A map over an input of *top, which becomes what is above; nothing where there is no map. */
+/* A map over an input of *top, which becomes the new top; does nothing without a map. */
 static bool cover(struct scene *scene, const struct model_texture *map, enum material_input input, struct vec3 tint,
                   const struct material **top, struct error *error) {
     struct texture_image image;
@@ -130,7 +130,7 @@ static bool add_bump_map(struct scene *scene, const struct model_texture *map, e
     return true;
 }
 
-/* The maps of everything but kd, one above the other. */
+/* The maps of everything except kd, one over the other. */
 static const struct material *with_maps(struct scene *scene, const struct model_material *from,
                                         const struct material *top, struct error *error) {
     bool shiny = from->illum != 0 && from->illum != 1;
@@ -249,10 +249,11 @@ static const struct material *make_material(struct scene *scene, const struct mo
         m->phong.refract = 1 - from->dissolve;
         m->phong.has_ior = true;
     }
-    /* The picture is multiplied by what kd is in the end. */
+    /* The picture is multiplied by the final kd. */
     struct vec3 tint = m->phong.kd;
     if (vec3_max_abs(tint) == 0 && from->map_kd.name && from->illum >= 0)
-        tint = vec3_all(from->dissolve); /* exporters that write a black Kd beside a picture mean the picture */
+        tint =
+            vec3_all(from->dissolve); /* exporters that write a black kd with a picture intend the picture's colours */
     if (from->by_vertex && !by_vertex(scene, m, error))
         return NULL;
     const struct material *top = m;
@@ -298,7 +299,7 @@ struct placer {
     const struct model *model;
     const struct model_placing *placing;
     struct error *error;
-    const struct material **materials; /* of the model; NULL until first used */
+    const struct material **materials; /* of the model; NULL until its first use */
 };
 
 static const struct material *material_of(struct placer *p, uint32_t index) {
@@ -328,7 +329,7 @@ static bool set_shape(struct placer *p, struct node *node, uint32_t index) {
     for (size_t i = 0; i < mesh->slots.count; i++) {
         bool named = mesh->slot_names.count > i;
         names[i] = named ? ((const char *const *)mesh->slot_names.items)[i] : "";
-        /* Below a material of the script the file's are not even made: their pictures may be missing. */
+        /* Under a material of the script, the file's materials are not made: their pictures may be missing. */
         list[i] = part_material(p->placing, names[i]);
         if (!list[i])
             list[i] = p->placing->material;

@@ -26,9 +26,9 @@
 
 /* --- names --- */
 
-/* Numbers for names: the first name is 0, the next new one 1 ... Names are not copied. A hash table with open
- * addressing; the position of a name in it has no effect. Owner: the caller, names_destroy. Zero value but for `max`:
- * none. */
+/* Numbers for names: the first name is 0, the next new one 1 and so on. Names are not copied. A hash table with open
+ * addressing; the position of a name in it has no effect. Owner: the caller, names_destroy. Zero value except for
+ * `max`: none. */
 struct name {
     const char *text;
     size_t length;
@@ -69,7 +69,7 @@ static bool grow(struct names *names) {
     return true;
 }
 
-/* False: no memory. *number is the one of the equal name that was there, or a new one. */
+/* False: no memory. *number is that of an equal name in the table, or a new one. */
 static bool names_add(struct names *names, const char *text, size_t length, uint32_t *number) {
     if (names->entries.count * 2 >= names->capacity && !grow(names))
         return false;
@@ -85,7 +85,7 @@ static bool names_add(struct names *names, const char *text, size_t length, uint
     return true;
 }
 
-/* UINT32_MAX when it is not there. */
+/* UINT32_MAX if the name is not in the table. */
 static uint32_t names_find(const struct names *names, const char *text, size_t length) {
     return names->capacity ? names->table[slot_of(names, text, length)] : EMPTY;
 }
@@ -106,7 +106,7 @@ static void names_destroy(struct names *names) {
 enum { ELEMENT_KINDS(LIST_MEMBER) };
 enum { KINDS = LIST_COUNT(ELEMENT_KINDS) };
 
-/* The material slots of the faces by some kind of name. The list is absent while all faces are of one slot. */
+/* The material slots of the faces for one kind of name. The list is absent while all faces have the same slot. */
 struct slotting {
     struct names names;
     struct list faces; /* uint32_t per face */
@@ -151,7 +151,7 @@ static bool fail(const struct reader *reader, const char *what) {
     return fail_at(reader, reader->line, what);
 }
 
-/* The same with the word at `at` in front: 'abc' is not a number. */
+/* The same with the quoted word at `at` in front: 'abc' is not a number. */
 static bool fail_word(const struct reader *reader, const char *at, const char *what) {
     char word[40];
     size_t length = 0;
@@ -164,7 +164,7 @@ static bool fail_word(const struct reader *reader, const char *at, const char *w
     return error_set(reader->error, ERROR_SCENE, "%s:%zu: '%s' %s", reader->path, reader->line, word, what);
 }
 
-/* Over one line end: LF, CR LF or CR. */
+/* Skips one line end: LF, CR LF or CR. */
 static void skip_line_end(struct reader *reader) {
     if (*reader->at == '\r' && reader->at + 1 < reader->end && reader->at[1] == '\n')
         reader->at++;
@@ -172,7 +172,7 @@ static void skip_line_end(struct reader *reader) {
     reader->line++;
 }
 
-/* Is this a backslash that continues the line? At the end of the file it continues with nothing. */
+/* Whether this is a backslash that continues the line. At the end of the file the continuation is empty. */
 static bool is_continuation(const struct reader *reader, const char *at) {
     return *at == '\\' && (at + 1 == reader->end || is_line_end(at[1]));
 }
@@ -183,7 +183,7 @@ static void skip_continuation(struct reader *reader) {
         skip_line_end(reader);
 }
 
-/* To the next word of this line; false when there is none. */
+/* Moves to the next word of this line; false if there is none. */
 static bool next_word(struct reader *reader) {
     while (reader->at < reader->end) {
         if (is_blank(*reader->at)) {
@@ -202,7 +202,7 @@ static bool word_ends(const struct reader *reader, const char *at) {
     return at >= reader->end || is_blank(*at) || is_line_end(*at) || *at == '#' || is_continuation(reader, at);
 }
 
-/* Behind the end of the line. Comments are not continued, other lines are. */
+/* Moves past the end of the line. Comments are not continued, other lines are. */
 static void skip_line(struct reader *reader) {
     bool comment = false;
     while (reader->at < reader->end && !is_line_end(*reader->at)) {
@@ -224,8 +224,8 @@ static bool read_number(struct reader *reader, double *out) {
     return true;
 }
 
-/* The numbers of a v, vt or vn: at least `min`, the first `kept` of them into a new element (0 where missing); what
- * follows (weights, vertex colours, a third texture coordinate) must be numbers too. */
+/* Reads the numbers of a v, vt or vn, at least `min`. The first `kept` of them become a new element (0 where
+ * missing); the others (weights, vertex colours, a third texture coordinate) must be numbers too. */
 static bool read_element(struct reader *reader, int kind, int min, int kept) {
     double *element = room(reader, &reader->elements[kind], 1, (size_t)kept * sizeof *element);
     if (!element)
@@ -248,7 +248,7 @@ static bool read_element(struct reader *reader, int kind, int min, int kept) {
     return true;
 }
 
-/* One index of a corner, 0-based into *out. */
+/* Reads one index of a corner, 0-based, into *out. */
 static bool read_index(struct reader *reader, int kind, const char *word, uint32_t *out) {
     const char *p = reader->at, *end = reader->end;
     assert(p < end); /* read_corner() has looked */
@@ -283,7 +283,7 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
     return true;
 }
 
-/* 7, 7/1, 7//3, 7/1/3; slashes with nothing behind them are met in real files and mean nothing. */
+/* 7, 7/1, 7//3, 7/1/3. Some files have slashes with nothing after them, which mean nothing. */
 static bool read_corner(struct reader *reader, uint32_t corner[KINDS]) {
     const char *word = reader->at;
     corner[UV] = corner[NORMAL] = MISSING;
@@ -300,7 +300,7 @@ static bool read_corner(struct reader *reader, uint32_t corner[KINDS]) {
     return true;
 }
 
-/* One more corner in the index lists; those of uvs and normals come into being with the first index that they hold. */
+/* Adds one corner to the index lists. The lists of uvs and normals are created with their first index. */
 static bool add_corner(struct reader *reader, const uint32_t corner[KINDS]) {
     size_t before = reader->indices[VERTEX].count;
     if (before >= model_max(reader->model))
@@ -346,7 +346,7 @@ static bool add_slot(struct reader *reader, struct slotting *slotting, size_t fa
     return true;
 }
 
-/* The rest of the line, without blanks at its ends: names may hold some. */
+/* The rest of the line, without blanks at its ends: names may contain blanks. */
 static size_t read_name(struct reader *reader, const char **name) {
     while (reader->at < reader->end && is_blank(*reader->at))
         reader->at++;
@@ -370,7 +370,7 @@ static bool read_slot(struct reader *reader, struct slotting *slotting) {
            error_no_memory(reader->error, reader->path);
 }
 
-/* Reads one library of materials; false only when it is there and broken. *found says whether it exists. */
+/* Reads one library of materials; false only if it exists and is invalid. *found: whether it exists. */
 static bool read_library(struct reader *reader, const char *name, size_t length, bool *found) {
     const char *path;
     struct file_bytes bytes;
@@ -431,7 +431,7 @@ static bool read_face(struct reader *reader) {
            add_slot(reader, &reader->groups, reader->starts.count++);
 }
 
-/* The rest of a line whose keyword means nothing to us. */
+/* Skips the rest of a line with an unknown keyword. */
 static bool skip_unknown(struct reader *reader, const char *word) {
     for (; !word_ends(reader, reader->at); reader->at++) {
         unsigned char c = (unsigned char)*reader->at;
@@ -442,7 +442,7 @@ static bool skip_unknown(struct reader *reader, const char *word) {
     return true;
 }
 
-/* Moves behind the word when it is this one. */
+/* Moves past the word if it is this one. */
 static bool is_keyword(struct reader *reader, const char *word, const char *keyword) {
     size_t length = strlen(keyword);
     if ((size_t)(reader->end - word) < length || memcmp(word, keyword, length) != 0 ||
@@ -500,7 +500,7 @@ static bool check_indices(const struct reader *reader) {
     return true;
 }
 
-/* The slots of the faces, and the materials in them: the last ones of their names in the libraries. */
+/* The slots of the faces and their materials: the last ones of their names in the libraries. */
 static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
     bool by_material = reader->materials.names.entries.count > 0;
     struct slotting *used = by_material ? &reader->materials : &reader->groups;
@@ -534,7 +534,7 @@ static bool make_slots(struct reader *reader, struct model_mesh *mesh) {
     list_destroy(&last);
     if (!ok)
         return error_no_memory(reader->error, reader->path);
-    /* The slot behind the named ones is that of faces without a name. */
+    /* The slot after the named ones is that of faces without a name. */
     if (used->faces.count == 0) {
         uint32_t only = used->first == UNNAMED ? count : used->first;
         ((uint32_t *)mesh->slots.items)[0] = ((uint32_t *)mesh->slots.items)[only];

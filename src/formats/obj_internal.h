@@ -1,7 +1,7 @@
-/* Wavefront OBJ in: v, vt, vn, f in its four spellings, negative indices, n-gons, continued lines, CRLF, blanks,
+/* Reads Wavefront OBJ: v, vt, vn, f in its four spellings, negative indices, n-gons, continued lines, CRLF, blanks,
  * comments; groups, materials and everything else are skipped (formats/model.h reads them too). Facts: Wavefront
- * "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual. Speed matters: a million triangles are read in
- * a fraction of a second; numbers are converted exactly (correctly rounded). Errors read `FILE:LINE: what`. */
+ * "Object Files (.obj)", Appendix B1 of the Advanced Visualizer manual. Speed matters: a million triangles are read
+ * in a fraction of a second. Numbers are correctly rounded. Errors read `FILE:LINE: what`. */
 #ifndef GRAY_FORMATS_OBJ_INTERNAL_H
 #define GRAY_FORMATS_OBJ_INTERNAL_H
 

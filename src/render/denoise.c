@@ -1,15 +1,16 @@
-/* Stages over the whole picture, each one pool_run over blocks or rows, each writing planes that the next one reads:
- * colours without outliers, their variance, features without noise, then regressions.
+/* Stages over the whole picture. Each stage is one pool_run over blocks or rows and writes planes that the next
+ * stage reads: colours without outliers, their variance, features without noise, then regressions.
  *
- * The regression of a centre p fits, in a window round it, the colour of one half of the samples to a linear function
- * of the features; pixels count by their likeness to p in the other half (cross-filtering: weights and colours have
- * independent errors, so that noise does not choose the pixels that agree with it). What a regression says about each
- * pixel of its window is taken into account there (collaborative filtering), so centres on every third row and column
- * are enough. This is done for two bandwidths of the likeness; each place takes the one with the smaller error.
+ * In a window around a centre p, the regression fits the colour of one half of the samples to a linear function of
+ * the features. The weight of each pixel is its similarity to p in the other half (cross-filtering): weights and
+ * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
+ * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
+ * on every third row and column are enough. This is done for two bandwidths of the similarity; at each pixel the one
+ * with the smaller error is used.
  *
- * A window leaves noise that is wider than itself. So the same is done with a picture of half the width and height,
- * and what that one says about means of four pixels corrects them (M. Delbracio et al., "Boosting Monte Carlo Rendering
- * by Ray Histogram Fusion", ACM Transactions on Graphics 2014, section 5).
+ * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
+ * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
+ * Rendering by Ray Histogram Fusion", ACM Transactions on Graphics 2014, section 5).
  *
  * Numbers are floats and sums have a fixed order: the result does not depend on blocks, threads or instruction sets. */
 #include "render/denoise.h"
@@ -29,26 +30,26 @@ enum {
     CHOICE = DENOISE_CHOICE,
     INNER = BLOCK + 2 * CHOICE,
     LEVELS = 2,
-    STRIP = 128,         /* of a row, for sums of columns */
+    STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
 };
-/* Two pixels of the coarser level and what they depend on; levels begin at even pixels of finer ones. */
+/* Two pixels of the coarser level and the pixels that they depend on; levels begin at even pixels of finer ones. */
 _Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 1 + (int)VARIANCE_WINDOW + 1 <= (int)DENOISE_RIM,
                "the rim is less than what a pixel depends on");
 _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
                "the same of features");
 
 /* Found by measurement (bench/denoise.sh). */
-static const float colour_noise = 1e-3F; /* of the square of colours, in units of which errors are compared */
+static const float colour_noise = 1e-3F; /* of the squared colours: the unit in which errors are compared */
 static const struct denoise_bandwidth bandwidths[DENOISE_BANDWIDTHS] = {{DENOISE_WINDOW, 1}, {5, 4}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
-static const float choice_slope = 12;       /* how firmly the smaller error is chosen */
+static const float choice_slope = 12;       /* how strongly the bandwidth with the smaller error is preferred */
 
 /* A picture as planes of floats. */
 struct level {
     int width, height;
-    uint32_t x0, y0;     /* place in the whole picture, in its own pixels */
-    float *colour[2][3]; /* light of the halves without glow and outliers */
+    uint32_t x0, y0;     /* position in the whole picture, in pixels of this level */
+    float *colour[2][3]; /* the halves without glow and outliers */
     float *variance[3];  /* of a half */
     float *feature[DENOISE_FEATURES];
     float *estimate[2][3]; /* of the halves */
@@ -58,11 +59,11 @@ struct denoiser {
     const struct denoise_source *source;
     struct pool *pool;
     float (*out)[3];
-    struct level levels[LEVELS]; /* each half as wide and high as the one before */
+    struct level levels[LEVELS]; /* each level has half of the width and height of the one before */
     struct level *level;         /* the one at work */
     float *loaded[2][3];         /* the colours with outliers */
     float *sampled[3];           /* the variance of a half, from its samples */
-    float *mean[3], *noise[3];   /* of a group of features: what was measured, and its variance */
+    float *mean[3], *noise[3];   /* of a group of features: measured values and their variance */
     int first_feature, group;    /* which, and how many */
     struct denoise_pixel *rows;  /* one of each worker */
     struct denoise_scratch *scratch;
@@ -82,14 +83,14 @@ static size_t nearest_at(const struct level *d, int x, int y) {
     return pixel_at(d, clamp_int(x, 0, d->width - 1), clamp_int(y, 0, d->height - 1));
 }
 
-/* A square of a plane; outside of the picture its nearest pixel. */
+/* Copies a square of a plane; outside of the picture it repeats the nearest pixel. */
 static void copy_plane(const struct level *d, const float *plane, int x0, int y0, int side, float *local) {
     for (int y = 0; y < side; y++)
         for (int x = 0; x < side; x++)
             local[y * side + x] = plane[nearest_at(d, x0 + x, y0 + y)];
 }
 
-/* Whatever comes in, squares of sums stay finite. */
+/* Limits all numbers so that sums of their squares stay finite. */
 static float bounded(float x) {
     const float limit = 1e15F;
     return fabsf(x) <= limit ? x : x > limit ? limit : x < -limit ? -limit : 0;
@@ -120,8 +121,8 @@ static float brightness(float *const colour[3], size_t at) {
     return fabsf(colour[0][at]) + fabsf(colour[1][at]) + fabsf(colour[2][at]);
 }
 
-/* The brightest that speaks for the brightness of a pixel of one half: the other half there, its neighbours in the
- * other half, and all but the brightest of its neighbours in its own. */
+/* The brightest value that supports the brightness of a pixel of one half: the same pixel of the other half, its
+ * neighbours in the other half, and all neighbours in its own half except the brightest one. */
 static float brightest_support(const struct denoiser *d, int half, int x, int y) {
     size_t at = pixel_at(d->level, x, y);
     float first = 0, second = 0, others = brightness(d->loaded[1 - half], at);
@@ -139,8 +140,8 @@ static float brightest_support(const struct denoiser *d, int half, int x, int y)
     return second > others ? second : others;
 }
 
-/* What is more than twice as bright as all that speaks for it is scaled down to that: single paths of little chance
- * would become blotches. */
+/* Scales pixels down that are more than twice as bright as their support: single improbable paths would become
+ * blotches. */
 static void remove_outliers(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     (void)worker;
@@ -157,8 +158,8 @@ static void remove_outliers(void *context, uint32_t y, int worker) {
     }
 }
 
-/* The sums over nine rows about row y, from column x0 on: half the squared difference of the halves, the variance of
- * samples, and the latter smoothed over five rows. */
+/* For nine rows around row y, from column x0 on, the sums of: half the squared difference of the halves, the
+ * variance of samples, and the latter smoothed over five rows. */
 static void sum_columns(const struct denoiser *d, int c, int x0, int y, float sums[3][STRIP + 2 * VARIANCE_WINDOW]) {
     static const float kernel[2 * VARIANCE_WINDOW + 1] = {0, 0, 0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F, 0, 0};
     memset(sums, 0, 3 * sizeof *sums);
@@ -173,9 +174,9 @@ static void sum_columns(const struct denoiser *d, int c, int x0, int y, float su
     }
 }
 
-/* What the samples say about the variance has little noise, but takes them as independent: points of low discrepancy
- * have less error. So it is scaled by the mean of half the squared differences of the halves, which have no such bias,
- * and smoothed. */
+/* The variance estimated from samples has little noise, but it treats the samples as independent, while points of
+ * low discrepancy have less error. So it is scaled by the mean of half the squared differences of the halves, which
+ * are unbiased, and smoothed. */
 static void estimate_variance(void *context, uint32_t y, int worker) {
     const float largest = 1e30F; /* its square may overflow, its sums do not */
     struct denoiser *d = context;
@@ -235,12 +236,12 @@ static void filter_features(void *context, uint32_t item, int worker) {
 
 /* --- regressions --- */
 
-/* Where a pixel of the inner part is in the planes of the scratch. */
+/* The position of a pixel of the inner part in the planes of the scratch. */
 static int local_of(int x, int y) {
     return (y + MARGIN - CHOICE) * LOCAL + x + MARGIN - CHOICE;
 }
 
-/* Of one half: the mean of what the regressions say. A pixel that is like no centre keeps its colour. */
+/* For one half: the mean of the predictions. A pixel without predictions keeps its colour. */
 static void keep_estimates(struct denoise_scratch *s, int bandwidth, int half) {
     const float own = 0.01F;
     for (int c = 0; c < 3; c++) {
@@ -254,7 +255,7 @@ static void keep_estimates(struct denoise_scratch *s, int bandwidth, int half) {
     }
 }
 
-/* One half of the samples in a block; pixels are compared in the other one. */
+/* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
 static void regress_half(const struct denoiser *d, struct denoise_scratch *s, int half, struct denoise_bounds bounds) {
     d->kernels->compare(s, 1 - half);
     for (int b = 0; b < DENOISE_BANDWIDTHS; b++) {
@@ -265,9 +266,9 @@ static void regress_half(const struct denoiser *d, struct denoise_scratch *s, in
 
 /* --- choice of the bandwidth --- */
 
-/* What a half says beyond the other one has the error of both; so the difference of two such squares is that of the
- * errors of two estimates (Bitterli et al. 2016, section 5.4). Here of the narrow and the wide bandwidth, in units of
- * the variance. */
+/* The difference between an estimate of one half and the values of the other half contains the errors of both. So
+ * the difference of two such squares is the difference of the squared errors of two estimates (Bitterli et al. 2016,
+ * section 5.4). Here the estimates are those with the narrow and the wide bandwidth, in units of the variance. */
 static void compare_bandwidths(const struct denoise_scratch *s, float errors[INNER][INNER]) {
     for (int y = 0; y < INNER; y++) {
         for (int x = 0; x < INNER; x++) {
@@ -286,7 +287,7 @@ static void compare_bandwidths(const struct denoise_scratch *s, float errors[INN
     }
 }
 
-/* The share of the narrow bandwidth at the pixels of a row of the block. */
+/* The weight of the narrow bandwidth at the pixels of a row of the block. */
 static void narrow_shares(float (*errors)[INNER], int y, float shares[BLOCK]) {
     float columns[INNER] = {0};
     for (int j = 0; j <= 2 * CHOICE; j++)
@@ -340,7 +341,7 @@ static void regress_block(void *context, uint32_t item, int worker) {
 
 /* --- scales --- */
 
-/* Where the pixels of a coarse column or row begin in the finer level, and how many there are. */
+/* The first pixel of the finer level in a coarse column or row, and the number of its pixels. */
 static int finer_from(int coarse, uint32_t coarse0, uint32_t finer0, int limit, int *count) {
     int from = (int)(2 * ((int64_t)coarse0 + coarse) - (int64_t)finer0), to = from + 2;
     from = from > 0 ? from : 0;
@@ -357,7 +358,7 @@ static float mean_of(const struct level *level, const float *plane, int x, int y
     return sum / (float)(across * down);
 }
 
-/* A row of the level from the one before. */
+/* Computes a row of the level from the level before. */
 static void shrink(void *context, uint32_t y, int worker) {
     const struct denoiser *d = context;
     const struct level *level = d->level, *finer = level - 1;
@@ -376,8 +377,7 @@ static void shrink(void *context, uint32_t y, int worker) {
     }
 }
 
-/* What the level says beyond the one before, in the place of what it says; its colours become the means of what that
- * one says. */
+/* Subtracts the finer level: the estimates become differences to its means, and the colours become these means. */
 static void subtract_finer(void *context, uint32_t y, int worker) {
     const struct denoiser *d = context;
     const struct level *level = d->level, *finer = level - 1;
@@ -395,8 +395,8 @@ static void subtract_finer(void *context, uint32_t y, int worker) {
     }
 }
 
-/* What the level says beyond the finer one at one of its pixels, as far as that is like the pixel of the finer level:
- * what is known of the other side of an edge does not count. */
+/* Adds the correction of one pixel of the level, weighted by its similarity to the pixel of the finer level:
+ * corrections from the other side of an edge do not count. */
 static void add_correction(const struct level *level, int half, size_t from, const float own[3], float factor,
                            float sum[3]) {
     float above = 0, below = FLT_MIN;
@@ -410,7 +410,7 @@ static void add_correction(const struct level *level, int half, size_t from, con
         sum[c] += factor * like * level->estimate[half][c][from];
 }
 
-/* Adds to a row of the finer level what the level says beyond it, interpolated; at most doubles or halves it. */
+/* Adds the interpolated corrections of the level to a row of the finer level; they at most double or halve a value. */
 static void correct_finer(void *context, uint32_t y, int worker) {
     const struct denoiser *d = context;
     const struct level *level = d->level, *finer = level - 1;
@@ -437,7 +437,7 @@ static void correct_finer(void *context, uint32_t y, int worker) {
     }
 }
 
-/* The mean of the halves, and glow. */
+/* The mean of the halves, plus glow. */
 static void finish_row(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker);
@@ -545,7 +545,7 @@ static bool make_estimates(struct denoiser *d, struct error *error) {
     return run(d, across * down, regress_block, error);
 }
 
-/* The planes that a level takes from the one before. */
+/* The planes that a level computes from the one before. */
 static bool make_coarse(struct denoiser *d, struct error *error) {
     struct level *level = d->level;
     for (int c = 0; c < 3; c++)
@@ -580,7 +580,7 @@ static bool denoise_all(struct denoiser *d, struct error *error) {
     return run(d, source->height, finish_row, error);
 }
 
-/* The size of the level after, and its place. */
+/* The size and the position of the next level. */
 static struct level coarser(const struct level *level) {
     struct level next = {0};
     next.x0 = level->x0 / 2;

@@ -1,6 +1,6 @@
-/* The parts of the denoiser that are built for each instruction set (denoise_kernel_internal.h), and what they share
- * with denoise.c. They compute with vectors, but add in an order that does not depend on their width: the bits are the
- * same. */
+/* The parts of the denoiser that are compiled for each instruction set (denoise_kernel_internal.h), and the
+ * declarations that they share with denoise.c. They compute with vectors, but their order of additions does not
+ * depend on the vector width: the bits are the same. */
 #ifndef GRAY_RENDER_DENOISE_INTERNAL_H
 #define GRAY_RENDER_DENOISE_INTERNAL_H
 

@@ -1,6 +1,6 @@
-/* The loops of the denoiser over vectors of floats, for the instruction set that its file is compiled for. A window of
- * a centre is DENOISE_SIDE rows of DENOISE_LANES pixels; sums over it are those of its columns, then of these in a
- * fixed order. */
+/* The loops of the denoiser over vectors of floats, for the instruction set of the file that includes this one. The
+ * window of a centre has DENOISE_SIDE rows of DENOISE_LANES pixels. Sums over it are first sums of columns, which
+ * are then added in a fixed order. */
 #include "render/denoise_internal.h"
 
 #include <float.h>
@@ -24,12 +24,13 @@ enum {
 typedef float vector __attribute__((vector_size(WIDTH * sizeof(float))));
 
 /* Found by measurement (bench/denoise.sh). */
-static const float noise_scale = 1.44F;  /* of the variance in distances of patches: k^2 */
-static const float colour_noise = 1e-3F; /* the same of the square of colours */
-/* A patch beside an edge is like those without one, but a pixel is not like one that differs by far itself. */
-static const float unlikeness_limit = 4;            /* of each pixel of a patch */
-static const float own_limit = 4, own_share = 0.5F; /* of the pixel itself: from where on, and how much it counts */
-static const double ridge = 5e-4;                   /* of the sum of weights */
+static const float noise_scale = 1.44F;  /* factor of the variance in distances of patches: k^2 */
+static const float colour_noise = 1e-3F; /* the same for the square of colours */
+/* A patch beside an edge resembles patches without one, but a pixel that differs strongly itself is not similar. */
+static const float unlikeness_limit = 4; /* of each pixel of a patch */
+static const float own_limit = 4,
+                   own_share = 0.5F; /* of the pixel itself: the threshold of its distance, and its weight */
+static const double ridge = 5e-4;    /* of the sum of weights */
 
 typedef int32_t mask __attribute__((vector_size(WIDTH * sizeof(int32_t)))); /* -1 for true, 0 */
 
@@ -59,7 +60,7 @@ static inline vector larger(vector a, vector b) {
     return choose(a > b, a, b);
 }
 
-/* exp(-x) of a distance x, nearly; 0 from 8 on. */
+/* An approximation of exp(-x) for a distance x; 0 from 8 on. */
 static inline float weight_of(float distance) {
     float x = 1 - (distance > 0 ? distance : 0) * 0.125F;
     x = x > 0 ? x : 0;
@@ -70,8 +71,8 @@ static inline float weight_of(float distance) {
 
 /* --- features --- */
 
-/* Squared differences of the block and what lies (dx, dy) farther, less what noise explains, in units of noise; noise
- * is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
+/* Squared differences between the block and the pixels at an offset of (dx, dy), minus the part that noise explains,
+ * in units of the noise. The noise is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
 static void compare_features(struct denoise_scratch *s, int group, bool depth, int dx, int dy) {
     enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW, STRIDE = DENOISE_FEATURE_LOCAL };
     float relative = depth ? 1e-6F : 0;
@@ -91,7 +92,7 @@ static void compare_features(struct denoise_scratch *s, int group, bool depth, i
     }
 }
 
-/* Adds what lies (dx, dy) farther by the likeness of patches of 3 x 3 pixels. */
+/* Adds the pixels at an offset of (dx, dy), weighted by the similarity of patches of 3 x 3 pixels. */
 static void add_features(struct denoise_scratch *s, int group, int dx, int dy, struct denoise_bounds bounds) {
     enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW + 1, STRIDE = DENOISE_FEATURE_LOCAL };
     int x0 = bounds.x0 - dx > 0 ? bounds.x0 - dx : 0;
@@ -129,8 +130,8 @@ static void filter_features(struct denoise_scratch *s, int group, bool depth, st
 
 /* --- distances of patches --- */
 
-/* How unlike the pixels of the block are those that lie (dx, dy) farther: squared difference of colours less what
- * variance explains, in units of variance (Rousselle et al. 2012, equation 9). */
+/* The dissimilarity between the pixels of the block and those at an offset of (dx, dy): squared difference of
+ * colours minus the part that variance explains, in units of the variance (Rousselle et al. 2012, equation 9). */
 static void compare_pixels(struct denoise_scratch *s, int half, int dx, int dy) {
     enum { FIRST = DENOISE_FIRST - DENOISE_PATCH };
     for (int y = 0; y < COMPARED; y++) {
@@ -155,7 +156,7 @@ static void compare_pixels(struct denoise_scratch *s, int half, int dx, int dy) 
     }
 }
 
-/* Of patches round all centres, for the pixel at (row, lane) of their windows. */
+/* Sums over the patches around all centres, for the pixel at (row, lane) of their windows. */
 static void average_patches(struct denoise_scratch *s, int row, int lane) {
     enum { SIDE = 2 * DENOISE_PATCH + 1 };
     for (int j = 0; j < DENOISE_CENTRES; j++) {
@@ -186,7 +187,7 @@ static void compare(struct denoise_scratch *s, int half) {
 
 /* --- regressions --- */
 
-/* The rows of a window that are in the picture, and in those the lanes. */
+/* The rows of a window that are in the picture, and the lanes in these rows. */
 struct window {
     int x, y; /* the centre */
     int row0, row1;
@@ -206,12 +207,12 @@ static struct window find_window(int cx, int cy, int radius, struct denoise_boun
     return w;
 }
 
-/* Where a row of a window begins in a plane. */
+/* The start of a row of a window in a plane. */
 static inline int row_at(const struct window *w, int row) {
     return (w->y + row - DENOISE_WINDOW) * LOCAL + w->x - DENOISE_WINDOW;
 }
 
-/* Weights below a thousandth are none. */
+/* Weights below a thousandth count as zero. */
 static void weigh(struct denoise_scratch *s, const struct window *w, denoise_window *distances, float scale) {
     const vector none = {0};
     for (int at = 0; at < LANES; at += WIDTH) {
@@ -227,7 +228,7 @@ static void weigh(struct denoise_scratch *s, const struct window *w, denoise_win
     }
 }
 
-/* Differences of a feature to the centre; returns the largest one of pixels that count. */
+/* Differences of a feature to the centre; returns the largest one among the pixels with a weight. */
 static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature) {
     const float *plane = s->feature[feature];
     float middle = plane[w->y * LOCAL + w->x], result = 0, lanes[LANES];
@@ -248,7 +249,7 @@ static float fill_feature(struct denoise_scratch *s, const struct window *w, int
     return result;
 }
 
-/* The colours, and the range of those that count. */
+/* The colours, and their range among the pixels with a weight. */
 static void fill_colour(struct denoise_scratch *s, const struct window *w, int half, int channel, float range[2]) {
     const float *plane = s->colour[half][channel];
     float middle = plane[w->y * LOCAL + w->x], lowest[LANES], highest[LANES];
@@ -274,7 +275,7 @@ static void fill_colour(struct denoise_scratch *s, const struct window *w, int h
     }
 }
 
-/* The sums over the window of weight * column i * column j, for j from i on, by lane. */
+/* The sums over the window of weight * column i * column j, for j >= i, by lane. */
 static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, int row0, int row1, int i,
                                                            float sums[COLUMNS][LANES]) {
     for (int at = 0; at < LANES; at += WIDTH) {
@@ -360,8 +361,8 @@ static bool solve(double m[TERMS][TERMS], double r[TERMS][3]) {
     return true;
 }
 
-/* Adds what a regression says about the pixels of its window, which is never darker or brighter than those that it was
- * made of: regressions overshoot beside lights. */
+/* Adds the predictions of a regression for the pixels of its window. They are limited to the range of the pixels
+ * that it used, because regressions overshoot beside lights. */
 static void predict(struct denoise_scratch *s, const struct window *w, int channel, double right[TERMS][3],
                     const float range[2]) {
     vector factor[TERMS], low = all(range[0]), high = all(range[1]);
@@ -383,8 +384,8 @@ static void regress_centre(struct denoise_scratch *s, int half, const struct win
     float range[3][2];
     scale[0] = scale[TERMS - 2] = scale[TERMS - 1] = 1;
     for (int f = 0; f < DENOISE_FEATURES; f++) {
-        /* In units of the largest difference, or of a small one if that is larger: 0.02 of albedo and normals, 1/200 of
-         * a depth. */
+        /* In units of the largest difference, or of a minimum if that is larger: 0.02 for albedo and normals, 1/200
+         * of a depth. */
         float middle = s->feature[f][w->y * LOCAL + w->x], largest = fill_feature(s, w, f);
         float smallest = f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
         scale[1 + f] = 1 / (double)(largest > smallest ? largest : smallest);
