@@ -1,5 +1,5 @@
 #!/bin/sh
-# Expressions that are recorded from Lua functions: time of an operation, and against Lua.
-# Usage: bench/expr.sh
+# Expressions that are recorded from Lua functions: time of an operation, and against Lua; Prospero.
+# Usage: bench/expr.sh [MODEL.vm]     (default ../shared/models/prospero.vm)
 cd "$(dirname "$0")/.." || exit 1
-make -s build/release/bench/expr && build/release/bench/expr
+make -s build/release/bench/expr && build/release/bench/expr "$@"

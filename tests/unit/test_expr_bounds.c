@@ -385,8 +385,10 @@ TEST(derivatives_of_every_operation_equal_differences) {
             is_float = is_float && expr_operand_type(operation, k) == EXPR_TYPE_F;
             operands[k] = expr_input(&p.graph, (enum expr_input)k);
         }
-        if (!is_float)
+        if (!is_float) {
+            random_program_destroy(&p);
             continue;
+        }
         uint32_t value = expr_operation(&p.graph, operation, operands[0], operands[1], operands[2]);
         CHECK(expr_compile(&p.graph, &value, 1, &p.arena, &p.program, &error));
         for (uint64_t i = 0; i < 300; i++) {
