@@ -35,6 +35,7 @@ static bool fill(struct error *error, enum error_kind kind, const char *format, 
     }
     error->kind = kind;
     error->elsewhere = false;
+    error->refused = false;
     error->limit = false;
     return false;
 }

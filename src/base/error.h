@@ -18,6 +18,7 @@ struct error {
     enum error_kind kind;
     bool elsewhere; /* ERROR_SCENE: a name on the command line is wrong, not the script; the message has no script line
                      */
+    bool refused;   /* of ERROR_SCENE: a picture cannot be written under this name, which --lenient does not change */
     bool limit;     /* of ERROR_SCENE: a resource limit of scenes is reached, which no script can catch */
     char text[1024];
 };

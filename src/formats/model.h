@@ -72,6 +72,7 @@ struct model_options {
     bool smooth;         /* computed normals instead of the file's */
     double smooth_angle; /* degrees: faces that meet at a smaller angle form one smooth surface; 0: flat */
     bool weld, flip;     /* one vertex for each position; faces reversed */
+    bool forgive;        /* faces with indices of nothing are left out */
     const struct path_policy *path_policy; /* the readable folders; NULL: all */
     bool single_file;                      /* no other file is opened (tests of readers with unknown bytes) */
     size_t max;                            /* vertices, and corners, of a mesh; 0: the maximum of an index */

@@ -99,6 +99,7 @@ static void names_destroy(struct names *names) {
 /* --- elements and faces --- */
 
 #define MISSING UINT32_MAX
+#define STRAY (UINT32_MAX - 1)   /* no such element; only where such faces are forgiven */
 #define UNNAMED (UINT32_MAX - 1) /* faces before the first usemtl or g */
 #define FILE_LIMIT ((size_t)1 << 36)
 
@@ -264,6 +265,10 @@ static bool read_index(struct reader *reader, int kind, const char *word, uint32
         return fail_word(reader, word, "is not a corner of a face (7, 7/1, 7//3 or 7/1/3)");
     reader->at = p;
     size_t count = reader->elements[kind].count;
+    if (reader->model->options.forgive && (value == 0 || value >= STRAY || (negative && value > count))) {
+        *out = STRAY;
+        return true;
+    }
     if (value == 0)
         return fail_word(reader, word, "has the index 0, but indices count from 1");
     if (negative) {
@@ -491,6 +496,36 @@ static bool read_line(struct reader *reader) {
     return ok;
 }
 
+static bool is_stray(const struct reader *reader, size_t corner) {
+    for (int kind = VERTEX; kind < KINDS; kind++) {
+        const uint32_t *indices = reader->indices[kind].items;
+        bool has = corner < reader->indices[kind].count && indices[corner] != MISSING;
+        if (has && indices[corner] >= reader->elements[kind].count)
+            return true;
+    }
+    return false;
+}
+
+/* A face with an index of nothing becomes one of no extent, in vertex 0. */
+static void forgive_indices(struct reader *reader) {
+    const uint32_t *starts = reader->starts.items;
+    size_t lost = 0, corners = reader->indices[VERTEX].count;
+    for (size_t f = 0; f < reader->starts.count && reader->elements[VERTEX].count > 0; f++) {
+        size_t begin = starts[f], end = f + 1 < reader->starts.count ? starts[f + 1] : corners;
+        bool stray = false;
+        for (size_t i = begin; i < end && !stray; i++)
+            stray = is_stray(reader, i);
+        lost += stray;
+        for (int kind = VERTEX; stray && kind < KINDS; kind++)
+            for (size_t i = begin; i < end && i < reader->indices[kind].count; i++)
+                ((uint32_t *)reader->indices[kind].items)[i] = kind == VERTEX ? 0 : MISSING;
+    }
+    if (lost > 0)
+        model_warn(reader->model, "%s: %zu faces have indices that do not exist, and are left out", reader->path, lost);
+    for (int kind = VERTEX; reader->elements[VERTEX].count > 0 && kind < KINDS; kind++)
+        reader->largest[kind] = 0;
+}
+
 static bool check_indices(const struct reader *reader) {
     for (int kind = VERTEX; kind < KINDS; kind++)
         if (reader->largest[kind] > reader->elements[kind].count)
@@ -574,6 +609,8 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
     bool ok = true;
     while (ok && reader.at < reader.end)
         ok = read_line(&reader);
+    if (ok && model->options.forgive)
+        forgive_indices(&reader);
     ok = ok && check_indices(&reader);
     struct model_mesh *mesh = ok ? model_add_mesh(model, error) : NULL;
     if (mesh) {

@@ -412,6 +412,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes",
                          sizeof asked->file - 1);
     memcpy(asked->file, file, length);
+    asked->keep = work->request->keep;
     if (!render_prepare(job, &area, warning, error))
         return false;
     asked->x0 = area.x0, asked->y0 = area.y0, asked->width = area.width, asked->height = area.height;
@@ -426,8 +427,10 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_no_memory(error, "the list of files that were read");
     if (!reserve_memory(process, asked, &job->settings, error))
         return false;
-    if (!process->services->begin(process->services->context, asked, film, already, error))
+    if (!process->services->begin(process->services->context, asked, film, already, error)) {
+        error->refused = error->kind == ERROR_SCENE;
         return false;
+    }
     /* Also for queries without a film. */
     film->x0 = asked->x0;
     film->y0 = asked->y0;

@@ -86,6 +86,8 @@ static bool choose_name(struct output_session *output, const char *from_script, 
 /* Whether the files of the picture can be written. The first picture decides the name of the checkpoint. In a farm only
  * the first rank writes. */
 static bool check_files(struct output_session *output, const struct picture *picture, struct error *error) {
+    if (picture->request.keep && file_is_regular(picture->name))
+        return error_set(error, ERROR_SCENE, "%s: exists, and is not replaced", picture->name);
     bool keeps = output->options->checkpoint != NULL;
     char *checkpoint = output->checkpoint.path;
     bool first = keeps && checkpoint[0] == '\0';

@@ -61,11 +61,23 @@ struct node *scene_combine(struct scene *scene, const char *name, enum node_csg 
         return NULL;
     }
     for (uint32_t i = 0; i < count; i++)
-        own[i] = operands[i];
+        own[i] = operands[i], operands[i]->has_parent = true;
     node->operation = operation;
     node->operands = own;
     node->operand_count = count;
     return node;
+}
+
+bool node_holds(const struct node *node, const struct node *part, int *budget) {
+    if (node == part)
+        return true;
+    for (const struct node_child *child = node->first_child; child && --*budget > 0; child = child->next)
+        if (node_holds(child->node, part, budget))
+            return true;
+    for (uint32_t i = 0; node->kind == NODE_CSG && i < node->operand_count && --*budget > 0; i++)
+        if (node_holds(node->operands[i], part, budget))
+            return true;
+    return false;
 }
 
 bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error) {
@@ -79,6 +91,7 @@ bool node_add_child(struct scene *scene, struct node *parent, struct node *child
         parent->first_child = link;
     parent->last_child = link;
     parent->child_count++;
+    child->has_parent = true;
     return true;
 }
 

@@ -61,6 +61,7 @@ struct node {
     enum node_kind kind;
     uint32_t serial; /* order of creation, unique in a scene; as users see it */
     uint32_t index;  /* below the scene's node_total: for tables beside the nodes */
+    bool has_parent; /* it was added to a node */
     bool singular;   /* some scale factor was 0: nothing under it is drawn */
     uint32_t child_count;
     struct node_child *first_child, *last_child;
@@ -165,6 +166,9 @@ void scene_destroy(struct scene *scene);
 
 struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error);
 bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error);
+/* Whether `part` is the node or below it. It stops after `budget` steps (at most a thousand, since it recurses), with
+ * false if it has not found it. */
+bool node_holds(const struct node *node, const struct node *part, int *budget);
 enum node_step { NODE_TRANSLATE, NODE_ROTATE, NODE_SCALE, NODE_STEPS };
 /* A NODE_CSG over these, which are copied. */
 struct node *scene_combine(struct scene *scene, const char *name, enum node_csg operation, struct node *const *operands,

@@ -4,6 +4,7 @@
 #include "base/unreachable.h"
 #include "math/range.h"
 #include "render/settings.h"
+#include "script/lenient_internal.h"
 #include "script/record_internal.h"
 
 #include <assert.h>
@@ -204,7 +205,7 @@ static void *read_handle(struct script_context *c, int index, const struct argum
                          enum handle_type type) {
     const struct handle *handle = handle_at(c->lua, index);
     if (handle && handle->type == HANDLE_GHOST)
-        return NULL;
+        return lenient_ghost_as(c, handle, type, !(argument_path->parameter->flags & (GHOST_IS_NONE | REST)));
     if (!handle || handle->type != type)
         wrong_type(c, argument_path, argument_path->i ? handle_words(type) : kind_words(argument_path->parameter->kind),
                    index);
@@ -366,8 +367,13 @@ static void read_faces(struct script_context *c, int index, struct argument_path
             argument_path.i = (lua_Integer)k + 1;
             argument_path.j = (lua_Integer)(corner - starts[k]) + 1;
             lua_rawgeti(L, -1, argument_path.j);
-            double x = read_whole(c, -1, &argument_path);
+            double x = read_number(c, -1, &argument_path);
             char words[128];
+            if (x != floor(x)) {
+                context_warn_once(c, WARNED_FRACTION, "%s is %.15g: fractions of indices are dropped",
+                                  argument_path_text(&argument_path, words), x);
+                x = trunc(x);
+            }
             if (x < 0 || x >= UINT32_MAX)
                 context_raise(c, "%s is %.15g: indices count from 0", argument_path_text(&argument_path, words), x);
             indices[corner] = (uint32_t)x;
@@ -639,8 +645,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
 }
 
 /* Reads one parameter unless it is nil. False: the whole call has no effect. */
-static bool read_parameter(struct script_context *c, int index, const struct script_parameter *p,
-                           struct script_value *value) {
+bool arguments_read_one(struct script_context *c, int index, const struct script_parameter *p,
+                        struct script_value *value) {
     if (lua_isnoneornil(c->lua, index) || read_value(c, index, p, value))
         return true;
     *value = (struct script_value){0};
@@ -668,7 +674,7 @@ static int kinds_of(lua_State *L, int index) {
            (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
 }
 
-static bool resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
+bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
     static const int wanted[KIND_COUNT] = {
         [KIND_NUMBER] = LIKE_NUMBER,
         [KIND_WHOLE] = LIKE_NUMBER,
@@ -720,7 +726,7 @@ static struct fit form_fit(lua_State *L, const struct script_function *function,
     bool optional;
     for (; form_next(function, &form, &index, &optional); count++) {
         if (fit.leading == count &&
-            resembles(L, first + count, function->parameters[index].kind, function->parameters[index].flags))
+            argument_resembles(L, first + count, function->parameters[index].kind, function->parameters[index].flags))
             fit.leading++;
     }
     fit.difference = given < count ? count - given : given - count;
@@ -762,7 +768,7 @@ static int read_rest(struct script_context *c, const struct script_parameter *p,
                      struct script_value *value) {
     lua_State *L = c->lua;
     int end = argument_path;
-    while (end <= lua_gettop(L) && (lua_isnil(L, end) || resembles(L, end, KIND_NODE, 0)))
+    while (end <= lua_gettop(L) && (lua_isnil(L, end) || argument_resembles(L, end, KIND_NODE, 0)))
         end++;
     if (end == argument_path)
         return end;
@@ -772,7 +778,8 @@ static int read_rest(struct script_context *c, const struct script_parameter *p,
         const struct handle *handle = handle_at(L, argument_path);
         if (!handle)
             context_raise(c, "%s[%u] is nil", p->name, (unsigned)value->count + 1);
-        value->nodes[value->count++] = handle->type == HANDLE_GHOST ? NULL : handle->pointer;
+        value->nodes[value->count++] =
+            handle->type == HANDLE_GHOST ? lenient_ghost_as(c, handle, HANDLE_NODE, false) : handle->pointer;
     }
     return end;
 }
@@ -804,7 +811,7 @@ static bool read_positional(struct script_context *c, const struct script_functi
         const struct script_parameter *p = &function->parameters[index];
         if (!optional && lua_isnoneornil(L, argument_path))
             context_raise(c, "%s is missing", p->name);
-        if (!read_parameter(c, argument_path, p, &args[index]))
+        if (!arguments_read_one(c, argument_path, p, &args[index]))
             return false;
     }
     int rest_index;
@@ -858,7 +865,7 @@ static bool read_named(struct script_context *c, const struct script_function *f
         bool may_miss = (p->flags & OPTIONAL) || listed; /* nodes in a list: none needs a field name */
         if (lua_rawget(L, table) == LUA_TNIL && !may_miss)
             context_raise(c, "%s is missing", p->name);
-        if (!read_parameter(c, value, p, &args[k]))
+        if (!arguments_read_one(c, value, p, &args[k]))
             return false;
         lua_pop(L, 1); /* the table keeps it */
     }
@@ -867,8 +874,8 @@ static bool read_named(struct script_context *c, const struct script_function *f
 
 /* One plain table without an entry 1 holds named fields. Of the methods only node:render accepts it: the others take
  * tuples or handles. */
-static bool is_table_form(lua_State *L, const struct script_function *function, int first) {
-    if (lua_gettop(L) != first || !lua_istable(L, first))
+bool arguments_have_names(lua_State *L, const struct script_function *function, int first, int last) {
+    if (last != first || !lua_istable(L, first))
         return false;
     if (function->owner == OWNER_NODE && function->result != RESULT_NOTHING)
         return false;
@@ -880,7 +887,7 @@ static bool is_table_form(lua_State *L, const struct script_function *function, 
 
 bool arguments_read(struct script_context *context, const struct script_function *function, int first,
                     struct script_value *args) {
-    if (is_table_form(context->lua, function, first))
+    if (arguments_have_names(context->lua, function, first, lua_gettop(context->lua)))
         return read_named(context, function, first, args);
     return read_positional(context, function, first, args);
 }

@@ -31,8 +31,8 @@ const char *function_title(const struct script_function *function, char out[96])
     return out;
 }
 
-/* "gr.sphere: TEXT (node 'eye')", always one line, even if names contain line ends. */
-static void compose(const struct script_context *context, const char *text, char *out, size_t size) {
+/* Names may contain line ends. */
+void context_compose(const struct script_context *context, const char *text, char *out, size_t size) {
     char title[96] = "";
     if (context->function)
         function_title(context->function, title);
@@ -47,7 +47,7 @@ static void compose(const struct script_context *context, const char *text, char
 static void warn(struct script_context *context, const char *format, va_list arguments) {
     char text[1024], where[PATH_SIZE + 32], line[1536], message[PATH_SIZE + 2048];
     vsnprintf(text, sizeof text, format, arguments);
-    compose(context, text, line, sizeof line);
+    context_compose(context, text, line, sizeof line);
     context_where(context, where, sizeof where);
     snprintf(message, sizeof message, "%swarning: %s", where, line);
     limits_count_output(context, strlen(message));
@@ -75,6 +75,7 @@ void context_warn_once(struct script_context *context, unsigned bit, const char 
 _Noreturn static void raise_text(struct script_context *context, const char *text) {
     char where[PATH_SIZE + 32];
     context_where(context, where, sizeof where);
+    snprintf(context->raised, sizeof context->raised, "%s", text);
     lua_pushfstring(context->lua, "%s%s", where, text);
     lua_error(context->lua);
     __builtin_unreachable();
@@ -86,7 +87,7 @@ void context_raise(struct script_context *context, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    compose(context, text, line, sizeof line);
+    context_compose(context, text, line, sizeof line);
     raise_text(context, line);
 }
 
@@ -98,12 +99,13 @@ void context_raise_fatal(lua_State *L) {
 }
 
 void context_raise_error(struct script_context *context, const struct error *error) {
+    context->unforgivable = error->refused;
     if (error->kind == ERROR_SCENE && !error->elsewhere && !error->limit)
         context_raise(context, "%s", error->text);
     context->fatal = *error;
     if (error->limit) {
         char where[PATH_SIZE + 32], line[1536];
-        compose(context, error->text, line, sizeof line);
+        context_compose(context, error->text, line, sizeof line);
         context_where(context, where, sizeof where);
         (void)error_set_limit(&context->fatal, "%s%s", where, line);
     }
@@ -118,7 +120,7 @@ void context_raise_no_memory(struct script_context *context) {
 
 /* Handles: the Lua values for nodes, materials, lights and textures. A handle is a userdata with a tag and a pointer
  * into the scene's arena, without finalizer: the scene outlives the Lua state. A ghost is the handle of an object that
- * this version does not support; it exists with --lenient only, is accepted everywhere and has no effect. */
+ * this version does not support; it exists with --lenient only and is accepted everywhere (lenient_internal.h). */
 
 #define HANDLE_NAME(type, name, words) [type] = (name),
 #define HANDLE_WORDS(type, name, words) [type] = (words),

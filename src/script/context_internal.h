@@ -69,6 +69,7 @@ struct changed_view {
 };
 
 struct recorder;
+struct lenient;
 
 struct script_context {
     lua_State *lua; /* the thread that called last */
@@ -96,6 +97,10 @@ struct script_context {
     struct changed_view *views; /* the newest first */
     bool changes_reported;      /* what was left out */
     bool number_repaired;       /* the notice about ".0" was printed */
+    struct lenient *lenient;    /* NULL without --lenient */
+    uint32_t pictures;          /* that gr.render has made */
+    char raised[1536];          /* the last error of a function of gr, without its position */
+    bool unforgivable;          /* --lenient would not get over it */
     struct error fatal;
     struct recorder *recorder; /* record_internal.h */
     bool ended;                /* os.exit was called with success */
@@ -103,7 +108,7 @@ struct script_context {
     struct error failure; /* the message of a script error, made by the message handler */
 };
 
-enum { WARNED_EXTRA = 1, WARNED_OTHER = 2 };
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4 };
 
 struct script_context *context_of(lua_State *L);
 
@@ -113,6 +118,8 @@ void context_where(const struct script_context *context, char *out, size_t size)
 void context_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* "gr.sphere: TEXT (node 'eye')", always one line. */
+void context_compose(const struct script_context *context, const char *text, char *out, size_t size);
 /* "gr.sphere" or "node:scale". */
 const char *function_title(const struct script_function *function, char out[96]);
 /* The parameter that takes any number of nodes, or NULL; and its index. */
@@ -160,11 +167,20 @@ const char *value_words(lua_State *L, int index);
 
 /* dispatch.c */
 void dispatch_open(lua_State *L); /* the global gr */
+void dispatch_push(lua_State *L, const struct script_function *function);
+int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result);
 
 /* arguments.c: reads the arguments; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
  * so the call has no effect. `first` is the stack index of the first argument. */
 bool arguments_read(struct script_context *context, const struct script_function *function, int first,
                     struct script_value *args);
+/* The same for one value, unless it is nil. */
+bool arguments_read_one(struct script_context *context, int index, const struct script_parameter *parameter,
+                        struct script_value *value);
+/* Whether the arguments first to last are one table of named fields. */
+bool arguments_have_names(lua_State *L, const struct script_function *function, int first, int last);
+/* Whether a value of this Lua type can be an argument of the kind. */
+bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags);
 
 /* context.c: the nearest of the words by Damerau-Levenshtein distance if the distance is small enough, else NULL. */
 struct suggestion {

@@ -1,7 +1,7 @@
 /* The one C function behind every gr function and node method: reads the arguments that the table's row describes, runs
  * the row's plain C function, and returns its result. Names that do not exist are errors with a suggestion, or with
  * --lenient ghosts. */
-#include "script/context_internal.h"
+#include "script/lenient_internal.h"
 
 #include "base/version.h"
 #include "formats/font.h"
@@ -89,9 +89,9 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
     lua_setfield(L, -2, "line");
     return 1;
 }
-_Static_assert(RESULT_GLYPHS == 10, "a new result kind needs its line in answer()");
+_Static_assert(RESULT_GLYPHS == 10, "a new result kind needs its line in dispatch_answer()");
 
-static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
+int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
     switch (function->result) {
     case RESULT_NOTHING:
         return 0;
@@ -126,21 +126,9 @@ static int answer(lua_State *L, const struct script_function *function, const st
     return 0;
 }
 
-static int answer_ghost(lua_State *L, const struct script_function *function) {
-    if (function->result == RESULT_NOTHING)
-        return 0;
-    if (function->result == RESULT_SELF)
-        lua_pushvalue(L, 1);
-    else
-        handle_push(L, HANDLE_GHOST, NULL);
-    return 1;
-}
-
-/* The node before the colon; NULL for a ghost. */
+/* The node before the colon. */
 static struct node *self_of(struct script_context *c, const struct script_function *function) {
     const struct handle *handle = handle_at(c->lua, 1);
-    if (handle && handle->type == HANDLE_GHOST)
-        return NULL;
     if (!handle || handle->type != HANDLE_NODE) {
         const char *given = value_words(c->lua, 1);
         char title[96];
@@ -167,42 +155,57 @@ static int dispatch(lua_State *L) {
     c->subject = NULL;
     arena_reset(&c->call);
 
+    if (c->lenient)
+        return lenient_call(L, c, function);
     int first = 1;
     if (function->owner == OWNER_NODE) {
         struct node *node = self_of(c, function);
-        if (!node)
-            return answer_ghost(L, function);
         args[0] = (struct script_value){.given = true, .node = node};
         c->subject = node->name;
         first = 2;
     }
-    if (!arguments_read(c, function, first, args))
-        return answer_ghost(L, function);
+    (void)arguments_read(c, function, first, args); /* there are no ghosts */
 
     struct script_result result = {0};
     struct error error = {0};
     if (!function->run(c, args, &result, &error))
         context_raise_error(c, &error);
-    return answer(L, function, &result);
+    return dispatch_answer(L, function, &result);
 }
 
-/* The value of a name that does not exist: a function that does nothing and returns a ghost. */
-static int ghost_call(lua_State *L) {
-    const struct handle *self = handle_at(L, 1);
-    if (self && self->type == HANDLE_NODE && lua_toboolean(L, lua_upvalueindex(1)))
-        lua_pushvalue(L, 1);
-    else
-        handle_push(L, HANDLE_GHOST, NULL);
-    return 1;
+/* Pushes the function of that owner whose name has the same letters, as in addChild; false: there is none. */
+static bool push_alike(lua_State *L, enum owner owner, const char *name) {
+    for (int k = 0; k < function_count(); k++) {
+        const char *a = function_at(k)->name, *b = name;
+        while (*a && *b) {
+            a += *a == '_', b += *b == '_';
+            if ((*a | ' ') != (*b | ' '))
+                break;
+            a++, b++;
+        }
+        if (function_at(k)->owner == owner && *a == '\0' && *b == '\0') {
+            dispatch_push(L, function_at(k));
+            return true;
+        }
+    }
+    return false;
 }
 
-static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
+/* With --lenient: pushes a function of almost that name, or a ghost, with a warning. */
+static void push_substitute(struct script_context *c, enum owner owner, const char *name) {
     const char *before = owner == OWNER_GR ? "gr." : "node:";
     c->function = NULL;
-    if (c->options->lenient) {
-        context_warn(c, "%s%.100s does not exist and is ignored", before, name);
+    if (push_alike(c->lua, owner, name)) {
+        context_warn(c, "%s%.100s does not exist, but in other letters", before, name);
         return;
     }
+    context_warn(c, "%s%.100s does not exist and is ignored", before, name);
+    lenient_push_ghost(c->lua, name, owner == OWNER_NODE);
+}
+
+_Noreturn static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
+    const char *before = owner == OWNER_GR ? "gr." : "node:";
+    c->function = NULL;
     struct suggestion suggestion;
     suggest_begin(&suggestion, name);
     for (int k = 0; k < function_count(); k++)
@@ -224,10 +227,10 @@ static int missing_function(lua_State *L) {
         lua_pushnil(L);
         return 1;
     }
-    no_such_name(c, OWNER_GR, lua_tostring(L, 2));
+    if (!c->lenient)
+        no_such_name(c, OWNER_GR, lua_tostring(L, 2));
     lua_settop(L, 2);
-    lua_pushboolean(L, 0);
-    lua_pushcclosure(L, ghost_call, 1);
+    push_substitute(c, OWNER_GR, lua_tostring(L, 2));
     lua_pushvalue(L, 2);
     lua_pushvalue(L, 3);
     lua_rawset(L, 1);
@@ -247,20 +250,22 @@ static int node_index(lua_State *L) {
     c->subject = ((const struct node *)handle->pointer)->name;
     if (lua_type(L, 2) != LUA_TSTRING)
         return 1;
-    no_such_name(c, OWNER_NODE, lua_tostring(L, 2));
+    if (!c->lenient)
+        no_such_name(c, OWNER_NODE, lua_tostring(L, 2));
     lua_settop(L, 2);
-    lua_pushboolean(L, 1);
-    lua_pushcclosure(L, ghost_call, 1);
+    if (lenient_own_field(L))
+        return 1;
+    lua_settop(L, 2);
+    push_substitute(c, OWNER_NODE, lua_tostring(L, 2));
     lua_pushvalue(L, 2);
     lua_pushvalue(L, 3);
     lua_rawset(L, lua_upvalueindex(1));
     return 1;
 }
 
-static int ghost_index(lua_State *L) {
-    lua_pushboolean(L, 0);
-    lua_pushcclosure(L, ghost_call, 1);
-    return 1;
+void dispatch_push(lua_State *L, const struct script_function *function) {
+    lua_pushlightuserdata(L, (void *)(uintptr_t)function);
+    lua_pushcclosure(L, dispatch, 1);
 }
 
 static void push_functions(lua_State *L, enum owner owner) {
@@ -268,8 +273,7 @@ static void push_functions(lua_State *L, enum owner owner) {
     for (int k = 0; k < function_count(); k++) {
         if (function_at(k)->owner != owner)
             continue;
-        lua_pushlightuserdata(L, (void *)(uintptr_t)function_at(k));
-        lua_pushcclosure(L, dispatch, 1);
+        dispatch_push(L, function_at(k));
         lua_setfield(L, -2, function_at(k)->name);
     }
 }
@@ -285,7 +289,6 @@ static void set_index(lua_State *L, const void *metatable_key, lua_CFunction fun
 void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_NODE);
     set_index(L, handle_key(HANDLE_NODE), node_index, 1);
-    set_index(L, handle_key(HANDLE_GHOST), ghost_index, 0);
 
     push_functions(L, OWNER_GR);
     lua_pushstring(L, GRAY_VERSION);

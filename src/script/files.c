@@ -2,7 +2,7 @@
  * base/file.h. A relative name is looked for in (docs/language.md 12.3): the scene's folder, the working directory,
  * Assets/ beside and above the scene, and the bare file name in the scene's folder; then below these folders
  * (search.c). */
-#include "script/context_internal.h"
+#include "script/lenient_internal.h"
 
 #include "base/file.h"
 
@@ -282,6 +282,12 @@ static const char *search_elsewhere(struct script_context *context, const char *
     return found;
 }
 
+/* With --lenient: the value of a module that does not exist. Upvalue 1: its name. */
+static int ghost_module(lua_State *L) {
+    lenient_push_ghost(L, lua_tostring(L, lua_upvalueindex(1)), false);
+    return 1;
+}
+
 /* package.searchers[2]: Lua files along package.path. Upvalue 1: the package table. Scripts for Lua 5.0 also wrote the
  * extension .lua. */
 static int search_module(lua_State *L) {
@@ -312,6 +318,12 @@ static int search_module(lua_State *L) {
             return 1;
         }
         found = templates[0] ? search_elsewhere(context, file) : NULL; /* '': the script requests no file */
+        if (!found && context->lenient) {
+            lenient_warn(context, "require: module '%.200s' does not exist and is ignored", module);
+            lua_pushvalue(L, 1);
+            lua_pushcclosure(L, ghost_module, 1);
+            return 1;
+        }
         if (!found)
             no_module(context, module);
     }

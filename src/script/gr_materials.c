@@ -1,6 +1,6 @@
 /* Materials, their decorators, and textures. */
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
+#include "script/lenient_internal.h"
 
 #include "base/file.h"
 #include "material/bump.h"
@@ -129,7 +129,8 @@ bool gr_fresnel(struct script_context *context, const struct script_value *args,
     return give(result, scene_material(&context->scene, MATERIAL_FRESNEL, args[FRESNEL_MATERIAL].material, error));
 }
 
-struct image *gr_find_image(struct script_context *context, const struct script_value *value, struct error *error) {
+static struct image *image_of_file(struct script_context *context, const struct script_value *value,
+                                   struct error *error) {
     if (value->image)
         return value->image;
     char path[PATH_SIZE], canonical[PATH_SIZE];
@@ -147,6 +148,15 @@ struct image *gr_find_image(struct script_context *context, const struct script_
         error->limit = limit;
     }
     return image;
+}
+
+struct image *gr_find_image(struct script_context *context, const struct script_value *value, struct error *error) {
+    struct image *image = image_of_file(context, value, error);
+    if (image || !context->lenient || error->kind != ERROR_SCENE || error->limit)
+        return image;
+    lenient_warn(context, "%s: checks take its place", error->text);
+    *error = (struct error){0};
+    return lenient_checks(context, error);
 }
 
 static void image_defaults(struct texture_image *out, const struct script_value *value, struct image *image) {

@@ -1,7 +1,7 @@
 /* Meshes from tables and from files. Both are assets: equal tables, or the same file, give one mesh, so that a script
  * that builds its scene again for every picture does not build its meshes again. */
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
+#include "script/lenient_internal.h"
 
 #include "base/file.h"
 #include "formats/font.h"
@@ -22,7 +22,7 @@ static const struct model *model_of_file(struct script_context *context, const s
                                          struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    struct model_options options = {.path_policy = context->path_policy};
+    struct model_options options = {.path_policy = context->path_policy, .forgive = context->lenient != NULL};
     read_options(args, &options);
     if (!files_require(context, name, path, error))
         return NULL;
@@ -207,6 +207,12 @@ bool gr_mesh(struct script_context *context, const struct script_value *args, st
                                         .part_count = parts->count};
         if (args[MESH_FACE_MATERIALS].given)
             return error_set(error, ERROR_SCENE, "face_materials goes with faces, not with a file");
+        if (!model && context->lenient && error->kind == ERROR_SCENE && !error->limit) {
+            lenient_warn(context, "%s: a cube takes its place", error->text);
+            *error = (struct error){0};
+            result->pointer = lenient_placeholder(context, name, args[MESH_MATERIAL].material, error);
+            return result->pointer != NULL;
+        }
         result->pointer =
             model && check_parts(model, parts, error) ? model_add_nodes(&context->scene, model, &placing, error) : NULL;
         return result->pointer != NULL;

@@ -7,6 +7,14 @@
 bool gr_add_child(struct script_context *context, const struct script_value *args, struct script_result *result,
                   struct error *error) {
     (void)result;
+    struct node *parent = args[SELF].node, *child = args[CHILD_NODE].node;
+    int budget = 1000; /* larger cycles are found when the picture is rendered */
+    bool may_close = parent == child || (parent->has_parent && (child->first_child || child->kind == NODE_CSG));
+    if (may_close && node_holds(child, parent, &budget))
+        return error_set(error, ERROR_SCENE,
+                         parent == child ? "a node cannot be its own child"
+                                         : "'%.200s' is below '%.200s': the nodes would form a cycle",
+                         parent->name, child->name);
     return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);
 }
 

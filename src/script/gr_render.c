@@ -2,7 +2,7 @@
 #include "image/transfer.h"
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
+#include "script/lenient_internal.h"
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
@@ -125,6 +125,24 @@ static bool apply_motion(const struct script_value *args, struct settings *setti
     return true;
 }
 
+/* Stock scenes have a view of zero: they look at the origin. */
+static void repair_view(struct script_context *context, const struct script_value *args,
+                        struct render_request *request) {
+    struct camera *camera = &request->camera;
+    bool is_target = request->settings.view_is_target;
+    if (!is_target && vec3_max_abs(camera->view) == 0) {
+        bool at_origin = vec3_max_abs(camera->eye) == 0;
+        camera->view = at_origin ? vec3_make(0, 0, -1) : vec3_negate(camera->eye);
+        context_warn_once(context, WARNED_OTHER, "view is zero: the camera looks %s",
+                          at_origin ? "along -z" : "at the origin");
+    }
+    if (is_target && context->lenient && vec3_max_abs(vec3_sub(camera->view, camera->eye)) == 0) {
+        camera->view = vec3_add(camera->eye, vec3_make(0, 0, -1));
+        lenient_warn(context, "%s is where the eye is: the camera looks along -z",
+                     args[RENDER_TARGET].given ? "target" : "view");
+    }
+}
+
 bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
                struct error *error) {
     (void)result;
@@ -155,8 +173,14 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .settings = context->host->settings,
     };
     const struct transfer srgb = {TRANSFER_SRGB, 0};
+    struct camera fitted;
+    if (context->lenient && !args[RENDER_EYE].given) {
+        lenient_camera(request.root, &fitted);
+        request.camera = fitted;
+    }
     request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
     apply_settings(args, &request.settings);
+    repair_view(context, args, &request);
     bool linear = settings_linear(&request.settings);
     if (linear && args[RENDER_AMBIENT].display)
         request.ambient = transfer_decode_colour(srgb, request.ambient);
@@ -180,5 +204,6 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
     bool done = context->host->render(context->host->context, &request, error);
     limits_resume(context);
     changes_take_off(&changed);
+    context->pictures += done;
     return done;
 }

@@ -4,6 +4,7 @@
 #include "script/context_internal.h"
 
 #include "base/file.h"
+#include "script/lenient_internal.h"
 #include "script/order_internal.h"
 #include "script/record_internal.h"
 
@@ -115,6 +116,13 @@ static const char *indent(struct arena *arena, const char *text) {
     return out;
 }
 
+/* Whether a function of gr raised this message, and would not under --lenient. */
+static bool is_forgivable(const struct script_context *context, const char *message) {
+    size_t length = strlen(message), raised = strlen(context->raised);
+    return !context->lenient && !context->unforgivable && raised > 0 && length >= raised &&
+           strcmp(message + length - raised, context->raised) == 0;
+}
+
 /* The message handler: writes the complete first line and the traceback while the stack still exists. */
 static int describe_error(lua_State *L) {
     struct script_context *context = context_of(L);
@@ -138,6 +146,10 @@ static int describe_error(lua_State *L) {
     error_set(&context->failure, ERROR_SCENE, "%s%.*s", has_position ? "" : where, (int)first, message);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
+    if (is_forgivable(context, message)) {
+        lua_pushliteral(L, "\n--lenient gets over this error");
+        lua_concat(L, 2);
+    }
     context->traceback = indent(context->out, lua_tostring(L, -1));
     lua_settop(L, 1); /* load also calls this, if its text is nested too deeply, and returns the message */
     return 1;
@@ -153,6 +165,7 @@ static int run_scene(lua_State *L) {
     compat_open(L);
     handles_open(L);
     dispatch_open(L);
+    lenient_open(L);
     record_open(L);
     library_open(L);
     define_open(L);
@@ -225,7 +238,7 @@ static bool prepare(struct script_context *context, struct path_policy *path_pol
         return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", context->path);
     memcpy(context->folder, context->path, length);
     context->warned = arena_alloc(&context->keep, (size_t)function_count());
-    if (!context->warned)
+    if (!context->warned || !lenient_begin(context))
         return error_no_memory(error, "the script");
     struct file_bytes bytes; /* an unreadable file is reported before anything else, in one line */
     if (!file_map(context->path, FILE_LIMIT, &bytes, error))
@@ -259,6 +272,8 @@ bool script_run(const char *path, const struct script_options *options, const st
         lua_pushcfunction(L, run_scene);
         done = conclude(&context, lua_pcall(L, 0, 0, 1), error);
         context.lua = NULL;
+        if (context.lenient && (done || error->kind == ERROR_SCENE))
+            lenient_last_picture(&context, !done);
         *traceback = done || error->kind != ERROR_SCENE ? NULL : context.traceback;
         lua_close(L);
     }

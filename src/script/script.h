@@ -57,6 +57,7 @@ struct render_request {
     struct settings settings; /* the host's settings, changed by the call's named fields */
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     uint32_t owned;           /* the same of materials and gr.change_own */
+    bool keep;                /* a picture that exists under this name is not replaced */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 

@@ -111,6 +111,7 @@ struct picture_request {
     uint32_t overlay;                 /* in a window: an enum overlay, the requested lines */
     struct camera camera;             /* its view a direction */
     struct lens lens;
+    uint32_t keep;       /* not 0: a picture that exists under this name is not replaced */
     uint32_t check;      /* not 0 for --check: only the names are checked, no film is needed */
     struct digest files; /* of all files read so far; zero if not needed */
     char file[4096];     /* as the script wrote it */

@@ -1,4 +1,4 @@
--- expect: SCRIPT:5: gr.render: the nodes form a cycle: 'a' > 'b' > 'a'
+-- expect: SCRIPT:4: node:add_child: 'b' is below 'a': the nodes would form a cycle (node 'b')
 local a, b = gr.node('a'), gr.node('b')
 a:add_child(b)
 b:add_child(a)

@@ -1,4 +1,5 @@
--- expect: SCRIPT:4: gr.sphere: radius must be > 0
+-- expect: SCRIPT:5: the end
 -- arguments: --lenient
 gr.frobnicate('a'):spin(3)
 gr.sphere{radius = 0}
+error('the end')

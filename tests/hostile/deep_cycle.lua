@@ -1,4 +1,4 @@
--- expect: SCRIPT:6: gr.render: the nodes form a cycle: 'a' > 'b' > 'a'
+-- expect: SCRIPT:5: node:add_child: 'b' is below 'a': the nodes would form a cycle (node 'b')
 -- Nodes that contain each other.
 local a, b = gr.node('a'), gr.node('b')
 a:add_child(b)

@@ -319,13 +319,13 @@ TEST(check_reports_every_picture_that_cannot_be_made_with_the_line_of_its_call) 
         "local flap = {{0,0,0},{1,0,0},{0,1,0}}\n"
         "local d = gr.difference('d', gr.cube('a'), gr.node('g'):add_child(gr.mesh('open', flap, {{0,1,2}})))\n"
         "gr.render(d, '1.png', 8, 8, {0,0,5}, {0,0,-1}, {0,1,0}, 50, {1,1,1}, {})\n"
-        "gr.render(gr.node('n'), '2.png', 8, 8, {0,0,5}, {0,0,0}, {0,1,0}, 50, {1,1,1}, {})\n"
+        "gr.render{node=gr.node('n'), file='2.png', width=8, height=8, eye={0,0,5}, target={0,0,5}}\n"
         "gr.render(gr.node('n'), '3.png', 8, 8, {0,0,5}, {0,0,1}, {0,1,0}, 50, {1,1,1}, {})\n"
         "gr.sphere(false)\n",
         "-q --check scene.lua", NULL);
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "scene.lua:3: gr.render: node 'open' is an operand of CSG but its mesh is open"));
-    CHECK(strstr(result.err, "scene.lua:4: gr.render: view: the direction must not be zero\n"));
+    CHECK(strstr(result.err, "scene.lua:4: gr.render: view: the point to look at must differ from the eye\n"));
     CHECK(strstr(result.err, "scene.lua:6: gr.sphere: "));
     char path[600];
     (void)snprintf(path, sizeof path, "%s/3.png", test_folder());
