@@ -5,7 +5,7 @@
  * the features. The weight of each pixel is its similarity to p in the other half (cross-filtering): weights and
  * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
  * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
- * on every third row and column are enough. This is done for two bandwidths of the similarity; at each pixel the one
+ * on every second row and column are enough. This is done for two bandwidths of the similarity; at each pixel the one
  * with the smaller error is used.
  *
  * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
@@ -34,14 +34,14 @@ enum {
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
 };
 /* Two pixels of the coarser level and the pixels that they depend on; levels begin at even pixels of finer ones. */
-_Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 1 + (int)VARIANCE_WINDOW + 1 <= (int)DENOISE_RIM,
+_Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 2 + (int)VARIANCE_WINDOW + 1 <= (int)DENOISE_RIM,
                "the rim is less than what a pixel depends on");
 _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
                "the same of features");
 
 /* Found by measurement (bench/denoise.sh). */
 static const float colour_noise = 1e-3F; /* of the squared colours: the unit in which errors are compared */
-static const struct denoise_bandwidth bandwidths[DENOISE_BANDWIDTHS] = {{DENOISE_WINDOW, 1}, {5, 4}};
+static const struct denoise_bandwidth bandwidths[DENOISE_BANDWIDTHS] = {{DENOISE_WINDOW, 2}, {5, 3}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float choice_slope = 12;       /* how strongly the bandwidth with the smaller error is preferred */
 
@@ -437,16 +437,38 @@ static void correct_finer(void *context, uint32_t y, int worker) {
     }
 }
 
+static float mean_of_halves(const struct level *level, int c, size_t at) {
+    return 0.5F * (level->estimate[0][c][at] + level->estimate[1][c][at]);
+}
+
+/* The mean of the halves. A pixel that is brighter or darker than all of its neighbours was so in both of them,
+ * by more than a standard deviation. */
+static float supported_mean(const struct level *level, int c, int x, int y) {
+    size_t at = pixel_at(level, x, y);
+    float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
+    float sigma = sqrtf(level->variance[c][at]), high = (a < b ? a : b) - sigma, low = (a < b ? b : a) + sigma;
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            size_t q = nearest_at(level, x + i, y + j);
+            if (q == at)
+                continue;
+            float other = mean_of_halves(level, c, q);
+            high = other > high ? other : high;
+            low = other < low ? other : low;
+        }
+    }
+    return mean > high ? high : mean < low ? low : mean;
+}
+
 /* The mean of the halves, plus glow. */
 static void finish_row(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
     const struct denoise_pixel *row = get_row(d, y, worker);
     for (int x = 0; x < d->level->width; x++) {
-        size_t at = pixel_at(d->level, x, (int)y);
         float share = row[x].share;
         for (int c = 0; c < 3; c++)
-            d->out[at][c] = 0.5F * (d->level->estimate[0][c][at] + d->level->estimate[1][c][at]) +
-                            (share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c]);
+            d->out[pixel_at(d->level, x, (int)y)][c] =
+                supported_mean(d->level, c, x, (int)y) + (share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c]);
     }
 }
 

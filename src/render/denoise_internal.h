@@ -12,7 +12,7 @@ enum {
     DENOISE_SIDE = 2 * DENOISE_WINDOW + 1,
     DENOISE_LANES = 16, /* of a row of a window, of which the last does not count */
     DENOISE_PATCH = 3,  /* radius of the patches that are compared */
-    DENOISE_STEP = 3,   /* between centres of regressions */
+    DENOISE_STEP = 2,   /* between centres of regressions */
     DENOISE_CHOICE = 4, /* radius of the mean that chooses between bandwidths */
     DENOISE_MARGIN = DENOISE_CHOICE + 2 * DENOISE_WINDOW + DENOISE_PATCH,
     DENOISE_LOCAL = DENOISE_BLOCK + 2 * DENOISE_MARGIN, /* side of a block with everything that it reads */
