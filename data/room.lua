@@ -86,6 +86,9 @@ local function moulding(name, material, profile, x0, x1)
     return smooth(name, material, mesh)
 end
 
+--- Where the pictures are, from the folder of the scene.
+M.textures = '../textures/'
+
 function M.materials()
     local m = {}
     m.wall = gr.material({ .58, .60, .50 }, { 0, 0, 0 }, 1)
@@ -93,8 +96,8 @@ function M.materials()
     m.white = gr.material({ .76, .73, .66 }, { .12, .12, .12 }, 30)
     m.oak = gr.wood_pnd_material(gr.material({ .36, .20, .10 }, { .10, .09, .07 }, 25), 1.0, 6, 1, { .31, .17, .085 })
     m.oak_dark = gr.material({ .22, .12, .06 }, { .12, .10, .08 }, 30)
-    m.parquet = gr.td_cube_material(gr.material({ .5, .3, .2 }, { .12, .11, .10 }, 40), '../textures/parquet.png')
-    m.rug = gr.td_cube_material(gr.material({ .5, .1, .1 }, { 0, 0, 0 }, 1), '../textures/rug.png')
+    m.parquet = gr.td_cube_material(gr.material({ .5, .3, .2 }, { .12, .11, .10 }, 40), M.textures .. 'parquet.png')
+    m.rug = gr.td_cube_material(gr.material({ .5, .1, .1 }, { 0, 0, 0 }, 1), M.textures .. 'rug.png')
     m.gold = gr.material({ .48, .33, .11 }, { .55, .42, .20 }, 22)
     m.brass = gr.rr_material({ .40, .27, .10 }, { .80, .62, .32 }, 45, .22, 0, 1)
     m.carved = gr.material({ .40, .20, .10 }, { .34, .27, .19 }, 36)
@@ -112,10 +115,10 @@ function M.materials()
     m.curtain = gr.material({ .50, .17, .13 }, { .05, .04, .04 }, 10)
     m.glow = gr.material({ 4.5, 3.8, 2.6 }, { 0, 0, 0 }, 1)
     m.shade = gr.material({ .55, .50, .40 }, { .25, .25, .22 }, 30)
-    m.ball = gr.td_sphere_material(gr.material({ .8, .8, .8 }, { .4, .4, .4 }, 90), '../textures/ball.png')
+    m.ball = gr.td_sphere_material(gr.material({ .8, .8, .8 }, { .4, .4, .4 }, 90), M.textures .. 'ball.png')
     m.orange = gr.material({ .78, .36, .05 }, { .18, .15, .10 }, 20)
-    m.label = gr.td_cube_material(gr.material({ .5, .5, .5 }, { .25, .25, .25 }, 40), '../textures/label.png')
-    m.painting = gr.td_cube_material(gr.material({ .5, .5, .5 }, { .06, .06, .06 }, 20), '../textures/painting.png')
+    m.label = gr.td_cube_material(gr.material({ .5, .5, .5 }, { .25, .25, .25 }, 40), M.textures .. 'label.png')
+    m.painting = gr.td_cube_material(gr.material({ .5, .5, .5 }, { .06, .06, .06 }, 20), M.textures .. 'painting.png')
     return m
 end
 
@@ -596,11 +599,12 @@ end
 
 --- Everything, ready to render.
 ---@param options table  eye: position of the camera; fine: factor for the carving (1); extras: the revised scene's
----additions
+---additions; materials: a function that changes the table of materials
 ---@return any root
 ---@return table lights
 function M.build(options)
     local m = M.materials()
+    if options.materials then options.materials(m) end
     local root = gr.node('room')
     root:add_child(shell(m))
     root:add_child(joinery(m))

@@ -1,4 +1,5 @@
 -- TITLE: The Cornell box
+-- OPTIONS: --spp 24 --denoise
 -- The measured box of Cornell University's Program of Computer Graphics (Goral, Torrance, Greenberg, Battaile 1984; data
 -- of 1998), colours as linear RGB: walls light each other. A unit is a decimetre.
 local function matte(r, g, b)
@@ -33,6 +34,6 @@ block(1.65, 1.65, 3.68, -1.69, -17)
 block(1.65, 3.3, 1.86, -3.51, 17)
 
 gr.render {
-    node = room, file = 'cornell.png', width = 512, height = 512, integrator = 'path',
+    node = room, file = 'cornell.png', width = 400, height = 400, integrator = 'path',
     eye = { 2.78, 2.73, 8 }, target = { 2.78, 2.73, 0 }, fov = 39.3, background = { 0, 0, 0 },
 }

@@ -1,5 +1,5 @@
 -- TITLE: Lamps in plates
--- OPTIONS: --spp 48
+-- OPTIONS: --spp 24
 -- Three plates of metal, from polished to rough, show four lamps, from small and bright to large and dim, after the
 -- picture by which Veach and Guibas compared ways of sampling ("Optimally Combining Sampling Techniques for Monte Carlo
 -- Rendering", 1995). The lamps have the same power: small ones are found by sampling lights, large ones in polished

@@ -1,5 +1,5 @@
 -- TITLE: A street with a thousand lamps
--- OPTIONS: --spp 48
+-- OPTIONS: --spp 32
 -- Everything that shines here lights the street: 880 bulbs on strings from house to house, lit windows, signs and
 -- lanterns. The light sampler finds those that matter at each place by a hierarchy with powers, bounds and cones (Conty
 -- and Kulla 2018).

@@ -1,6 +1,6 @@
 -- Glass, gold and lacquer on a table: layered materials in the light of a window and a lamp.
 -- TITLE: Glass, gold and lacquer on a table
--- OPTIONS: --integrator path --spp 256
+-- OPTIONS: --spp 32
 
 local oak = gr.openpbr_material{
     base_color = gr.mix_texture({0.30, 0.17, 0.08}, {0.20, 0.10, 0.045}, gr.wood_texture(0.6, 9)),
@@ -54,17 +54,21 @@ ball('copper', copper, 0.25, 2.45, 0.35)
 ball('velvet', velvet, 2.35, 2.3, 0.45)
 add(gr.cylinder{name = 'tin', material = brushed, from = {-1.7, 0, -1.9}, to = {-1.7, 2.4, -1.9}, radius = 0.7})
 
--- The window: a large area light on the left. The lamp: a small one on the right.
+-- The window: a large area light on the left. The lamp: a ball on the right.
 local window = gr.area_light{
     colour = {1, 1, 1}, emission = {6, 6.6, 7.5}, corner = {-9, 2, 5}, v1 = {0, 5, 0}, v2 = {3, 0, 3}, visible = true,
 }
-local lamp = gr.spherical_light{colour = {1, 1, 1}, emission = {32, 24, 15}, position = {5, 5.5, 3}, radius = 0.6, visible = true}
+local lamp = gr.spherical_light{colour = {1, 1, 1}, emission = {11.5, 8.6, 5.4}, position = {5, 5.5, 3}, radius = 1, visible = true}
 
 gr.render{
     node = scene,
     file = 'table.png',
-    width = 640,
-    height = 360,
+    width = 480,
+    height = 270,
+    integrator = 'path',
+    spp = 256,
+    denoise = true,
+    clamp = 20,
     eye = {0.4, 3.4, 11},
     target = {0.1, 0.75, 0},
     fov = 27,
