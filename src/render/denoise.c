@@ -253,6 +253,7 @@ static void keep_estimates(struct denoise_scratch *s, int bandwidth, int half) {
             }
         }
     }
+    memcpy(s->support[bandwidth][half], s->sums[3], sizeof s->sums[3]);
 }
 
 /* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
@@ -302,10 +303,19 @@ static void narrow_shares(float (*errors)[INNER], int y, float shares[BLOCK]) {
     }
 }
 
+/* The half that speaks for a half at a pixel: the other one if few pixels were like it there, since a bright path made
+ * the other one unlike all. */
+static int supported_half(const struct denoise_scratch *s, int bandwidth, int half, int at) {
+    const float few = 2, many = 8;
+    bool unsupported = s->support[bandwidth][half][at] < few && s->support[bandwidth][1 - half][at] > many;
+    return unsupported ? 1 - half : half;
+}
+
 static void store_pixel(const struct level *level, const struct denoise_scratch *s, int from, size_t to, float share) {
-    for (int c = 0; c < 3; c++) {
-        for (int half = 0; half < 2; half++) {
-            float wide = s->estimates[0][half][c][from], narrow = s->estimates[1][half][c][from];
+    for (int half = 0; half < 2; half++) {
+        int wide_half = supported_half(s, 0, half, from), narrow_half = supported_half(s, 1, half, from);
+        for (int c = 0; c < 3; c++) {
+            float wide = s->estimates[0][wide_half][c][from], narrow = s->estimates[1][narrow_half][c][from];
             level->estimate[half][c][to] = wide + share * (narrow - wide);
         }
     }

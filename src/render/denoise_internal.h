@@ -42,8 +42,8 @@ typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
 struct denoise_scratch {
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
     denoise_plane sums[4]; /* of weighted colours, and of weights */
-    denoise_plane estimates[DENOISE_BANDWIDTHS][2][3];
-    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */
+    denoise_plane estimates[DENOISE_BANDWIDTHS][2][3], support[DENOISE_BANDWIDTHS][2]; /* support: sums of weights */
+    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES];                       /* between patches */
     float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
     float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
     denoise_feature_plane feature_mean[3], feature_noise[3];
