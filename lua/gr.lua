@@ -738,6 +738,24 @@ function gr.height_field(material, heights) end
 ---@overload fun(fields: gr.blob.fields): gr.node
 function gr.blob(material, spheres, cylinders, threshold) end
 
+---@class gr.implicit.fields
+---@field name? string name (a string; default 'implicit'): Name of the node, for messages.
+---@field material? gr.material material (a material; default plain gray): Material of the surface.
+---@field f function|gr.texture f (a function): A function of a point, below 0 inside.
+---@field bounds? gr.triple[] bounds (a table of points {x, y, z}; default a ball, if radius is given): Two corners {min, max} of the box that bounds it.
+---@field radius? number radius (a number, > 0; optional): Of the ball that bounds it, in place of bounds.
+---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Of that ball.
+---@field open? boolean open (true or false; default false): Whether there are no caps on the bounds.
+
+---An implicit solid: where a function of a point is below 0, within a box or a ball.
+---@param material gr.material material (a material; default plain gray): Material of the surface.
+---@param f function|gr.texture f (a function): A function of a point, below 0 inside.
+---@param bounds gr.triple[] bounds (a table of points {x, y, z}; default a ball, if radius is given): Two corners {min, max} of the box that bounds it.
+---@return gr.node
+---@overload fun(name: string, f: function|gr.texture, bounds: gr.triple[]): gr.node
+---@overload fun(fields: gr.implicit.fields): gr.node
+function gr.implicit(material, f, bounds) end
+
 ---@class gr.curve.fields
 ---@field name? string name (a string; default 'curve'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.

@@ -6,6 +6,8 @@
 
 #include "expr/expr_interval_internal.h"
 
+#include <float.h>
+
 enum { D = EXPR_DIRECTIONS };
 
 const double expr_gradient_seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS] = {
@@ -249,8 +251,24 @@ static struct expr_interval of_two(enum expr_operation operation, struct expr_in
     return expr_interval_apply(operation, a, b, unused);
 }
 
-static struct expr_interval product(struct expr_interval a, struct expr_interval b) {
-    return of_two(EXPR_MULTIPLY, a, b);
+/* The two that slopes consist of, in short where all ends are finite; with the same bits. */
+static inline struct expr_interval product(struct expr_interval a, struct expr_interval b) {
+    double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+    double low = q < p ? q : p, high = q < p ? p : q, low_2 = s < r ? s : r, high_2 = s < r ? r : s;
+    low = low_2 < low ? low_2 : low;
+    high = high < high_2 ? high_2 : high;
+    if (!(fabs(p) + fabs(q) + (fabs(r) + fabs(s)) < DBL_MAX) || a.low > a.high || b.low > b.high)
+        return of_two(EXPR_MULTIPLY, a, b);
+    return (struct expr_interval){low - fabs(low) * DBL_EPSILON, high + fabs(high) * DBL_EPSILON,
+                                  a.may_be_nan || b.may_be_nan};
+}
+
+static inline struct expr_interval plus(struct expr_interval a, struct expr_interval b) {
+    double low = a.low + b.low, high = a.high + b.high;
+    if (!(fabs(low) + fabs(high) < DBL_MAX) || low > high)
+        return of_two(EXPR_ADD, a, b);
+    return (struct expr_interval){low - fabs(low) * DBL_EPSILON, high + fabs(high) * DBL_EPSILON,
+                                  a.may_be_nan || b.may_be_nan};
 }
 
 static struct expr_interval quotient(struct expr_interval a, struct expr_interval b) {
@@ -459,8 +477,16 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
     }
 }
 
+/* The largest slopes of the root of a value, where it is a sum of squares: d sqrt(x^2) is at most |dx|, and
+ * d sqrt(a + b) at most sqrt((d sqrt a)^2 + (d sqrt b)^2) by Cauchy and Schwarz. Infinite where nothing is known. So
+ * lengths have slopes of at most 1 also where the root may be of 0. */
+struct root_slopes {
+    double max[D];
+};
+
 size_t expr_slopes_size(const struct expr_program *program) {
-    return ((size_t)program->constant_count + program->register_count) * sizeof(struct expr_range);
+    return ((size_t)program->constant_count + program->register_count) *
+           (sizeof(struct expr_range) + sizeof(struct root_slopes));
 }
 
 static bool is_zero(struct expr_interval a) {
@@ -476,25 +502,67 @@ static struct expr_interval chosen_slope(struct expr_choice choice, struct expr_
     return choice.first ? a : choice.second ? b : enclosure(a, b);
 }
 
-static struct expr_interval slope_along(enum expr_operation operation, const struct expr_range *from[3],
-                                        const struct expr_interval by[3], int direction) {
-    struct expr_interval sum = zero, slopes[3];
-    for (int j = 0; j < 3; j++)
-        slopes[j] = from[j]->slopes[direction];
-    if (operation == EXPR_SELECT && !is_single(from[0]->value) && !is_zero(slopes[0]))
-        return any_slope;
-    struct expr_choice choice = expr_interval_decide(operation, from[0]->value, from[1]->value);
+static double largest(struct expr_interval a) {
+    return fmax(fabs(a.low), fabs(a.high)) * (1 + 4 * DBL_EPSILON);
+}
+
+static double root_of_sum(double a, double b) {
+    return sqrt(a * a + b * b) * (1 + 4 * DBL_EPSILON);
+}
+
+/* Of an operand; of what is constant and not below 0 it is 0. */
+static double root_slope(const struct expr_program *program, const struct root_slopes *roots,
+                         const struct expr_range *operand, uint16_t value, int direction) {
+    if (is_zero(operand->slopes[direction]) && operand->value.low >= 0)
+        return 0;
+    return value < program->constant_count ? INFINITY : roots[value].max[direction];
+}
+
+/* The slope of a root, by the chain rule and by what the operand is a sum of. */
+static struct expr_interval slope_of_root(struct expr_interval by_chain, struct expr_interval operand, double max) {
+    if (!(max < INFINITY))
+        return by_chain;
+    struct expr_interval out = {operand.low >= 0 ? 0 : -max, operand.high <= 0 ? 0 : max, false};
+    out.low = by_chain.low > out.low ? by_chain.low : out.low;
+    out.high = by_chain.high < out.high ? by_chain.high : out.high;
+    return out.low <= out.high ? out : by_chain;
+}
+
+/* Of what is not known to be NaN everywhere, false. Of NaN and a number, min and max give the first. */
+static bool is_always_nan(enum expr_operation operation, const struct expr_range *from[3]) {
+    bool first = from[0]->is_nan, second = from[1]->is_nan;
+    if (operation == EXPR_SQRT)
+        return first || from[0]->value.high < 0;
+    if (operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY || operation == EXPR_DIVIDE)
+        return first || second;
     if (operation == EXPR_SELECT)
-        return chosen_slope(choice, slopes[1], slopes[2]);
-    if (operation == EXPR_MIN || operation == EXPR_MAX)
-        return from[1]->value.may_be_nan ? any_slope : chosen_slope(choice, slopes[0], slopes[1]);
+        return second && from[2]->is_nan;
+    return first && (operation == EXPR_NEGATE || operation == EXPR_ABS || operation == EXPR_MIN ||
+                     operation == EXPR_MAX || operation == EXPR_SIN || operation == EXPR_COS);
+}
+
+/* Of min, max and selections. */
+static struct expr_interval slope_of_choice(enum expr_operation operation, const struct expr_range *from[3],
+                                            int direction) {
+    struct expr_interval a = from[0]->slopes[direction], b = from[1]->slopes[direction];
+    struct expr_choice choice = expr_interval_decide(operation, from[0]->value, from[1]->value);
+    if (operation != EXPR_SELECT)
+        return from[1]->value.may_be_nan ? any_slope : chosen_slope(choice, a, b);
+    return !is_single(from[0]->value) && !is_zero(a) ? any_slope : chosen_slope(choice, b, from[2]->slopes[direction]);
+}
+
+static struct expr_interval slope_along(const struct expr_range *from[3], const struct expr_interval by[3],
+                                        int direction) {
+    struct expr_interval sum = zero;
     for (int j = 0; j < 3; j++) {
-        if (is_zero(slopes[j]) || is_zero(by[j]))
+        struct expr_interval term = from[j]->slopes[direction];
+        if (is_zero(term) || is_zero(by[j]))
             continue;
         if (by[j].may_be_nan || !(by[j].low > -INFINITY || by[j].high < INFINITY))
             return any_slope;
-        struct expr_interval term = product(slopes[j], by[j]);
-        sum = is_zero(sum) ? term : of_two(EXPR_ADD, sum, term);
+        if (!(by[j].low == 1 && by[j].high == 1))
+            term = product(term, by[j]);
+        sum = is_zero(sum) ? term : plus(sum, term);
     }
     return sum.may_be_nan ? any_slope : sum;
 }
@@ -523,13 +591,16 @@ static struct expr_interval slope_along(enum expr_operation operation, const str
 void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                           const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
                           struct expr_choice *choices, void *rows) {
+    struct root_slopes *roots = (void *)((struct expr_range *)rows + program->constant_count + program->register_count);
     struct expr_range *values = rows, constants[3] = {{.value = zero}, {.value = zero}, {.value = zero}};
     for (int i = 0; i < program->input_count; i++) {
         struct expr_range *value = &values[program->inputs[i].value];
         value->value = inputs[program->inputs[i].input];
+        value->is_nan = false;
         for (int k = 0; k < directions->count; k++) {
             double seed = directions->seeds[program->inputs[i].input][k];
             value->slopes[k] = (struct expr_interval){seed, seed, false};
+            roots[program->inputs[i].value].max[k] = INFINITY;
         }
     }
     for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
@@ -547,16 +618,32 @@ void expr_evaluate_slopes(const struct expr_program *program, const struct expr_
         struct expr_interval a = from[0]->value, b = from[1]->value, c = from[2]->value;
         result.value = operation == EXPR_MULTIPLY && in->a == in->b ? expr_interval_square(a)
                                                                     : expr_interval_apply(operation, a, b, c);
-        slopes_of(operation, a, b, c, result.value, by);
-        for (int k = 0; k < directions->count; k++)
-            result.slopes[k] = slope_along(operation, from, by, k);
+        bool is_choice = operation == EXPR_MIN || operation == EXPR_MAX || operation == EXPR_SELECT;
+        if (!is_choice)
+            slopes_of(operation, a, b, c, result.value, by);
+        struct root_slopes root;
+        for (int k = 0; k < directions->count; k++) {
+            result.slopes[k] = is_choice ? slope_of_choice(operation, from, k) : slope_along(from, by, k);
+            root.max[k] = INFINITY;
+            if (operation == EXPR_MULTIPLY && in->a == in->b)
+                root.max[k] = largest(from[0]->slopes[k]);
+            else if (operation == EXPR_ADD)
+                root.max[k] = root_of_sum(root_slope(program, roots, from[0], in->a, k),
+                                          root_slope(program, roots, from[1], in->b, k));
+            else if (operation == EXPR_SQRT)
+                result.slopes[k] =
+                    slope_of_root(result.slopes[k], from[0]->slopes[k], root_slope(program, roots, from[0], in->a, k));
+        }
         if (choices)
             choices[in - program->code] = expr_interval_decide(operation, a, b);
+        result.is_nan = is_always_nan(operation, from);
         values[in->out] = result;
+        roots[in->out] = root;
     }
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         bool is_constant = value < program->constant_count;
+        outputs[i].is_nan = !is_constant && values[value].is_nan;
         outputs[i].value = is_constant ? expr_interval_of_float(program->constants[value].f) : values[value].value;
         for (int k = 0; k < directions->count; k++)
             outputs[i].slopes[k] = is_constant                   ? zero

@@ -29,6 +29,7 @@ struct expr_directions {
 /* Bounds of a value and of its slopes. */
 struct expr_range {
     struct expr_interval value, slopes[EXPR_DIRECTIONS];
+    bool is_nan; /* the value is NaN everywhere */
 };
 
 /* The size in bytes of the memory that expr_evaluate_slopes needs. */

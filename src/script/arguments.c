@@ -638,6 +638,12 @@ static bool read_value(struct script_context *c, int index, const struct script_
     case KIND_CURVES:
         read_rows(c, index, argument_path, p->kind == KIND_CURVES, value);
         return true;
+    case KIND_FUNCTION:
+        handle = handle_at(L, index);
+        value->program = record_function(c, index, p->name);
+        if (!value->program && !(handle && handle->type == HANDLE_GHOST))
+            wrong_type(c, &argument_path, kind_words(p->kind), index);
+        return value->program != NULL;
     case KIND_COUNT:
         break;
     }
@@ -708,6 +714,7 @@ bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags)
         [KIND_NUMBERS] = LIKE_TABLE | LIKE_NUMBER,
         [KIND_ROWS] = LIKE_TABLE,
         [KIND_CURVES] = LIKE_TABLE,
+        [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
     };
     assert(wanted[kind]); /* every kind has a case */
     int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0);

@@ -230,6 +230,8 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
         return "number[][]";
     case KIND_CURVES:
         return "number[][][]";
+    case KIND_FUNCTION:
+        return "function|gr.texture";
     case KIND_COUNT:
         break;
     }

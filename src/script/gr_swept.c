@@ -7,6 +7,7 @@
 #include "shape/blob.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"
+#include "shape/implicit.h"
 #include "shape/lathe.h"
 #include "shape/prism.h"
 #include "shape/sweep.h"
@@ -125,6 +126,42 @@ static bool gr_sweep(struct script_context *context, const struct script_value *
         return false;
     struct shape shape = {.kind = SHAPE_SWEEP, .sweep = sweep_build(&context->scene.arena, &in, error)};
     return shape.sweep && give_node(context, args, "sweep", &shape, result, error);
+}
+
+enum { IMPLICIT_F = SHAPE_FIRST, IMPLICIT_BOUNDS, IMPLICIT_RADIUS, IMPLICIT_CENTRE, IMPLICIT_OPEN };
+static const struct script_parameter implicit_parameters[] = {
+    SHAPE("implicit"),
+    [IMPLICIT_F] = {"f", KIND_FUNCTION, 0, ANY, NULL, NULL, "A function of a point, below 0 inside."},
+    [IMPLICIT_BOUNDS] = {"bounds", KIND_POINTS, OPTIONAL, ANY, NULL, "a ball, if radius is given",
+                         "Two corners {min, max} of the box that bounds it."},
+    [IMPLICIT_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,
+                         "Of the ball that bounds it, in place of bounds."},
+    [IMPLICIT_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Of that ball."},
+    [IMPLICIT_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether there are no caps on the bounds."},
+};
+
+static bool gr_implicit(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
+    const struct script_value *bounds = &args[IMPLICIT_BOUNDS], *radius = &args[IMPLICIT_RADIUS];
+    struct implicit_input in = {.program = args[IMPLICIT_F].program,
+                                .is_ball = radius->given,
+                                .centre = args[IMPLICIT_CENTRE].vector,
+                                .radius = radius->number,
+                                .open = args[IMPLICIT_OPEN].boolean};
+    if (bounds->given == radius->given)
+        return error_set(error, ERROR_SCENE,
+                         radius->given ? "bounds and radius exclude each other"
+                                       : "bounds is missing (or radius), for example "
+                                         "bounds = {{-1, -1, -1}, {1, 1, 1}}");
+    if (args[IMPLICIT_CENTRE].given && !radius->given)
+        return error_set(error, ERROR_SCENE, "centre needs radius");
+    if (bounds->given && bounds->count != 2)
+        return error_set(error, ERROR_SCENE, "bounds has %u entries, not the two corners {min, max}", bounds->count);
+    if (bounds->given)
+        in.bounds = (struct box){vec3_make(bounds->points[0][0], bounds->points[0][1], bounds->points[0][2]),
+                                 vec3_make(bounds->points[1][0], bounds->points[1][1], bounds->points[1][2])};
+    struct shape shape = {.kind = SHAPE_IMPLICIT, .implicit = implicit_build(&context->scene.arena, &in, error)};
+    return shape.implicit && give_node(context, args, "implicit", &shape, result, error);
 }
 
 enum { CURVE_POINTS = SHAPE_FIRST, CURVE_WIDTHS, CURVE_SPLINE, CURVE_FLAT };
@@ -336,6 +373,9 @@ static const struct script_function rows[] = {
     GR("blob", blob_parameters, RESULT_NODE, gr_blob,
        "A blob (metaballs): the isosurface of the fields of balls and rods.", "material spheres cylinders? threshold?",
        "name spheres cylinders? threshold?"),
+    GR("implicit", implicit_parameters, RESULT_NODE, gr_implicit,
+       "An implicit solid: where a function of a point is below 0, within a box or a ball.", "material f bounds",
+       "name f bounds"),
     GR("curve", curve_parameters, RESULT_NODE, gr_curve, "A hair: a ribbon along a spline that faces each ray.",
        "material points widths spline?", "name points widths spline?"),
     GR("patch", patch_parameters, RESULT_NODE, gr_patch, "Bicubic Bezier patches, as a mesh.",

@@ -432,6 +432,7 @@ void lenient_convert(struct script_context *c, int index, const struct script_fu
     case KIND_NUMBERS:
     case KIND_ROWS:
     case KIND_CURVES:
+    case KIND_FUNCTION:
         lua_pushvalue(L, index);
         return;
     case KIND_COUNT:
@@ -531,6 +532,7 @@ void lenient_default(struct script_context *c, const struct script_function *fun
     case KIND_NUMBERS:
     case KIND_ROWS:
     case KIND_CURVES:
+    case KIND_FUNCTION:
     case KIND_COUNT:
         break;
     }

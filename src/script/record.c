@@ -389,15 +389,14 @@ static struct texture texture_of(const struct recording *recording) {
     return out;
 }
 
-const struct script_texture *record_texture(struct script_context *context, int index, const char *name) {
+/* Raises every error. */
+static void record(struct script_context *context, int index, const char *name, struct recording *recording) {
     lua_State *L = context->lua;
     struct recorder *recorder = context->recorder;
-    struct recording recording = {.program = NULL};
-    struct error error = {0};
     recorder->busy = true;
     lua_pushcfunction(L, record_protected);
     lua_pushvalue(L, index);
-    lua_pushlightuserdata(L, &recording);
+    lua_pushlightuserdata(L, recording);
     int status = lua_pcall(L, 2, 0, 0);
     recorder->active = recorder->busy = false;
     expr_graph_destroy(&recorder->graph);
@@ -406,6 +405,24 @@ const struct script_texture *record_texture(struct script_context *context, int 
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
         lua_error(L); /* a fatal error, which the context has recorded */
+}
+
+const struct expr_program *record_function(struct script_context *context, int index, const char *name) {
+    struct recording recording = {.program = NULL};
+    const struct handle *handle = handle_at(context->lua, index);
+    const struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
+    if (texture && texture->texture->kind == TEXTURE_FUNCTION)
+        return texture->texture->recorded.program;
+    if (lua_type(context->lua, index) != LUA_TFUNCTION)
+        return NULL;
+    record(context, index, name, &recording);
+    return recording.program;
+}
+
+const struct script_texture *record_texture(struct script_context *context, int index, const char *name) {
+    struct recording recording = {.program = NULL};
+    struct error error = {0};
+    record(context, index, name, &recording);
     struct script_texture out = {.texture = texture_keep(&context->scene.arena, texture_of(&recording), &error)};
     const struct script_texture *kept = out.texture ? gr_keep_texture(context, &out, &error) : NULL;
     if (!kept)

@@ -1003,6 +1003,8 @@ const char *kind_words(enum kind kind) {
         return "a table of tables of numbers";
     case KIND_CURVES:
         return "a table of tables of pairs {x, z}";
+    case KIND_FUNCTION:
+        return "a function";
     case KIND_COUNT:
         break;
     }

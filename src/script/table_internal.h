@@ -52,6 +52,7 @@ enum kind {
     KIND_NUMBERS,    /* numbers, count; a number alone: single */
     KIND_ROWS,       /* starts, numbers, count: lists of numbers of any length */
     KIND_CURVES,     /* starts, pairs, count: lists of pairs */
+    KIND_FUNCTION,   /* program: a function of Lua, recorded */
     KIND_COUNT,
 };
 
@@ -74,6 +75,7 @@ struct script_value {
     const struct material *material;
     const struct material **materials;
     const struct script_texture *texture;
+    const struct expr_program *program;
     const char **names;
     struct image *image;
     uint32_t count;

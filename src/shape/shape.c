@@ -6,6 +6,7 @@
 #include "shape/box_shape_internal.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"
+#include "shape/implicit.h"
 #include "shape/lathe.h"
 #include "shape/prism.h"
 #include "shape/sphere.h"
@@ -66,6 +67,7 @@ static bool shape_extent(const struct shape *shape, struct vec3 g, double *lo, d
     case SHAPE_QUADRIC:
         return quadric_extent(shape->quadric, g, lo, hi);
     case SHAPE_BOX:
+    case SHAPE_IMPLICIT:
     case SHAPE_MESH:
         return false;
     }
@@ -114,6 +116,8 @@ struct box shape_bounds(const struct shape *shape) {
         return height_field_bounds(shape->height_field);
     case SHAPE_BLOB:
         return blob_bounds(shape->blob);
+    case SHAPE_IMPLICIT:
+        return implicit_bounds(shape->implicit);
     case SHAPE_CURVE:
         return curve_bounds(shape->curve);
     case SHAPE_MESH:
@@ -144,6 +148,7 @@ static bool is_box_under(const struct shape *shape, const struct affine *map, co
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
     case SHAPE_MESH:
         break;
@@ -192,6 +197,8 @@ bool shape_is_closed(const struct shape *shape) {
         return height_field_is_closed(shape->height_field);
     case SHAPE_BLOB:
         return true;
+    case SHAPE_IMPLICIT:
+        return implicit_is_closed(shape->implicit);
     case SHAPE_CURVE:
         return false;
     case SHAPE_MESH:
@@ -217,6 +224,7 @@ enum surface_layout shape_layout(const struct shape *shape) {
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
     case SHAPE_MESH:
         break;
@@ -243,6 +251,7 @@ enum shape_area shape_area(const struct shape *shape) {
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
         break;
     }
@@ -285,6 +294,7 @@ enum hit_convexity shape_convexity(const struct shape *shape) {
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
     case SHAPE_MESH:
         break;
@@ -301,6 +311,8 @@ const char *shape_why_open(const struct shape *shape) {
         return "has no caps (open = true), so it has no inside";
     case SHAPE_PLANAR:
         return "is flat, so it has no inside; only a plane with a normal is a half-space";
+    case SHAPE_IMPLICIT:
+        return "is an implicit surface without caps on its bounds (open = true), so it has no inside";
     case SHAPE_CURVE:
         return "is a curve, a ribbon without inside";
     case SHAPE_LATHE:
@@ -346,6 +358,7 @@ static int analytic_crossings(const struct shape *shape, const struct ray *ray, 
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
     case SHAPE_MESH:
         break;
@@ -380,6 +393,7 @@ bool shape_is_listed(const struct shape *shape) {
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
     case SHAPE_MESH:
         break;
@@ -401,6 +415,8 @@ static bool listed_crossings(const struct shape *shape, const struct ray *ray, s
         return height_field_crossings(shape->height_field, ray, scratch, out);
     case SHAPE_BLOB:
         return blob_crossings(shape->blob, ray, scratch, out);
+    case SHAPE_IMPLICIT:
+        return implicit_crossings(shape->implicit, ray, scratch, out);
     case SHAPE_CURVE:
         return curve_crossings(shape->curve, ray, scratch, out);
     case SHAPE_SPHERE:
@@ -454,6 +470,9 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
     case SHAPE_CURVE:
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, out);
+    case SHAPE_IMPLICIT: /* the same crossings, as far as they are asked for */
+        scratch->shape_tests++;
+        return implicit_nearest(shape->implicit, ray, out);
     case SHAPE_HEIGHT_FIELD: /* the same crossings, without those that come later */
         scratch->shape_tests++;
         return height_field_nearest(shape->height_field, ray, scratch, out);
@@ -485,6 +504,11 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
         struct crossing ignored;
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, &ignored);
+    }
+    case SHAPE_IMPLICIT: {
+        struct crossing ignored;
+        scratch->shape_tests++;
+        return implicit_nearest(shape->implicit, ray, &ignored);
     }
     case SHAPE_HEIGHT_FIELD: {
         struct crossing ignored;
@@ -530,6 +554,7 @@ bool shape_crossings(const struct shape *shape, const struct ray *ray, struct ge
     case SHAPE_SWEEP:
     case SHAPE_HEIGHT_FIELD:
     case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
         scratch->shape_tests++;
         return listed_crossings(shape, ray, scratch, out);
@@ -587,6 +612,8 @@ bool shape_contains(const struct shape *shape, struct vec3 point, struct geom_sc
         return height_field_contains(shape->height_field, point);
     case SHAPE_BLOB:
         return blob_contains(shape->blob, point);
+    case SHAPE_IMPLICIT:
+        return implicit_contains(shape->implicit, point);
     case SHAPE_CURVE:
         return false;
     case SHAPE_MESH:
@@ -637,6 +664,9 @@ void shape_describe(const struct shape *shape, const struct ray *ray, const stru
     case SHAPE_BLOB:
         blob_describe(shape->blob, ray, crossing, out);
         return;
+    case SHAPE_IMPLICIT:
+        implicit_describe(shape->implicit, ray, crossing, out);
+        return;
     case SHAPE_CURVE:
         curve_describe(shape->curve, ray, crossing, out);
         return;
@@ -671,6 +701,8 @@ uint32_t shape_scratch_need(const struct shape *shape) {
         return height_field_scratch_need(shape->height_field);
     case SHAPE_BLOB:
         return blob_scratch_need(shape->blob);
+    case SHAPE_IMPLICIT:
+        return implicit_scratch_need(shape->implicit);
     case SHAPE_CURVE:
         return curve_scratch_need(shape->curve);
     case SHAPE_MESH:

@@ -24,6 +24,7 @@ struct sweep_path;
 struct height_field;
 struct blob;
 struct curve;
+struct implicit;
 
 /* Every kind, with its name in scene dumps and traces. */
 #define SHAPE_KINDS(X)                                                                                                 \
@@ -40,6 +41,7 @@ struct curve;
     X(SHAPE_SWEEP, "sweep")                                                                                            \
     X(SHAPE_HEIGHT_FIELD, "height field")                                                                              \
     X(SHAPE_BLOB, "blob")                                                                                              \
+    X(SHAPE_IMPLICIT, "implicit")                                                                                      \
     X(SHAPE_CURVE, "curve")                                                                                            \
     X(SHAPE_MESH, "mesh")
 enum shape_kind { SHAPE_KINDS(LIST_MEMBER) };
@@ -65,6 +67,7 @@ struct shape {
         const struct height_field *height_field;
         const struct blob *blob;
         const struct curve *curve;
+        const struct implicit *implicit;
         const struct mesh *mesh;
     };
 };

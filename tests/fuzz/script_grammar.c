@@ -254,6 +254,11 @@ static void say_argument(struct grammar *g, const struct script_parameter *p) {
         say(g, "}");
         return;
     }
+    case KIND_FUNCTION:
+        say(g, "function(p) return %s end",
+            ONE_OF(g, "p:length() - 1", "p.x * p.y - p.z", "gr.noise(p * 3)", "math.floor(p.x * 2) + p.y", "p.z / p.x",
+                   "{p.x, p.y, p.z}", "p.q", "math.sqrt(p.x - p.y) - 0.1", "p.x < p.y and 1 or -1"));
+        return;
     case KIND_COUNT:
         break;
     }

@@ -40,6 +40,7 @@ root:add_child(gr.prism{material = plain, outline = {{0, 0}, {3, 0}, {0, 3}}, ho
 root:add_child(gr.sweep(plain, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, {0.1, 0.2, 0.1}))
 root:add_child(gr.height_field(plain, {{0, 1, 0}, {1, 0, 1}}))
 root:add_child(gr.height_field{material = plain, image = 'cross.png', smooth = true, open = true})
+root:add_child(gr.implicit(plain, function(p) return p:length() - 0.3 end, {{-1, -1, -1}, {1, 1, 1}}))
 root:add_child(gr.blob(plain, {{0, 0, 0, 1}}, {{0, 0, 0, 1, 0, 0, 0.5, 2}}, 0.4))
 root:add_child(gr.curve(plain, {{0, 0, 0}, {1, 1, 0}, {2, 0, 1}}, 0.1, 'b-spline'))
 local net = {}

@@ -109,7 +109,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         text = "{lamp, lamp}";
         break;
     case KIND_POINTS:
-        text = "{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}";
+        text = strcmp(p->name, "bounds") == 0 ? "{{-1, -1, -1}, {1, 1, 1}}" : "{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}";
         if (strstr(p->help, "16")) /* patches */
             text = "{{0,0,0},{1,0,0},{2,0,0},{3,0,0},{0,1,1},{1,1,1},{2,1,1},{3,1,1},"
                    "{0,2,0},{1,2,0},{2,2,0},{3,2,0},{0,3,0},{1,3,0},{2,3,0},{3,3,0}}";
@@ -129,6 +129,9 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         break;
     case KIND_CURVES:
         text = "{{{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}}}";
+        break;
+    case KIND_FUNCTION:
+        text = "function(p) return p.x * p.x + p.y - p.z end";
         break;
     case KIND_PAIRS:
         text = "{{0, 0}, {1, 0}, {1, 1}}";
@@ -186,7 +189,7 @@ static inline bool is_needed(const struct script_function *function, int index) 
     const struct script_parameter *p = &function->parameters[index];
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
     bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
-    bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0;
+    bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0 || strcmp(p->name, "bounds") == 0;
     bool area_light_colour = function->result == RESULT_LIGHT && strcmp(p->name, "colour") == 0; /* or an emission */
     return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || area_light_colour;
 }
@@ -218,6 +221,8 @@ static inline bool goes_with_the_others(const struct script_function *function, 
     const char *name = function->parameters[p].name;
     bool excludes = strcmp(name, "file") == 0 && !(function->parameters[p].kind == KIND_OUTPUT);
     excludes = excludes || strcmp(name, "image") == 0;
+    if (strcmp(function->name, "implicit") == 0 && (strcmp(name, "radius") == 0 || strcmp(name, "centre") == 0))
+        return false; /* in place of bounds */
     return !(excludes && (strstr(function->name, "mesh") || strstr(function->name, "height"))) &&
            !strstr(name, "materials") && strcmp(name, "ior") != 0 && strcmp(name, "refract") != 0 &&
            strcmp(name, "target_to") != 0;

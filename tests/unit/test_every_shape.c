@@ -4,8 +4,10 @@
 #include "tests/unit/shape_makers.h"
 
 #include "csg/csg.h"
+#include "shape/implicit.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
+#include "tests/unit/function_makers.h"
 #include "tests/unit/swept_makers.h"
 
 #include <math.h>
@@ -251,6 +253,26 @@ static struct made_shape made_mesh(struct shape_makers *makers, struct test_rand
     return (struct made_shape){shape, closed ? fabs(box) / 6 : NAN, area};
 }
 
+/* A ball, or a torus in a ball. */
+static struct made_shape made_implicit(struct shape_makers *makers, struct test_random *random) {
+    struct function_maker m;
+    struct error error = {0};
+    bool is_ball = chance(random, 0.5);
+    double radius = test_uniform(random, 0.3, 0.8), minor = radius * test_uniform(random, 0.2, 0.6);
+    function_begin(&m);
+    uint32_t node =
+        is_ball ? fn_ball(&m, random_vec3(random, 0.1), radius, chance(random, 0.5)) : fn_torus(&m, radius, minor);
+    struct implicit_input in = {.program = function_end(&m, node, &makers->arena),
+                                .bounds = {vec3_all(-1), vec3_all(1)},
+                                .is_ball = !is_ball,
+                                .radius = 2,
+                                .open = chance(random, 0.2)};
+    struct shape shape = {.kind = SHAPE_IMPLICIT, .implicit = implicit_build(&makers->arena, &in, &error)};
+    double volume = is_ball ? 4 * M_PI / 3 * radius * radius * radius : 2 * M_PI * M_PI * radius * minor * minor;
+    double area = is_ball ? 4 * M_PI * radius * radius : 4 * M_PI * M_PI * radius * minor;
+    return (struct made_shape){shape, in.open ? NAN : volume, area};
+}
+
 /* A cube with a hollow ball in it, or a random tree of solids. */
 static struct made_geometry made_csg(struct shape_makers *makers, struct test_random *random) {
     enum { LEAVES = 5 };
@@ -306,6 +328,8 @@ struct made_shape make_shape(struct shape_makers *makers, enum shape_kind kind, 
         return made_height_field(makers, random);
     case SHAPE_BLOB:
         return made_blob(makers, random);
+    case SHAPE_IMPLICIT:
+        return made_implicit(makers, random);
     case SHAPE_CURVE:
         return made_curve(makers, random);
     case SHAPE_MESH:

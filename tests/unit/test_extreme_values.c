@@ -248,6 +248,7 @@ static bool is_numeric(enum kind kind) {
     case KIND_NODES:
     case KIND_LIGHTS:
     case KIND_FACES:
+    case KIND_FUNCTION:
     case KIND_COUNT:
         break;
     }

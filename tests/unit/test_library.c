@@ -56,6 +56,10 @@ TEST(library_patterns_have_their_closed_forms_and_no_seams_at_the_lattice) {
     claims_hold("claims_patterns");
 }
 
+TEST(library_solids_of_functions_are_distances_or_bounds_of_them) {
+    claims_hold("claims_sdf");
+}
+
 TEST(library_polygons_are_cut_into_triangles_and_drawn_out_into_closed_solids) {
     claims_hold("claims_polygon");
 }

@@ -1,0 +1,533 @@
+/* Crossings of a line and an implicit solid. The line passes the regions (implicit_regions.c) in order. In a region
+ * where the sign may change, the function's values at the ends of the stretch and bounds of its slope along the line
+ * decide: a stretch on which the slope cannot have made a crossing has none; one with different signs and a slope of
+ * one sign has one, which Chandrupatla's method finds; of anything else closer bounds are computed, over the stretch
+ * alone, or it is halved. So nothing is lost however thin it is, until stretches are as short as the resolution.
+ *
+ * The sign is carried along the line, so crossings always alternate. Every region is searched from end to end, also for
+ * rays that begin or end in it: the nearest hit and the list of all crossings have the same bits.
+ *
+ * R. E. Moore, "Interval Analysis", 1966; J. Snyder, "Interval Analysis for Computer Graphics", SIGGRAPH 1992;
+ * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997. */
+#include "shape/implicit_internal.h"
+
+#include <math.h>
+
+/* Shares of the size: two crossings closer than this may be missed together; where a crossing's bracket ends. */
+static const double resolution = 0x1p-25, accuracy = 0x1p-46;
+/* The work on one line, in instructions of the function (those over intervals count tenfold), after which halves are no
+ * longer searched for pairs. */
+enum { WORK = 4000000, GUESS = 64 };
+/* Parts of crossings: the axis on the bounds, of a ball, and between regions. Below them the number of the region. */
+enum { PART_WHOLE = 0x7fffffe0, PART_BOX = 0x7ffffff0, PART_BALL = PART_BOX + 3 };
+
+struct search {
+    const struct implicit *solid;
+    struct line line;
+    double origin[3], inverse[3];  /* of the line; 1 / direction, 0 along an axis plane */
+    double begin, end;             /* within the bounds, in units of length along the line */
+    uint32_t begin_part, end_part; /* where it meets them */
+    bool inside;                   /* before the current place */
+    double at, value;              /* of the function, where it was evaluated last */
+    uint64_t work;
+    struct crossing waiting; /* not given out yet: the next one may cancel it */
+    bool has_waiting, has_found, is_done, is_full;
+    bool is_unknown;       /* what `inside` is: the stretches before were left out */
+    const struct ray *ray; /* of a nearest hit: its interval; then `found` */
+    struct crossing *found;
+    struct geom_scratch *scratch; /* of a list */
+};
+
+/* Slopes along the line. */
+struct slope {
+    double low, high;
+};
+
+/* --- the ends --- */
+
+static bool clip_box(struct search *search, const struct box *box) {
+    search->begin = -INFINITY;
+    search->end = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double o = vec3_get(search->line.origin, axis), d = vec3_get(search->line.direction, axis);
+        double lo = vec3_get(box->min, axis) - o, hi = vec3_get(box->max, axis) - o;
+        if (d == 0) {
+            if (!(lo < 0 && hi > 0))
+                return false;
+            continue;
+        }
+        double near = (d > 0 ? lo : hi) / d, far = (d > 0 ? hi : lo) / d;
+        if (near > search->begin) {
+            search->begin = near;
+            search->begin_part = PART_BOX + (uint32_t)axis;
+        }
+        if (far < search->end) {
+            search->end = far;
+            search->end_part = PART_BOX + (uint32_t)axis;
+        }
+    }
+    return search->begin < search->end;
+}
+
+static bool clip_ball(struct search *search, struct vec3 centre, double radius) {
+    struct vec3 o = vec3_sub(search->line.origin, centre);
+    double foot = -vec3_dot(o, search->line.direction);
+    struct vec3 nearest = vec3_add_scaled(o, search->line.direction, foot);
+    double room = radius * radius - vec3_dot(nearest, nearest);
+    if (!(room > 0))
+        return false;
+    search->begin = foot - sqrt(room);
+    search->end = foot + sqrt(room);
+    search->begin_part = search->end_part = PART_BALL;
+    return search->begin < search->end;
+}
+
+/* --- crossings, in order --- */
+
+static void give_out(struct search *search) {
+    if (!search->has_waiting)
+        return;
+    search->has_waiting = false;
+    const struct crossing *crossing = &search->waiting;
+    if (search->solid->in.open && crossing->part >= PART_BOX)
+        return;
+    if (search->scratch) {
+        search->is_full = !geom_scratch_push(search->scratch, *crossing);
+        search->is_done = search->is_full;
+        return;
+    }
+    if (crossing->t > search->ray->t_min && crossing->t < search->ray->t_max) {
+        *search->found = *crossing;
+        search->has_found = search->is_done = true;
+    }
+}
+
+/* The line changes sides at s. Two changes at one t are none. */
+static void cross(struct search *search, double s, uint32_t part) {
+    double t = line_t(&search->line, s);
+    search->inside = !search->inside;
+    if (search->has_waiting && !(search->waiting.t < t)) {
+        search->has_waiting = false;
+        return;
+    }
+    give_out(search);
+    search->waiting = (struct crossing){.t = t, .part = part, .enter = search->inside};
+    search->has_waiting = true;
+}
+
+/* --- the function --- */
+
+static double evaluate(struct search *search, const struct expr_program *program, double s) {
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+    struct vec3 p = line_at(&search->line, s);
+    inputs[EXPR_POINT_X] = p.x;
+    inputs[EXPR_POINT_Y] = p.y;
+    inputs[EXPR_POINT_Z] = p.z;
+    expr_evaluate(program, inputs, outputs);
+    search->work += program->count;
+    return outputs[0];
+}
+
+static struct expr_interval stretch(double origin, double direction, double a, double b, double margin) {
+    double p = origin + direction * a, q = origin + direction * b;
+    return (struct expr_interval){(p < q ? p : q) - margin, (p < q ? q : p) + margin, false};
+}
+
+/* Bounds of the function and of its slope from a to b. */
+static struct expr_interval bound(struct search *search, const struct expr_program *program, double a, double b,
+                                  struct slope *slope) {
+    unsigned char memory[expr_slopes_size(program) + IMPLICIT_ALIGNMENT];
+    struct expr_interval inputs[EXPR_INPUT_COUNT];
+    struct expr_range outputs[EXPR_OUTPUTS];
+    struct expr_directions directions;
+    double margin = search->solid->size * 0x1p-50;
+    directions.count = 1;
+    for (int k = 0; k < 3; k++) {
+        double d = vec3_get(search->line.direction, k);
+        inputs[EXPR_POINT_X + k] = stretch(search->origin[k], d, a, b, margin);
+        directions.seeds[EXPR_POINT_X + k][0] = d;
+    }
+    search->work += 10 * (uint64_t)program->count;
+    expr_evaluate_slopes(program, inputs, &directions, outputs, NULL, implicit_aligned(memory));
+    *slope = (struct slope){outputs[0].slopes[0].low, outputs[0].slopes[0].high};
+    return outputs[0].is_nan ? (struct expr_interval){0, 0, false} : outputs[0].value; /* NaN is outside */
+}
+
+static struct slope slope_in(const struct search *search, const struct implicit_region *region) {
+    struct slope out = {0, 0};
+    for (int k = 0; k < 3; k++) {
+        double d = vec3_get(search->line.direction, k);
+        if (d == 0)
+            continue;
+        out.low += d * (double)(d > 0 ? region->low[k] : region->high[k]);
+        out.high += d * (double)(d > 0 ? region->high[k] : region->low[k]);
+    }
+    double rounding = (fabs(out.low) + fabs(out.high)) * 0x1p-50;
+    return (struct slope){out.low - rounding, out.high + rounding};
+}
+
+/* --- one crossing --- */
+
+/* Where the sign changes between a and b, which have different signs. */
+static double find_change(struct search *search, const struct expr_program *program, double a, double fa, double b,
+                          double fb) {
+    double tolerance = search->solid->size * accuracy, c = a, fc = fa, t = fa / (fa - fb);
+    for (int step = 0; step < 200; step++) {
+        double limit = tolerance / fabs(b - a);
+        if (!(limit < 0.5))
+            break;
+        t = t > limit ? (t < 1 - limit ? t : 1 - limit) : t <= limit ? limit : 0.5;
+        double x = a + t * (b - a), fx = evaluate(search, program, x);
+        if ((fx < 0) == (fa < 0)) {
+            c = a;
+            fc = fa;
+        } else {
+            c = b;
+            fc = fb;
+            b = a;
+            fb = fa;
+        }
+        a = x;
+        fa = fx;
+        if (fa == 0)
+            break;
+        double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
+        bool is_smooth = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
+        t = is_smooth ? fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
+                      : 0.5;
+    }
+    return fabs(fb) < fabs(fa) ? b : a;
+}
+
+/* --- stretches --- */
+
+/* A part of a region: where it ends, and the function there. */
+struct part {
+    double a, fa, b, fb;
+};
+
+/* Whether the slope excludes that the function has reached 0 between two values of one sign. */
+static bool stays(const struct search *search, const struct part *part, struct slope slope) {
+    double w = part->b - part->a, fa = part->fa, fb = part->fb;
+    if (!(slope.low > -INFINITY && slope.high < INFINITY) || fa != fa || fb != fb)
+        return false;
+    if (slope.low >= 0 || slope.high <= 0)
+        return true;
+    bool below = fa < 0;
+    /* Lines of the largest slopes from both ends meet in the farthest value. */
+    double from_a = below ? slope.high : slope.low, from_b = below ? slope.low : slope.high;
+    double x = (fb - fa - from_b * w) / (from_a - from_b), farthest = fa + from_a * x;
+    double rounding = search->solid->size * 0x1p-50 * (slope.high - slope.low);
+    return below ? farthest < rounding : farthest > -rounding;
+}
+
+/* Halves of a region are cheaper than closer bounds, at first. */
+enum { HALVED = 3 };
+
+static void search_part(struct search *search, uint32_t number, struct part part, struct slope slope, int depth) {
+    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
+    bool below = part.fa < 0, changes = below != (part.fb < 0);
+    for (int pass = depth < HALVED ? 1 : 0; pass < 2; pass++) {
+        if (changes ? slope.low >= 0 || slope.high <= 0 : stays(search, &part, slope))
+            break;
+        if (part.b - part.a <= search->solid->size * resolution || search->work > WORK)
+            break;
+        if (pass == 0) {
+            struct slope here;
+            struct expr_interval value = bound(search, program, part.a, part.b, &here);
+            slope.low = here.low > slope.low ? here.low : slope.low;
+            slope.high = here.high < slope.high ? here.high : slope.high;
+            if (!changes && (below ? value.high < 0 && !value.may_be_nan : value.low >= 0))
+                return;
+            continue;
+        }
+        double middle = part.a + (part.b - part.a) * 0.5, value = evaluate(search, program, middle);
+        search_part(search, number, (struct part){part.a, part.fa, middle, value}, slope, depth + 1);
+        if (!search->is_done)
+            search_part(search, number, (struct part){middle, value, part.b, part.fb}, slope, depth + 1);
+        return;
+    }
+    if (changes)
+        cross(search, find_change(search, program, part.a, part.fa, part.b, part.fb), number);
+}
+
+static void pass_surface(struct search *search, uint32_t number, double s0, double s1) {
+    const struct implicit_region *region = &search->solid->regions[number];
+    const struct expr_program *program = &search->solid->programs[region->program];
+    struct part part = {.a = s0, .b = s1};
+    part.fa = search->at == s0 ? search->value : evaluate(search, program, s0);
+    part.fb = evaluate(search, program, s1);
+    search->at = s1;
+    search->value = part.fb;
+    if (search->is_unknown)
+        search->inside = part.fa < 0;
+    search->is_unknown = false;
+    if ((part.fa < 0) != search->inside)
+        cross(search, s0, s0 > search->begin ? number : search->begin_part);
+    if (!search->is_done)
+        search_part(search, number, part, slope_in(search, region), 0);
+}
+
+/* A ray that begins later needs of a stretch only on which side the next one begins. */
+static bool is_before(const struct search *search, double s) {
+    return search->ray && line_t(&search->line, s) <= search->ray->t_min;
+}
+
+static void pass_region(struct search *search, enum region_kind kind, uint32_t number, double s0, double s1) {
+    if (is_before(search, s1)) {
+        search->is_unknown = true;
+    } else if (kind == REGION_SURFACE) {
+        pass_surface(search, number, s0, s1);
+    } else {
+        bool inside = kind == REGION_INSIDE;
+        if (search->is_unknown)
+            search->inside = inside;
+        search->is_unknown = false;
+        if (search->inside != inside)
+            cross(search, s0, s0 > search->begin ? PART_WHOLE : search->begin_part);
+    }
+    if (!search->ray || search->is_done)
+        return;
+    double t = line_t(&search->line, s1);
+    if (search->has_waiting && search->waiting.t < t)
+        give_out(search);
+    search->is_done = search->is_done || t >= search->ray->t_max;
+}
+
+/* The box of a node. */
+struct node_box {
+    double lo[3], hi[3];
+};
+
+/* The stretch from s0 to s1, on which the line is in a node of the octree. */
+static void pass_node(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
+    uint32_t value = search->solid->nodes[node], number = value >> 2, part = 0;
+    enum region_kind kind = (enum region_kind)(value & 3);
+    if (kind != REGION_SPLIT || is_before(search, s1)) {
+        pass_region(search, kind, number, s0, s1);
+        return;
+    }
+    /* Through the parts in order: the line changes to the other half of an axis where it meets the middle. */
+    double middles[3], meets[3];
+    for (int k = 0; k < 3; k++) {
+        middles[k] = region_middle(box->lo[k], box->hi[k]);
+        bool is_upper = search->origin[k] >= middles[k];
+        meets[k] = INFINITY;
+        if (search->inverse[k] != 0) {
+            meets[k] = (middles[k] - search->origin[k]) * search->inverse[k];
+            is_upper = (meets[k] <= s0) == (search->inverse[k] > 0);
+            if (meets[k] <= s0)
+                meets[k] = INFINITY;
+        }
+        part |= is_upper ? 1U << k : 0;
+    }
+    while (s0 < s1 && !search->is_done) {
+        int axis = meets[0] <= meets[1] ? 0 : 1;
+        axis = meets[axis] <= meets[2] ? axis : 2;
+        double next = meets[axis] < s1 ? meets[axis] : s1;
+        if (next > s0) {
+            struct node_box half;
+            for (int k = 0; k < 3; k++) {
+                half.lo[k] = part >> k & 1 ? middles[k] : box->lo[k];
+                half.hi[k] = part >> k & 1 ? box->hi[k] : middles[k];
+            }
+            pass_node(search, number + part, &half, s0, next);
+        }
+        part ^= 1U << axis;
+        meets[axis] = INFINITY;
+        s0 = next;
+    }
+}
+
+/* --- lines --- */
+
+static struct vec3 middle_of(const struct implicit *solid) {
+    const struct box *box = &solid->in.bounds;
+    return solid->in.is_ball ? solid->in.centre : vec3_add(vec3_scale(box->min, 0.5), vec3_scale(box->max, 0.5));
+}
+
+/* False: the line is off the bounds. */
+static bool search_begin(struct search *search, const struct implicit *solid, const struct ray *ray) {
+    search->solid = solid;
+    if (!line_init(&search->line, ray, middle_of(solid)) || !line_meets_box(&search->line, &solid->tight))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        double d = vec3_get(search->line.direction, k);
+        search->origin[k] = vec3_get(search->line.origin, k);
+        search->inverse[k] = fabs(d) > 0x1p-1000 ? 1 / d : 0;
+    }
+    search->inside = search->is_unknown = search->has_waiting = search->has_found = search->is_done = search->is_full =
+        false;
+    search->work = 0;
+    search->at = (double)NAN;
+    search->ray = NULL;
+    search->found = NULL;
+    search->scratch = NULL;
+    return solid->in.is_ball ? clip_ball(search, solid->in.centre, solid->in.radius)
+                             : clip_box(search, &solid->in.bounds);
+}
+
+static void search_run(struct search *search) {
+    const struct box *b = &search->solid->in.bounds;
+    struct node_box box = {{b->min.x, b->min.y, b->min.z}, {b->max.x, b->max.y, b->max.z}};
+    pass_node(search, 0, &box, search->begin, search->end);
+    if (search->inside && !search->is_done)
+        cross(search, search->end, search->end_part);
+    if (!search->is_done)
+        give_out(search);
+}
+
+bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
+                        struct crossing_list *out) {
+    struct search search;
+    *out = (struct crossing_list){scratch->used, 0};
+    if (!search_begin(&search, solid, ray))
+        return true;
+    search.scratch = scratch;
+    search_run(&search);
+    if (search.is_full) {
+        scratch->used = out->first;
+        return false;
+    }
+    out->count = scratch->used - out->first;
+    return true;
+}
+
+bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out) {
+    struct search search;
+    if (!search_begin(&search, solid, ray) || line_t(&search.line, search.begin) >= ray->t_max ||
+        line_t(&search.line, search.end) <= ray->t_min)
+        return false;
+    search.ray = ray;
+    search.found = out;
+    search_run(&search);
+    return search.has_found;
+}
+
+/* --- points --- */
+
+bool implicit_contains(const struct implicit *solid, struct vec3 point) {
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+    const struct box *box = &solid->in.bounds;
+    for (int k = 0; k < 3; k++) {
+        double x = vec3_get(point, k);
+        if (!(x > vec3_get(box->min, k) && x < vec3_get(box->max, k)))
+            return false;
+        inputs[EXPR_POINT_X + k] = x;
+    }
+    struct vec3 from_centre = vec3_sub(point, solid->in.centre);
+    if (solid->in.is_ball && !(vec3_dot(from_centre, from_centre) < solid->in.radius * solid->in.radius))
+        return false;
+    expr_evaluate(solid->in.program, inputs, outputs);
+    return outputs[0] < 0;
+}
+
+/* The function at a point, and its gradient. */
+static double gradient_at(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
+    unsigned char memory[expr_gradient_size(program) + IMPLICIT_ALIGNMENT];
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS], gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS];
+    inputs[EXPR_POINT_X] = point.x;
+    inputs[EXPR_POINT_Y] = point.y;
+    inputs[EXPR_POINT_Z] = point.z;
+    expr_evaluate_gradient(program, inputs, expr_gradient_seeds, outputs, gradients, implicit_aligned(memory));
+    *gradient = vec3_make(gradients[0][0], gradients[0][1], gradients[0][2]);
+    return outputs[0];
+}
+
+/* A normal that agrees with the way in which the line crosses: next to contours it may be off by rounding; where the
+ * function jumps it says nothing. */
+static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
+    struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
+    double length = vec3_length(normal);
+    if (!(length > 0) || !isfinite(length))
+        return out;
+    struct vec3 unit = vec3_scale(normal, 1 / length);
+    double cosine = vec3_dot(unit, out);
+    if (cosine >= 0)
+        return unit;
+    return cosine > -0.1 ? vec3_normalize(vec3_add_scaled(unit, out, -cosine)) : out;
+}
+
+static void describe_cap(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                         struct surface *out) {
+    struct vec3 point = ray_at(ray, crossing->t), middle = middle_of(solid), normal = {0, 0, 0};
+    if (crossing->part == PART_BALL) {
+        normal = vec3_normalize(vec3_sub(point, middle));
+        point = vec3_add_scaled(middle, normal, solid->in.radius);
+    } else {
+        const struct box *box = &solid->in.bounds;
+        double *const points[3] = {&point.x, &point.y, &point.z}, *const normals[3] = {&normal.x, &normal.y, &normal.z};
+        int axis = (int)(crossing->part - PART_BOX);
+        bool is_upper = (vec3_get(ray->direction, axis) > 0) != crossing->enter;
+        *normals[axis] = is_upper ? 1 : -1;
+        *points[axis] = vec3_get(is_upper ? box->max : box->min, axis);
+    }
+    surface_make(out, point, normal, 0x1p-48 * (solid->size + vec3_max_abs(middle)));
+}
+
+void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                       struct surface *out) {
+    if (crossing->part >= PART_BOX) {
+        describe_cap(solid, ray, crossing, out);
+    } else {
+        uint32_t program = crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0;
+        struct vec3 point = ray_at(ray, crossing->t), gradient;
+        double off = gradient_at(&solid->programs[program], point, &gradient);
+        double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
+        /* One step along the gradient takes off what the ray's rounding left, unless the function jumps here. */
+        double error = solid->size * 2 * accuracy;
+        if (square > 0 && fabs(off) < room * sqrt(square))
+            point = vec3_add_scaled(point, gradient, -off / square);
+        else
+            error = room;
+        surface_make(out, point, usable_normal(gradient, ray, crossing->enter), error);
+    }
+    surface_mapping_sphere(middle_of(solid), out);
+}
+
+/* --- all of it --- */
+
+const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error) {
+    struct implicit *solid = arena_alloc(arena, sizeof *solid);
+    if (!solid) {
+        (void)error_no_memory(error, "an implicit solid");
+        return NULL;
+    }
+    solid->in = *in;
+    if (in->is_ball) {
+        struct vec3 radius = vec3_all(in->radius);
+        solid->in.bounds = (struct box){vec3_sub(in->centre, radius), vec3_add(in->centre, radius)};
+    }
+    for (int k = 0; k < 3; k++) {
+        double lo = vec3_get(solid->in.bounds.min, k), hi = vec3_get(solid->in.bounds.max, k);
+        if (!(lo < hi && hi - lo < HUGE_VAL)) {
+            (void)error_set(error, ERROR_SCENE, "the bounds must have a length, a width and a height, and end");
+            return NULL;
+        }
+        solid->size = hi - lo > solid->size ? hi - lo : solid->size;
+    }
+    for (int k = 0; k < in->program->input_count; k++)
+        if (in->program->inputs[k].input > EXPR_POINT_Z) {
+            (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid is a function of p alone",
+                            expr_input_name((enum expr_input)in->program->inputs[k].input));
+            return NULL;
+        }
+    if (in->program->output_count != 1) {
+        (void)error_set(error, ERROR_SCENE, "the function gives a colour; a solid needs one number, below 0 inside");
+        return NULL;
+    }
+    return implicit_regions_build(arena, solid, error) ? solid : NULL;
+}
+
+struct box implicit_bounds(const struct implicit *solid) {
+    return box_pad(solid->tight);
+}
+
+bool implicit_is_closed(const struct implicit *solid) {
+    return !solid->in.open;
+}
+
+uint32_t implicit_scratch_need(const struct implicit *solid) {
+    (void)solid;
+    return GUESS;
+}

@@ -1,0 +1,38 @@
+/* Implicit solids: where a function of a point is below 0, within a box or a ball. A value of NaN is outside, a jump of
+ * sign is a surface. The function is a recorded expression; nothing is guessed of it: bounds of its values and slopes
+ * over regions and stretches of a line prove where there is no crossing, or one. */
+#ifndef GRAY_SHAPE_IMPLICIT_H
+#define GRAY_SHAPE_IMPLICIT_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "expr/expr_program.h"
+#include "geometry/crossing.h"
+
+struct implicit_input {
+    const struct expr_program *program; /* of p alone, with one output; it must outlive the shape */
+    struct box bounds;                  /* finite, min < max on every axis; not read of a ball */
+    bool is_ball;
+    struct vec3 centre;
+    double radius; /* > 0 */
+    bool open;     /* without caps on the bounds */
+};
+
+struct implicit;
+
+/* NULL and error: no memory, or the program is not of p alone. The work is bounded. */
+const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error);
+struct box implicit_bounds(const struct implicit *solid);
+bool implicit_is_closed(const struct implicit *solid);
+/* As shape_crossings and shape_nearest, which says what of the list is first in the ray's interval. A crossing is
+ * within 1e-9 of the size of the solid of where the sign changes; two that are closer than 1e-7 of it may be missing.
+ */
+bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
+                        struct crossing_list *out);
+bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out);
+bool implicit_contains(const struct implicit *solid, struct vec3 point);
+void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                       struct surface *out);
+uint32_t implicit_scratch_need(const struct implicit *solid);
+
+#endif

@@ -1,0 +1,45 @@
+/* The regions of an implicit solid: made by implicit_regions.c, read by implicit.c. */
+#ifndef GRAY_SHAPE_IMPLICIT_INTERNAL_H
+#define GRAY_SHAPE_IMPLICIT_INTERNAL_H
+
+#include "expr/expr_derivative.h"
+#include "shape/implicit.h"
+
+/* A node of the octree over the bounds; its halves meet at region_middle. Kind in the lowest two bits, above them of a
+ * split the number of the first of its eight parts (bit k of a part: the upper half on axis k), of a region in which
+ * the sign may change its number. */
+enum region_kind { REGION_OUTSIDE, REGION_INSIDE, REGION_SURFACE, REGION_SPLIT };
+
+/* A region in which the sign may change. Slopes bound the derivatives along the axes, rounded outwards. */
+struct implicit_region {
+    float low[3], high[3];
+    uint32_t program; /* the function, shortened for the region */
+};
+
+struct implicit {
+    struct implicit_input in; /* bounds: of a ball those around it */
+    struct box tight;         /* around all that may be inside */
+    double size;              /* the largest edge of the bounds */
+    const uint32_t *nodes;
+    const struct implicit_region *regions;
+    const struct expr_program *programs; /* the whole one first */
+    uint32_t node_count, region_count, program_count;
+};
+
+static inline double region_middle(double low, double high) {
+    return low + (high - low) * 0.5;
+}
+
+/* Points of a line leave their region by rounding; by less than this share of the size. */
+#define IMPLICIT_MARGIN 0x1p-42
+
+/* Memory for the evaluators of expressions begins at a multiple of 64. */
+enum { IMPLICIT_ALIGNMENT = 64 };
+static inline void *implicit_aligned(void *memory) {
+    return (void *)(((uintptr_t)memory + IMPLICIT_ALIGNMENT - 1) / IMPLICIT_ALIGNMENT * IMPLICIT_ALIGNMENT);
+}
+
+/* Fills nodes, regions, programs and tight from the rest. */
+bool implicit_regions_build(struct arena *arena, struct implicit *solid, struct error *error);
+
+#endif

@@ -1,0 +1,239 @@
+/* The regions of an implicit solid: an octree, level by level. Bounds of the function over a region (interval
+ * arithmetic) prove it outside or inside; what is left is split until the surface is nearly flat in it, which bounds of
+ * the slopes show, since then one evaluation at each end of a line's stretch decides it. What min, max and selections
+ * decide over a region is left out of its program.
+ *
+ * T. Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid geometry",
+ * SIGGRAPH 1992; M. Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", SIGGRAPH 2020. */
+#include "shape/implicit_internal.h"
+
+#include "base/mem.h"
+#include "expr/expr_shorten.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What bounds the work and the memory: nodes, instructions that are evaluated over regions, instructions that are kept
+ * in shortened programs. */
+enum { NODES = 1 << 16, EVALUATED = 6000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
+/* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
+static const double slope_spread = 0.6;
+
+/* A node while it waits. */
+struct pending {
+    struct box box;
+    uint32_t program;
+    int level;
+};
+
+struct building {
+    struct implicit *solid;
+    struct arena *arena;
+    uint32_t *nodes;
+    struct pending *pending; /* of each node */
+    struct implicit_region *regions;
+    struct expr_program *programs;
+    uint32_t node_count, node_capacity, region_count, region_capacity, program_count, program_capacity;
+    uint64_t evaluated, kept;
+    struct expr_directions directions; /* the axes */
+    struct expr_choice *choices;
+    struct expr_instruction *code; /* for one shortened program */
+    void *rows, *scratch;
+};
+
+/* Room for `more` entries of an array. */
+static bool reserve(void **array, uint32_t *capacity, uint32_t count, uint32_t more, size_t size) {
+    if (count + more <= *capacity)
+        return true;
+    uint32_t larger = (count + more) * 2;
+    void *moved = mem_resize_array(*array, larger, size);
+    if (!moved)
+        return false;
+    *array = moved;
+    *capacity = larger;
+    return true;
+}
+
+/* The bounds of a region with room for rounding. */
+static struct box wider(const struct implicit *solid, const struct box *box) {
+    struct vec3 margin = vec3_all(solid->size * IMPLICIT_MARGIN);
+    return (struct box){vec3_sub(box->min, margin), vec3_add(box->max, margin)};
+}
+
+static bool is_finite(const struct expr_interval *x) {
+    return x->low > -INFINITY && x->high < INFINITY;
+}
+
+static bool is_flat(const struct expr_interval slopes[EXPR_DIRECTIONS]) {
+    double length = 0, deviation = 0;
+    for (int k = 0; k < 3; k++) {
+        if (!is_finite(&slopes[k]))
+            return false;
+        double middle = slopes[k].low / 2 + slopes[k].high / 2, radius = slopes[k].high / 2 - slopes[k].low / 2;
+        length += middle * middle;
+        deviation += radius * radius;
+    }
+    return deviation < slope_spread * slope_spread * length;
+}
+
+/* The program for the region whose choices have been found: a shorter one where that pays. */
+static bool shorten(struct building *b, uint32_t program, uint32_t *out) {
+    const struct expr_program *whole = &b->programs[program];
+    *out = program;
+    if (b->kept > KEPT)
+        return true;
+    struct expr_stack stack = {.code = b->code, .free = whole->count};
+    struct expr_program shorter, stored;
+    if (!expr_shorten(whole, b->choices, 0, &stack, implicit_aligned(b->scratch), &shorter) ||
+        shorter.count + shorter.count / 16 >= whole->count)
+        return true;
+    if (!expr_keep(&shorter, b->arena, &stored) ||
+        !reserve((void **)&b->programs, &b->program_capacity, b->program_count, 1, sizeof *b->programs))
+        return false;
+    b->kept += shorter.count;
+    b->programs[b->program_count] = stored;
+    *out = b->program_count++;
+    return true;
+}
+
+static float below(double x) {
+    float f = (float)x;
+    return f <= x ? f : nextafterf(f, -INFINITY);
+}
+
+static bool add_region(struct building *b, uint32_t node, const struct expr_interval slopes[EXPR_DIRECTIONS]) {
+    struct implicit_region region = {.program = b->pending[node].program};
+    for (int k = 0; k < 3; k++) {
+        region.low[k] = below(slopes[k].low);
+        region.high[k] = -below(-slopes[k].high);
+    }
+    if (!reserve((void **)&b->regions, &b->region_capacity, b->region_count, 1, sizeof *b->regions))
+        return false;
+    b->nodes[node] = b->region_count << 2 | REGION_SURFACE;
+    b->regions[b->region_count++] = region;
+    return true;
+}
+
+static bool add_nodes(struct building *b, uint32_t count) {
+    uint32_t capacity = b->node_capacity;
+    return reserve((void **)&b->nodes, &capacity, b->node_count, count, sizeof *b->nodes) &&
+           reserve((void **)&b->pending, &b->node_capacity, b->node_count, count, sizeof *b->pending);
+}
+
+static bool split(struct building *b, uint32_t node) {
+    uint32_t first = b->node_count;
+    if (!add_nodes(b, 8))
+        return false;
+    struct pending whole = b->pending[node];
+    struct vec3 lo = whole.box.min, hi = whole.box.max;
+    struct vec3 middle = {region_middle(lo.x, hi.x), region_middle(lo.y, hi.y), region_middle(lo.z, hi.z)};
+    for (uint32_t k = 0; k < 8; k++) {
+        struct pending part = {.program = whole.program, .level = whole.level + 1};
+        part.box.min = vec3_make(k & 1 ? middle.x : lo.x, k & 2 ? middle.y : lo.y, k & 4 ? middle.z : lo.z);
+        part.box.max = vec3_make(k & 1 ? hi.x : middle.x, k & 2 ? hi.y : middle.y, k & 4 ? hi.z : middle.z);
+        b->pending[first + k] = part;
+    }
+    b->node_count += 8;
+    b->nodes[node] = first << 2 | REGION_SPLIT;
+    return true;
+}
+
+/* Whether a box and the ball of the bounds have a point in common. */
+static bool meets_ball(const struct implicit_input *in, const struct box *box) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double c = vec3_get(in->centre, k), lo = vec3_get(box->min, k), hi = vec3_get(box->max, k);
+        double gap = c < lo ? lo - c : c > hi ? c - hi : 0;
+        square += gap * gap;
+    }
+    return square <= in->radius * in->radius * (1 + 0x1p-40);
+}
+
+static bool decide(struct building *b, uint32_t node) {
+    struct implicit *solid = b->solid;
+    struct pending *here = &b->pending[node];
+    struct box box = wider(solid, &here->box);
+    if (solid->in.is_ball && !meets_ball(&solid->in, &box)) {
+        b->nodes[node] = REGION_OUTSIDE;
+        return true;
+    }
+    struct expr_interval inputs[EXPR_INPUT_COUNT];
+    struct expr_range range[EXPR_OUTPUTS];
+    for (int k = 0; k < 3; k++)
+        inputs[EXPR_POINT_X + k] = (struct expr_interval){vec3_get(box.min, k), vec3_get(box.max, k), false};
+    const struct expr_program *program = &b->programs[here->program];
+    expr_evaluate_slopes(program, inputs, &b->directions, range, b->choices, implicit_aligned(b->rows));
+    if (range[0].value.low >= 0 || range[0].is_nan) {
+        b->nodes[node] = REGION_OUTSIDE;
+        return true;
+    }
+    solid->tight = box_join(solid->tight, box);
+    if (range[0].value.high < 0 && !range[0].value.may_be_nan) {
+        b->nodes[node] = REGION_INSIDE;
+        return true;
+    }
+    uint32_t before = b->programs[here->program].count;
+    if (!shorten(b, here->program, &here->program))
+        return false;
+    uint32_t after = b->programs[here->program].count;
+    bool is_simple = is_flat(range[0].slopes) && (after < 32 || after > before - before / 8);
+    bool has_room = here->level < LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED;
+    if (has_room && (here->level < FIRST_LEVELS || !is_simple)) {
+        b->evaluated += 8 * (uint64_t)after;
+        return split(b, node);
+    }
+    return add_region(b, node, range[0].slopes);
+}
+
+/* Copies an array into the arena. */
+static const void *in_arena(struct arena *arena, const void *array, uint32_t count, size_t size) {
+    void *out = arena_alloc_array(arena, (size_t)count + 1, size);
+    if (out && count > 0)
+        memcpy(out, array, count * size);
+    return out;
+}
+
+static bool build(struct building *b) {
+    struct implicit *solid = b->solid;
+    const struct expr_program *program = solid->in.program;
+    size_t room = (size_t)program->count + 1;
+    b->choices = mem_alloc_zero(room, sizeof *b->choices);
+    b->code = mem_alloc_zero(room, sizeof *b->code);
+    b->rows = mem_alloc_zero(expr_slopes_size(program) + 64, 1);
+    b->scratch = mem_alloc_zero(expr_shorten_size(program) + 64, 1);
+    if (!b->choices || !b->code || !b->rows || !b->scratch || !add_nodes(b, 1) ||
+        !reserve((void **)&b->programs, &b->program_capacity, 0, 1, sizeof *b->programs))
+        return false;
+    b->programs[b->program_count++] = *program;
+    b->pending[0] = (struct pending){.box = solid->in.bounds};
+    b->node_count = 1;
+    solid->tight = box_empty();
+    for (uint32_t n = 0; n < b->node_count; n++)
+        if (!decide(b, n))
+            return false;
+    solid->tight = box_is_empty(&solid->tight) ? solid->in.bounds : box_meet(solid->tight, solid->in.bounds);
+    solid->nodes = in_arena(b->arena, b->nodes, b->node_count, sizeof *b->nodes);
+    solid->regions = in_arena(b->arena, b->regions, b->region_count, sizeof *b->regions);
+    solid->programs = in_arena(b->arena, b->programs, b->program_count, sizeof *b->programs);
+    solid->node_count = b->node_count;
+    solid->region_count = b->region_count;
+    solid->program_count = b->program_count;
+    return solid->nodes && solid->regions && solid->programs;
+}
+
+bool implicit_regions_build(struct arena *arena, struct implicit *solid, struct error *error) {
+    struct building b = {.solid = solid, .arena = arena, .directions = {.count = 3}};
+    memcpy(b.directions.seeds, expr_gradient_seeds, sizeof b.directions.seeds);
+    bool ok = build(&b);
+    if (!ok)
+        (void)error_no_memory(error, "an implicit solid");
+    mem_free(b.nodes);
+    mem_free(b.pending);
+    mem_free(b.regions);
+    mem_free(b.programs);
+    mem_free(b.choices);
+    mem_free(b.code);
+    mem_free(b.rows);
+    mem_free(b.scratch);
+    return ok;
+}

@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: gr.implicit: f is missing
+gr.implicit{bounds = {{-1, -1, -1}, {1, 1, 1}}}

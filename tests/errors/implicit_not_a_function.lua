@@ -1,0 +1,2 @@
+-- expect: SCRIPT:2: gr.implicit: f must be a function, not a number
+gr.implicit{f = 7, bounds = {{-1, -1, -1}, {1, 1, 1}}}
