@@ -180,9 +180,11 @@ static void choose_lobes(struct path_vertex *vertex) {
     vertex->substitute = traced && bsdf->alpha == 0 ? highlights : 0;
 }
 
-/* False: the path ends here. Paths with weights above 1 can end, too. */
+/* False: the path ends here. Paths with weights above 1 can end, too. The chance is the square root of the weight: if
+ * it were the weight itself, the paths that stay would all have the weight 1, and the loss of the others would add more
+ * noise than their rays cost. */
 static bool survives(struct path *path, double u) {
-    double chance = vec3_max_abs(path->weight) / path->radiance_scale;
+    double chance = sqrt(vec3_max_abs(path->weight) / path->radiance_scale);
     chance = chance < survival ? chance : survival;
     if (!(u < chance))
         return false;
