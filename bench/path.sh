@@ -3,16 +3,16 @@
 # medians of RUNS (default 5), processor time. Rows whose peer is not installed are left out, with a line that says so.
 #   speed    samples a second against Cycles at depth 8 without Russian roulette: the Cornell box with blocks, and with a
 #            mirror and a ball of glass
-#   error    relMSE, the mean of (x - r)^2 / (r^2 + .01), after SECONDS (default 10) of rendering at 128 x 128 against
+#   error    relMSE, the mean of (x - r)^2 / (r^2 + .01), after SECONDS_EACH (default 10) of rendering at 128 x 128 against
 #            REFERENCE samples (default 16384) of the same program, which are kept in OUT
 #   embree   samples a second against `pathtracer --max-path-length 8` on its Cornell box
 #   denoise  the error of 64 denoised samples against that of 512 raw ones (bench/denoise.sh); seconds for 1280 x 960
 #   threads  the speed of two threads over that of one
 #   memory   bytes a pixel beyond Whitted's, at 1280 x 960
 # Both programs: box filter, all caustics, no clamps, no adaptive sampling; Cycles as bench/path/cycles.py sets it.
-# Errors are scaled to exactly SECONDS, since they fall with the number of samples.
-# Arguments: rows (default: all). GRAY: the program; OUT: pictures and times (default build/bench/path); SHORT=1: one run of
-# 2 seconds against 1024 samples.
+# Errors are scaled to exactly that time, since they fall with the number of samples.
+# Arguments: rows (default: all). SCENES: of the row error; GRAY: the program; OUT: pictures and times, not for two runs
+# at once (default build/bench/path); SHORT=1: one run of 2 seconds against 1024 samples.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}
 if [ -n "$SHORT" ]; then RUNS=${RUNS:-1} SECONDS_EACH=${SECONDS_EACH:-2} REFERENCE=${REFERENCE:-1024}; fi
@@ -98,7 +98,7 @@ error() {
     echo "relMSE after $seconds s against $reference samples, with roulette; spp: samples a pixel in that time"
     printf '%-12s %9s %6s %9s %6s %6s %9s %9s\n' scene gray spp Cycles spp ratio 'mean gray' Cycles
     : >"$out/error.ratios"
-    for scene in cornell spheres mesh_sky lamps glossy; do
+    for scene in ${SCENES:-cornell spheres mesh_sky lamps glossy}; do
         script=$(script_of $scene)
         cref=cycles-$scene-$reference gref=gray-$scene-$reference
         [ -s "$out/$gref.pfm" ] || gray_run "$script" "$gref" "$reference" 1000 >/dev/null

@@ -255,6 +255,10 @@ def mesh_sky():
     nodes, links = world.node_tree.nodes, world.node_tree.links
     sky = nodes.new('ShaderNodeTexEnvironment')
     sky.image = bpy.data.images.load(os.path.join(folder, 'sky.hdr'))
+    # The middle of the map shows gray's -z, Blender's y; by itself that of Blender shows x.
+    turn = with_values(nodes.new('ShaderNodeMapping'), Rotation=(0, 0, -math.pi / 2))
+    links.new(nodes.new('ShaderNodeTexCoord').outputs['Generated'], turn.inputs['Vector'])
+    links.new(turn.outputs[0], sky.inputs[0])
     links.new(sky.outputs[0], nodes['Background'].inputs['Color'])
     scene.world = world
     camera((0, 2.4, 5.2), (.05, .45, 0), 38)
