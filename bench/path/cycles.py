@@ -144,6 +144,7 @@ def spherical_light(centre, radius, emission):
     light.energy = 4 * math.pi ** 2 * radius ** 2
     thing = bpy.data.objects.new('lamp', light)
     thing.location = point(centre)
+    thing.visible_camera = thing.visible_glossy = thing.visible_transmission = True
     scene.collection.objects.link(thing)
 
 
