@@ -872,8 +872,8 @@ function gr.multiply_texture(a, b) end
 
 ---A Phong material.
 ---@param kd gr.triple|string|gr.texture|function kd (a colour {r, g, b} or a texture): Diffuse and ambient colour.
----@param ks gr.triple|string|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
----@param shininess number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
+---@param ks? gr.triple|string|gr.texture|function ks (a colour {r, g, b} or a texture; default {0, 0, 0}): Colour of highlights; filter of reflected and refracted rays.
+---@param shininess? number|gr.texture|function shininess (a number or a texture, >= 0; default 1): Exponent of the highlight.
 ---@return gr.material
 ---@overload fun(fields: gr.material.fields): gr.material
 function gr.material(kd, ks, shininess) end
@@ -1666,8 +1666,8 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@param ambient gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
----@param lights gr.light[] lights (a table of lights; default {}): The lights.
+---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(fields: gr.render.fields)
 function gr.render(node, file, width, height, eye, view, up, fov, ambient, lights) end
 
@@ -1741,8 +1741,8 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@param ambient gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
----@param lights gr.light[] lights (a table of lights; default {}): The lights.
+---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(fields: gr.render_skybox.fields)
 function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, ambient, lights) end
 
@@ -1840,8 +1840,8 @@ function node:translate(x, y, z) end
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
----@param ambient gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
----@param lights gr.light[] lights (a table of lights; default {}): The lights.
+---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(self: gr.node, fields: gr.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
 

@@ -816,8 +816,15 @@ static bool read_positional(struct script_context *c, const struct script_functi
     argument_path = first;
     for (const char *form = best; form_next(function, &form, &index, &optional); argument_path++) {
         const struct script_parameter *p = &function->parameters[index];
-        if (!optional && lua_isnoneornil(L, argument_path))
+        if (!optional && lua_isnoneornil(L, argument_path)) {
+            if (function->owner == OWNER_NODE && lua_gettop(L) < first)
+                context_raise(c, "%s is missing; methods are called with a colon, as in n:%s(...)", p->name,
+                              function->name);
             context_raise(c, "%s is missing", p->name);
+        }
+        /* The name of a variable is misspelt. */
+        if (optional && function->result == RESULT_NOTHING && lua_isnil(L, argument_path))
+            context_raise(c, "%s is nil", p->name);
         if (!arguments_read_one(c, argument_path, p, &args[index]))
             return false;
     }

@@ -293,5 +293,9 @@ void context_check_fields(struct script_context *c, const struct script_function
         suggest_offer(&suggestion, function->parameters[k].name);
     if (suggestion.best)
         context_raise(c, "unknown field '%.100s'; did you mean '%s'?", unknown, suggestion.best);
-    context_raise(c, "unknown field '%.100s'", unknown);
+    char fields[700] = "";
+    for (int k = skip; k < function->parameter_count && strlen(fields) < sizeof fields - 60; k++)
+        snprintf(fields + strlen(fields), sizeof fields - strlen(fields), "%s%s", k > skip ? ", " : "",
+                 function->parameters[k].name);
+    context_raise(c, "unknown field '%.100s'; the fields are %s", unknown, fields);
 }

@@ -6,6 +6,7 @@
 #include "material/bump.h"
 #include "material/material_inputs.h"
 
+#include <math.h>
 #include <string.h>
 
 static bool give(struct script_result *result, struct material *material) {
@@ -83,8 +84,19 @@ static struct material *phong(struct script_context *context, const struct scrip
     return with_textures(context, m, args, error) ? m : NULL;
 }
 
+/* {200, 50, 50}: bytes, where numbers from 0 to 1 are meant. */
+static void warn_of_bytes(struct script_context *context, struct vec3 c) {
+    bool whole = c.x == floor(c.x) && c.y == floor(c.y) && c.z == floor(c.z);
+    double max = vec3_max_abs(c);
+    if (whole && max > 10 && max <= 255 && c.x >= 0 && c.y >= 0 && c.z >= 0)
+        context_warn_once(context, WARNED_OTHER,
+                          "kd {%g, %g, %g} looks like bytes; colours are numbers from 0 to 1, as {%.3g, %.3g, %.3g}",
+                          c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
+}
+
 bool gr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
                  struct error *error) {
+    warn_of_bytes(context, args[PHONG_KD].vector);
     if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
         return error_set(error, ERROR_SCENE, "ior is missing: refraction needs an index of refraction");
     return give(result, phong(context, args, error));

@@ -716,7 +716,7 @@ static const struct script_parameter glyphs_parameters[] = {
 };
 
 #define VN_FORM(first) first " verts normals faces face_normals"
-#define RENDER_TAIL " width height eye view up fov ambient lights"
+#define RENDER_TAIL " width height eye view up fov ambient? lights?"
 
 static const struct script_function node_rows[] = {
     GR("node", group_parameters, RESULT_NODE, gr_node, "A node with children and a transform.", "name?"),
@@ -766,7 +766,7 @@ static const struct script_function node_rows[] = {
 };
 
 static const struct script_function material_rows[] = {
-    GR("material", material_parameters, RESULT_MATERIAL, gr_material, "A Phong material.", "kd ks shininess"),
+    GR("material", material_parameters, RESULT_MATERIAL, gr_material, "A Phong material.", "kd ks? shininess?"),
     GR("rr_material", rr_parameters, RESULT_MATERIAL, gr_rr_material, "A Phong material that reflects and refracts.",
        "kd ks shininess reflect refract ior"),
     GR("marble_pnd_material", marble_parameters, RESULT_MATERIAL, gr_marble, "Marble over another material.",

@@ -88,7 +88,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         text = "2";
         break;
     case KIND_NODE:
-        text = "ball";
+        text = strcmp(p->name, "node") == 0 ? "gr.sphere('other')" : "ball"; /* none is its own child */
         break;
     case KIND_MATERIAL:
         text = "glass";

@@ -1,0 +1,55 @@
+/* What newcomers meet first: defaults of positional calls, and messages about common mistakes. */
+#include "tests/harness.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void says(const char *scene, const char *text) {
+    struct test_result result = test_gray_scene(scene, "-q scene.lua", NULL);
+    CHECK_EQ_INT(result.status, text ? 1 : 0);
+    if (text && !strstr(result.err, text))
+        test_fail(__FILE__, __LINE__, "%s says %s, not %s", scene, result.err, text);
+    if (!text && result.err[0] != '\0')
+        test_fail(__FILE__, __LINE__, "%s says %s", scene, result.err);
+    free(result.out);
+    free(result.err);
+}
+
+#define RENDER(rest)                                                                                                   \
+    "gr.render(gr.sphere(gr.material({.8, .1, .1})), 'x.png', 4, 4, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50" rest ")"
+
+TEST(positional_calls_have_the_defaults_of_the_manual) {
+    says(RENDER(""), NULL);
+    says(RENDER(", {1, 1, 1}"), NULL);
+    says("gr.material({1, 1, 1}, {0, 0, 0})", NULL);
+    says("gr.material()", "gr.material: kd is missing");
+}
+
+TEST(nil_as_lights_is_no_default) {
+    says(RENDER(", {1, 1, 1}, lamps"), "gr.render: lights is nil");
+    says(RENDER(", ambience, {}"), "gr.render: ambient is nil");
+}
+
+TEST(an_unknown_field_lists_the_valid_ones) {
+    says("gr.sphere{wobble = 1}", "gr.sphere: unknown field 'wobble'; the fields are name, material, centre, radius");
+    says("gr.sphere{raduis = 1}", "did you mean 'radius'?");
+}
+
+TEST(a_dot_for_a_colon_is_named) {
+    says("local a, b = gr.node('a'), gr.node('b') a.add_child(b)",
+         "node:add_child: node is missing; methods are called with a colon, as in n:add_child(...) (node 'b')");
+}
+
+TEST(a_cycle_is_reported_where_it_is_closed) {
+    says("local a, b, c = gr.node('a'), gr.node('b'), gr.node('c')\na:add_child(b)\nb:add_child(c)\nc:add_child(a)",
+         "scene.lua:4: node:add_child: 'c' is below 'a': the nodes would form a cycle (node 'c')");
+    says("local a = gr.node('a') a:add_child(a)", "a node cannot be its own child");
+}
+
+TEST(a_colour_in_bytes_is_a_warning) {
+    struct test_result result = test_gray_scene("gr.material({200, 50, 0}) gr.material({2, 2, 2})", "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.err, "warning: gr.material: kd {200, 50, 0} looks like bytes"));
+    free(result.out);
+    free(result.err);
+}
