@@ -659,68 +659,6 @@ bool arguments_read_one(struct script_context *c, int index, const struct script
     return (p->flags & GHOST_IS_NONE) != 0;
 }
 
-/* The argument types that a value can have, judged by its Lua type alone: bits. Strings that are numbers are both, a
- * ghost is any handle.
- */
-enum {
-    LIKE_NUMBER = 1 << HANDLE_TYPES,
-    LIKE_BOOLEAN = LIKE_NUMBER << 1,
-    LIKE_TEXT = LIKE_NUMBER << 2,
-    LIKE_TABLE = LIKE_NUMBER << 3,
-    LIKE_FUNCTION = LIKE_NUMBER << 4,
-    LIKE_HANDLE = LIKE_NUMBER - 1, /* bit `type` for each type of handle */
-};
-
-static int kinds_of(lua_State *L, int index) {
-    const struct handle *handle = handle_at(L, index);
-    if (handle)
-        return handle->type == HANDLE_GHOST ? LIKE_HANDLE : 1 << handle->type;
-    return (lua_isnumber(L, index) ? LIKE_NUMBER : 0) | (lua_isboolean(L, index) ? LIKE_BOOLEAN : 0) |
-           (lua_isstring(L, index) ? LIKE_TEXT : 0) | (lua_istable(L, index) ? LIKE_TABLE : 0) |
-           (lua_isfunction(L, index) ? LIKE_FUNCTION : 0);
-}
-
-bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags) {
-    static const int wanted[KIND_COUNT] = {
-        [KIND_NUMBER] = LIKE_NUMBER,
-        [KIND_WHOLE] = LIKE_NUMBER,
-        [KIND_BOOLEAN] = LIKE_BOOLEAN,
-        [KIND_TEXT] = LIKE_TEXT,
-        [KIND_FILE] = LIKE_TEXT,
-        [KIND_OUTPUT] = LIKE_TEXT,
-        [KIND_CHOICE] = LIKE_TEXT,
-        [KIND_AXIS] = LIKE_TEXT,
-        [KIND_POINT] = LIKE_TABLE,
-        [KIND_DIRECTION] = LIKE_TABLE,
-        [KIND_COLOUR] = LIKE_TABLE | LIKE_TEXT,
-        [KIND_TRIPLE] = LIKE_TABLE,
-        [KIND_SIZE] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_INTERVAL] = LIKE_TABLE,
-        [KIND_QUATERNION] = LIKE_TABLE,
-        [KIND_PAIR] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODE] = 1 << HANDLE_NODE,
-        [KIND_MATERIAL] = 1 << HANDLE_MATERIAL,
-        [KIND_MATERIALS] = LIKE_TABLE,
-        [KIND_IMAGE] = LIKE_TEXT | 1 << HANDLE_TEXTURE,
-        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | 1 << HANDLE_SKY,
-        [KIND_FOG] = 1 << HANDLE_FOG,
-        [KIND_CAUSTICS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_NODES] = LIKE_TABLE,
-        [KIND_LIGHTS] = LIKE_TABLE,
-        [KIND_POINTS] = LIKE_TABLE,
-        [KIND_PAIRS] = LIKE_TABLE,
-        [KIND_STOPS] = LIKE_TABLE,
-        [KIND_FACES] = LIKE_TABLE,
-        [KIND_NUMBERS] = LIKE_TABLE | LIKE_NUMBER,
-        [KIND_ROWS] = LIKE_TABLE,
-        [KIND_CURVES] = LIKE_TABLE,
-        [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
-    };
-    assert(wanted[kind]); /* every kind has a case */
-    int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0);
-    return (kinds_of(L, index) & accepted) != 0;
-}
-
 /* How well the arguments match a form: how many of the first ones match, then the difference of their number from the
  * form's. */
 struct fit {

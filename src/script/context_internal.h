@@ -179,7 +179,7 @@ bool arguments_read_one(struct script_context *context, int index, const struct 
                         struct script_value *value);
 /* Whether the arguments first to last are one table of named fields. */
 bool arguments_have_names(lua_State *L, const struct script_function *function, int first, int last);
-/* Whether a value of this Lua type can be an argument of the kind. */
+/* context.c: whether a value of this Lua type can be an argument of the kind. */
 bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags);
 
 /* context.c: the nearest of the words by Damerau-Levenshtein distance if the distance is small enough, else NULL. */
