@@ -133,7 +133,7 @@ const struct option option_table[] = {
     {OPTION_GROUP_COMPATIBILITY, "--ambient", OPTION_CHOICE, "kd|plain", NO_RANGE, FIELD(settings.ambient_plain), "kd",
      "multiply ambient light by kd, or add it unchanged"},
     {OPTION_GROUP_COMPATIBILITY, "--lenient", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.lenient), NULL,
-     "warn about gr functions that do not exist, and skip them"},
+     "survive whatever a script does with gr, with warnings, and render what can be shown"},
 
     {OPTION_GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
      "number of threads; the picture does not depend on it"},
