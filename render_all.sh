@@ -88,7 +88,7 @@ section() { # section TITLE CLASS SCRIPT...
 : >"$gallery/body.html"
 section "Demos" large data/*demo.lua data/pyramid-fog.lua data/light.lua data/relief.lua
 section "Path tracing" large data/path/*.lua
-section "Solids" large data/solids.lua data/swept.lua data/csg/*.lua data/meshes.lua
+section "Solids" large data/solids.lua data/swept.lua data/csg/*.lua data/functions/*.lua data/meshes.lua
 section "The Lua library" large data/library/show_*.lua
 section "Classic scenes" small data/classic/*.lua
 

@@ -141,6 +141,7 @@ TEST(smoke_scenes_of_shapes_meshes_and_bump_maps_render_in_small) {
 
 TEST(smoke_scenes_of_combined_solids_render_in_small) {
     smoke("data/csg", ".lua", false);
+    smoke("data/functions", ".lua", false);
 }
 
 TEST(smoke_scenes_of_light_and_air_render_in_small) {
