@@ -179,8 +179,9 @@ threads() {
 
 memory() {
     [ -n "$timer" ] || { echo 'GNU time is not installed: memory left out'; return; }
+    # A scene that leaves the integrator to the option.
     kb() {
-        $timer -f %M -o "$out/memory.kb" "$gray" -q --no-fork --size 1280x960 -o "$out/large.pfm" "$@" data/path/cornell.lua &&
+        $timer -f %M -o "$out/memory.kb" "$gray" -q --no-fork --size 1280x960 -o "$out/large.pfm" "$@" data/01demo.lua &&
             tail -n 1 "$out/memory.kb"
     }
     whitted=$(kb --integrator whitted -ss 1 -j 1)
