@@ -215,7 +215,7 @@ static void report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
     char line[4096 + 512];
-    if (settings->integrator != INTEGRATOR_PATH || work->asked.in_window || rays->pixels == 0)
+    if (!integrator_traits(settings->integrator).progressive || work->asked.in_window || rays->pixels == 0)
         return;
     double mean = (double)rays->samples / (double)rays->pixels;
     if (settings->noise > 0)
@@ -468,7 +468,7 @@ static void init_work(struct picture_work *work, struct render_process *process,
                                             : options->quick ? DRAFT_QUICK
                                                              : DRAFT_NONE);
     struct settings *settings = &work->job.settings;
-    if (settings->integrator != INTEGRATOR_PATH && settings->aov == AOV_ALL)
+    if (!integrator_traits(settings->integrator).has_light_parts && settings->aov == AOV_ALL)
         settings->aov &= ~AOV_PATH; /* all that there are */
 }
 

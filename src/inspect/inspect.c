@@ -93,7 +93,8 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
     const struct render_job *job = picture->job;
     struct trace_context trace_context = {picture, writer};
     /* How many samples the pixel has is known when its tile, or the picture, is done. */
-    if (job->settings.integrator == INTEGRATOR_PATH && (job->settings.noise > 0 || job->settings.time_limit > 0))
+    if (integrator_traits(job->settings.integrator).progressive &&
+        (job->settings.noise > 0 || job->settings.time_limit > 0))
         return error_set(error, ERROR_USAGE, "--pixel takes no --noise or --time-limit; --spp N gives the samples");
     for (uint32_t i = 0; i < count; i++) {
         if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)

@@ -364,13 +364,9 @@ void pixel_trace_print(const struct trace_report *report, struct text_writer *wr
     text_writer_name(writer, report->picture->file);
     text_writer_print(writer, ", pixel %u,%u of %u x %u: ", report->pixel_trace->x, report->pixel_trace->y, job->width,
                       job->height);
-    switch (t.report->picture->job->settings.integrator) {
-    case INTEGRATOR_WHITTED:
-        print_samples(&t);
-        break;
-    case INTEGRATOR_PATH:
+    if (integrator_traits(job->settings.integrator).progressive)
         print_paths(&t);
-        break;
-    }
+    else
+        print_samples(&t);
     print_sum(&t);
 }

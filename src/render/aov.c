@@ -247,7 +247,7 @@ void renderer_layer_item(void *context, uint32_t item, int index) {
                 aov_surface(renderer->job->world, &ray, mask, &worker->scratch, values);
             if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
                 measure_pixel(renderer, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);
-            if (mask & AOV_PATH && renderer->job->settings.integrator == INTEGRATOR_PATH)
+            if (mask & AOV_PATH && integrator_traits(renderer->job->settings.integrator).has_light_parts)
                 path_layers(film, at, values);
             worker->clamped |= clamp_layers(values);
             for (int i = 0; i < AOV_COUNT; i++) {

@@ -207,7 +207,7 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
     char ignored[256];
     if (!renderer_prepare_at(job, 0, &frame, warning, error) || !renderer_prepare_at(job, 1, &frame, ignored, error))
         return false;
-    if (s->integrator != INTEGRATOR_PATH && s->aov & AOV_PATH && s->aov != AOV_ALL)
+    if (!integrator_traits(s->integrator).has_light_parts && s->aov & AOV_PATH && s->aov != AOV_ALL)
         return error_set(error, ERROR_USAGE, "--aov %s is a layer of --integrator path only",
                          aov_name(path_layer(s->aov)));
     *area = (struct render_area){0, 0, job->width, job->height};

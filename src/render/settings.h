@@ -58,7 +58,7 @@ struct caustics {
 };
 enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
 
-/* What colours mean (docs/colour.md). AUTO: linear with the path tracer, else classic. */
+/* What colours mean (docs/colour.md). AUTO: linear with integrators of light (integrator_traits), else classic. */
 #define COLOUR_PIPELINES(X)                                                                                            \
     X(COLOUR_AUTO, "auto")                                                                                             \
     X(COLOUR_CLASSIC, "classic") /* numbers as they are */                                                             \
@@ -70,6 +70,13 @@ enum colour_pipeline { COLOUR_PIPELINES(LIST_MEMBER) };
     X(INTEGRATOR_WHITTED, "whitted")                                                                                   \
     X(INTEGRATOR_PATH, "path")
 enum integrator_kind { INTEGRATORS(LIST_MEMBER) };
+/* What the pictures of an integrator are to the rest of the program. */
+struct integrator_traits {
+    bool progressive;     /* a pixel is the mean of a sequence of samples: --spp, --noise and --time-limit hold */
+    bool has_light_parts; /* its light is known by kind of scattering: the layers AOV_PATH */
+    bool is_linear;       /* COLOUR_AUTO is linear */
+};
+struct integrator_traits integrator_traits(enum integrator_kind integrator); /* in integrator.c */
 /* NOISE: the limit with --noise and without --spp. */
 enum {
     PATH_SAMPLES_DEFAULT = 64,
@@ -165,7 +172,7 @@ struct camera {
 
 static inline bool settings_linear(const struct settings *settings) {
     return settings->colour == COLOUR_LINEAR ||
-           (settings->colour == COLOUR_AUTO && settings->integrator == INTEGRATOR_PATH);
+           (settings->colour == COLOUR_AUTO && integrator_traits(settings->integrator).is_linear);
 }
 
 #endif
