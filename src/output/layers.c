@@ -10,9 +10,18 @@
 #include <string.h>
 #include <strings.h>
 
+static const char *const extensions[] = {PICTURE_FORMATS(LIST_WORD)};
+
+const char *picture_extensions(char out[PICTURE_EXTENSIONS_SIZE]) {
+    size_t at = 0;
+    for (int i = 0; i < PICTURE_OTHER && at < PICTURE_EXTENSIONS_SIZE; i++) {
+        const char *separator = i == 0 ? "" : i + 1 < PICTURE_OTHER ? ", " : " or ";
+        at += (size_t)snprintf(out + at, PICTURE_EXTENSIONS_SIZE - at, "%s%s", separator, extensions[i]);
+    }
+    return out;
+}
+
 enum picture_format picture_format(const char *name) {
-    static const char *const extensions[] = {
-        [PICTURE_PNG] = ".png", [PICTURE_PFM] = ".pfm", [PICTURE_HDR] = ".hdr", [PICTURE_EXR] = ".exr"};
     const char *dot = strrchr(name, '.');
     for (int i = 0; dot && i < PICTURE_OTHER; i++) {
         if (strcasecmp(dot, extensions[i]) == 0)
@@ -83,26 +92,38 @@ bool layers_write_exr(const struct file_target *target, const struct film *film,
     return exr_write_channels(target, film->width, film->height, channels, count, error);
 }
 
+/* One layer as a file. deep: 16 bits in PNG files. */
+static bool write_layer(const struct file_target *target, enum picture_format format, const struct film *film,
+                        struct layer_rows *rows, bool deep, struct error *error) {
+    switch (format) {
+    case PICTURE_PFM:
+        return pfm_write(target, film->width, film->height, layer_row_linear, rows, error);
+    case PICTURE_HDR:
+        return hdr_write(target, film->width, film->height, layer_row_linear, rows, error);
+    case PICTURE_EXR:
+        return true; /* the picture has it */
+    case PICTURE_PNG:
+    case PICTURE_OTHER:
+        break;
+    }
+    return deep ? png_write_16(target, film->width, film->height, layer_row_16, rows, error)
+                : png_write(target, film->width, film->height, layer_row, rows, error);
+}
+
 bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error) {
     enum picture_format format = picture_format(picture->path);
     size_t pixels = (size_t)film->width * film->height;
     char name[LAYER_NAME_LIMIT];
     const struct file_target target = {.path = name, .rules = picture->rules};
-    for (int i = 0; i < AOV_COUNT; i++) {
-        if (!(film->layer_mask >> i & 1) || format == PICTURE_EXR)
+    for (int i = 0; i < AOV_COUNT && format != PICTURE_EXR; i++) {
+        if (!(film->layer_mask >> i & 1))
             continue;
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
         rows.scale = aov_scale(rows.aov, rows.values, pixels);
         if (!layers_name(picture->path, aov_name(rows.aov), name, error))
             return false;
-        bool deep = deep_picture || rows.aov == AOV_DEPTH;
-        bool ok = format == PICTURE_PFM ? pfm_write(&target, film->width, film->height, layer_row_linear, &rows, error)
-                  : format == PICTURE_HDR
-                      ? hdr_write(&target, film->width, film->height, layer_row_linear, &rows, error)
-                  : deep ? png_write_16(&target, film->width, film->height, layer_row_16, &rows, error)
-                         : png_write(&target, film->width, film->height, layer_row, &rows, error);
-        if (!ok)
+        if (!write_layer(&target, format, film, &rows, deep_picture || rows.aov == AOV_DEPTH, error))
             return false;
     }
     return true;

@@ -121,10 +121,10 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
                          from_script);
     enum ending ending = ending_of(from_script);
     bool lenient = files->options->script.lenient;
+    char extensions[PICTURE_EXTENSIONS_SIZE];
     if (ending == ENDING_OTHER && !lenient)
-        return error_set(error, ERROR_SCENE,
-                         "%.600s: the name of a picture ends in .png, .pfm, .hdr or .exr (-o FILE allows any name)",
-                         from_script);
+        return error_set(error, ERROR_SCENE, "%.600s: the name of a picture ends in %s (-o FILE allows any name)",
+                         from_script, picture_extensions(extensions));
     const char *added = ending == ENDING_PICTURE ? "" : ".png";
     if (length + strlen(added) >= NAME_LIMIT)
         return name_is_too_long(error);

@@ -80,15 +80,19 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
     struct rows rows = {&picture->film, view, &tone};
-    enum picture_format format = picture_format(target->path);
-    if (format == PICTURE_PFM)
+    switch (picture_format(target->path)) {
+    case PICTURE_PFM:
         return pfm_write(target, request->width, request->height, row_linear, &rows, error);
-    if (format == PICTURE_HDR)
+    case PICTURE_HDR:
         return hdr_write(target, request->width, request->height, row_linear, &rows, error);
-    if (format == PICTURE_EXR && view == FILM_FINAL && picture->film.layer_mask)
-        return layers_write_exr(target, &picture->film, error);
-    if (format == PICTURE_EXR)
+    case PICTURE_EXR:
+        if (view == FILM_FINAL && picture->film.layer_mask)
+            return layers_write_exr(target, &picture->film, error);
         return exr_write(target, request->width, request->height, row_linear, &rows, error);
+    case PICTURE_PNG:
+    case PICTURE_OTHER:
+        break;
+    }
     struct png_source source = {.width = request->width, .height = request->height, .context = &rows, .srgb = tone.srgb};
     if (request->deep)
         source.words = row_16;

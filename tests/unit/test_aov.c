@@ -22,7 +22,7 @@ static double layer_sum(const struct stage *s, enum aov aov) {
     double sum = 0;
     for (uint32_t y = 0; y < s->film.height; y++)
         for (uint32_t x = 0; x < s->film.width; x++)
-            sum += (double)layer(s, aov, x, y)[0];
+            sum += fabs((double)layer(s, aov, x, y)[0]);
     return sum;
 }
 
@@ -61,6 +61,10 @@ TEST(layers_of_a_ball_are_their_closed_forms) {
         }
     CHECK(met > 20);
     CHECK(worst < 1e-5);
+    for (enum aov aov = 0; aov < AOV_RAW; aov++) {
+        if (!(layer_sum(&s, aov) > 0))
+            test_fail(__FILE__, __LINE__, "the layer %s has no values", aov_name(aov));
+    }
     stage_end(&s);
 }
 

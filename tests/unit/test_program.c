@@ -1,6 +1,9 @@
 /* The program from a user's view: exit statuses, names of pictures, signals, crashes, full disks, and the promise that
  * an old picture is never damaged. */
 #define _GNU_SOURCE
+#include "image/exr.h"
+#include "image/image.h"
+#include "output/layers_internal.h"
 #include "tests/harness.h"
 
 #include <dirent.h>
@@ -315,6 +318,44 @@ TEST(a_crop_is_exactly_that_part_of_the_whole) {
         CHECK(memcmp(part.rgb + 3 * 41 * y, whole.rgb + 3 * (70 * (y + 7) + 23), 3 * 41) == 0);
     free(whole.rgb);
     free(part.rgb);
+}
+
+/* A second run replaces the picture and its layers: the files begin as files of their format do, and differently from
+ * those of other formats. */
+TEST(every_format_of_pictures_is_written_and_may_be_replaced) {
+    static const char *const extensions[] = {PICTURE_FORMATS(LIST_WORD)};
+    uint8_t heads[LIST_COUNT(PICTURE_FORMATS)][4] = {{0}};
+    for (int i = 0; i < PICTURE_OTHER; i++) {
+        char scene[2000], name[32], layer[32];
+        if (i == PICTURE_EXR && !exr_can_write())
+            continue;
+        (void)snprintf(name, sizeof name, "out%s", extensions[i]);
+        (void)snprintf(layer, sizeof layer, "out.normal%s", extensions[i]);
+        (void)snprintf(scene, sizeof scene, BALL "picture('%s', 20, 20)\n", name);
+        for (int run = 0; run < 2; run++) {
+            struct test_result result = test_gray_scene(scene, "-q -j 1 --aov normal scene.lua", NULL);
+            CHECK_EQ_INT(result.status, 0);
+            if (result.status != 0)
+                test_fail(__FILE__, __LINE__, "%s: %s", name, result.err);
+            free(result.out);
+            free(result.err);
+        }
+        uint8_t head[FILE_HEAD_SIZE] = {0};
+        const char *files[2] = {name, i == PICTURE_EXR ? name : layer};
+        for (int k = 0; k < 2; k++) {
+            char *path = path_in(test_folder(), files[k]);
+            FILE *file = fopen(path, "rb");
+            CHECK(file && fread(head, 1, sizeof head, file) == sizeof head && image_is_picture(head, sizeof head));
+            if (file)
+                (void)fclose(file);
+            free(path);
+            for (int other = 0; k == 0 && other < i; other++)
+                CHECK(memcmp(head, heads[other], sizeof heads[other]) != 0);
+            if (k == 0)
+                memcpy(heads[i], head, sizeof heads[i]);
+            CHECK(memcmp(head, heads[i], sizeof heads[i]) == 0);
+        }
+    }
 }
 
 TEST(size_replaces_the_size_of_the_script) {
