@@ -168,9 +168,9 @@ static bool render(void *context) {
     struct render_statistics statistics = {0};
     struct error error = {0};
     size_t bytes;
-    CHECK(film_size(64, 64, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+    CHECK(film_size(64, 64, render_record(&s->settings), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_layout(&film, block, 64, 64, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 64, 64, render_record(&s->settings));
     film.full_width = film.full_height = 64;
     struct render_job job = {.world = &s->world,
                              .camera = s->camera,
@@ -184,7 +184,7 @@ static bool render(void *context) {
     return done;
 }
 
-TEST(long_pixels_of_glass_and_soft_light_stop_soon) {
+TEST(long_pixels_of_glass_and_soft_light_stop_soon_with_every_integrator) {
     struct stage s;
     stage_begin(&s, 2);
     struct material *glass = stage_glass(&s, 0.5, 0.5, 1.5);
@@ -194,6 +194,7 @@ TEST(long_pixels_of_glass_and_soft_light_stop_soon) {
     }
     s.settings.full = true;
     s.settings.samples = 64;
+    s.settings.path_samples = 1 << 16;
     s.settings.reflect_limit = s.settings.refract_limit = 40;
     s.settings.area_samples = 64;
     s.light_count = 1;
@@ -205,7 +206,11 @@ TEST(long_pixels_of_glass_and_soft_light_stop_soon) {
                                  .colour = {1, 1, 1},
                                  .falloff = {1, 0, 0}};
     CHECK(stage_build(&s, s.root, ACCEL_GRID));
-    expect_quick("a render", s.pool, render, &s);
+    static const char *const words[] = {INTEGRATORS(LIST_WORD)};
+    for (int i = 0; i < LIST_COUNT(INTEGRATORS); i++) {
+        s.settings.integrator = (enum integrator_kind)i;
+        expect_quick(words[i], s.pool, render, &s);
+    }
     stage_end(&s);
 }
 
