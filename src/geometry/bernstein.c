@@ -5,6 +5,8 @@
  * count. The sign at a midpoint is computed once and used by both halves, hence the parity. */
 #include "geometry/bernstein.h"
 
+#include "math/bracket.h"
+
 #include <math.h>
 #include <stdbool.h>
 
@@ -78,33 +80,23 @@ void bernstein_derivative(const double *b, int degree, double *out) {
 
 /* The one root in (0, 1); b[0] and b[degree] differ in sign. */
 static double bracketed_root(const double *b, int degree) {
-    double lo = 0, hi = 1, last_step = 1;
-    bool rising = b[0] < 0;
     if (degree == 1)
         return b[0] / (b[0] - b[1]);
     /* Does not start at an end: it may be a zero that counts as positive, with the root elsewhere. */
-    double x = fmin(fmax(fabs(b[0]) / (fabs(b[0]) + fabs(b[degree])), 0.0625), 0.9375);
+    struct bracket at = {.lo = 0, .hi = 1, .last_step = 1, .rising = b[0] < 0};
+    at.x = fmin(fmax(fabs(b[0]) / (fabs(b[0]) + fabs(b[degree])), 0.0625), 0.9375);
     for (int i = 0; i < 100; i++) {
-        double slope, value = value_and_slope(b, degree, x, &slope);
+        double slope, value = value_and_slope(b, degree, at.x, &slope);
         if (value == 0)
-            return x;
-        if ((value > 0) == rising)
-            hi = x;
-        else
-            lo = x;
-        double step = value / slope, next = x - step;
-        if (fabs(step) < 0x1p-54) /* no further improvement */
-            return next > lo && next < hi ? next : x;
-        if (!(next > lo && next < hi && fabs(step) <= 0.5 * last_step)) {
-            next = 0.5 * (lo + hi);
-            if (next == lo || next == hi || hi - lo < 0x1p-54)
-                return x;
-            step = x - next;
-        }
-        last_step = fabs(step);
-        x = next;
+            return at.x;
+        bool good = bracket_newton(&at, value, slope);
+        if (fabs(at.step) < 0x1p-54) /* no further improvement */
+            return at.next > at.lo && at.next < at.hi ? at.next : at.x;
+        if (!good && (!bracket_halve(&at, 0.5 * (at.lo + at.hi)) || at.hi - at.lo < 0x1p-54))
+            return at.x;
+        bracket_move(&at);
     }
-    return x;
+    return at.x;
 }
 
 static int sign_changes(const double *b, int degree) {

@@ -99,7 +99,6 @@ void line_finish_closed(const struct line *line, struct geom_scratch *scratch, u
  * d is kept off 0, so that all numbers stay finite. surface_mapping_axes: Duff et al., "Building an Orthonormal Basis,
  * Revisited", JCGT 2017. */
 
-#define TURN 6.28318530717958647692
 #define STEEPEST 0x1p-20
 
 void surface_mapping_axes(struct vec3 n, struct vec3 *x, struct vec3 *z) {

@@ -78,7 +78,8 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
         case LOBE_GLOSS:
         case LOBE_METAL:
         case LOBE_FACETS_MULTIPLE:
-            sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi), PI * rough_lobe_eval(bsdf, lobe, wo, wi));
+            sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi),
+                                  radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
             continue;
         case LOBE_MIRROR:
         case LOBE_REFRACTION:

@@ -12,6 +12,7 @@
 
 /* The double nearest to pi. */
 #define PI 3.14159265358979323846
+#define TURN 6.28318530717958647692 /* 2 PI */
 
 double el_sin(double x);
 double el_cos(double x);

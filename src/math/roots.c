@@ -18,6 +18,8 @@
  * is in [1/2, 1): nothing overflows, and a scene scaled by a power of two takes exactly the same steps. */
 #include "math/roots.h"
 
+#include "math/bracket.h"
+
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
@@ -113,31 +115,19 @@ static double bit_midpoint(double l, double r) {
 
 /* The root in (l, r), where the polynomial has opposite signs, positive at r if `rising`; zero is not inside. */
 static double bracketed_root(const double *c, int degree, double l, double r, bool rising) {
-    double x = 0.5 * (l + r), last_step = r - l;
+    struct bracket b = {.lo = l, .hi = r, .x = 0.5 * (l + r), .last_step = r - l, .rising = rising};
     for (;;) {
         double value = c[degree], slope = 0.0;
         for (int i = degree - 1; i >= 0; i--) {
-            slope = slope * x + value;
-            value = value * x + c[i];
+            slope = slope * b.x + value;
+            value = value * b.x + c[i];
         }
         if (value == 0.0)
-            return x;
-        if ((value > 0.0) == rising)
-            r = x;
-        else
-            l = x;
-        double step = value / slope; /* an infinity or NaN fails the comparisons below */
-        double next = x - step;
-        if (next == x)
-            return x;
-        if (!(next > l && next < r && fabs(step) <= 0.5 * last_step)) {
-            next = bit_midpoint(l, r);
-            if (next == l || next == r)
-                return x;
-            step = x - next;
-        }
-        last_step = fabs(step);
-        x = next;
+            return b.x;
+        bool good = bracket_newton(&b, value, slope);
+        if (b.next == b.x || (!good && !bracket_halve(&b, bit_midpoint(b.lo, b.hi))))
+            return b.x;
+        bracket_move(&b);
     }
 }
 
@@ -310,12 +300,4 @@ int roots_polynomial(const double *coefficients, int degree, double lo, double h
     if (degree == 0)
         return 0;
     return roots_ranged(coefficients, degree, lo, hi, out);
-}
-
-int roots_cubic(double a, double b, double c, double d, double out[3]) {
-    return roots_polynomial((double[]){d, c, b, a}, 3, -INFINITY, INFINITY, out);
-}
-
-int roots_quartic(double a, double b, double c, double d, double e, double out[4]) {
-    return roots_polynomial((double[]){e, d, c, b, a}, 4, -INFINITY, INFINITY, out);
 }

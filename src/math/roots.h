@@ -19,11 +19,6 @@ enum { ROOTS_MAX_DEGREE = 12 };
 
 /* a x^2 + b x + c */
 int roots_quadratic(double a, double b, double c, double out[2]);
-/* a x^3 + b x^2 + c x + d */
-int roots_cubic(double a, double b, double c, double d, double out[3]);
-/* a x^4 + b x^3 + c x^2 + d x + e */
-int roots_quartic(double a, double b, double c, double d, double e, double out[4]);
-
 /* Sum of coefficients[i] x^i, i = 0..degree <= ROOTS_MAX_DEGREE, in the closed interval [lo, hi], which may be
  * infinite. out holds at least `degree` numbers. */
 int roots_polynomial(const double *coefficients, int degree, double lo, double hi, double *out);

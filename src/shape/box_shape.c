@@ -40,6 +40,30 @@ bool box_shape_contains(const struct box *box, struct vec3 p) {
            p.z < box->max.z;
 }
 
+void box_face_point(const struct box *box, enum box_face face, struct vec3 *point, struct vec3 *normal) {
+    *normal = (struct vec3){0, 0, 0};
+    switch (face) {
+    case BOX_POSITIVE_X:
+        point->x = box->max.x, normal->x = 1;
+        break;
+    case BOX_NEGATIVE_X:
+        point->x = box->min.x, normal->x = -1;
+        break;
+    case BOX_POSITIVE_Y:
+        point->y = box->max.y, normal->y = 1;
+        break;
+    case BOX_NEGATIVE_Y:
+        point->y = box->min.y, normal->y = -1;
+        break;
+    case BOX_POSITIVE_Z:
+        point->z = box->max.z, normal->z = 1;
+        break;
+    case BOX_NEGATIVE_Z:
+        point->z = box->min.z, normal->z = -1;
+        break;
+    }
+}
+
 /* The cube image: fraction of columns from the left and of rows from the top on each face, from the point q in the unit
  * cube, and the derivatives of the point by them. Images on the sides are upright; front (+z), top and bottom join at
  * the edges. */
@@ -71,28 +95,9 @@ void box_shape_describe(const struct box *box, const struct ray *ray, const stru
                         struct surface *out) {
     /* The face's own coordinate is exact, the others stay on the face. */
     struct vec3 point = vec3_min(vec3_max(ray_at(ray, crossing->t), box->min), box->max);
-    struct vec3 normal = {0, 0, 0};
+    struct vec3 normal;
     enum box_face face = (enum box_face)crossing->part;
-    switch (face) {
-    case BOX_POSITIVE_X:
-        point.x = box->max.x, normal.x = 1;
-        break;
-    case BOX_NEGATIVE_X:
-        point.x = box->min.x, normal.x = -1;
-        break;
-    case BOX_POSITIVE_Y:
-        point.y = box->max.y, normal.y = 1;
-        break;
-    case BOX_NEGATIVE_Y:
-        point.y = box->min.y, normal.y = -1;
-        break;
-    case BOX_POSITIVE_Z:
-        point.z = box->max.z, normal.z = 1;
-        break;
-    case BOX_NEGATIVE_Z:
-        point.z = box->min.z, normal.z = -1;
-        break;
-    }
+    box_face_point(box, face, &point, &normal);
     double low = vec3_max_abs(box->min), high = vec3_max_abs(box->max);
     surface_make(out, point, normal, 0x1p-50 * (low > high ? low : high));
     out->has_uv = true;

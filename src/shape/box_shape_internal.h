@@ -13,6 +13,8 @@ enum box_face { BOX_POSITIVE_X, BOX_NEGATIVE_X, BOX_POSITIVE_Y, BOX_NEGATIVE_Y, 
  * plane of a face or touches only an edge or a corner does not cross. */
 bool box_shape_crossings(const struct box *box, const struct ray *ray, struct crossing out[2]);
 bool box_shape_contains(const struct box *box, struct vec3 point);
+/* Moves a point onto the plane of a face; normal: the outward unit normal. */
+void box_face_point(const struct box *box, enum box_face face, struct vec3 *point, struct vec3 *normal);
 void box_shape_describe(const struct box *box, const struct ray *ray, const struct crossing *crossing,
                         struct surface *out);
 

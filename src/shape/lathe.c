@@ -17,12 +17,11 @@
 #include "geometry/bernstein.h"
 #include "geometry/crossing.h"
 #include "geometry/spline.h"
+#include "math/bracket.h"
 #include "math/elementary.h"
 #include "shape/part_tree_internal.h"
 
 #include <string.h>
-
-#define TURN 6.28318530717958647692
 
 enum { DEEPEST = 26 };
 
@@ -286,33 +285,23 @@ static bool push(const struct search *f, double x, double sign) {
 static double bracketed_root(const struct search *f, double sign, double lo, double hi, double g_lo, double g_hi) {
     const struct hyperbola *hy = f->hy;
     const double *p = f->piece->p, *q = f->piece->q;
-    bool rising = g_lo < 0;
-    double x = lo + (hi - lo) * fmin(fmax(g_lo / (g_lo - g_hi), 0.0625), 0.9375), last_step = hi - lo;
+    struct bracket b = {.lo = lo, .hi = hi, .last_step = hi - lo, .rising = g_lo < 0};
+    b.x = lo + (hi - lo) * fmin(fmax(g_lo / (g_lo - g_hi), 0.0625), 0.9375);
     for (int i = 0; i < 120; i++) {
+        double x = b.x;
         double r = radius_at(f->piece, x), w = width(hy, r);
         double g = (hy->c * height_at(f->piece, x) - hy->c * hy->y_foot) - sign * hy->d * w;
         if (g == 0)
             return x;
-        if ((g > 0) == rising)
-            hi = x;
-        else
-            lo = x;
         double dr = f->piece->straight ? p[3] - p[0] : cubic_slope(p, x);
         double dy = f->piece->straight ? q[3] - q[0] : cubic_slope(q, x);
         double slope = hy->c * dy - sign * hy->d * r * dr / w;
-        double step = g / slope, next = x - step;
-        if (fabs(step) < 0x1p-54)
+        bool good = bracket_newton(&b, g, slope);
+        if (fabs(b.step) < 0x1p-54 || (!good && (!bracket_halve(&b, 0.5 * (b.lo + b.hi)) || b.hi - b.lo < 0x1p-54)))
             return x;
-        if (!(next > lo && next < hi && fabs(step) <= 0.5 * last_step)) {
-            next = 0.5 * (lo + hi);
-            if (next == lo || next == hi || hi - lo < 0x1p-54)
-                return x;
-            step = x - next;
-        }
-        last_step = fabs(step);
-        x = next;
+        bracket_move(&b);
     }
-    return x;
+    return b.x;
 }
 
 /* Bounds of a product of two ranges. */

@@ -222,27 +222,8 @@ static void describe_face_image(const struct box *limits, struct surface *out) {
 static void describe_face(const struct quadric *q, uint32_t part, struct surface *out) {
     enum box_face face = (enum box_face)(part - QUADRIC_FIRST_FACE);
     const struct box *b = &q->limits;
-    struct vec3 p = out->point, n = {0, 0, 0};
-    switch (face) {
-    case BOX_POSITIVE_X:
-        p.x = b->max.x, n.x = 1;
-        break;
-    case BOX_NEGATIVE_X:
-        p.x = b->min.x, n.x = -1;
-        break;
-    case BOX_POSITIVE_Y:
-        p.y = b->max.y, n.y = 1;
-        break;
-    case BOX_NEGATIVE_Y:
-        p.y = b->min.y, n.y = -1;
-        break;
-    case BOX_POSITIVE_Z:
-        p.z = b->max.z, n.z = 1;
-        break;
-    case BOX_NEGATIVE_Z:
-        p.z = b->min.z, n.z = -1;
-        break;
-    }
+    struct vec3 p = out->point, n;
+    box_face_point(b, face, &p, &n);
     out->point = p;
     out->normal = n;
     out->error = 0x1p-49 * vec3_max_abs(p);

@@ -8,8 +8,6 @@
 #include "math/roots.h"
 #include "shape/span_internal.h"
 
-#define TURN 6.28318530717958647692
-
 int revolved_quadric_crossings(const struct revolved_quadric *c, const struct ray *ray, struct crossing out[4]) {
     double unit = direction_unit(ray->direction);
     struct vec3 d = vec3_scale(ray->direction, unit), f = vec3_sub(ray->origin, c->base);

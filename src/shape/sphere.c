@@ -9,8 +9,6 @@
 
 #include "math/elementary.h"
 
-#define TURN 6.28318530717958647692
-
 /* Lengths and directions whose squares might leave the range of doubles are scaled by powers of two first: exact, so a
  * sphere gives the same t, bit by bit, whether it comes through here or not. */
 static bool solve_scaled(struct vec3 f, struct vec3 d, double radius, double t[2]);

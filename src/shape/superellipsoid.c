@@ -15,8 +15,6 @@
 
 #include "math/elementary.h"
 
-#define TURN 6.28318530717958647692
-
 /* |(a, b)|_p for a, b >= 0, and how it grows with each. */
 struct norm {
     double value, da, db;

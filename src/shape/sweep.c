@@ -17,7 +17,6 @@
 
 #include <string.h>
 
-#define TURN 6.28318530717958647692
 #define FLAT 0.25
 enum { DEEPEST = 6 };
 

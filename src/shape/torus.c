@@ -15,8 +15,6 @@
 #include "math/elementary.h"
 #include "math/roots.h"
 
-#define TURN 6.28318530717958647692
-
 static double ring(struct vec3 p) {
     return sqrt(p.x * p.x + p.z * p.z);
 }

@@ -7,6 +7,15 @@
 #include "math/roots.h"
 #include "tests/harness.h"
 
+/* Of a x^3 + b x^2 + c x + d, and of a x^4 + b x^3 + c x^2 + d x + e. */
+static int cubic(double a, double b, double c, double d, double out[3]) {
+    return roots_polynomial((double[]){d, c, b, a}, 3, -INFINITY, INFINITY, out);
+}
+
+static int quartic(double a, double b, double c, double d, double e, double out[4]) {
+    return roots_polynomial((double[]){e, d, c, b, a}, 4, -INFINITY, INFINITY, out);
+}
+
 /* Coefficients (lowest first) of factor * product of (x - root), in long double, so that they are rounded only once. */
 static void expand(const double *roots, int count, double factor, double *coefficients) {
     long double c[ROOTS_MAX_DEGREE + 1] = {factor};
@@ -115,20 +124,20 @@ TEST(roots_cubic_and_quartic_find_known_roots_and_pairs_of_complex_ones_hide) {
         if (gap < 1e-3)
             continue;
         expand(r, 3, 2.0, c);
-        CHECK_EQ_INT(roots_cubic(c[3], c[2], c[1], c[0], out), 3);
+        CHECK_EQ_INT(cubic(c[3], c[2], c[1], c[0], out), 3);
         for (int j = 0; j < 3; j++)
             CHECK_NEAR(out[j], r[j], tolerance_at(c, 3, r[j]));
         expand(r, 4, -0.3, c);
-        CHECK_EQ_INT(roots_quartic(c[4], c[3], c[2], c[1], c[0], out), 4);
+        CHECK_EQ_INT(quartic(c[4], c[3], c[2], c[1], c[0], out), 4);
         for (int j = 0; j < 4; j++)
             CHECK_NEAR(out[j], r[j], tolerance_at(c, 4, r[j]));
         /* (x^2 + p x + q) with p^2 < 4 q adds no root */
         double p = test_uniform(&random, -2.0, 2.0), q = p * p / 4 + test_uniform(&random, 0.01, 4.0);
         double s = r[0] + r[1], t = r[0] * r[1];
-        CHECK_EQ_INT(roots_quartic(1.0, p - s, q - p * s + t, p * t - q * s, q * t, out), 2);
+        CHECK_EQ_INT(quartic(1.0, p - s, q - p * s + t, p * t - q * s, q * t, out), 2);
         CHECK_NEAR(out[0], r[0], 1e-10);
         CHECK_NEAR(out[1], r[1], 1e-10);
-        CHECK_EQ_INT(roots_cubic(1.0, p - r[0], q - p * r[0], -q * r[0], out), 1);
+        CHECK_EQ_INT(cubic(1.0, p - r[0], q - p * r[0], -q * r[0], out), 1);
         CHECK_NEAR(out[0], r[0], 1e-10);
     }
 }
@@ -167,9 +176,9 @@ TEST(roots_multiple_ones_keep_parity_and_position) {
             CHECK(count >= 1);
     }
     double out[4];
-    CHECK_EQ_INT(roots_quartic(1, 0, 0, 0, 0, out), 2);
+    CHECK_EQ_INT(quartic(1, 0, 0, 0, 0, out), 2);
     CHECK(out[0] == 0.0 && out[1] == 0.0);
-    CHECK_EQ_INT(roots_cubic(1, 0, 0, 0, out), 1);
+    CHECK_EQ_INT(cubic(1, 0, 0, 0, out), 1);
     CHECK(out[0] == 0.0);
 }
 
@@ -223,16 +232,16 @@ TEST(roots_of_wildly_different_size_are_found) {
     double out[6], c[5];
     static const double wild[4] = {-1e40, -1e-20, 1e-60, 1e20};
     expand(wild, 4, 1e-30, c);
-    CHECK_EQ_INT(roots_quartic(c[4], c[3], c[2], c[1], c[0], out), 4);
+    CHECK_EQ_INT(quartic(c[4], c[3], c[2], c[1], c[0], out), 4);
     for (int j = 0; j < 4; j++)
         CHECK_NEAR(out[j] / wild[j], 1.0, 1e-14);
     static const double tiny[3] = {1e-90, 1e-80, 2e-80};
     expand(tiny, 3, 1e60, c);
-    CHECK_EQ_INT(roots_cubic(c[3], c[2], c[1], c[0], out), 3);
+    CHECK_EQ_INT(cubic(c[3], c[2], c[1], c[0], out), 3);
     for (int j = 0; j < 3; j++)
         CHECK_NEAR(out[j] / tiny[j], 1.0, 1e-14);
     /* a leading coefficient that is almost nothing sends one root far away and leaves the others */
-    CHECK_EQ_INT(roots_cubic(1e-200, 1.0, -3.0, 2.0, out), 3);
+    CHECK_EQ_INT(cubic(1e-200, 1.0, -3.0, 2.0, out), 3);
     CHECK_NEAR(out[0] / -1e200, 1.0, 1e-14);
     CHECK_NEAR(out[1], 1.0, 1e-14);
     CHECK_NEAR(out[2], 2.0, 1e-14);
@@ -240,7 +249,7 @@ TEST(roots_of_wildly_different_size_are_found) {
     CHECK_NEAR(out[0], 1.0, 1e-14);
     CHECK_NEAR(out[1], 2.0, 1e-14);
     /* a root beyond the range of double is omitted */
-    CHECK_EQ_INT(roots_quartic(5e-324, 1e300, 0.0, -1e300, 0.0, out), 3);
+    CHECK_EQ_INT(quartic(5e-324, 1e300, 0.0, -1e300, 0.0, out), 3);
     CHECK_NEAR(out[0], -1.0, 1e-14);
     CHECK(out[1] == 0.0);
     CHECK_NEAR(out[2], 1.0, 1e-14);
@@ -255,7 +264,7 @@ TEST(roots_refuse_what_has_none) {
     CHECK_EQ_INT(roots_polynomial((double[]){0, 1, 2, 1}, 3, 1, -1, out), 0);
     CHECK_EQ_INT(roots_polynomial((double[]){0, 1, 2, 1}, 3, NAN, 1, out), 0);
     CHECK_EQ_INT(roots_polynomial((double[]){0, 1}, 1, 0, 0, out), 1);
-    CHECK_EQ_INT(roots_quartic(1, 0, 2, 0, 1.5, out), 0);
+    CHECK_EQ_INT(quartic(1, 0, 2, 0, 1.5, out), 0);
 }
 
 TEST(roots_survive_random_bits) {
