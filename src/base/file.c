@@ -18,13 +18,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Set by file_set_read_log and file_set_listener: the only state that outlives a call. */
-static struct file_read_log *file_read_log;
+/* The only state that outlives a call. It belongs to the process as its files do: scripts, readers of meshes and
+ * pictures, and Lua's own functions read files, and none of them may leave the listener out. */
 static const struct file_listener *file_listener;
-
-void file_set_read_log(struct file_read_log *read_log) {
-    file_read_log = read_log;
-}
 
 void file_set_listener(const struct file_listener *listener) {
     file_listener = listener;
@@ -110,8 +106,7 @@ bool file_identity_of_descriptor(int descriptor, struct file_identity *out) {
     return true;
 }
 
-static void note_content(struct digest content) {
-    struct file_read_log *read_log = file_read_log;
+static void note_content(struct file_read_log *read_log, struct digest content) {
     for (size_t i = 0; i < read_log->count; i++) {
         if (digest_equal(read_log->contents[i], content))
             return;
@@ -154,23 +149,23 @@ static struct file_version version_of(const struct stat *status) {
 void file_note_read(int descriptor, const char *path) {
     struct stat status;
     const struct file_listener *listener = file_listener;
-    if ((!file_read_log && !listener) || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
+    if (!listener || MAY_FAIL(fstat(descriptor, &status)) != 0 || !S_ISREG(status.st_mode))
         return;
     struct file_version version = version_of(&status);
-    if (file_read_log || listener->contents) {
+    if (listener->log || listener->contents) {
         bool whole = digest_of(descriptor, &version.content);
-        if (file_read_log && !whole)
-            file_read_log->incomplete = true;
-        if (file_read_log)
-            note_content(version.content);
+        if (listener->log && !whole)
+            listener->log->incomplete = true;
+        if (listener->log)
+            note_content(listener->log, version.content);
     }
-    if (listener)
+    if (listener->heard)
         listener->heard(listener->context, path, &version);
 }
 
 void file_note_write(int descriptor, const char *path) {
     struct stat status;
-    if (!file_listener || MAY_FAIL(fstat(descriptor, &status)) != 0)
+    if (!file_listener || !file_listener->wrote || MAY_FAIL(fstat(descriptor, &status)) != 0)
         return;
     struct file_version version = version_of(&status);
     file_listener->wrote(file_listener->context, path, &version);
@@ -219,8 +214,6 @@ struct digest file_read_log_sum(const struct file_read_log *read_log) {
 }
 
 void file_read_log_destroy(struct file_read_log *read_log) {
-    if (file_read_log == read_log)
-        file_read_log = NULL;
     mem_free(read_log->contents);
     *read_log = (struct file_read_log){0};
 }
@@ -415,12 +408,6 @@ void file_remove_temporary_folder(const char *folder) {
         (void)close(descriptor);
     }
     (void)rmdir(folder);
-}
-
-bool file_remove(const char *path, struct error *error) {
-    if (unlink(path) == 0 || errno == ENOENT)
-        return true;
-    return error_set(error, file_refusal_kind(errno), "%s: cannot be removed: %s", path, strerror(errno));
 }
 
 bool file_make_folders_for(const char *path, struct error *error) {

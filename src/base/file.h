@@ -57,9 +57,6 @@ struct file_read_log {
     size_t count, room;
     bool incomplete; /* no memory for one of them, or one could not be read again */
 };
-/* From now on every file that is read is noted in `witness`, which must stay; NULL: none is. Set once, before the first
- * scene, by the thread that reads files. */
-void file_set_read_log(struct file_read_log *witness);
 /* The content of a file and its time: versions with different size or time need not be compared byte by byte. */
 struct file_version {
     struct file_identity identity;
@@ -67,14 +64,17 @@ struct file_version {
     uint64_t size;
     int64_t seconds, nanoseconds; /* of its last change */
 };
-/* Receives every file that is read, with the name that was used, and every file that a script opens for writing. */
+/* Receives every file that is read, with the name that was used, and every file that a script opens for writing; the
+ * members may be NULL. */
 struct file_listener {
+    struct file_read_log *log; /* of the files that are read */
     void (*heard)(void *context, const char *path, const struct file_version *version);
     void (*wrote)(void *context, const char *path, const struct file_version *version);
     bool contents; /* versions have digests */
     void *context;
 };
-/* As file_set_read_log. */
+/* From now on it receives all files, and must stay; NULL: none does. Set once, before the first scene, by the thread
+ * that reads files. */
 void file_set_listener(const struct file_listener *listener);
 /* The current version of the file with this name; false: it cannot be read. `known` (or NULL): if size and time equal
  * its own, the content is assumed equal, too. */
@@ -86,8 +86,8 @@ void file_note_write(int descriptor, const char *path);
 /* The content of a file, which is opened only if it is regular; false: it cannot be read. */
 bool file_digest(const char *path, struct digest *digest);
 /* Does not depend on the order in which the files were read. */
-struct digest file_read_log_sum(const struct file_read_log *witness);
-void file_read_log_destroy(struct file_read_log *witness);
+struct digest file_read_log_sum(const struct file_read_log *read_log);
+void file_read_log_destroy(struct file_read_log *read_log);
 
 /* Whether anything has this name, even a dangling link. */
 bool file_exists(const char *path);
@@ -104,8 +104,6 @@ void file_fill_standard(void);
 bool file_canonical(const char *path, char *out, size_t size);
 /* ERROR_SCENE for a location where no file can be created (a wrong name), ERROR_MACHINE otherwise (a full disk). */
 enum error_kind file_refusal_kind(int number);
-/* Removes one file; succeeds if there is none. */
-bool file_remove(const char *path, struct error *error);
 /* A new folder of this user alone, below TMPDIR or /tmp, and its name. */
 bool file_make_temporary_folder(char *out, size_t size, struct error *error);
 /* Removes it with the files in it. */

@@ -648,12 +648,14 @@ void render_process_run(const struct options *options, const struct host_service
     struct render_process process = {.options = options, .services = services, .errors = &errors};
     scene_writer_init(&errors, &services->control->error_stream);
     const struct file_listener listener = {
-        .heard = report_read, .wrote = report_write, .contents = options->watch, .context = &process};
+        .log = options->checkpoint || options->shards || options->mpi ? &process.read_log : NULL,
+        .heard = services->read ? report_read : NULL,
+        .wrote = services->read ? report_write : NULL,
+        .contents = services->read && options->watch,
+        .context = &process};
     bool watched = options->watch && services->again;
     mem_return_large();
-    if (options->checkpoint || options->shards || options->mpi)
-        file_set_read_log(&process.read_log);
-    if (services->read)
+    if (listener.log || listener.heard)
         file_set_listener(&listener);
     run_scripts(&process, first);
     while (watched && services->again(services->context)) {
