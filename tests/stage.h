@@ -26,6 +26,12 @@ struct stage {
     struct film film; /* of the last stage_render */
 };
 
+/* What a film keeps of a pixel with this integrator and default settings. */
+static inline struct film_record stage_record(enum integrator_kind integrator) {
+    struct settings settings = settings_default();
+    settings.integrator = integrator;
+    return render_record(&settings);
+}
 /* An empty root, no lights, black sky, ambient 0, camera at (0,0,10) looking at -z, fov 50, default settings except
  * that no ray is cut off. */
 void stage_begin(struct stage *s, int threads);

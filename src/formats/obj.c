@@ -11,7 +11,6 @@
  * first corner that names one and say MISSING for all corners before. Memory: lists grow by half, and the shortest way
  * to cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is usual.
  */
-#include "formats/obj_internal.h"
 
 #include "base/file.h"
 #include "base/hash.h"
@@ -631,22 +630,4 @@ bool obj_load(struct model *model, const char *text, size_t size, struct error *
     list_destroy(&reader.materials.faces);
     list_destroy(&reader.groups.faces);
     return mesh != NULL && ok;
-}
-
-struct mesh *obj_parse(const char *path, const char *text, size_t size, struct error *error) {
-    struct model model = {.path = path, .options.single_file = true};
-    struct mesh *mesh = NULL;
-    if (obj_load(&model, text, size, error) && model_finish(&model, error))
-        mesh = mesh_share(model_meshes(&model)[0].mesh);
-    model_destroy(&model);
-    return mesh;
-}
-
-struct mesh *obj_read(const char *path, struct error *error) {
-    struct file_bytes bytes;
-    if (!file_map(path, FILE_LIMIT, &bytes, error))
-        return NULL;
-    struct mesh *mesh = obj_parse(path, (const char *)bytes.data, bytes.size, error);
-    file_unmap(&bytes);
-    return mesh;
 }

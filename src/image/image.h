@@ -34,12 +34,6 @@ struct image;
  * mips. */
 struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
                            struct error *error);
-/* A whole PNG file: every colour type, bit depth and interlace; texels are not changed by cICP, iCCP, sRGB and gAMA
- * (image_transfer); tRNS gives alpha.
- * Errors name the path and what libpng said; sizes over 2^15 per side or 2^28 pixels are errors before memory is
- * allocated.
- */
-struct image *image_read_png(const char *path, struct error *error);
 /* What the file states about its numbers; TRANSFER_UNSTATED: nothing, as in JPEG files and pictures of light. */
 struct transfer image_transfer(const struct image *image);
 /* How numbers of the picture that are colours become light: as the file states it, else 8 bits by sRGB, else as they
@@ -71,17 +65,8 @@ struct image_sampling {
     enum image_filter filter;
     enum image_wrap wrap_u, wrap_v;
 };
-/* A rectangle of texels [x, x + width) x [y, y + height) of level 0. */
-struct image_part {
-    uint32_t x, y, width, height;
-};
 /* Filtered, premultiplied. */
 struct rgba image_lookup(const struct image *image, struct image_point at, struct image_sampling how);
-/* The same inside a part: u, v in [0,1] span it, lookups never leave it (faces of a sky cross; the mips used must not
- * bleed over its edge: clamp). */
-struct rgba image_lookup_part(const struct image *image, struct image_part part, struct image_point at,
-                              enum image_filter filter);
-
 /* Pictures of any format that this build reads; the first bytes select the format. */
 
 /* Errors name the path. JPEG files have 8 bits per channel, without alpha. */

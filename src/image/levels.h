@@ -42,12 +42,10 @@ struct image *image_allocate(const char *name, uint32_t width, uint32_t height, 
 bool image_build_levels(struct image *image, struct error *error);
 /* Sets what the file states about its colours: `transfer` and `colours`. False: no memory. */
 bool png_colour_read(struct image *image, const uint8_t *data, size_t size);
-/* As image_read_png, from memory; `path` is for messages. */
+/* A PNG file in memory: every colour type, bit depth and interlace; texels are not changed by cICP, iCCP, sRGB and gAMA
+ * (image_transfer); tRNS gives alpha. Errors name `path` and what libpng said; sizes over 2^15 per side or 2^28 pixels
+ * are errors before memory is allocated. */
 struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
-
-/* Whether no texel of this level crosses the border of the rectangle of level-0 texels; if so, the rectangle in texels
- * of this level. */
-bool image_level_part(const struct image *image, int level, const uint32_t part[4], uint32_t out[4]);
 
 /* One texel, premultiplied, in units squared. */
 static inline struct rgba image_level_texel(const struct image *image, int level, uint32_t x, uint32_t y) {

@@ -4,19 +4,17 @@
  * A footprint that is wider in one direction takes several samples along that direction, each from the level that fits
  * a piece of it (the axis-aligned case of Feline: McCormack, Perry, Farkas, Jouppi, "Feline: fast elliptical lines for
  * anisotropic texture mapping", SIGGRAPH 1999): a floor seen at a grazing angle stays sharp across, and the poles of a
- * sphere do not blur. Lookups work on a rectangle of a level; the whole image is the rectangle that can wrap around.
- * Nothing outside the rectangle is ever read, whatever u and v are. */
+ * sphere do not blur. Nothing outside the image is ever read, whatever u and v are. */
 #include "image/levels.h"
 
 #include <math.h>
 
 enum { MAX_TAPS = 8 };
 
-/* The input of a lookup: for every level up to `last`, the rectangle of the same part of the picture. */
+/* The input of a lookup: the levels up to `last`. */
 struct view {
     const struct image *image;
     int last;
-    uint32_t parts[IMAGE_MAX_LEVELS][4]; /* x, y, width, height in texels of the level */
     enum image_wrap wrap_u, wrap_v;
 };
 
@@ -29,18 +27,6 @@ double image_level_for(double texels, int last) {
     double mantissa = frexp(texels, &exponent); /* in [.5, 1) */
     double level = (exponent - 1) + (2 * mantissa - 1);
     return level < last ? level : last;
-}
-
-bool image_level_part(const struct image *image, int level, const uint32_t part[4], uint32_t out[4]) {
-    const struct image_level *base = &image->levels[0], *l = &image->levels[level];
-    for (int axis = 0; axis < 2; axis++) {
-        uint64_t size = axis ? base->height : base->width, here = axis ? l->height : l->width;
-        uint64_t start = part[axis] * here, length = part[axis + 2] * here;
-        if (start % size != 0 || length % size != 0 || length == 0)
-            return false;
-        out[axis] = (uint32_t)(start / size), out[axis + 2] = (uint32_t)(length / size);
-    }
-    return true;
 }
 
 /* u folded into [0, 1]. NaN gives 0. */
@@ -75,10 +61,9 @@ static double neighbours(double u, uint32_t size, enum image_wrap wrap, uint32_t
 }
 
 static struct rgba bilinear(const struct view *view, int level, double u, double v) {
-    const uint32_t *part = view->parts[level];
+    const struct image_level *l = &view->image->levels[level];
     uint32_t x0, x1, y0, y1;
-    double fx = neighbours(u, part[2], view->wrap_u, &x0, &x1), fy = neighbours(v, part[3], view->wrap_v, &y0, &y1);
-    x0 += part[0], x1 += part[0], y0 += part[1], y1 += part[1];
+    double fx = neighbours(u, l->width, view->wrap_u, &x0, &x1), fy = neighbours(v, l->height, view->wrap_v, &y0, &y1);
     struct rgba top =
         image_mix(image_level_texel(view->image, level, x0, y0), image_level_texel(view->image, level, x1, y0), fx);
     struct rgba bottom =
@@ -97,7 +82,7 @@ static struct rgba trilinear(const struct view *view, double level, double u, do
 
 /* Several trilinear samples along the wider side of the footprint, each as wide as its share. */
 static struct rgba mipmapped(const struct view *view, struct image_point at) {
-    double texels_u = at.width_u * view->parts[0][2], texels_v = at.width_v * view->parts[0][3];
+    double texels_u = at.width_u * view->image->levels[0].width, texels_v = at.width_v * view->image->levels[0].height;
     double wide = fmax(texels_u, texels_v), narrow = fmin(texels_u, texels_v);
     if (!(wide > 1))
         return trilinear(view, 0, at.u, at.v);
@@ -118,10 +103,10 @@ static struct rgba mipmapped(const struct view *view, struct image_point at) {
 static struct rgba lookup(const struct view *view, struct image_point at, enum image_filter filter) {
     switch (filter) {
     case IMAGE_NEAREST: {
-        const uint32_t *part = view->parts[0];
-        uint32_t x = nearest(fold(at.u, view->wrap_u), part[2], view->wrap_u);
-        uint32_t y = nearest(fold(at.v, view->wrap_v), part[3], view->wrap_v);
-        return image_from_units(image_level_texel(view->image, 0, part[0] + x, part[1] + y));
+        const struct image_level *l = &view->image->levels[0];
+        uint32_t x = nearest(fold(at.u, view->wrap_u), l->width, view->wrap_u);
+        uint32_t y = nearest(fold(at.v, view->wrap_v), l->height, view->wrap_v);
+        return image_from_units(image_level_texel(view->image, 0, x, y));
     }
     case IMAGE_BILINEAR:
         return image_from_units(trilinear(view, 0, at.u, at.v));
@@ -132,28 +117,7 @@ static struct rgba lookup(const struct view *view, struct image_point at, enum i
 }
 
 struct rgba image_lookup(const struct image *image, struct image_point at, struct image_sampling how) {
-    struct view view;
-    view.image = image;
-    view.last = how.filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
-    view.wrap_u = how.wrap_u, view.wrap_v = how.wrap_v;
-    for (int level = 0; level <= view.last; level++) {
-        view.parts[level][0] = view.parts[level][1] = 0;
-        view.parts[level][2] = image->levels[level].width, view.parts[level][3] = image->levels[level].height;
-    }
+    int last = how.filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
+    const struct view view = {image, last, how.wrap_u, how.wrap_v};
     return lookup(&view, at, how.filter);
-}
-
-struct rgba image_lookup_part(const struct image *image, struct image_part part, struct image_point at,
-                              enum image_filter filter) {
-    const uint32_t rectangle[4] = {part.x, part.y, part.width, part.height};
-    struct view view;
-    view.image = image;
-    view.wrap_u = view.wrap_v = IMAGE_CLAMP;
-    view.last = -1;
-    int last = filter == IMAGE_MIPMAP ? image->level_count - 1 : 0;
-    while (view.last < last && image_level_part(image, view.last + 1, rectangle, view.parts[view.last + 1]))
-        view.last++;
-    if (view.last < 0) /* an empty rectangle */
-        return (struct rgba){0, 0, 0, 0};
-    return lookup(&view, at, filter);
 }

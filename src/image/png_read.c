@@ -196,12 +196,3 @@ struct image *image_parse_png(const char *path, const uint8_t *data, size_t size
     image_release(reader.image);
     return NULL;
 }
-
-struct image *image_read_png(const char *path, struct error *error) {
-    struct file_bytes file;
-    if (!file_map(path, FILE_LIMIT, &file, error))
-        return NULL;
-    struct image *image = image_parse_png(path, file.data, file.size, error);
-    file_unmap(&file);
-    return image;
-}

@@ -54,6 +54,8 @@ static void dump_json(const struct dump *d, uint32_t primitive, const char *path
                       geometry_kind_name(&prototype->geometry));
     if (mesh)
         text_writer_print(writer, ",\"triangles\":%u", mesh_triangle_count(mesh));
+    if (mesh && mesh_dropped_faces(mesh) > 0)
+        text_writer_print(writer, ",\"dropped_faces\":%u", mesh_dropped_faces(mesh));
     if (prototype->geometry.csg) {
         text_writer_print(writer, ",\"operands\":[");
         for (uint32_t i = 0; i < prototype->geometry.csg->leaf_count; i++)

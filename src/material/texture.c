@@ -411,18 +411,6 @@ double texture_read_scalar(const struct texture *texture, struct texture_reader 
     return number;
 }
 
-struct vec3 texture_colour(const struct texture *texture, const struct hit *hit) {
-    struct texture_reader reader;
-    texture_reader_init(&reader, hit, NULL, NULL);
-    return texture_read_colour(texture, &reader);
-}
-
-double texture_scalar(const struct texture *texture, const struct hit *hit) {
-    struct texture_reader reader;
-    texture_reader_init(&reader, hit, NULL, NULL);
-    return texture_read_scalar(texture, &reader);
-}
-
 /* --- without a hit --- */
 
 static struct vec3 larger(struct vec3 a, struct vec3 b) {

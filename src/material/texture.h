@@ -240,10 +240,6 @@ enum texture_estimate {
 struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
                              enum texture_estimate which);
 
-/* Of an authored texture outside of materials. */
-struct vec3 texture_colour(const struct texture *texture, const struct hit *hit);
-double texture_scalar(const struct texture *texture, const struct hit *hit);
-
 /* Reads several textures at one hit; `shared` ones are evaluated once. */
 enum { TEXTURE_SHARED = 4 };
 struct texture_reader {

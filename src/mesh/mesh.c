@@ -110,10 +110,6 @@ bool mesh_has_uv(const struct mesh *mesh) {
     return mesh->uvs != NULL;
 }
 
-bool mesh_has_normals(const struct mesh *mesh) {
-    return mesh->normals != NULL;
-}
-
 const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3] {
     *count = mesh->vertex_count;
     return (const double(*)[3])mesh->vertices;

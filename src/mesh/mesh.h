@@ -77,7 +77,6 @@ uint32_t mesh_triangle_count(const struct mesh *mesh);
 void mesh_triangle(const struct mesh *mesh, uint32_t triangle, struct vec3 corners[3], uint32_t *slot);
 uint32_t mesh_dropped_faces(const struct mesh *mesh);
 bool mesh_has_uv(const struct mesh *mesh);
-bool mesh_has_normals(const struct mesh *mesh);
 /* The original polygons, for scripts that read them: `corners` numbers of vertices, at most as many as the
  * largest face of the mesh has; both answers point into the mesh. */
 const double (*mesh_vertices(const struct mesh *mesh, uint32_t *count))[3];

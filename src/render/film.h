@@ -24,7 +24,7 @@ struct film_pixel {
     float rgb[3]; /* final, or as far as it is */
 };
 
-/* The additional record of a pixel: the integrator of the picture defines it (integrator_record). */
+/* The additional record of a pixel: the integrator of the picture defines it (render_record). */
 struct film_record {
     uint32_t floats; /* at most FILM_RECORD_FLOATS, all finite; the integrator defines their meaning */
     uint32_t marks;  /* 1: pixels may be marked, and those that are not repeat their colour in the floats; else 0 */

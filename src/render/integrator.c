@@ -36,16 +36,6 @@ struct film_record render_record(const struct settings *settings) {
     UNREACHABLE(no_kind);
 }
 
-struct film_record integrator_record(enum integrator_kind integrator) {
-    switch (integrator) {
-    case INTEGRATOR_WHITTED:
-        return whitted_record();
-    case INTEGRATOR_PATH:
-        return path_tracer_record(NULL);
-    }
-    UNREACHABLE(no_kind);
-}
-
 void integrator_warn(const struct render_job *job, world_warning *warn, void *context) {
     switch (job->settings.integrator) {
     case INTEGRATOR_WHITTED:

@@ -10,9 +10,9 @@
 
 struct film_record path_tracer_record(const struct settings *settings) {
     unsigned parts = 0;
-    if (settings && settings->denoise != DENOISER_NONE)
+    if (settings->denoise != DENOISER_NONE)
         parts |= PATH_PART_FEATURES;
-    if (settings && settings->aov & AOV_LIGHT)
+    if (settings->aov & AOV_LIGHT)
         parts |= PATH_PART_LIGHT;
     return path_film_record(parts);
 }

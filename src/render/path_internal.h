@@ -32,7 +32,7 @@ struct path_tracer {
 };
 
 /* See render/integrator_internal.h. `tracer` is zero-initialised. */
-struct film_record path_tracer_record(const struct settings *settings); /* NULL: the least */
+struct film_record path_tracer_record(const struct settings *settings);
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error);
 void path_tracer_destroy(struct path_tracer *tracer);

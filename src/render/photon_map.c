@@ -47,11 +47,6 @@ static struct vec3 unfold(uint32_t packed) {
     return vec3_make(u, v, z);
 }
 
-struct vec3 photon_unpack(uint32_t packed) {
-    struct vec3 d = unfold(packed);
-    return vec3_scale(d, 1 / sqrt(vec3_dot(d, d)));
-}
-
 /* --- the order of the photons --- */
 
 /* A photon while the tree is made: its number is stored in the field of the radius. */

@@ -51,8 +51,7 @@ void photon_map_destroy(struct photon_map *map);
 struct vec3 photon_map_light(const struct photon_map *map, const struct world *world, const struct hit *hit,
                              const struct bsdf *bsdf);
 
-/* A unit vector in 32 bits, wrong by at most 1e-4. */
+/* A unit vector in 32 bits: a point of the octahedron in 16 + 16 bits, wrong by at most 1e-4. */
 uint32_t photon_pack(struct vec3 direction);
-struct vec3 photon_unpack(uint32_t packed);
 
 #endif

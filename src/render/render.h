@@ -47,7 +47,6 @@ struct render_job {
 };
 
 /* What films for pictures of an integrator record at least, and with the layers and the denoiser of the settings. */
-struct film_record integrator_record(enum integrator_kind integrator);
 struct film_record render_record(const struct settings *settings);
 /* Warnings about parts of the scene that the integrator interprets differently; the world is built. */
 void integrator_warn(const struct render_job *job, world_warning *warn, void *context);

@@ -132,14 +132,6 @@ void canvas_box(const struct canvas *canvas, int x, int y, int width, int height
     }
 }
 
-void canvas_outline(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour) {
-    int wide = canvas->scale;
-    canvas_box(canvas, x, y, width, wide, colour);
-    canvas_box(canvas, x, y + height - wide, width, wide, colour);
-    canvas_box(canvas, x, y, wide, height, colour);
-    canvas_box(canvas, x + width - wide, y, wide, height, colour);
-}
-
 /* The next character; continuation bytes of UTF-8 are skipped. NUL at the end. */
 static char next_letter(const char **text) {
     char c = **text;

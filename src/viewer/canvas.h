@@ -22,7 +22,6 @@ enum { CANVAS_CELL = 6, CANVAS_LINE = 10, CANVAS_LETTER = 7 }; /* dots */
 void canvas_clear(const struct canvas *canvas);
 /* Replaces earlier content: panels are as opaque as their ink. */
 void canvas_box(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour);
-void canvas_outline(const struct canvas *canvas, int x, int y, int width, int height, struct canvas_colour colour);
 /* The text ends at NUL; other than printable ASCII becomes '?' (once for each character in UTF-8). */
 void canvas_text(const struct canvas *canvas, int x, int y, const char *text, struct canvas_colour colour);
 int canvas_text_width(const struct canvas *canvas, const char *text);

@@ -125,13 +125,12 @@ static struct settings small_settings(const struct settings *asked) {
 static bool make_film(struct film *film, const struct settings *settings, uint32_t width, uint32_t height,
                       struct error *error) {
     size_t bytes;
-    if (!film_size_layered(width, height, integrator_record(settings->integrator), aov_layers(settings->aov), &bytes,
-                           error))
+    if (!film_size_layered(width, height, render_record(settings), aov_layers(settings->aov), &bytes, error))
         return false;
     void *block = mem_alloc_zero(1, bytes);
     if (!block)
         return error_no_memory(error, "the film");
-    film_layout(film, block, width, height, integrator_record(settings->integrator));
+    film_layout(film, block, width, height, render_record(settings));
     film_layout_layers(film, block, settings->aov);
     return true;
 }

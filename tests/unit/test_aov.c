@@ -162,7 +162,7 @@ TEST(an_exr_picture_has_its_layers_in_itself_with_every_value) {
 TEST(layers_change_nothing_in_the_picture_and_its_statistics) {
     unsigned char *reference = NULL;
     uint64_t rays = 0;
-    size_t size = (size_t)60 * 50 * film_record_size(integrator_record(INTEGRATOR_WHITTED));
+    size_t size = (size_t)60 * 50 * film_record_size(stage_record(INTEGRATOR_WHITTED));
     for (int i = 0; i < 2; i++) {
         struct stage s;
         stage_begin(&s, 2);

@@ -12,6 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The inverse of photon_pack (Z. Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors",
+ * JCGT 2014, section 3). */
+static struct vec3 unpacked(uint32_t packed) {
+    double u = (packed >> 16) / 32767.5 - 1, v = (packed & 65535) / 32767.5 - 1, z = 1 - fabs(u) - fabs(v);
+    if (z < 0)
+        return vec3_normalize(vec3_make(copysign(1 - fabs(v), u), copysign(1 - fabs(u), v), z));
+    return vec3_normalize(vec3_make(u, v, z));
+}
+
 static const double pi = 3.14159265358979323846;
 
 static struct material *white(struct stage *s) {
@@ -547,7 +556,7 @@ TEST(the_map_gives_the_sum_over_all_discs) {
             struct vec3 d = vec3_sub(photon_position(&map, k), hit.point);
             double radius = (double)map.spots[k].radius * map.unit;
             double squared = vec3_dot(d, d) + 15 * d.y * d.y, share = 1 - squared / (radius * radius);
-            if (share > 0 && photon_unpack(map.lights[k].from).y > 0)
+            if (share > 0 && unpacked(map.lights[k].from).y > 0)
                 sum += photon_power(&map, k).x * 2 * share / (pi * radius * radius);
         }
         lit += sum > 0;
@@ -579,7 +588,7 @@ TEST(packed_directions_are_right_to_a_ten_thousandth) {
         if (!(vec3_length(d) > 0))
             continue;
         d = vec3_normalize(d);
-        CHECK(vec3_length(vec3_sub(photon_unpack(photon_pack(d)), d)) < 1e-4);
+        CHECK(vec3_length(vec3_sub(unpacked(photon_pack(d)), d)) < 1e-4);
     }
 }
 

@@ -114,7 +114,7 @@ static int background_byte(const char *field, const char *options) {
     free(result.out);
     free(result.err);
     (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
-    struct image *image = image_read_png(path, &error);
+    struct image *image = image_read(path, &error);
     int byte = image ? (int)(255 * image_texel(image, 0, 0).r + 0.5) : -1;
     image_release(image);
     return byte;
@@ -174,7 +174,7 @@ TEST(a_png_file_states_its_transfer_function) {
     (void)snprintf(path, sizeof path, "%s/stated.png", test_folder());
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         write_stated(path, (uint8_t[]){192, 128, 64}, rows[i].kind, rows[i].bytes, rows[i].size);
-        struct image *image = image_read_png(path, &error);
+        struct image *image = image_read(path, &error);
         CHECK(image != NULL);
         CHECK(transfer_same(image_transfer(image), rows[i].transfer));
         CHECK((image_colours(image) != NULL) == (rows[i].warning != NULL));
@@ -198,7 +198,7 @@ static void unlit_bytes(const char *material, const char *options, int out[3]) {
     free(result.out);
     free(result.err);
     (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
-    struct image *image = image_read_png(path, &error);
+    struct image *image = image_read(path, &error);
     CHECK(image != NULL);
     struct rgba texel = image_texel(image, 1, 1);
     out[0] = (int)(255 * texel.r + 0.5);
@@ -281,7 +281,7 @@ TEST(colours_of_the_screen_are_accepted_for_lights_fogs_and_skies) {
             free(result.out);
             free(result.err);
             (void)snprintf(path, sizeof path, "%s/x.png", test_folder());
-            struct image *image = image_read_png(path, &error);
+            struct image *image = image_read(path, &error);
             CHECK(image != NULL);
             CHECK_EQ_INT((int)(255 * image_texel(image, 0, 0).r + 0.5), 64);
             image_release(image);

@@ -4,6 +4,7 @@
 #include "output/farm.h"
 #include "render/render.h"
 #include "tests/harness.h"
+#include "tests/stage.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,8 +91,8 @@ static void begin_farm(int count) {
         farms[rank] = farm_create(&transports[rank], 2, SILENCE, &controls[rank]);
         CHECK(farms[rank] != NULL && farm_is_first(farms[rank]) == (rank == 0));
         films[rank] = (struct film){.full_width = WIDTH, .full_height = HEIGHT};
-        CHECK(film_size(WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-        film_layout(&films[rank], calloc(1, bytes), WIDTH, HEIGHT, integrator_record(INTEGRATOR_WHITTED));
+        CHECK(film_size(WIDTH, HEIGHT, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+        film_layout(&films[rank], calloc(1, bytes), WIDTH, HEIGHT, stage_record(INTEGRATOR_WHITTED));
     }
 }
 
@@ -110,7 +111,7 @@ static struct tile_picture picture_of(uint32_t number, const char *name) {
                                    .full_width = WIDTH,
                                    .full_height = HEIGHT,
                                    .width = WIDTH,
-                                   .record = integrator_record(INTEGRATOR_WHITTED),
+                                   .record = stage_record(INTEGRATOR_WHITTED),
                                    .height = HEIGHT,
                                    .shard = 1,
                                    .shards = 1};

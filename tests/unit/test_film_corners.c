@@ -15,13 +15,13 @@ TEST(films_of_impossible_sizes_are_refused) {
     struct error error;
     size_t bytes = 0, layered = 0;
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        CHECK(!film_size(sizes[i][0], sizes[i][1], integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+        CHECK(!film_size(sizes[i][0], sizes[i][1], stage_record(INTEGRATOR_WHITTED), &bytes, &error));
         CHECK(error.kind == ERROR_SCENE && strstr(error.text, "is more than gray can hold"));
-        CHECK(!film_size_layered(sizes[i][0], sizes[i][1], integrator_record(INTEGRATOR_WHITTED), 3, &bytes, &error));
+        CHECK(!film_size_layered(sizes[i][0], sizes[i][1], stage_record(INTEGRATOR_WHITTED), 3, &bytes, &error));
     }
-    CHECK(film_size(40, 30, integrator_record(INTEGRATOR_WHITTED), &bytes, &error) &&
-          film_size_layered(40, 30, integrator_record(INTEGRATOR_WHITTED), 2, &layered, &error));
-    CHECK(bytes >= 40 * 30 * film_record_size(integrator_record(INTEGRATOR_WHITTED)) &&
+    CHECK(film_size(40, 30, stage_record(INTEGRATOR_WHITTED), &bytes, &error) &&
+          film_size_layered(40, 30, stage_record(INTEGRATOR_WHITTED), 2, &layered, &error));
+    CHECK(bytes >= 40 * 30 * film_record_size(stage_record(INTEGRATOR_WHITTED)) &&
           layered >= bytes + 2 * 40 * 30 * sizeof(float[3]));
 }
 
@@ -53,9 +53,9 @@ TEST(views_of_a_film_show_what_they_are_called) {
     uint8_t eight[6];
     uint16_t sixteen[6];
     float linear[6];
-    CHECK(film_size(2, 1, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+    CHECK(film_size(2, 1, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_layout(&film, block, 2, 1, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 2, 1, stage_record(INTEGRATOR_WHITTED));
     for (int i = 0; i < 2; i++)
         for (int c = 0; c < 3; c++) {
             film.pixels[i].rgb[c] = 0.25F;

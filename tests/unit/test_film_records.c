@@ -4,6 +4,7 @@
 #include "render/render.h"
 #include "render/tile_file.h"
 #include "tests/harness.h"
+#include "tests/stage.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -61,7 +62,7 @@ static struct tile_picture picture_of(struct film_record record, uint32_t shard,
 
 TEST(a_pixel_takes_its_colour_its_floats_and_its_mark) {
     CHECK_EQ_INT(film_record_size(plain), 12 + 20);
-    CHECK_EQ_INT(film_record_size(integrator_record(INTEGRATOR_WHITTED)), 12 + 12 + 1);
+    CHECK_EQ_INT(film_record_size(stage_record(INTEGRATOR_WHITTED)), 12 + 12 + 1);
     CHECK(film_record_valid((struct film_record){FILM_RECORD_FLOATS, 1}));
     CHECK(!film_record_valid((struct film_record){FILM_RECORD_FLOATS + 1, 0}));
     CHECK(!film_record_valid((struct film_record){0, 2}));
@@ -152,7 +153,7 @@ TEST(a_checkpoint_of_another_record_is_not_gone_on_with) {
     const char *path = test_path("c.tiles");
     const struct options options = {.checkpoint = path, .resume = true};
     const struct picture_files files = {.options = &options};
-    struct film old = painted(plain), film = film_of(integrator_record(INTEGRATOR_WHITTED));
+    struct film old = painted(plain), film = film_of(stage_record(INTEGRATOR_WHITTED));
     struct tile_picture before = picture_of(plain, 1, 1), now = picture_of(film.record, 1, 1);
     struct checkpoint checkpoint;
     struct error error;
@@ -182,7 +183,7 @@ static void write_part(const char *name, struct film_record record, uint32_t sha
 TEST(merge_refuses_parts_of_another_record_and_takes_those_of_one) {
     write_part("1.part", plain, 1);
     write_part("2.part", plain, 2);
-    write_part("other.part", integrator_record(INTEGRATOR_WHITTED), 2);
+    write_part("other.part", stage_record(INTEGRATOR_WHITTED), 2);
     struct test_result result = test_gray(NULL, "merge 1.part other.part");
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "does not belong to 1.part: its pixels have records of another size") != NULL);

@@ -53,7 +53,7 @@ TEST(every_integrator_records_what_tiles_can_carry) {
         begin(&s, 2, (enum integrator_kind)kind);
         CHECK(stage_render(&s, WIDTH, HEIGHT));
         CHECK(film_record_valid(s.film.record));
-        CHECK(film_record_equal(s.film.record, integrator_record((enum integrator_kind)kind)));
+        CHECK(film_record_equal(s.film.record, stage_record((enum integrator_kind)kind)));
         void *before = memcpy(malloc(film_bytes(&s.film)), s.film.pixels, film_bytes(&s.film));
         for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++) {
             size_t size = film_tile_pack(&s.film, tile, bytes);

@@ -11,6 +11,7 @@
 #include "world/world.h"
 
 #include "image/png_write.h"
+#include "tests/stage.h"
 
 enum { SIDE = 6 };
 
@@ -84,10 +85,10 @@ static bool make(const struct render_request *request, enum accel_kind accel, st
     job.settings.accel = accel;
     size_t bytes;
     bool ok = render_prepare(&job, &area, warning, error) &&
-              film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, error);
+              film_size(SIDE, SIDE, stage_record(INTEGRATOR_WHITTED), &bytes, error);
     if (ok) {
         void *block = calloc(1, bytes);
-        film_layout(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+        film_layout(&film, block, SIDE, SIDE, stage_record(INTEGRATOR_WHITTED));
         film.full_width = film.full_height = SIDE;
         const struct world_input input = {.scene = request->scene,
                                           .root = request->root,
@@ -221,10 +222,9 @@ static bool ask(enum question question, const struct render_request *request, co
     *error = (struct error){0};
     *sum = 0;
     job.settings.aov = question == ASK_LAYERS ? AOV_ALL : 0;
-    CHECK(film_size_layered(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), aov_layers(job.settings.aov), &bytes,
-                            error));
+    CHECK(film_size_layered(SIDE, SIDE, stage_record(INTEGRATOR_WHITTED), aov_layers(job.settings.aov), &bytes, error));
     void *block = calloc(1, bytes);
-    film_layout(&film, block, SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, SIDE, SIDE, stage_record(INTEGRATOR_WHITTED));
     film_layout_layers(&film, block, job.settings.aov);
     film.full_width = film.full_height = SIDE;
     uint64_t before = fault_count(FAULT_OF_ALLOCATION);

@@ -11,6 +11,7 @@
 #include "render/tile_file.h"
 #include "session/options.h"
 #include "tests/harness.h"
+#include "tests/stage.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -600,14 +601,14 @@ TEST(merge_takes_no_memory_for_tiles_that_no_part_has) {
                                    .full_width = SIDE,
                                    .full_height = SIDE,
                                    .width = SIDE,
-                                   .record = integrator_record(INTEGRATOR_WHITTED),
+                                   .record = stage_record(INTEGRATOR_WHITTED),
                                    .height = SIDE,
                                    .shard = 1,
                                    .shards = 1,
                                    .whole = true,
                                    .name = "o.png"};
     struct error error;
-    film_layout(&film, zeros, FILM_TILE, FILM_TILE, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, zeros, FILM_TILE, FILM_TILE, stage_record(INTEGRATOR_WHITTED));
     film.full_width = film.full_height = SIDE;
     atomic_store(&film.tiles[0], FILM_TILE_DONE);
     CHECK(tile_file_write(FILE_AT(test_path("forged.part")), NULL, 0, &picture, &film, &error));

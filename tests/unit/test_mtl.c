@@ -1,3 +1,4 @@
+#include "mesh/mesh_internal.h"
 #include "model_makers.h"
 
 #include "base/path_policy.h"
@@ -276,7 +277,7 @@ TEST(smooth_cube_has_corner_normals_at_91_degrees_and_flat_faces_at_89) {
         cube(&m, shared);
         struct mesh *soft = smoothed(&m, 91, false, false), *hard = smoothed(&m, 89, false, false);
         struct mesh *exact = smoothed(&m, 90, false, false), *flat = smoothed(&m, 0, false, false);
-        CHECK(mesh_has_normals(soft) && mesh_has_normals(hard) && !mesh_has_normals(flat));
+        CHECK(soft->normal_count > 0 && hard->normal_count > 0 && flat->normal_count == 0);
         for (uint32_t t = 0; t < 12; t++)
             for (int k = 0; k < 3; k++) {
                 struct surface s = surface_at(soft, t, k == 1, k == 2), h = surface_at(hard, t, k == 1, k == 2);

@@ -1,22 +1,22 @@
 /* The OBJ reader: every variant of the syntax, every error with its line, numbers correctly rounded. */
 #include "base/mem.h"
 #include "formats/decimal_internal.h"
-#include "formats/obj_internal.h"
 #include "tests/harness.h"
+#include "tests/unit/model_makers.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* From a buffer of exactly the text's size, so that the address sanitizer detects a read past the end. */
+/* The only mesh of the model in the bytes. */
 static struct mesh *parse_bytes(const char *text, size_t size, struct error *error) {
-    char *copy = malloc(size ? size : 1);
-    if (size)
-        memcpy(copy, text, size);
-    memset(error, 0, sizeof *error);
-    struct mesh *mesh = obj_parse("t.obj", copy, size, error);
-    free(copy);
+    static const struct model_options single = {.single_file = true};
+    struct model model;
+    if (!parse_model(&model, "t.obj", text, size, &single, error))
+        return NULL;
+    struct mesh *mesh = mesh_share(only_mesh(&model));
+    model_destroy(&model);
     return mesh;
 }
 
@@ -55,28 +55,28 @@ static void check_same(const char *text, const struct mesh_input *input) {
     mesh_release(mesh);
 }
 
-#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 .5\nv 0 1 0\n"
+#define QUADRANGLE "v 0 0 0\nv 1 0 0\nv 1 1 .5\nv 0 1 0\n"
 
 TEST(obj_spellings_of_a_plain_square_are_one_mesh) {
     struct mesh_input input = square_input(NULL, NULL);
     const char *const texts[] = {
-        SQUARE "f 1 2 3\nf 1 3 4\n",
-        SQUARE "f 1 2 3\nf 1 3 4",
-        SQUARE "f -4 -3 -2\nf -4 -2 -1\n",
-        SQUARE "f +1 2/ 3//\nf 1 3/ 4\n",
-        "\xef\xbb\xbf" SQUARE "f 1 2 3\nf 1 3 4\n",
-        "f 1 2 3\nf 1 3 4\n" SQUARE,
+        QUADRANGLE "f 1 2 3\nf 1 3 4\n",
+        QUADRANGLE "f 1 2 3\nf 1 3 4",
+        QUADRANGLE "f -4 -3 -2\nf -4 -2 -1\n",
+        QUADRANGLE "f +1 2/ 3//\nf 1 3/ 4\n",
+        "\xef\xbb\xbf" QUADRANGLE "f 1 2 3\nf 1 3 4\n",
+        "f 1 2 3\nf 1 3 4\n" QUADRANGLE,
         "v 0 0 0\r\nv 1 0 0\r\nv 1 1 .5\r\nv 0 1 0\r\nf 1 2 3\r\nf 1 3 4\r\n",
         "v 0 0 0\rv 1 0 0\rv 1 1 .5\rv 0 1 0\rf 1 2 3\rf 1 3 4",
         "v 0 0 0 \\\n\nv 1 \\\r\n 0 0\nv 1\\\n1\\\r.5\nv 0 1 0\nf \\\n1 2\\\n3\nf 1 3 4\\",
         "\tv\t0  0 0\n\n  v 1 0 0  \nv 1e0 +1.0 5e-1\nv 0e9 10E-1 .0\n f   1 2   3 \nf 1\t3 4\t\n\n",
         "v 0 0 0 1\nv 1 0 0 1.0\nv 1 1 .5 .1 .2 .3\nv 0 1 0 1 .1 .2 .3\nf 1 2 3\nf 1 3 4\n",
         "# a comment that ends in \\\nv 0 0 0 # one\nv 1 0 0#two\nv 1 1 .5\nv 0 1 0\nf 1 2 3 # f 4 5 6\nf 1 3 4#\n",
-        "mtllib a.mtl\no thing\n" SQUARE "g a b\nusemtl red\ns off\nl 1 2 3\np 1\nvp 0.5 1\ncstype bezier\n"
+        "mtllib a.mtl\no thing\n" QUADRANGLE "g a b\nusemtl red\ns off\nl 1 2 3\np 1\nvp 0.5 1\ncstype bezier\n"
         "curv 0 1 1 2 3 \\\n 4\nf 1 2 3\n?odd word\nvtx 1\nfoo 9 9 9\ns 1\nf 1 3 4\nend\n",
-        SQUARE "vt 0 0\nvn 0 0 1\nf 1 2 3\nf 1 3 4\n",
+        QUADRANGLE "vt 0 0\nvn 0 0 1\nf 1 2 3\nf 1 3 4\n",
         "v 0 0 0\nv 1 0 0\nv 1 1 .5\nf -3 -2 -1\nv 0 1 0\nf -4 -2 -1\n",
-        SQUARE "fo 1 2 3\nfo 1 3 4\n",
+        QUADRANGLE "fo 1 2 3\nfo 1 3 4\n",
     };
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
         check_same(texts[i], &input);
@@ -89,20 +89,20 @@ TEST(obj_spellings_of_corners_with_uvs_and_normals_are_one_mesh) {
     static const uint32_t uvs[6] = {0, 1, 2, 0, 2, 1}, normals[6] = {0, 0, 1, 1, 1, 0};
     struct mesh_input both = square_input(uvs, normals), uv = square_input(uvs, NULL),
                       normal = square_input(NULL, normals);
-    check_same(SQUARE UVS NORMALS "f 1/1/1 2/2/1 3/3/2\nf 1/1/2 3/3/2 4/2/1\n", &both);
-    check_same(NORMALS UVS SQUARE "f -4/-3/-2 -3/-2/-2 -2/-1/-1\nf -4/-3/-1 -2/-1/-1 -1/-2/-2\n", &both);
-    check_same(SQUARE UVS NORMALS "f 1/-3/1 -3/2/1 3/3/-1\nf 1/1/2 3/3/2 4/2/1\n", &both);
-    check_same(SQUARE UVS "f 1/1 2/2 3/3\nf 1/1 3/3 4/2\n", &uv);
-    check_same(SQUARE UVS NORMALS "f 1/1/ 2/2 3/3\nf 1/1/ 3/3/ 4/2/\n", &uv);
-    check_same(SQUARE NORMALS "f 1//1 2//1 3//2\nf 1//2 3//2 4//1\n", &normal);
-    check_same(SQUARE UVS NORMALS "f 1//1 2//1 3//2\nf 1//2 3//2 4//1\n", &normal);
+    check_same(QUADRANGLE UVS NORMALS "f 1/1/1 2/2/1 3/3/2\nf 1/1/2 3/3/2 4/2/1\n", &both);
+    check_same(NORMALS UVS QUADRANGLE "f -4/-3/-2 -3/-2/-2 -2/-1/-1\nf -4/-3/-1 -2/-1/-1 -1/-2/-2\n", &both);
+    check_same(QUADRANGLE UVS NORMALS "f 1/-3/1 -3/2/1 3/3/-1\nf 1/1/2 3/3/2 4/2/1\n", &both);
+    check_same(QUADRANGLE UVS "f 1/1 2/2 3/3\nf 1/1 3/3 4/2\n", &uv);
+    check_same(QUADRANGLE UVS NORMALS "f 1/1/ 2/2 3/3\nf 1/1/ 3/3/ 4/2/\n", &uv);
+    check_same(QUADRANGLE NORMALS "f 1//1 2//1 3//2\nf 1//2 3//2 4//1\n", &normal);
+    check_same(QUADRANGLE UVS NORMALS "f 1//1 2//1 3//2\nf 1//2 3//2 4//1\n", &normal);
 }
 
 TEST(obj_corners_may_lack_what_others_have) {
     static const uint32_t none = UINT32_MAX;
     const uint32_t normals[6] = {none, none, none, 1, none, 0}, uvs[6] = {none, 2, none, none, none, none};
     struct mesh_input input = square_input(uvs, normals);
-    check_same(SQUARE UVS NORMALS "f 1 2/3 3\nf 1//2 3 4//1\n", &input);
+    check_same(QUADRANGLE UVS NORMALS "f 1 2/3 3\nf 1//2 3 4//1\n", &input);
 }
 
 TEST(obj_polygons_keep_their_corners) {
@@ -113,8 +113,8 @@ TEST(obj_polygons_keep_their_corners) {
                                .vertices = square,
                                .face_start = quad_start,
                                .vertex_index = quad};
-    check_same(SQUARE "f 1 2 3 4\n", &input);
-    struct mesh *mesh = parse(SQUARE "f 1 2 3 4\n");
+    check_same(QUADRANGLE "f 1 2 3 4\n", &input);
+    struct mesh *mesh = parse(QUADRANGLE "f 1 2 3 4\n");
     CHECK_EQ_INT(mesh_triangle_count(mesh), 2);
     mesh_release(mesh);
 }
@@ -140,24 +140,24 @@ TEST(obj_errors_name_the_line) {
         {"v 1e 2 3\n", "t.obj:1: '1e' is not a finite number"},
         {"vn 0 1\n", "t.obj:1: vn needs 3 numbers, not 2"},
         {"vt\n", "t.obj:1: vt needs 1 number, not 0"},
-        {SQUARE "f 1 2\n", "t.obj:5: f needs at least 3 corners"},
-        {SQUARE "f\n", "t.obj:5: f needs at least 3 corners"},
-        {SQUARE "f 1 \\\n2\n", "t.obj:5: f needs at least 3 corners"},
-        {SQUARE "f 1 2 \\\n x\n", "t.obj:6: 'x' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
-        {SQUARE "f 0 1 2\n", "t.obj:5: '0' has the index 0, but indices count from 1"},
-        {SQUARE "f 1/0 2/1 3/1\n", "t.obj:5: '1/0' has the index 0, but indices count from 1"},
-        {SQUARE "f 1 2 5\nf 1 2 3\n", "t.obj:5: vertex index 5, but the file has only 4"},
-        {SQUARE "f 1 2 5\nf 1 2 7\nf 7 1 2", "t.obj:6: vertex index 7, but the file has only 4"},
-        {SQUARE "f 1 2 -5\n", "t.obj:5: vertex index -5, but only 4 were read so far"},
-        {SQUARE "f 1/1 2/1 3/1\n", "t.obj:5: vt index 1, but the file has only 0"},
-        {SQUARE "vn 0 0 1\n\nf 1//1 2//2 3//1\n", "t.obj:7: vn index 2, but the file has only 1"},
-        {SQUARE "f 1//-1 2 3\n", "t.obj:5: vn index -1, but only 0 were read so far"},
-        {SQUARE "f 1 2 99999999999999999999\n", "t.obj:5: '99999999999999999999' has an index that is too large"},
-        {SQUARE "f 1 2 4294967295\n", "t.obj:5: '4294967295' has an index that is too large"},
-        {SQUARE "f 1.0 2.0 3.0\n", "t.obj:5: '1.0' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
-        {SQUARE "f 1/1/1/1 2 3\n", "t.obj:5: '1/1/1/1' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
-        {SQUARE "f /1 2 3\n", "t.obj:5: '/1' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
-        {SQUARE "f 1 2 -\n", "t.obj:5: '-' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
+        {QUADRANGLE "f 1 2\n", "t.obj:5: f needs at least 3 corners"},
+        {QUADRANGLE "f\n", "t.obj:5: f needs at least 3 corners"},
+        {QUADRANGLE "f 1 \\\n2\n", "t.obj:5: f needs at least 3 corners"},
+        {QUADRANGLE "f 1 2 \\\n x\n", "t.obj:6: 'x' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
+        {QUADRANGLE "f 0 1 2\n", "t.obj:5: '0' has the index 0, but indices count from 1"},
+        {QUADRANGLE "f 1/0 2/1 3/1\n", "t.obj:5: '1/0' has the index 0, but indices count from 1"},
+        {QUADRANGLE "f 1 2 5\nf 1 2 3\n", "t.obj:5: vertex index 5, but the file has only 4"},
+        {QUADRANGLE "f 1 2 5\nf 1 2 7\nf 7 1 2", "t.obj:6: vertex index 7, but the file has only 4"},
+        {QUADRANGLE "f 1 2 -5\n", "t.obj:5: vertex index -5, but only 4 were read so far"},
+        {QUADRANGLE "f 1/1 2/1 3/1\n", "t.obj:5: vt index 1, but the file has only 0"},
+        {QUADRANGLE "vn 0 0 1\n\nf 1//1 2//2 3//1\n", "t.obj:7: vn index 2, but the file has only 1"},
+        {QUADRANGLE "f 1//-1 2 3\n", "t.obj:5: vn index -1, but only 0 were read so far"},
+        {QUADRANGLE "f 1 2 99999999999999999999\n", "t.obj:5: '99999999999999999999' has an index that is too large"},
+        {QUADRANGLE "f 1 2 4294967295\n", "t.obj:5: '4294967295' has an index that is too large"},
+        {QUADRANGLE "f 1.0 2.0 3.0\n", "t.obj:5: '1.0' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
+        {QUADRANGLE "f 1/1/1/1 2 3\n", "t.obj:5: '1/1/1/1' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
+        {QUADRANGLE "f /1 2 3\n", "t.obj:5: '/1' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
+        {QUADRANGLE "f 1 2 -\n", "t.obj:5: '-' is not a corner of a face (7, 7/1, 7//3 or 7/1/3)"},
         {"# text\n\x7f"
          "ELF x\n",
          "t.obj:2: '?ELF' is not an OBJ keyword: is this a text file?"},
@@ -177,7 +177,7 @@ TEST(obj_errors_name_the_line) {
 }
 
 TEST(obj_cut_anywhere_is_a_mesh_or_an_error) {
-    static const char text[] = SQUARE UVS NORMALS "f 1/1/1 2/2/1 \\\r\n 3/3/2 # x\r\nf -4/1/2 3//2 4\r\ng \\\n a";
+    static const char text[] = QUADRANGLE UVS NORMALS "f 1/1/1 2/2/1 \\\r\n 3/3/2 # x\r\nf -4/1/2 3//2 4\r\ng \\\n a";
     for (size_t size = 0; size < sizeof text; size++) {
         struct error error;
         struct mesh *mesh = parse_bytes(text, size, &error);
@@ -299,23 +299,27 @@ TEST(obj_real_models_have_their_triangles) {
         char path[100];
         (void)snprintf(path, sizeof path, "../shared/models/%s.obj", models[i].name);
         struct error error = {0};
-        struct mesh *mesh = obj_read(path, &error);
+        struct model model;
+        bool ok = model_read(&model, path, &(struct model_options){.single_file = true}, &error);
         CHECK_TEXT(error.text, "");
-        if (mesh)
-            CHECK_EQ_INT(mesh_triangle_count(mesh) + mesh_dropped_faces(mesh), models[i].triangles);
-        mesh_release(mesh);
+        if (!ok)
+            continue;
+        const struct mesh *mesh = only_mesh(&model);
+        CHECK_EQ_INT(mesh_triangle_count(mesh) + mesh_dropped_faces(mesh), models[i].triangles);
+        model_destroy(&model);
     }
 }
 
 TEST(obj_file_that_is_missing_is_named) {
     struct error error = {0};
-    CHECK(obj_read("no/such/file.obj", &error) == NULL);
+    struct model model;
+    CHECK(!model_read(&model, "no/such/file.obj", &(struct model_options){.single_file = true}, &error));
     CHECK(strncmp(error.text, "no/such/file.obj: ", 18) == 0);
     CHECK_EQ_INT(error.kind, ERROR_SCENE);
 }
 
 TEST(obj_survives_every_failed_allocation) {
-    static const char text[] = SQUARE UVS NORMALS "f 1/1/1 2/2/1 3/3/2\nf 1/1/2 3/3/2 4/2/1\n";
+    static const char text[] = QUADRANGLE UVS NORMALS "f 1/1/1 2/2/1 3/3/2\nf 1/1/2 3/3/2 4/2/1\n";
     struct error error;
     uint64_t before = mem_allocations();
     mesh_release(parse_bytes(text, sizeof text - 1, &error));

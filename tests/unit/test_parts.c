@@ -4,6 +4,7 @@
 #include "render/render.h"
 #include "render/tile_file.h"
 #include "tests/harness.h"
+#include "tests/stage.h"
 
 #include <math.h>
 #include <signal.h>
@@ -523,8 +524,8 @@ static struct film some_film(uint32_t x0, uint32_t y0, uint32_t width, uint32_t 
     struct film film = {.x0 = x0, .y0 = y0, .full_width = x0 + width + 5, .full_height = y0 + height + 3};
     struct error error;
     size_t bytes;
-    CHECK(film_size(width, height, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-    film_layout(&film, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
+    CHECK(film_size(width, height, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+    film_layout(&film, calloc(1, bytes), width, height, stage_record(INTEGRATOR_WHITTED));
     for (size_t i = 0; i < (size_t)width * height; i++) {
         film.marked[i] = test_uniform(random, 0, 1) < 0.3;
         for (int c = 0; c < 3; c++) {
@@ -578,8 +579,8 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         CHECK(!tile_picture_difference(&file.picture, &picture) && file.picture.shard == 2);
         CHECK_TEXT(file.picture.name, picture.name);
         size_t bytes;
-        CHECK(film_size(width, height, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-        film_layout(&back, calloc(1, bytes), width, height, integrator_record(INTEGRATOR_WHITTED));
+        CHECK(film_size(width, height, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+        film_layout(&back, calloc(1, bytes), width, height, stage_record(INTEGRATOR_WHITTED));
         tile_file_restore(&file, &back, &restored, &twice);
         CHECK_EQ_INT(restored, kept);
         CHECK_EQ_INT(twice, 0);

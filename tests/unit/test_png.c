@@ -265,7 +265,7 @@ TEST(png_errors_say_what_is_wrong) {
         CHECK_TEXT(error.text, cases[i].message);
     }
     struct error error = {0};
-    CHECK(image_read_png("no/such/file.png", &error) == NULL);
+    CHECK(image_read("no/such/file.png", &error) == NULL);
     check_error(&error, "no/such/file.png: ");
 }
 
@@ -324,7 +324,7 @@ TEST(png_write_and_read_give_the_same_pixels) {
         struct test_picture picture = test_read_picture(path);
         CHECK_EQ_INT(picture.width, width);
         CHECK_EQ_INT(picture.height, sizes[i][1]);
-        struct image *image = image_read_png(path, &error);
+        struct image *image = image_read(path, &error);
         CHECK_TEXT(error.text, "");
         for (uint32_t y = 0; image && y < sizes[i][1]; y++) {
             uint8_t line[3 * 301];
@@ -392,7 +392,7 @@ TEST(png_bytes_are_the_same_by_any_number_of_threads) {
         }
         free(first);
         CHECK(png_write_trial(&kinds[kind]) > 0);
-        struct image *image = image_read_png(path, &error);
+        struct image *image = image_read(path, &error);
         CHECK(image);
         for (uint32_t y = 0; image && y < 200; y += 50) {
             static uint8_t line[3 * 1000];

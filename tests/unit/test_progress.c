@@ -103,11 +103,11 @@ TEST(what_is_foretold_is_done_in_the_end_and_counts_for_nothing) {
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     size_t bytes;
-    CHECK(film_size(200, 150, integrator_record(INTEGRATOR_WHITTED), &bytes, &s.error));
+    CHECK(film_size(200, 150, stage_record(INTEGRATOR_WHITTED), &bytes, &s.error));
     void *blocks[2] = {calloc(1, bytes), calloc(1, bytes)};
     struct film films[2] = {film_of(200, 150), film_of(200, 150)};
     for (int i = 0; i < 2; i++)
-        film_layout(&films[i], blocks[i], 200, 150, integrator_record(INTEGRATOR_WHITTED));
+        film_layout(&films[i], blocks[i], 200, 150, stage_record(INTEGRATOR_WHITTED));
     CHECK(progress_estimate_share(&progress_estimate) < 0 && progress_estimate_left(&progress_estimate, 1) < 0);
     CHECK(run_job(&s, &films[0], NULL, NULL, &plain));
     CHECK(run_job(&s, &films[1], &progress_estimate, NULL, &asked));
@@ -244,9 +244,9 @@ TEST(time_estimate_counts_unfinished_tiles_and_those_of_others) {
     size_t bytes;
     struct error error;
     struct time_estimate time_estimate;
-    CHECK(film_size(128, 32, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+    CHECK(film_size(128, 32, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
     void *block = calloc(1, bytes);
-    film_layout(&film, block, 128, 32, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 128, 32, stage_record(INTEGRATOR_WHITTED));
     CHECK(time_estimate_create(&time_estimate, 4, 4, 1));
     for (uint32_t tile = 0; tile < 4; tile++)
         time_estimate_probe(&time_estimate, tile, 1024, 10, 0);
@@ -286,10 +286,10 @@ TEST(enough_tiles_end_a_render_with_whole_tiles) {
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     size_t bytes;
-    CHECK(film_size(200, 150, integrator_record(INTEGRATOR_WHITTED), &bytes, &s.error));
+    CHECK(film_size(200, 150, stage_record(INTEGRATOR_WHITTED), &bytes, &s.error));
     void *block = calloc(1, bytes);
     struct film film = film_of(200, 150);
-    film_layout(&film, block, 200, 150, integrator_record(INTEGRATOR_WHITTED));
+    film_layout(&film, block, 200, 150, stage_record(INTEGRATOR_WHITTED));
     struct render_job job = {.world = &s.world,
                              .camera = s.camera,
                              .settings = s.settings,

@@ -310,12 +310,6 @@ TEST(files_that_a_script_names_are_looked_at_for_the_order_wherever_they_are) {
 #endif
 }
 
-TEST(functions_are_found_by_name_and_others_are_not) {
-    CHECK(function_find(OWNER_GR, "sphere") != NULL);
-    CHECK(function_find(OWNER_GR, "nothing") == NULL);
-    CHECK(function_find(OWNER_NODE, "sphere") == NULL);
-}
-
 #ifdef GRAY_FAULTS
 TEST(documents_survive_any_allocation_that_fails) {
     for (uint64_t k = 1, over = 0; !over; k++) {

@@ -13,6 +13,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* One texture at one hit. */
+static struct vec3 texture_colour(const struct texture *texture, const struct hit *hit) {
+    struct texture_reader reader;
+    texture_reader_init(&reader, hit, NULL, NULL);
+    return texture_read_colour(texture, &reader);
+}
+
+static double texture_scalar(const struct texture *texture, const struct hit *hit) {
+    struct texture_reader reader;
+    texture_reader_init(&reader, hit, NULL, NULL);
+    return texture_read_scalar(texture, &reader);
+}
+
 struct palette {
     struct arena arena;
     struct error error;

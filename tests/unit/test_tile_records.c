@@ -8,6 +8,7 @@
 #include "render/tile_file.h"
 #include "session/options.h"
 #include "tests/harness.h"
+#include "tests/stage.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -267,7 +268,7 @@ static struct tile_picture some_picture(void) {
                                  .full_height = SIDE,
                                  .width = SIDE,
                                  .height = SIDE,
-                                 .record = integrator_record(INTEGRATOR_WHITTED),
+                                 .record = stage_record(INTEGRATOR_WHITTED),
                                  .shard = 1,
                                  .shards = 1,
                                  .name = "a.png"};
@@ -306,8 +307,8 @@ static struct film half_film(void) {
     struct film film = {.full_width = SIDE, .full_height = SIDE};
     struct error error;
     size_t bytes;
-    CHECK(film_size(SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
-    film_layout(&film, calloc(1, bytes), SIDE, SIDE, integrator_record(INTEGRATOR_WHITTED));
+    CHECK(film_size(SIDE, SIDE, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+    film_layout(&film, calloc(1, bytes), SIDE, SIDE, stage_record(INTEGRATOR_WHITTED));
     atomic_store(&film.tiles[1], FILM_TILE_DONE);
     atomic_store(&film.tiles[2], FILM_TILE_DONE);
     return film;

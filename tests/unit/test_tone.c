@@ -158,7 +158,7 @@ TEST(deep_png_holds_sixteen_bits) {
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
     CHECK(png_write_16(FILE_AT(path), 64, 5, word_row, NULL, &error));
-    struct image *image = image_read_png(path, &error);
+    struct image *image = image_read(path, &error);
     CHECK(image != NULL);
     for (uint32_t y = 0; y < 5 && image; y++) {
         for (uint32_t x = 0; x < 64; x++) {

@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "render/render.h"
 #include "tests/harness.h"
+#include "tests/stage.h"
 #include "viewer/viewer_internal.h"
 
 #include <math.h>
@@ -191,7 +192,7 @@ static void begin(struct table *t) {
                                     .camera = {{0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 40}}};
     t->driver = (struct window_driver){&t->fake,   fake_open, fake_show,    fake_poll,
                                        fake_title, fake_grab, fake_nothing, fake_nothing};
-    CHECK(film_size(100, 70, integrator_record(INTEGRATOR_WHITTED), &bytes, &error));
+    CHECK(film_size(100, 70, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
     t->block = mem_alloc_zero(1, bytes);
     CHECK(
         viewer_begin(&t->viewer, &t->driver, &(struct viewer_picture){&t->request, t->block, "x.png"}, t->now, &error));

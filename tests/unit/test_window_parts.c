@@ -39,7 +39,6 @@ TEST(nothing_is_drawn_beyond_the_edges_of_the_canvas) {
         canvas_line(&canvas, v[0], v[1], v[2], v[3], colour);
         canvas_ring(&canvas, v[0], v[1], fabs(v[2]), colour);
         canvas_box(&canvas, at[0], at[1], at[2], at[3], colour);
-        canvas_outline(&canvas, at[0], at[1], at[2], at[3], colour);
         canvas_text(&canvas, at[0], at[1], "Text \xC3\xA4 \x7f~!", colour);
     }
     for (int i = 0; i < MARGIN; i++)
