@@ -168,7 +168,8 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     struct light_arrival arrival;
     if (!light_arrive(light, hit->point, &arrival))
         return vec3_all(0);
-    struct vec3 reflected = bsdf_classic(bsdf, BSDF_ALL, hit->view, arrival.direction);
+    uint32_t lobes = light_is_seen(light) ? without_highlight(bsdf) : BSDF_ALL;
+    struct vec3 reflected = bsdf_classic(bsdf, lobes, hit->view, arrival.direction);
     observe_light_sample(state->observer, arrival.distance, arrival.strength, arrival.direction, reflected);
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);

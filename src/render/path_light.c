@@ -153,7 +153,7 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
     }
     double pdf = pmf * sample.pdf;
     const struct light *light = &lights->lights[part.light];
-    bool shown = !light_is_delta(light) && (part.light >= state->job->world->light_count || light_is_seen(light));
+    bool shown = part.light >= state->job->world->light_count || light_is_seen(light);
     if (sample.is_delta) {
         f = vec3_scale(f, 1 / pdf);
     } else {

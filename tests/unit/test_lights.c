@@ -317,14 +317,15 @@ TEST(no_light_from_behind_a_surface_is_reflected_however_its_shading_normal_lean
  * lamp it shows only the highlight. */
 TEST(a_visible_lamp_counts_once_in_a_mirror) {
     for (int visible = 0; visible < 2; visible++)
-        for (int rough = 0; rough < 2; rough++) {
+        for (int rough = 0; rough < 4; rough++) { /* of 2 and 3 the lamp is shaded from its centre */
             struct stage s;
             stage_begin(&s, 1);
             struct material *mirror = stage_glass(&s, 1, 0, 1);
-            mirror->phong.roughness = rough ? 0.1 : 0;
+            mirror->phong.roughness = rough & 1 ? 0.1 : 0;
             stage_sphere(&s, s.root, mirror);
             s.lights[0] = area_light(LIGHT_SPHERE, vec3_make(0, 0, 40), 25);
             s.lights[0].visible = visible == 1;
+            s.lights[0].emissive = rough < 2;
             s.lights[0].colour = vec3_all(1);
             s.light_count = 1;
             s.camera = (struct camera){{0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 1};
@@ -333,7 +334,12 @@ TEST(a_visible_lamp_counts_once_in_a_mirror) {
             if (visible)
                 CHECK_NEAR(seen, 1, 1e-6);
             else
-                CHECK(seen > 0.01 && seen < 1);
+                CHECK(seen > 0.01 && seen <= 1);
+            s.settings.integrator = INTEGRATOR_PATH;
+            if (visible && rough != 3) { /* a rough mirror scatters the light of a point as such */
+                CHECK(stage_render(&s, 1, 1));
+                CHECK_NEAR(stage_pixel(&s, 0, 0).x, 1, rough ? 0.05 : 1e-6);
+            }
             stage_end(&s);
         }
 }
