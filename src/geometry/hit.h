@@ -74,7 +74,7 @@ struct hit {
 static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double side, struct vec3 direction) {
     double rise = vec3_dot(direction, hit->normal_geometric), min = 0x1p-20 * vec3_max_abs(direction);
     bool apart = hit->convexity == CONVEXITY_BEHIND
-                     ? rise > min
+                     ? side >= 0 && rise > min
                      : hit->convexity == CONVEXITY_PLANAR && (side < 0 ? -rise : rise) > min;
     return apart ? hit->primitive + 1 : 0;
 }

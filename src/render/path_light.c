@@ -54,7 +54,10 @@ static struct ray shadow_ray(const struct path_vertex *vertex, const struct worl
     }
     shadow.direction = light_target_from(&sample->target, shadow.origin);
     shadow.t_max = light_target_end(&sample->target);
-    shadow.skip_primitive = sample->skip_primitive ? sample->skip_primitive : hit_skip_primitive(hit, shadow.direction);
+    /* A classic area light is shaded from its centre, which may be on the other side of the surface than this point. */
+    double side = vec3_dot(sample->direction, hit->normal_geometric);
+    shadow.skip_primitive =
+        sample->skip_primitive ? sample->skip_primitive : hit_skip_primitive_from(hit, side, shadow.direction);
     return shadow;
 }
 

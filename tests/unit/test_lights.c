@@ -344,6 +344,42 @@ TEST(a_visible_lamp_counts_once_in_a_mirror) {
         }
 }
 
+/* Also where the centre of a lamp is before the surface and the point that a shadow ray goes to is behind it. */
+TEST(a_closed_solid_is_dark_inside_of_itself_with_every_integrator) {
+    const struct revolved_quadric cylinder =
+        revolved_quadric_cylinder(vec3_make(0, -1, 0), vec3_make(0, 1, 0), 1, false);
+    const struct shape shapes[] = {
+        {.kind = SHAPE_SPHERE, .sphere = {{0, 0, 0}, 1}},
+        {.kind = SHAPE_BOX, .box = {{-1, -1, -1}, {1, 1, 1}}},
+        {.kind = SHAPE_ELLIPSOID, .ellipsoid = {{0, 0, 0}, {1, 2, 1}}},
+        {.kind = SHAPE_REVOLVED_QUADRIC, .revolved_quadric = cylinder},
+    };
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++)
+        for (int kind = LIGHT_POINT; kind <= LIGHT_SPHERE; kind++)
+            for (int integrator = 0; integrator < LIST_COUNT(INTEGRATORS); integrator++) {
+                struct stage s;
+                stage_begin(&s, 1);
+                struct material *material = stage_phong(&s, vec3_all(0.8), vec3_all(0.3), 5);
+                material->phong.two_sided = true;
+                stage_sphere(&s, s.root, material)->shape = shapes[i];
+                s.light_count = 1;
+                s.lights[0] = kind == LIGHT_PARALLELOGRAM
+                                  ? rectangle(vec3_make(-1, 3, -1), vec3_make(2, 0, 0), vec3_make(0, 0, 2))
+                                  : area_light((enum light_kind)kind, vec3_make(3, 1, 1), 1.9);
+                s.lights[0].direction = vec3_make(-1, 0, 0);
+                s.lights[0].emissive = false;
+                s.lights[0].cos_outer = -1;
+                s.lights[0].samples = 2;
+                s.settings.integrator = (enum integrator_kind)integrator;
+                s.settings.path_samples = 16;
+                s.camera = (struct camera){{0.1, 0.05, 0.13}, {0.3, 0.4, -1}, {0, 1, 0}, 110};
+                CHECK(stage_render(&s, 16, 16));
+                for (size_t k = 0; k < 256; k++)
+                    CHECK(s.film.pixels[k].rgb[0] == 0);
+                stage_end(&s);
+            }
+}
+
 TEST(a_light_may_set_its_number_of_shadow_rays) {
     struct stage s;
     stage_floor(&s);
