@@ -27,20 +27,21 @@ enum bsdf_flags {
     BSDF_EXPONENT = 64, /* it has one */
     BSDF_ROUGH = 128,   /* of layered materials, in rough_lobes.c */
     BSDF_TINTED = 256,  /* f has a colour beside the weight, that of Fresnel's reflection by metals */
+    BSDF_DIFFUSE = 512, /* render layers count it as diffuse */
 };
 
 /* Kind, name in pixel traces, flags. f is weight times: */
 #define LOBES(X)                                                                                                       \
-    X(LOBE_DIFFUSE, "diffuse", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_LAMBERT) /* 1 / pi */                               \
-    X(LOBE_PHONG, "phong", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT)    /* max(0, r.v)^exponent / (pi n.l) */      \
-    X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT)    /* max(0, n.h)^exponent / (pi n.l) */      \
+    X(LOBE_DIFFUSE, "diffuse", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_LAMBERT | BSDF_DIFFUSE) /* 1 / pi */                \
+    X(LOBE_PHONG, "phong", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, r.v)^exponent / (pi n.l) */         \
+    X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, n.h)^exponent / (pi n.l) */         \
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
     X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
     X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */    \
     /* Of layered materials; rough_lobes.c has the formulas. */                                                        \
-    X(LOBE_OREN_NAYAR, "rough diffuse", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                     \
-    X(LOBE_OREN_NAYAR_MULTIPLE, "rough diffuse, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                  \
+    X(LOBE_OREN_NAYAR, "rough diffuse", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS | BSDF_DIFFUSE)                      \
+    X(LOBE_OREN_NAYAR_MULTIPLE, "rough diffuse, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS | BSDF_DIFFUSE)   \
     X(LOBE_FUZZ, "fuzz", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                                    \
     X(LOBE_GLOSS, "gloss", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS)                                    \
     X(LOBE_METAL, "metal", BSDF_ROUGH | BSDF_CLASSIC | BSDF_TRACED | BSDF_REFLECTS | BSDF_TINTED)                      \

@@ -90,13 +90,8 @@ enum scattering { SCATTERING_DIFFUSE, SCATTERING_SPECULAR, SCATTERING_TRANSMISSI
 
 static enum scattering scattering_of(unsigned lobe_flags) {
     return lobe_flags & BSDF_TRANSMITS ? SCATTERING_TRANSMISSION
-           : lobe_flags & BSDF_LAMBERT ? SCATTERING_DIFFUSE
+           : lobe_flags & BSDF_DIFFUSE ? SCATTERING_DIFFUSE
                                        : SCATTERING_SPECULAR;
-}
-
-static enum scattering scattering_of_lobe(enum lobe_kind kind) {
-    bool rough_diffuse = kind == LOBE_OREN_NAYAR || kind == LOBE_OREN_NAYAR_MULTIPLE;
-    return rough_diffuse ? SCATTERING_DIFFUSE : scattering_of(lobe_flags(kind));
 }
 
 void path_share_all(unsigned flags, struct vec3 out[PATH_SCATTERINGS]) {
@@ -113,7 +108,7 @@ void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 w
     uint32_t of_kind[PATH_SCATTERINGS] = {0};
     struct vec3 sum = {0, 0, 0};
     for (int i = 0; i < bsdf->count; i++)
-        of_kind[scattering_of_lobe(bsdf->lobes[i].kind)] |= lobes & UINT32_C(1) << i;
+        of_kind[scattering_of(lobe_flags(bsdf->lobes[i].kind))] |= lobes & UINT32_C(1) << i;
     for (int i = 0; i < PATH_SCATTERINGS; i++) {
         out[i] = of_kind[i] ? scattered(vertex, of_kind[i], wi) : vec3_all(0);
         sum = vec3_add(sum, out[i]);

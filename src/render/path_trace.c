@@ -218,7 +218,7 @@ static void add_photons(const struct path_tracer *tracer, const struct integrato
     path->light = vec3_add(path->light, light);
     /* Photons have been scattered before; diffuse lobes receive nearly all of them. */
     struct vec3 diffuse[PATH_SCATTERINGS];
-    path_share_all(BSDF_LAMBERT, diffuse);
+    path_share_all(BSDF_DIFFUSE, diffuse);
     if (path->parts)
         add_to_groups(path->parts, path->depth + 2, path->depth == 0 ? diffuse : path->parts->shares, light);
 }
