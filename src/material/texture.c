@@ -138,6 +138,25 @@ int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PART
     return 0;
 }
 
+int texture_colour_parts(const struct texture *texture) {
+    switch (texture->kind) {
+    case TEXTURE_CONSTANT:
+    case TEXTURE_PARAMETER:
+    case TEXTURE_VERTEX_COLOUR:
+    case TEXTURE_MARBLE:
+    case TEXTURE_WOOD:
+    case TEXTURE_FUNCTION:
+    case TEXTURE_MAP:
+        return 0;
+    case TEXTURE_IMAGE:
+        return 1;
+    case TEXTURE_MIX:
+    case TEXTURE_MULTIPLY:
+        return 2;
+    }
+    return 0;
+}
+
 /* --- leaves --- */
 
 static struct vec3 parameter_colour(enum material_input input, const struct phong *numbers) {

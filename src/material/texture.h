@@ -231,6 +231,9 @@ const struct texture *texture_keep(struct arena *arena, struct texture value, st
 /* The references of a texture to its parts; returns their number. That of an image may be empty. */
 enum { TEXTURE_PARTS = 3 };
 int texture_parts(struct texture *texture, union texture_ref *parts[TEXTURE_PARTS]);
+/* So many of them, the first ones, are read as colours if the texture is: not the ratio of a mix, and not what a
+ * function is of. */
+int texture_colour_parts(const struct texture *texture);
 
 /* Estimates of a texture without a hit, for a material with these numbers. textures: as in texture_at. */
 enum texture_estimate {

@@ -160,33 +160,16 @@ static bool is_colour(enum material_input input) {
     return false;
 }
 
-/* The parts of a texture that are read as colours: not the ratio of a mix, and not what a function is of. */
+/* A texture that is read as a colour, and its parts that are. */
 static void mark_colours(const struct texture *table, union texture_ref ref, bool *is_read) {
     if (ref.index == TEXTURE_NONE || is_read[ref.index])
         return;
-    const struct texture *texture = &table[ref.index];
+    struct texture own = table[ref.index];
+    union texture_ref *parts[TEXTURE_PARTS];
+    (void)texture_parts(&own, parts);
     is_read[ref.index] = true;
-    switch (texture->kind) {
-    case TEXTURE_IMAGE:
-        mark_colours(table, texture->image.below, is_read);
-        return;
-    case TEXTURE_MIX:
-        mark_colours(table, texture->mix.a, is_read);
-        mark_colours(table, texture->mix.b, is_read);
-        return;
-    case TEXTURE_MULTIPLY:
-        mark_colours(table, texture->multiply.a, is_read);
-        mark_colours(table, texture->multiply.b, is_read);
-        return;
-    case TEXTURE_CONSTANT:
-    case TEXTURE_PARAMETER:
-    case TEXTURE_VERTEX_COLOUR:
-    case TEXTURE_MARBLE:
-    case TEXTURE_WOOD:
-    case TEXTURE_FUNCTION:
-    case TEXTURE_MAP:
-        return;
-    }
+    for (int i = 0; i < texture_colour_parts(&own); i++)
+        mark_colours(table, *parts[i], is_read);
 }
 
 /* How an image becomes light; colour: it is read as one. */
