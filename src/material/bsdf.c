@@ -72,22 +72,15 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
         case LOBE_BLINN:
             factor = blinn_formula(lobe, bsdf->lit, wo, wi);
             break;
-        case LOBE_OREN_NAYAR:
-        case LOBE_OREN_NAYAR_MULTIPLE:
-        case LOBE_FUZZ:
-        case LOBE_GLOSS:
-        case LOBE_METAL:
-        case LOBE_FACETS_MULTIPLE:
-            sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi),
-                                  radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
+            ROUGH_LOBES(LOBE_LABEL)
+            if (lobe_flags(lobe->kind) & BSDF_CLASSIC)
+                sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi),
+                                      radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
             continue;
         case LOBE_MIRROR:
         case LOBE_REFRACTION:
         case LOBE_GGX_REFLECTION:
         case LOBE_GGX_TRANSMISSION:
-        case LOBE_GLASS:
-        case LOBE_PANE:
-        case LOBE_FACETS_THROUGH:
             continue;
         }
         sum = vec3_add_scaled(sum, lobe->weight, factor);
@@ -232,15 +225,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi).pdf;
-    case LOBE_OREN_NAYAR:
-    case LOBE_OREN_NAYAR_MULTIPLE:
-    case LOBE_FUZZ:
-    case LOBE_GLOSS:
-    case LOBE_METAL:
-    case LOBE_GLASS:
-    case LOBE_PANE:
-    case LOBE_FACETS_MULTIPLE:
-    case LOBE_FACETS_THROUGH:
+        ROUGH_LOBES(LOBE_LABEL)
         return rough_lobe_pdf(bsdf, lobe, wo, wi);
     }
     return 0;
@@ -264,15 +249,7 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
         struct facet_path path = rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi);
         return path.pdf * path.share;
     }
-    case LOBE_OREN_NAYAR:
-    case LOBE_OREN_NAYAR_MULTIPLE:
-    case LOBE_FUZZ:
-    case LOBE_GLOSS:
-    case LOBE_METAL:
-    case LOBE_GLASS:
-    case LOBE_PANE:
-    case LOBE_FACETS_MULTIPLE:
-    case LOBE_FACETS_THROUGH:
+        ROUGH_LOBES(LOBE_LABEL)
         return rough_lobe_eval(bsdf, lobe, wo, wi);
     }
     return 0;
@@ -344,15 +321,7 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return traced_direction(bsdf, lobe, wo, microfacet_normal(bsdf->side, wo, bsdf->alpha, u), out);
-    case LOBE_OREN_NAYAR:
-    case LOBE_OREN_NAYAR_MULTIPLE:
-    case LOBE_FUZZ:
-    case LOBE_GLOSS:
-    case LOBE_METAL:
-    case LOBE_GLASS:
-    case LOBE_PANE:
-    case LOBE_FACETS_MULTIPLE:
-    case LOBE_FACETS_THROUGH:
+        ROUGH_LOBES(LOBE_LABEL)
         return rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits);
     }
     return false;

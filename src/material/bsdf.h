@@ -31,15 +31,16 @@ enum bsdf_flags {
 };
 
 /* Kind, name in pixel traces, flags. f is weight times: */
-#define LOBES(X)                                                                                                       \
+#define SIMPLE_LOBES(X)                                                                                                \
     X(LOBE_DIFFUSE, "diffuse", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_LAMBERT | BSDF_DIFFUSE) /* 1 / pi */                \
     X(LOBE_PHONG, "phong", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, r.v)^exponent / (pi n.l) */         \
     X(LOBE_BLINN, "blinn", BSDF_CLASSIC | BSDF_REFLECTS | BSDF_EXPONENT) /* max(0, n.h)^exponent / (pi n.l) */         \
     X(LOBE_MIRROR, "mirror", BSDF_TRACED | BSDF_REFLECTS | BSDF_DELTA)                                                 \
     X(LOBE_REFRACTION, "refract", BSDF_TRACED | BSDF_TRANSMITS | BSDF_DELTA)                                           \
     X(LOBE_GGX_REFLECTION, "mirror", BSDF_TRACED | BSDF_REFLECTS)                                                      \
-    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */    \
-    /* Of layered materials; rough_lobes.c has the formulas. */                                                        \
+    X(LOBE_GGX_TRANSMISSION, "refract", BSDF_TRACED | BSDF_TRANSMITS) /* facets with total reflection reflect it */
+/* Of layered materials; rough_lobes.c has the formulas. */
+#define ROUGH_LOBES(X)                                                                                                 \
     X(LOBE_OREN_NAYAR, "rough diffuse", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS | BSDF_DIFFUSE)                      \
     X(LOBE_OREN_NAYAR_MULTIPLE, "rough diffuse, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS | BSDF_DIFFUSE)   \
     X(LOBE_FUZZ, "fuzz", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                                                    \
@@ -49,7 +50,9 @@ enum bsdf_flags {
     X(LOBE_PANE, "pane", BSDF_ROUGH | BSDF_TRACED | BSDF_TRANSMITS)                                                    \
     X(LOBE_FACETS_MULTIPLE, "facets, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                             \
     X(LOBE_FACETS_THROUGH, "facets through, multiple", BSDF_ROUGH | BSDF_TRANSMITS)
-
+#define LOBES(X) SIMPLE_LOBES(X) ROUGH_LOBES(X)
+/* The labels of a list in a switch, where its lobes have one answer. */
+#define LOBE_LABEL(kind, name, flags) case kind:
 enum lobe_kind { LOBES(LIST_MEMBER) };
 enum { LOBE_KINDS = LIST_COUNT(LOBES) };
 

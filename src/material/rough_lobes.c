@@ -289,13 +289,7 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
         return facets_multiple(bsdf, lobe, n_o, n_i) * n_i / PI;
-    case LOBE_DIFFUSE:
-    case LOBE_PHONG:
-    case LOBE_BLINN:
-    case LOBE_MIRROR:
-    case LOBE_REFRACTION:
-    case LOBE_GGX_REFLECTION:
-    case LOBE_GGX_TRANSMISSION:
+        SIMPLE_LOBES(LOBE_LABEL)
         break;
     }
     return 0;
@@ -325,13 +319,7 @@ double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct v
     case LOBE_GLASS:
     case LOBE_PANE:
         return path_of(bsdf, lobe, wo, wi).pdf;
-    case LOBE_DIFFUSE:
-    case LOBE_PHONG:
-    case LOBE_BLINN:
-    case LOBE_MIRROR:
-    case LOBE_REFRACTION:
-    case LOBE_GGX_REFLECTION:
-    case LOBE_GGX_TRANSMISSION:
+        SIMPLE_LOBES(LOBE_LABEL)
         break;
     }
     return 0;
@@ -355,13 +343,7 @@ bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GLASS:
     case LOBE_PANE:
         return facet_sample(bsdf, lobe, wo, u, direction, transmits);
-    case LOBE_DIFFUSE:
-    case LOBE_PHONG:
-    case LOBE_BLINN:
-    case LOBE_MIRROR:
-    case LOBE_REFRACTION:
-    case LOBE_GGX_REFLECTION:
-    case LOBE_GGX_TRANSMISSION:
+        SIMPLE_LOBES(LOBE_LABEL)
         return false;
     }
     return cosine_on(bsdf, *transmits, *direction) > 0;
