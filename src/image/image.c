@@ -193,12 +193,12 @@ struct image *image_create(const char *name, uint32_t width, uint32_t height, in
     return image;
 }
 
-static uint16_t decoded(struct transfer transfer, uint32_t units) {
+static uint16_t decoded(struct transfer_function transfer, uint32_t units) {
     double light = transfer_decode(transfer, units / 65535.0);
     return (uint16_t)(65535 * light + 0.5);
 }
 
-static struct image *decode(const struct image *image, struct transfer transfer, struct error *error) {
+static struct image *decode(const struct image *image, struct transfer_function transfer, struct error *error) {
     const struct image_level *from = &image->levels[0];
     size_t count = (size_t)from->width * from->height * 4;
     struct image *out = image_allocate(image->name, from->width, from->height, 16, error);
@@ -223,7 +223,7 @@ static struct image *decode(const struct image *image, struct transfer transfer,
     return NULL;
 }
 
-struct image *image_decode(struct image *image, struct transfer transfer, struct error *error) {
+struct image *image_decode(struct image *image, struct transfer_function transfer, struct error *error) {
     if (image->bits == 32 || transfer_is_linear(transfer))
         return image;
     for (struct image *known = image->decoded; known; known = known->decoded)
@@ -236,14 +236,14 @@ struct image *image_decode(struct image *image, struct transfer transfer, struct
     return image->decoded = out;
 }
 
-struct transfer image_transfer(const struct image *image) {
+struct transfer_function image_transfer(const struct image *image) {
     return image->transfer;
 }
 
-struct transfer image_colour_transfer(const struct image *image) {
+struct transfer_function image_colour_transfer(const struct image *image) {
     if (image->transfer.kind != TRANSFER_UNSTATED || image->bits != 8)
         return image->transfer;
-    return (struct transfer){TRANSFER_SRGB, 0};
+    return (struct transfer_function){TRANSFER_SRGB, 0};
 }
 
 const char *image_colours(const struct image *image) {

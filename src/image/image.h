@@ -35,16 +35,16 @@ struct image;
 struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
                            struct error *error);
 /* What the file states about its numbers; TRANSFER_UNSTATED: nothing, as in JPEG files and pictures of light. */
-struct transfer image_transfer(const struct image *image);
+struct transfer_function image_transfer(const struct image *image);
 /* How numbers of the picture that are colours become light: as the file states it, else 8 bits by sRGB, else as they
  * are. */
-struct transfer image_colour_transfer(const struct image *image);
+struct transfer_function image_colour_transfer(const struct image *image);
 /* A colour space of the file that gray does not know and takes as sRGB, for a warning; NULL: none. */
 const char *image_colours(const struct image *image);
 /* The picture with its 8 or 16 bits decoded to light, 16 bits a channel; alpha stays. Pictures of light, and all for a
  * linear transfer function: themselves. The first call for a function makes it and is not thread-safe; the image owns
  * it. NULL: no memory. */
-struct image *image_decode(struct image *image, struct transfer transfer, struct error *error);
+struct image *image_decode(struct image *image, struct transfer_function transfer, struct error *error);
 struct image *image_share(struct image *image);
 void image_release(struct image *image);
 uint32_t image_width(const struct image *image);

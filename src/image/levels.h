@@ -31,9 +31,10 @@ struct image {
     void *block;
     size_t block_size;
     char *name;
-    struct transfer transfer; /* as its file states it; of the results of image_decode: that which was decoded */
-    char *colours;            /* what image_colours returns, or NULL; owned */
-    struct image *decoded;    /* the first result of image_decode, in which it is the next one; owned */
+    struct transfer_function
+        transfer;          /* as its file states it; of the results of image_decode: that which was decoded */
+    char *colours;         /* what image_colours returns, or NULL; owned */
+    struct image *decoded; /* the first result of image_decode, in which it is the next one; owned */
 };
 
 /* All levels allocated, texels not yet set: fill level 0, then call image_build_levels. NULL without memory or when the

@@ -95,26 +95,26 @@ static void name_profile(struct chunk chunk, char out[NAME_LIMIT + 1]) {
 
 /* --- all of them --- */
 
-static struct transfer by_number(uint8_t number, const char **unknown) {
+static struct transfer_function by_number(uint8_t number, const char **unknown) {
     switch (number) {
     case 1:
     case 6:
     case 14:
     case 15:
-        return (struct transfer){TRANSFER_BT709, 0};
+        return (struct transfer_function){TRANSFER_BT709, 0};
     case 4:
-        return (struct transfer){TRANSFER_POWER, 2.2};
+        return (struct transfer_function){TRANSFER_POWER, 2.2};
     case 5:
-        return (struct transfer){TRANSFER_POWER, 2.8};
+        return (struct transfer_function){TRANSFER_POWER, 2.8};
     case 8:
-        return (struct transfer){TRANSFER_POWER, 1};
+        return (struct transfer_function){TRANSFER_POWER, 1};
     case 13:
         break;
     default:
         *unknown = number == 16 ? "PQ (SMPTE ST 2084)" : number == 18 ? "HLG (ARIB STD-B67)" : "a rare one";
         break;
     }
-    return (struct transfer){TRANSFER_SRGB, 0};
+    return (struct transfer_function){TRANSFER_SRGB, 0};
 }
 
 bool png_colour_read(struct image *image, const uint8_t *data, size_t size) {
@@ -136,7 +136,7 @@ bool png_colour_read(struct image *image, const uint8_t *data, size_t size) {
     } else if (srgb.size > 0) {
         image->transfer.kind = TRANSFER_SRGB;
     } else if (gamma.size == 4 && word(gamma.bytes) > 0) {
-        image->transfer = (struct transfer){TRANSFER_POWER, 100000.0 / word(gamma.bytes)};
+        image->transfer = (struct transfer_function){TRANSFER_POWER, 100000.0 / word(gamma.bytes)};
     }
     if (text[0] == '\0')
         return true;

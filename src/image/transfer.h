@@ -10,21 +10,21 @@
 /* SRGB: IEC 61966-2-1. POWER: light is c^exponent; 1 is linear. BT709: the inverse of the camera's function of ITU-R
  * BT.709, which cICP's values 1, 6, 14 and 15 mean (ITU-T H.273, table 3). */
 enum transfer_kind { TRANSFER_UNSTATED, TRANSFER_SRGB, TRANSFER_POWER, TRANSFER_BT709 };
-struct transfer {
+struct transfer_function {
     enum transfer_kind kind;
     double exponent;
 };
 
-static inline bool transfer_is_linear(struct transfer transfer) {
+static inline bool transfer_is_linear(struct transfer_function transfer) {
     return transfer.kind == TRANSFER_UNSTATED || (transfer.kind == TRANSFER_POWER && transfer.exponent == 1);
 }
 
-static inline bool transfer_same(struct transfer a, struct transfer b) {
+static inline bool transfer_same(struct transfer_function a, struct transfer_function b) {
     return a.kind == b.kind && (a.kind != TRANSFER_POWER || a.exponent == b.exponent);
 }
 
 /* Odd: a negative number gives minus the light of its magnitude. */
-static inline double transfer_decode(struct transfer transfer, double c) {
+static inline double transfer_decode(struct transfer_function transfer, double c) {
     double x = fabs(c), light = x;
     switch (transfer.kind) {
     case TRANSFER_UNSTATED:
@@ -42,7 +42,7 @@ static inline double transfer_decode(struct transfer transfer, double c) {
     return c < 0 ? -light : light;
 }
 
-static inline struct vec3 transfer_decode_colour(struct transfer transfer, struct vec3 c) {
+static inline struct vec3 transfer_decode_colour(struct transfer_function transfer, struct vec3 c) {
     return vec3_make(transfer_decode(transfer, c.x), transfer_decode(transfer, c.y), transfer_decode(transfer, c.z));
 }
 

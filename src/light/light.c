@@ -23,7 +23,7 @@ void light_decode(struct light *light) {
     if (!light->has_display)
         return;
     struct vec3 c = light->colour, d = light->display;
-    struct vec3 decoded = transfer_decode_colour((struct transfer){TRANSFER_SRGB, 0}, d);
+    struct vec3 decoded = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, d);
     light->colour = vec3_make(d.x != 0 ? c.x / d.x * decoded.x : 0, d.y != 0 ? c.y / d.y * decoded.y : 0,
                               d.z != 0 ? c.z / d.z * decoded.z : 0);
     light->has_display = false;

@@ -385,7 +385,7 @@ static bool decode(struct image **image, struct error *error) {
 bool sky_decode(struct sky *sky, struct error *error) {
     bool ok = true;
     if (sky->display) {
-        const struct transfer srgb = {TRANSFER_SRGB, 0};
+        const struct transfer_function srgb = {TRANSFER_SRGB, 0};
         sky->colour = transfer_decode_colour(srgb, sky->colour);
         sky->clear.ground = transfer_decode_colour(srgb, sky->clear.ground);
         sky->display = false;

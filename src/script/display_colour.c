@@ -117,7 +117,7 @@ int display_colour_make(lua_State *L) {
 }
 
 int display_colour_to_light(lua_State *L) {
-    struct vec3 light = transfer_decode_colour((struct transfer){TRANSFER_SRGB, 0}, colour_of_call(L));
+    struct vec3 light = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, colour_of_call(L));
     lua_pushnumber(L, light.x);
     lua_pushnumber(L, light.y);
     lua_pushnumber(L, light.z);

@@ -172,7 +172,7 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .fog = args[RENDER_FOG].fog,
         .settings = context->host->settings,
     };
-    const struct transfer srgb = {TRANSFER_SRGB, 0};
+    const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct camera fitted;
     if (context->lenient && !args[RENDER_EYE].given) {
         lenient_camera(request.root, &fitted);

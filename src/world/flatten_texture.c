@@ -173,18 +173,18 @@ static void mark_colours(const struct texture *table, union texture_ref ref, boo
 }
 
 /* How an image becomes light; colour: it is read as one. */
-static struct transfer image_transfer_in(const struct texture_image *lookup, bool colour) {
+static struct transfer_function image_transfer_in(const struct texture_image *lookup, bool colour) {
     if (lookup->gamma > 0)
-        return (struct transfer){TRANSFER_POWER, lookup->gamma};
+        return (struct transfer_function){TRANSFER_POWER, lookup->gamma};
     switch (lookup->encoding) {
     case ENCODING_AUTO:
         break;
     case ENCODING_SRGB:
-        return (struct transfer){TRANSFER_SRGB, 0};
+        return (struct transfer_function){TRANSFER_SRGB, 0};
     case ENCODING_LINEAR:
-        return (struct transfer){TRANSFER_POWER, 1};
+        return (struct transfer_function){TRANSFER_POWER, 1};
     }
-    return colour ? image_colour_transfer(lookup->image) : (struct transfer){TRANSFER_UNSTATED, 0};
+    return colour ? image_colour_transfer(lookup->image) : (struct transfer_function){TRANSFER_UNSTATED, 0};
 }
 
 /* Of the first texture that reads the image. */
@@ -218,11 +218,11 @@ static bool decode_colours(const struct flattening *f, struct texture *table) {
     for (uint32_t i = 0; ok && i < f->world->texture_count; i++) {
         struct texture_image *lookup = &table[i].image.lookup;
         if (table[i].kind == TEXTURE_CONSTANT && table[i].constant.display)
-            table[i] =
-                texture_constant(transfer_decode_colour((struct transfer){TRANSFER_SRGB, 0}, table[i].constant.colour));
+            table[i] = texture_constant(
+                transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, table[i].constant.colour));
         if (table[i].kind != TEXTURE_IMAGE)
             continue;
-        struct transfer transfer = image_transfer_in(lookup, is_read[i]);
+        struct transfer_function transfer = image_transfer_in(lookup, is_read[i]);
         if (is_read[i] && lookup->encoding == ENCODING_AUTO && !(lookup->gamma > 0))
             warn_of_colours(f, table, i);
         lookup->image = image_decode(lookup->image, transfer, f->error);

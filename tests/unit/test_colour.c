@@ -14,7 +14,7 @@
 #include <string.h>
 #include <zlib.h>
 
-static const struct transfer srgb_transfer = {TRANSFER_SRGB, 0};
+static const struct transfer_function srgb_transfer = {TRANSFER_SRGB, 0};
 
 static double decoded(double c) {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
@@ -153,7 +153,7 @@ TEST(a_png_file_states_its_transfer_function) {
     static const struct {
         const char *kind, *bytes;
         size_t size;
-        struct transfer transfer;
+        struct transfer_function transfer;
         const char *warning;
     } rows[] = {
         {NULL, NULL, 0, {TRANSFER_UNSTATED, 0}, NULL},
