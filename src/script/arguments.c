@@ -760,8 +760,9 @@ static bool read_positional(struct script_context *c, const struct script_functi
                               function->name);
             context_raise(c, "%s is missing", p->name);
         }
-        /* The name of a variable is misspelt. */
-        if (optional && function->result == RESULT_NOTHING && lua_isnil(L, argument_path))
+        /* gr.render: the name of a variable is misspelt. */
+        if (optional && function->result == RESULT_NOTHING && (p->kind == KIND_LIGHTS || p->kind == KIND_COLOUR) &&
+            lua_isnil(L, argument_path))
             context_raise(c, "%s is nil", p->name);
         if (!arguments_read_one(c, argument_path, p, &args[index]))
             return false;

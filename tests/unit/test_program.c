@@ -726,18 +726,19 @@ TEST(check_builds_every_scene_and_writes_nothing) {
     CHECK_TEXT(result.err, "");
     ends(result, 0);
     CHECK(!exists("out.png"));
-    /* Two scenes with cycles, and between them one that is correct except for its material. */
+    /* Two scenes with an open operand, and between them one that is correct except for its material. */
     ends_saying(
         test_gray_scene(
-            "local a, b = gr.node('a'), gr.node('b')\n"
-            "a:add_child(b)\nb:add_child(a)\n"
+            "local function open(name) return gr.mesh(name, {{0,0,0}, {1,0,0}, {0,1,0}}, {{0,1,2}}) end\n"
+            "local a = gr.difference('a', gr.cube('ca'), gr.node('ga'):add_child(open('oa')))\n"
+            "local b = gr.difference('b', gr.cube('cb'), gr.node('gb'):add_child(open('ob')))\n"
             "local plain = gr.sphere('plain')\n"
             "local function picture(n) gr.render(n, 'x.png', 9, 9, {0,0,5}, {0,0,-1}, {0,1,0}, 40, {1,1,1}, {}) end\n"
             "picture(a)\npicture(plain)\npicture(b)\nerror('last')\n",
             "--check scene.lua", NULL),
         1, "plain");
     result = test_gray_scene(NULL, "--check scene.lua", NULL);
-    const char *first = strstr(result.err, "cycle"), *second = first ? strstr(first + 5, "cycle") : NULL;
+    const char *first = strstr(result.err, "mesh is open"), *second = first ? strstr(first + 5, "mesh is open") : NULL;
     CHECK(first && second && strstr(second, "scene.lua:9: last"));
     ends(result, 1);
     CHECK(!exists("x.png"));
