@@ -170,16 +170,16 @@ static void check_all_kinds(int k) {
 TEST(every_lobe_is_sampled_by_its_density_head_on) {
     check_all_kinds(0);
 }
-TEST(every_lobe_is_sampled_by_its_density_at_an_angle) {
+TEST_LONG(every_lobe_is_sampled_by_its_density_at_an_angle) {
     check_all_kinds(1);
 }
-TEST(every_lobe_is_sampled_by_its_density_with_a_leaning_normal_in_a_dense_medium) {
+TEST_LONG(every_lobe_is_sampled_by_its_density_with_a_leaning_normal_in_a_dense_medium) {
     check_all_kinds(2);
 }
 TEST(every_lobe_is_sampled_by_its_density_at_grazing_angles) {
     check_all_kinds(3);
 }
-TEST(every_lobe_is_sampled_by_its_density_about_a_normal_that_leans_far) {
+TEST_LONG(every_lobe_is_sampled_by_its_density_about_a_normal_that_leans_far) {
     check_all_kinds(4);
 }
 
