@@ -355,7 +355,7 @@ static void explain(const struct bench_scene *scene, const char *kind, const str
 /* Rays on threads */
 
 enum shared_state { GRAY_SINGLE, GRAY_PACKETS, EMBREE_SINGLE, EMBREE_PACKETS };
-enum { TURN = 4096, MAX_THREADS = 64 };
+enum { RAYS_IN_TURN = 4096, MAX_THREADS = 64 };
 
 struct work {
     enum shared_state tracer;
@@ -401,7 +401,7 @@ static void trace_piece(const struct work *work, uint64_t from, uint64_t count, 
 static void *trace_share(void *argument) {
     struct share *share = argument;
     const struct work *work = share->work;
-    uint64_t turn = share->threads > 1 ? TURN : work->count;
+    uint64_t turn = share->threads > 1 ? RAYS_IN_TURN : work->count;
 #if defined(HAVE_EMBREE)
     unsigned mode = _mm_getcsr();
     if (work->tracer >= EMBREE_SINGLE)
