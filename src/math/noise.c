@@ -164,8 +164,13 @@ double noise_marble(struct vec3 p, double factor, double multiplier, double vein
 
 /* --- points in cells --- */
 
+/* Equal numbers have equal bits: -0 those of 0, and every NaN those of one. */
+static uint64_t bits_of_number(double x) {
+    return isnan(x) ? UINT64_C(0x7ff8000000000000) : to_bits(x + 0.0);
+}
+
 static uint64_t hash_of_point(double x, double y, double z) {
-    return random_combine(random_combine(to_bits(x + 0.0), to_bits(y + 0.0)), to_bits(z + 0.0));
+    return random_combine(random_combine(bits_of_number(x), bits_of_number(y)), bits_of_number(z));
 }
 
 double noise_hash(double x, double y, double z) {
