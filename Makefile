@@ -252,11 +252,12 @@ format:
 	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch])
 
 install: all
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua $(DESTDIR)$(PREFIX)/share/doc/gray
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua/dialects $(DESTDIR)$(PREFIX)/share/doc/gray
 	install -m 755 $(BUILD)/gray $(DESTDIR)$(PREFIX)/bin/gray
 	$(if $(SDL_LIBS),install -m 755 $(BUILD)/gray-gui $(DESTDIR)$(PREFIX)/bin/gray-gui)
 	$(if $(MPI_LIBS),install -m 755 $(BUILD)/gray-mpi $(DESTDIR)$(PREFIX)/bin/gray-mpi)
 	install -m 644 lua/*.lua $(DESTDIR)$(PREFIX)/share/gray/lua
+	install -m 644 lua/dialects/*.lua $(DESTDIR)$(PREFIX)/share/gray/lua/dialects
 	install -m 644 README.md LICENSE CHANGELOG.md $(DESTDIR)$(PREFIX)/share/doc/gray
 
 clean:

@@ -96,7 +96,10 @@ static bool add_rules(int ruleset, const struct options *options, const struct p
         uint64_t rights = folder->kind == PATH_POLICY_WRITE ? read_rights | write_rights : read_rights;
         ok = ok && add_rule(ruleset, folder->descriptor, rights & known);
     }
-    /* A scene that is a link to somewhere else. */
+    /* A scene, or a dialect, that is a link to somewhere else. */
+    char dialect[4096];
+    if (script_dialect_file(&options->script, dialect, sizeof dialect) && file_is_regular(dialect))
+        ok = ok && add_path(ruleset, dialect, LANDLOCK_ACCESS_FS_READ_FILE);
     for (int i = 0; i < options->script_count; i++) {
         if (file_is_regular(options->scripts[i]))
             ok = ok && add_path(ruleset, options->scripts[i], LANDLOCK_ACCESS_FS_READ_FILE);

@@ -84,6 +84,7 @@ struct script_context {
     struct arena *out;      /* the caller's arena, for the traceback */
     const char *path;       /* the scene as the user named it */
     char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
+    const char *dialect;    /* the file of --dialect, or NULL */
     struct source_name *sources;
     struct file_search search;       /* for files that are not at the path in the script */
     struct source_name *found_names; /* the names of those that were found, with a notice for each */
@@ -168,6 +169,7 @@ const char *value_words(lua_State *L, int index);
 /* dispatch.c */
 void dispatch_open(lua_State *L); /* the global gr */
 void dispatch_push(lua_State *L, const struct script_function *function);
+void dispatch_push_methods(lua_State *L); /* the table of the methods of nodes, by name */
 int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result);
 
 /* arguments.c: reads the arguments; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
@@ -204,6 +206,12 @@ const char *files_repair_number(struct script_context *context, const char *name
 int files_load(lua_State *L, const char *path);
 /* File names that Lua has shortened are written in full again at the start of a message. */
 const char *files_unshorten(struct script_context *context, const char *message); /* NULL without memory */
+
+/* dialect.c */
+bool dialect_add_folder(const struct script_options *options, struct path_policy *path_policy, struct error *error);
+bool dialect_find(struct script_context *context, struct error *error); /* sets context->dialect */
+void dialect_run(lua_State *L);                                         /* before the scene; may raise */
+void dialect_finish(lua_State *L);                                      /* after it */
 
 /* These add functions to a new state. All run protected and may raise. */
 void sandbox_open(

@@ -268,6 +268,16 @@ void dispatch_push(lua_State *L, const struct script_function *function) {
     lua_pushcclosure(L, dispatch, 1);
 }
 
+void dispatch_push_methods(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key(HANDLE_NODE));
+    lua_getfield(L, -1, "__index");
+    const char *methods = lua_getupvalue(L, -1, 1);
+    assert(methods); /* of node_index */
+    (void)methods;
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+}
+
 static void push_functions(lua_State *L, enum owner owner) {
     lua_createtable(L, 0, function_count());
     for (int k = 0; k < function_count(); k++) {

@@ -189,8 +189,10 @@ int files_load(lua_State *L, const char *path) {
     *source = (struct source_name){.path = name + 1, .next = context->sources};
     context->sources = source;
     struct file_bytes bytes;
-    /* The user named the scene itself; it may be a link to any file. */
-    const struct path_policy *path_policy = strcmp(path, context->path) == 0 ? NULL : context->path_policy;
+    /* The user named the scene itself and its dialect; they may be links to any file. */
+    bool is_dialect = context->dialect && strcmp(path, context->dialect) == 0;
+    bool is_named = is_dialect || strcmp(path, context->path) == 0;
+    const struct path_policy *path_policy = is_named ? NULL : context->path_policy;
     if (!path_policy_map(path_policy, path, FILE_LIMIT, &bytes, &error)) {
         if (error.kind != ERROR_SCENE || error.limit)
             raise_outside(L, &error);
@@ -210,7 +212,7 @@ int files_load(lua_State *L, const char *path) {
     }
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, context->options->no_sandbox ? "bt" : "t");
     file_unmap(&bytes);
-    if (status == LUA_OK)
+    if (status == LUA_OK && !is_dialect) /* a dialect has the globals of the scene */
         library_adopt(L, path);
     return status;
 }
@@ -400,6 +402,13 @@ void files_open(lua_State *L) {
     if (library) {
         lua_pushfstring(L, "%s;%s/?.lua", lua_tostring(L, -1), library);
         lua_remove(L, -2);
+    }
+    const char *slash = context->dialect ? strrchr(context->dialect, '/') : NULL;
+    if (context->dialect) {
+        lua_pushlstring(L, context->dialect, slash ? (size_t)(slash - context->dialect) + 1 : 0);
+        lua_pushfstring(L, "%s;%s?.lua", lua_tostring(L, -2), lua_tostring(L, -1));
+        lua_replace(L, -3);
+        lua_pop(L, 1);
     }
     lua_setfield(L, -2, "path");
     lua_pushliteral(L, "");

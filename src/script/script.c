@@ -171,9 +171,11 @@ static int run_scene(lua_State *L) {
     define_open(L);
     lua_settop(L, 0);
     limits_open(L);
+    dialect_run(L);
     if (files_load(L, context->path) != LUA_OK)
         return lua_error(L);
     lua_call(L, 0, 0);
+    dialect_finish(L);
     return 0;
 }
 
@@ -223,7 +225,8 @@ static bool choose_order(struct script_context *context, struct error *error) {
 
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error) {
-    bool ok = path_policy_add_scene(path_policy, path, options->library_folder, error);
+    bool ok = path_policy_add_scene(path_policy, path, options->library_folder, error) &&
+              dialect_add_folder(options, path_policy, error);
     for (int k = 0; ok && k < options->allow_read_count; k++)
         ok = path_policy_add(path_policy, options->allow_read[k], PATH_POLICY_READ, error);
     for (int k = 0; ok && k < options->allow_write_count; k++)
@@ -249,7 +252,7 @@ static bool prepare(struct script_context *context, struct path_policy *path_pol
             return false;
         context->path_policy = path_policy;
     }
-    return choose_order(context, error);
+    return dialect_find(context, error) && choose_order(context, error);
 }
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,

@@ -28,7 +28,8 @@ struct script_define {
 struct script_options {
     enum script_order transform_order;
     bool lenient;
-    uint64_t seed; /* math.random starts from it */
+    const char *dialect; /* --dialect: a name or a file, or NULL */
+    uint64_t seed;       /* math.random starts from it */
     const struct script_define *defines;
     int define_count;
     /* The sandbox: what a script may read, write and use beyond the defaults (docs/security.md). */
@@ -87,6 +88,10 @@ struct path_policy;
 /* Adds the folders that the script at `path` may read and write. */
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error);
+
+/* The file of --dialect: the one it names, or that of the name in the library. False: no dialect, or the path is too
+ * long. */
+bool script_dialect_file(const struct script_options *options, char *out, size_t size);
 
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */

@@ -433,7 +433,8 @@ struct digest options_digest(const struct options *options) {
                     option->offset == offsetof(struct options, settings.clamp) ||
                     option->offset == offsetof(struct options, settings.colour) ||
                     option->offset == offsetof(struct options, settings.filter);
-        if (picture && option->size > 0 && !search && !path)
+        bool text = option->kind == OPTION_TEXT; /* a dialect counts as a file that is read */
+        if (picture && option->size > 0 && !search && !path && !text)
             digest = digest_option(option, options, digest);
     }
     const struct settings *settings = &options->settings;

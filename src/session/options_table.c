@@ -134,6 +134,8 @@ const struct option option_table[] = {
      "multiply ambient light by kd, or add it unchanged"},
     {OPTION_GROUP_COMPATIBILITY, "--lenient", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.lenient), NULL,
      "survive whatever a script does with gr, with warnings, and render what can be shown"},
+    {OPTION_GROUP_COMPATIBILITY, "--dialect", OPTION_TEXT, "NAME|FILE.lua", NO_RANGE, FIELD(script.dialect), "none",
+     "run lua/dialects/NAME.lua, or FILE.lua, before the scene: it defines the functions of another program"},
 
     {OPTION_GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
      "number of threads; the picture does not depend on it"},
