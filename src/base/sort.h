@@ -13,23 +13,19 @@ typedef bool sort_before(const void *a, const void *b);
 
 enum { SORT_ITEM_MAX = 256 }; /* bytes */
 
-static inline __attribute__((always_inline)) void sort_swap(unsigned char *a, unsigned char *b, size_t size) {
-    unsigned char moved[SORT_ITEM_MAX];
-    memcpy(moved, a, size);
-    memcpy(a, b, size);
-    memcpy(b, moved, size);
-}
-
 /* Moves item `root` of a heap down until no child comes after it. */
 static inline __attribute__((always_inline)) void sort_sift_down(unsigned char *items, size_t root, size_t count,
                                                                  size_t size, sort_before *before) {
+    unsigned char moved[SORT_ITEM_MAX];
+    memcpy(moved, items + root * size, size);
     for (size_t child; (child = 2 * root + 1) < count; root = child) {
         if (child + 1 < count && before(items + child * size, items + (child + 1) * size))
             child++;
-        if (!before(items + root * size, items + child * size))
-            return;
-        sort_swap(items + root * size, items + child * size, size);
+        if (!before(moved, items + child * size))
+            break;
+        memcpy(items + root * size, items + child * size, size);
     }
+    memcpy(items + root * size, moved, size);
 }
 
 /* Heap sort (Williams 1964) of items of `size` bytes, at most SORT_ITEM_MAX. Inline, so that the comparison is, too. */
@@ -39,7 +35,10 @@ static inline __attribute__((always_inline)) void sort_items(void *items, size_t
     for (size_t root = count / 2; root-- > 0;)
         sort_sift_down(bytes, root, count, size, before);
     for (size_t last = count; last-- > 1;) {
-        sort_swap(bytes, bytes + last * size, size);
+        unsigned char first[SORT_ITEM_MAX];
+        memcpy(first, bytes, size);
+        memcpy(bytes, bytes + last * size, size);
+        memcpy(bytes + last * size, first, size);
         sort_sift_down(bytes, 0, last, size, before);
     }
 }

@@ -33,7 +33,8 @@
 
 /* ---- order ---- */
 
-static bool comes_before(const struct crossing *a, const struct crossing *b) {
+static bool comes_before(const void *one, const void *other) {
+    const struct crossing *a = one, *b = other;
     if (a->t != b->t)
         return a->t < b->t;
     if (a->leaf != b->leaf)
@@ -43,7 +44,8 @@ static bool comes_before(const struct crossing *a, const struct crossing *b) {
     return a->enter && !b->enter;
 }
 
-static bool comes_before_by_leaf(const struct crossing *a, const struct crossing *b) {
+static bool comes_before_by_leaf(const void *one, const void *other) {
+    const struct crossing *a = one, *b = other;
     return a->leaf != b->leaf ? a->leaf < b->leaf : comes_before(a, b);
 }
 
@@ -69,9 +71,9 @@ static void sort_crossings(struct crossing *items, uint32_t sorted, uint32_t cou
         return;
     }
     if (by_leaf)
-        crossings_heap_sort(items, count, comes_before_by_leaf);
+        sort_items(items, count, sizeof *items, comes_before_by_leaf);
     else
-        crossings_heap_sort(items, count, comes_before);
+        sort_items(items, count, sizeof *items, comes_before);
 }
 
 /* ---- the sweep ---- */

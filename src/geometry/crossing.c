@@ -50,7 +50,8 @@ bool line_init(struct line *line, const struct ray *ray, struct vec3 centre) {
     return isfinite(line->t0) && vec3_finite(line->origin);
 }
 
-static bool comes_before(const struct crossing *a, const struct crossing *b) {
+static bool comes_before(const void *one, const void *other) {
+    const struct crossing *a = one, *b = other;
     if (a->t != b->t)
         return a->t < b->t;
     if (a->part != b->part)

@@ -4,6 +4,7 @@
 #define GRAY_GEOMETRY_CROSSING_H
 
 #include "accel/triangle_index.h"
+#include "base/sort.h"
 #include "geometry/hit.h"
 #include "math/box.h"
 #include "math/ray.h"
@@ -96,43 +97,12 @@ static inline bool line_meets_box(const struct line *line, const struct box *box
     return enter <= leave;
 }
 
-/* Whether a comes before b, in a total order: then it does not matter that sorting is not stable. */
-typedef bool crossing_order(const struct crossing *a, const struct crossing *b);
-
-/* Moves items[root] down until no child comes after it (Williams 1964). */
-static inline void crossings_sift_down(struct crossing *items, uint32_t root, uint32_t count, crossing_order *before) {
-    struct crossing moved = items[root];
-    for (;;) {
-        uint32_t child = 2 * root + 1;
-        if (child >= count)
-            break;
-        if (child + 1 < count && before(&items[child], &items[child + 1]))
-            child++;
-        if (!before(&moved, &items[child]))
-            break;
-        items[root] = items[child];
-        root = child;
-    }
-    items[root] = moved;
-}
-
-/* Heap sort: no memory, never quadratic. Inline, so that the comparison is inlined, too. */
-static inline void crossings_heap_sort(struct crossing *items, uint32_t count, crossing_order *before) {
-    for (uint32_t i = count / 2; i-- > 0;)
-        crossings_sift_down(items, i, count, before);
-    for (uint32_t end = count; end-- > 1;) {
-        struct crossing last = items[end];
-        items[end] = items[0];
-        items[0] = last;
-        crossings_sift_down(items, 0, end, before);
-    }
-}
-
-/* Most lists are short and nearly sorted: insertion sort; heap sort for long ones. */
-static inline void crossings_sort_by(struct crossing *items, uint32_t count, crossing_order *before) {
+/* Most lists are short and nearly sorted: insertion sort; heap sort for long ones. `before` compares two crossings and
+ * is a total order: then it does not matter that sorting is not stable. */
+static inline void crossings_sort_by(struct crossing *items, uint32_t count, sort_before *before) {
     enum { FEW = 40 };
     if (count > FEW) {
-        crossings_heap_sort(items, count, before);
+        sort_items(items, count, sizeof *items, before);
         return;
     }
     for (uint32_t i = 1; i < count; i++) {

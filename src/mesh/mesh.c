@@ -238,7 +238,8 @@ uint64_t mesh_any_packet(const struct mesh *mesh, const struct ray_packet *rays,
     return found;
 }
 
-static bool before(const struct crossing *a, const struct crossing *b) {
+static bool before(const void *one, const void *other) {
+    const struct crossing *a = one, *b = other;
     return a->t != b->t ? a->t < b->t : a->part < b->part;
 }
 

@@ -232,8 +232,8 @@ static bool add_stretch(const struct line *line, const struct blob *blob, uint32
            geom_scratch_push(scratch, (struct crossing){.t = hi, .part = part});
 }
 
-static bool add_element(const struct line *line, const struct blob *blob, uint32_t index,
-                        struct geom_scratch *scratch) {
+static bool add_element(const void *shape, uint32_t index, const struct line *line, struct geom_scratch *scratch) {
+    const struct blob *blob = shape;
     const struct blob_element *e = &blob->elements[index];
     struct vec3 axis = vec3_sub(e->b, e->a);
     double squared = vec3_dot(axis, axis);
@@ -298,25 +298,13 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
     struct vec3 centre = vec3_add(vec3_scale(blob->bounds.min, 0.5), vec3_scale(blob->bounds.max, 0.5));
     if (!line_init(&line, ray, centre) || !line_meets_box(&line, &blob->bounds))
         return true;
-    bool room = true;
-    for (uint32_t n = 0; room && n < blob->tree.node_count;) {
-        const struct part_node *node = &blob->tree.nodes[n];
-        if (!line_meets_box(&line, &node->box)) {
-            n = node->skip;
-            continue;
-        }
-        for (uint32_t i = 0; room && i < node->count; i++)
-            room = add_element(&line, blob, blob->tree.order[node->first + i], scratch);
-        n++;
-    }
+    if (!part_tree_crossings(&blob->tree, &line, blob, add_element, scratch))
+        return false;
     /* On the scratch: the ends of the stretches, the stretches that act, the crossings found. */
     uint32_t end_count = scratch->used - out->first;
     uint32_t acting_at = scratch->used, acting = 0;
-    if (room && scratch->capacity - scratch->used < end_count / 2) {
+    if (scratch->capacity - scratch->used < end_count / 2) {
         scratch->overflow = true;
-        room = false;
-    }
-    if (!room) {
         scratch->used = out->first;
         return false;
     }
@@ -324,7 +312,7 @@ bool blob_crossings(const struct blob *blob, const struct ray *ray, struct geom_
     struct crossing *ends = &scratch->items[out->first], *active = &scratch->items[acting_at];
     uint32_t found = scratch->used;
     crossings_sort(ends, end_count);
-    bool inside = false;
+    bool inside = false, room = true;
     for (uint32_t i = 0; room && i < end_count; i++) {
         bool later = i > 0 && ends[i].t > ends[i - 1].t;
         if (inside && later && acting == 0) { /* by rounding: where nothing acts is outside */

@@ -174,8 +174,8 @@ static bool offer(const struct curve_piece *piece, uint32_t part, double x, cons
     return geom_scratch_push(scratch, (struct crossing){.t = s, .u = x, .part = part, .enter = true});
 }
 
-static bool piece_crossings(const struct curve *curve, uint32_t part, const struct line *line,
-                            struct geom_scratch *scratch) {
+static bool piece_crossings(const void *shape, uint32_t part, const struct line *line, struct geom_scratch *scratch) {
+    const struct curve *curve = shape;
     const struct curve_piece *piece = &curve->pieces[part];
     double shift = vec3_dot(vec3_sub(piece->centre, line->origin), line->direction);
     struct vec3 origin = line_at(line, shift), p[4], sum_p = {0, 0, 0};
@@ -224,19 +224,8 @@ bool curve_crossings(const struct curve *curve, const struct ray *ray, struct ge
     struct vec3 centre = vec3_add(vec3_scale(curve->bounds.min, 0.5), vec3_scale(curve->bounds.max, 0.5));
     if (!line_init(&line, ray, centre))
         return true;
-    for (uint32_t n = 0; n < curve->tree.node_count;) {
-        const struct part_node *node = &curve->tree.nodes[n];
-        if (!line_meets_box(&line, &node->box)) {
-            n = node->skip;
-            continue;
-        }
-        for (uint32_t i = 0; i < node->count; i++)
-            if (!piece_crossings(curve, curve->tree.order[node->first + i], &line, scratch)) {
-                scratch->used = out->first;
-                return false;
-            }
-        n++;
-    }
+    if (!part_tree_crossings(&curve->tree, &line, curve, piece_crossings, scratch))
+        return false;
     line_finish_open(&line, scratch, out->first, out);
     return true;
 }

@@ -4,6 +4,7 @@
 #define GRAY_SHAPE_PART_TREE_INTERNAL_H
 
 #include "base/arena.h"
+#include "geometry/crossing.h"
 #include "math/box.h"
 
 #include <stdint.h>
@@ -23,5 +24,12 @@ struct part_tree {
 /* At most `leaf_size` parts in a leaf. False: no memory. */
 bool part_tree_build(struct arena *arena, const struct box *boxes, uint32_t count, uint32_t leaf_size,
                      struct part_tree *out);
+
+/* Adds the crossings of a line and one part of a shape to the scratch. False: no room there. */
+typedef bool part_crossings(const void *shape, uint32_t part, const struct line *line, struct geom_scratch *scratch);
+
+/* Adds those of all parts whose boxes the line meets. False: no room; then the scratch is as it was before. */
+bool part_tree_crossings(const struct part_tree *tree, const struct line *line, const void *shape,
+                         part_crossings *crossings_of_part, struct geom_scratch *scratch);
 
 #endif

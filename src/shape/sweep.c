@@ -324,8 +324,8 @@ static void square_of(const double *a, int degree, double *out) {
     out[6] = a[3] * a[3];
 }
 
-static bool piece_crossings(const struct sweep_path *sweep, uint32_t part, const struct line *line,
-                            struct geom_scratch *scratch) {
+static bool piece_crossings(const void *shape, uint32_t part, const struct line *line, struct geom_scratch *scratch) {
+    const struct sweep_path *sweep = shape;
     const struct sweep_piece *piece = &sweep->pieces[part];
     double shift = vec3_dot(vec3_sub(piece->centre, line->origin), line->direction);
     struct view view = {piece, line_at(line, shift), line->direction};
@@ -384,19 +384,8 @@ bool sweep_crossings(const struct sweep_path *sweep, const struct ray *ray, stru
     struct vec3 centre = vec3_add(vec3_scale(sweep->bounds.min, 0.5), vec3_scale(sweep->bounds.max, 0.5));
     if (!line_init(&line, ray, centre))
         return true;
-    for (uint32_t n = 0; n < sweep->tree.node_count;) {
-        const struct part_node *node = &sweep->tree.nodes[n];
-        if (!line_meets_box(&line, &node->box)) {
-            n = node->skip;
-            continue;
-        }
-        for (uint32_t i = 0; i < node->count; i++)
-            if (!piece_crossings(sweep, sweep->tree.order[node->first + i], &line, scratch)) {
-                scratch->used = out->first;
-                return false;
-            }
-        n++;
-    }
+    if (!part_tree_crossings(&sweep->tree, &line, sweep, piece_crossings, scratch))
+        return false;
     /* The union of the stretches. */
     uint32_t count = scratch->used - out->first, kept = 0, depth = 0;
     struct crossing *items = &scratch->items[out->first];
