@@ -709,18 +709,18 @@ _Noreturn static void no_form_fits(struct script_context *c, const struct script
 }
 
 /* Nodes after a positional form. Returns the index of the first argument that is not a node. */
-static int read_rest(struct script_context *c, const struct script_parameter *p, int argument_path,
+static int read_rest(struct script_context *c, const struct script_parameter *p, int first,
                      struct script_value *value) {
     lua_State *L = c->lua;
-    int end = argument_path;
+    int end = first;
     while (end <= lua_gettop(L) && (lua_isnil(L, end) || argument_resembles(L, end, KIND_NODE, 0)))
         end++;
-    if (end == argument_path)
+    if (end == first)
         return end;
     value->given = value->single = true;
-    value->nodes = call_array(c, (size_t)(end - argument_path), sizeof(struct node *));
-    for (; argument_path < end; argument_path++) {
-        const struct handle *handle = handle_at(L, argument_path);
+    value->nodes = call_array(c, (size_t)(end - first), sizeof(struct node *));
+    for (; first < end; first++) {
+        const struct handle *handle = handle_at(L, first);
         if (!handle)
             context_raise(c, "%s[%u] is nil", p->name, (unsigned)value->count + 1);
         value->nodes[value->count++] =
@@ -741,20 +741,19 @@ static bool read_positional(struct script_context *c, const struct script_functi
             best = function->forms[k];
         }
     }
-    int index = 0, argument_path = first;
+    int index = 0, slot = first;
     bool optional;
-    for (const char *form = best; form_next(function, &form, &index, &optional); argument_path++) {
+    for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
         /* Messages about the arguments after it contain the name; no method has one, which a test checks. */
-        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, argument_path))
-            c->subject =
-                read_text(c, argument_path, &(struct argument_path){.parameter = &function->parameters[index]});
+        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, slot))
+            c->subject = read_text(c, slot, &(struct argument_path){.parameter = &function->parameters[index]});
     }
     if (best_fit.leading == 0 && function->forms[1])
         no_form_fits(c, function, first);
-    argument_path = first;
-    for (const char *form = best; form_next(function, &form, &index, &optional); argument_path++) {
+    slot = first;
+    for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
         const struct script_parameter *p = &function->parameters[index];
-        if (!optional && lua_isnoneornil(L, argument_path)) {
+        if (!optional && lua_isnoneornil(L, slot)) {
             if (function->owner == OWNER_NODE && lua_gettop(L) < first)
                 context_raise(c, "%s is missing; methods are called with a colon, as in n:%s(...)", p->name,
                               function->name);
@@ -762,16 +761,16 @@ static bool read_positional(struct script_context *c, const struct script_functi
         }
         /* gr.render: the name of a variable is misspelt. */
         if (optional && function->result == RESULT_NOTHING && (p->kind == KIND_LIGHTS || p->kind == KIND_COLOUR) &&
-            lua_isnil(L, argument_path))
+            lua_isnil(L, slot))
             context_raise(c, "%s is nil", p->name);
-        if (!arguments_read_one(c, argument_path, p, &args[index]))
+        if (!arguments_read_one(c, slot, p, &args[index]))
             return false;
     }
     int rest_index;
     const struct script_parameter *rest = function_rest(function, &rest_index);
     if (rest)
-        argument_path = read_rest(c, rest, argument_path, &args[rest_index]);
-    if (lua_gettop(L) >= argument_path)
+        slot = read_rest(c, rest, slot, &args[rest_index]);
+    if (lua_gettop(L) >= slot)
         context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored", function->parameters[index].name);
     return true;
 }

@@ -211,10 +211,10 @@ static bool push_function_of_level(lua_State *L) {
         return true;
     }
     lua_Integer level = luaL_optinteger(L, 1, 1);
-    lua_Debug argument_path;
-    if (level < 1 || level > 200 || !lua_getstack(L, (int)level, &argument_path))
+    lua_Debug frame;
+    if (level < 1 || level > 200 || !lua_getstack(L, (int)level, &frame))
         return false;
-    lua_getinfo(L, "f", &argument_path);
+    lua_getinfo(L, "f", &frame);
     return true;
 }
 
@@ -288,9 +288,9 @@ static int module_begin(lua_State *L) {
     lua_setfield(L, module, "_M");
     lua_pushvalue(L, 1);
     lua_setfield(L, module, "_NAME");
-    lua_Debug argument_path;
-    if (lua_getstack(L, 1, &argument_path)) {
-        (void)lua_getinfo(L, "f", &argument_path);
+    lua_Debug frame;
+    if (lua_getstack(L, 1, &frame)) {
+        (void)lua_getinfo(L, "f", &frame);
         int k = lua_iscfunction(L, -1) ? 0 : environment_upvalue(L, lua_gettop(L));
         if (k > 0) { /* the chunk and all its functions share this variable */
             lua_pushvalue(L, module);

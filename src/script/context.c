@@ -14,13 +14,13 @@ struct script_context *context_of(lua_State *L) {
 }
 
 void context_where(const struct script_context *context, char *out, size_t size) {
-    lua_Debug argument_path;
-    for (int level = 0; lua_getstack(context->lua, level, &argument_path); level++) {
-        lua_getinfo(context->lua, "Sl", &argument_path);
-        if (argument_path.currentline <= 0)
+    lua_Debug frame;
+    for (int level = 0; lua_getstack(context->lua, level, &frame); level++) {
+        lua_getinfo(context->lua, "Sl", &frame);
+        if (frame.currentline <= 0)
             continue;
-        const char *name = argument_path.source[0] == '@' ? argument_path.source + 1 : argument_path.short_src;
-        snprintf(out, size, "%s:%d: ", name, argument_path.currentline);
+        const char *name = frame.source[0] == '@' ? frame.source + 1 : frame.short_src;
+        snprintf(out, size, "%s:%d: ", name, frame.currentline);
         return;
     }
     snprintf(out, size, "%s: ", context->path);

@@ -120,8 +120,8 @@ void limits_check(lua_State *L) {
     }
 }
 
-static void hook(lua_State *L, lua_Debug *argument_path) {
-    (void)argument_path;
+static void hook(lua_State *L, lua_Debug *frame) {
+    (void)frame;
     const struct script_context *context = context_of(L);
     if (context->ended || context->fatal.kind != ERROR_NONE)
         lua_sethook(L, hook, LUA_MASKCOUNT, 1);

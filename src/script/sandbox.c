@@ -32,7 +32,7 @@ static int end_script(lua_State *L) {
 static int position_info(lua_State *L) {
     lua_State *from = L;
     int at = 1;
-    lua_Debug argument_path;
+    lua_Debug frame;
     if (lua_isthread(L, 1)) {
         from = lua_tothread(L, 1);
         at = 2;
@@ -40,21 +40,21 @@ static int position_info(lua_State *L) {
     if (lua_isfunction(L, at)) {
         lua_pushvalue(L, at);
         lua_xmove(L, from, 1);
-        lua_getinfo(from, ">Sl", &argument_path);
+        lua_getinfo(from, ">Sl", &frame);
     } else {
         lua_Integer level = luaL_checkinteger(L, at);
-        if (level < 0 || level > 1000000 || !lua_getstack(from, (int)level, &argument_path)) {
+        if (level < 0 || level > 1000000 || !lua_getstack(from, (int)level, &frame)) {
             lua_pushnil(L);
             return 1;
         }
-        lua_getinfo(from, "Sl", &argument_path);
+        lua_getinfo(from, "Sl", &frame);
     }
     lua_createtable(L, 0, 3);
-    lua_pushlstring(L, argument_path.source, argument_path.srclen);
+    lua_pushlstring(L, frame.source, frame.srclen);
     lua_setfield(L, -2, "source");
-    lua_pushstring(L, argument_path.short_src);
+    lua_pushstring(L, frame.short_src);
     lua_setfield(L, -2, "short_src");
-    lua_pushinteger(L, argument_path.currentline);
+    lua_pushinteger(L, frame.currentline);
     lua_setfield(L, -2, "currentline");
     return 1;
 }
