@@ -123,7 +123,7 @@ function gr.nh_box(name, corner, size) end
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
 ---@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
@@ -151,7 +151,7 @@ function gr.mesh(material, verts, faces) end
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
 ---@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
@@ -177,7 +177,7 @@ function gr.fast_mesh(material, verts, faces) end
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
 ---@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
@@ -205,7 +205,7 @@ function gr.vn_mesh(material, verts, normals, faces, face_normals) end
 ---@field face_normals? integer[][] face_normals (a table of tuples of indices; default faces): For each face a tuple of indices into normals, from 0.
 ---@field uvs? number[][] uvs (a table of pairs {u, v}; default none): Texture coordinates, {u, v}; v = 0 is the lower edge of an image.
 ---@field face_uvs? integer[][] face_uvs (a table of tuples of indices; default faces): For each face a tuple of indices into uvs, from 0.
----@field smooth? number smooth (a number, 0 to 180, in degrees; default as given): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default the given normals): Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat.
 ---@field weld? boolean weld (true or false; default false): Whether vertices at the same position become one.
 ---@field flip? boolean flip (true or false; default false): Whether the faces are reversed.
 ---@field cull? 'none'|'back'|'front' cull ('none'|'back'|'front'; default 'none'): Which faces rays ignore: those seen from behind, or those seen from the front.
@@ -558,8 +558,8 @@ function gr.hyperboloid(material) end
 ---@field y? number y (a number; default 0): Coefficient.
 ---@field z? number z (a number; default 0): Coefficient.
 ---@field constant? number constant (a number; default 0): Constant term; the solid is where the sum is negative.
----@field min? gr.triple min (a point {x, y, z}; default without end): Corner of a box that limits it.
----@field max? gr.triple max (a point {x, y, z}; default without end): The opposite corner.
+---@field min? gr.triple min (a point {x, y, z}; default infinite): Corner of a box that limits it.
+---@field max? gr.triple max (a point {x, y, z}; default infinite): The opposite corner.
 ---@field open? boolean open (true or false; default false): Whether it has no caps; without caps it is not a solid for CSG.
 
 ---The solid where xx x^2 + yy y^2 + zz z^2 + xy x y + xz x z + yz y z + x x + y y + z z + constant < 0.
@@ -1071,19 +1071,19 @@ function gr.glyphs(font, text) end
 
 ---@class gr.openpbr_material.fields
 ---@field base_weight? number|gr.texture|function base_weight (a number or a texture, 0 to 1; default 1): Factor of base_color.
----@field base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---@field base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; for metals the reflectance at normal incidence.
 ---@field base_diffuse_roughness? number|gr.texture|function base_diffuse_roughness (a number or a texture, 0 to 1; default 0): Roughness of the diffuse base; 0 is Lambert's.
 ---@field base_metalness? number|gr.texture|function base_metalness (a number or a texture, 0 to 1; default 0): Share of the base that is metal.
----@field specular_weight? number|gr.texture|function specular_weight (a number or a texture, >= 0; default 1): Factor of the reflectance head on (by the index), and of metal's reflection.
----@field specular_color? gr.triple|string|gr.texture|function specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the gloss; of metals the tint at 82 degrees.
----@field specular_roughness? number|gr.texture|function specular_roughness (a number or a texture, 0 to 1; default 0.3): Roughness of gloss, metal and glass; 0 is polished.
+---@field specular_weight? number|gr.texture|function specular_weight (a number or a texture, >= 0; default 1): Factor of the reflectance at normal incidence; for dielectrics it changes the index.
+---@field specular_color? gr.triple|string|gr.texture|function specular_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the specular reflection; for metals the tint at 82 degrees.
+---@field specular_roughness? number|gr.texture|function specular_roughness (a number or a texture, 0 to 1; default 0.3): Roughness of reflection and refraction; 0 is polished.
 ---@field specular_roughness_anisotropy? number|gr.texture|function specular_roughness_anisotropy (a number or a texture, 0 to 1; default 0): How much smoother it is along the tangent than across.
 ---@field specular_ior? number|gr.texture|function specular_ior (a number or a texture, > 0; default 1.5): Index of refraction of the base.
----@field transmission_weight? number|gr.texture|function transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that light passes.
----@field transmission_color? gr.triple|string|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the surface, or transmission_depth.
----@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Length of the way inside after which white light has transmission_color; 0: any.
----@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside: not there yet, but for black.
----@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): Without effect while transmission_scatter is black.
+---@field transmission_weight? number|gr.texture|function transmission_weight (a number or a texture, 0 to 1; default 0): Share of the dielectric base that transmits light.
+---@field transmission_color? gr.triple|string|gr.texture|function transmission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of transmitted light, after the distance transmission_depth.
+---@field transmission_depth? number transmission_depth (a number, >= 0; default 0): Distance inside the solid after which white light has transmission_color; 0: at the surface.
+---@field transmission_scatter? gr.triple|string transmission_scatter (a colour {r, g, b}, >= 0; default {0, 0, 0}): Scattering inside the solid. Not there yet: must be black.
+---@field transmission_scatter_anisotropy? number transmission_scatter_anisotropy (a number, >= -1 and <= 1; default 0): No effect, because transmission_scatter is black.
 ---@field transmission_dispersion_scale? number transmission_dispersion_scale (a number, >= 0; default 0): Not there yet.
 ---@field transmission_dispersion_abbe_number? number transmission_dispersion_abbe_number (a number, >= 0; default 20): Not there yet.
 ---@field subsurface_weight? number subsurface_weight (a number, >= 0; default 0): Not there yet.
@@ -1096,11 +1096,11 @@ function gr.glyphs(font, text) end
 ---@field coat_roughness? number|gr.texture|function coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
 ---@field coat_roughness_anisotropy? number|gr.texture|function coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): Likewise for the coat.
 ---@field coat_ior? number|gr.texture|function coat_ior (a number or a texture, > 0; default 1.6): Index of refraction of the coat.
----@field coat_darkening? number|gr.texture|function coat_darkening (a number or a texture, 0 to 1; default 1): How much the coat darkens the base by reflections inside.
+---@field coat_darkening? number|gr.texture|function coat_darkening (a number or a texture, 0 to 1; default 1): How much internal reflections of the coat darken the base.
 ---@field fuzz_weight? number|gr.texture|function fuzz_weight (a number or a texture, 0 to 1; default 0): Share of the surface with fuzz.
 ---@field fuzz_color? gr.triple|string|gr.texture|function fuzz_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of the fuzz.
----@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz: how far it shows from the rim inwards.
----@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 is the radiance 1.
+---@field fuzz_roughness? number|gr.texture|function fuzz_roughness (a number or a texture, 0 to 1; default 0.5): Roughness of the fuzz; a rough fuzz is visible farther from the rim.
+---@field emission_luminance? number|gr.texture|function emission_luminance (a number or a texture, >= 0; default 0): Emitted light, below coat and fuzz; 1 means radiance 1.
 ---@field emission_color? gr.triple|string|gr.texture|function emission_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Its colour.
 ---@field thin_film_weight? number thin_film_weight (a number, >= 0; default 0): Not there yet.
 ---@field thin_film_thickness? number thin_film_thickness (a number, >= 0; default 0.5): Not there yet.
@@ -1113,8 +1113,8 @@ function gr.glyphs(font, text) end
 ---@field geometry_coat_tangent? gr.triple geometry_coat_tangent (a direction {x, y, z}; default along u): The same for the coat.
 ---@field glossy_samples? integer glossy_samples (a whole number, 1 to 64; default 4): N x N rays from each rough lobe under Whitted; after the first rough surface of a path, one ray.
 
----Layers of metal, glass, gloss over a diffuse base, clear coat and fuzz: OpenPBR Surface 1.1.
----@param base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; of metals the reflectance head on.
+---A layered surface of metal, glass, glossy diffuse, clear coat and fuzz: OpenPBR Surface 1.1.
+---@param base_color? gr.triple|string|gr.texture|function base_color (a colour {r, g, b} or a texture, >= 0; default {0.8, 0.8, 0.8}): Diffuse colour; for metals the reflectance at normal incidence.
 ---@return gr.material
 ---@overload fun(fields: gr.openpbr_material.fields): gr.material
 function gr.openpbr_material(base_color) end
@@ -1626,17 +1626,17 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
----@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): How light becomes a picture: whitted for rays that mirrors and glass send on, path for light that goes from wall to wall.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples of a pixel, of integrator path; the option wins.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples per pixel of integrator path; the option has priority.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
----@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error with which a tile of integrator path is done; the option wins.
----@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path, 0: any; a limit makes the picture darker.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error at which a tile of integrator path is finished; the option has priority.
+---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker.
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
----@field denoise? boolean denoise (true or false; default --denoise): Whether noise is removed, of integrator path; the option wins.
+---@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
----@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with paths.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
@@ -1700,17 +1700,17 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
----@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): How light becomes a picture: whitted for rays that mirrors and glass send on, path for light that goes from wall to wall.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples of a pixel, of integrator path; the option wins.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples per pixel of integrator path; the option has priority.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
----@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error with which a tile of integrator path is done; the option wins.
----@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path, 0: any; a limit makes the picture darker.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error at which a tile of integrator path is finished; the option has priority.
+---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker.
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
----@field denoise? boolean denoise (true or false; default --denoise): Whether noise is removed, of integrator path; the option wins.
+---@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
 ---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
----@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with paths.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.

@@ -2,7 +2,7 @@
 # Prints every file and function of src that is out of measure, and every header that should be private by its name; fails
 # when there is any.
 #   - A .c file has 100 to 900 lines. Files for one instruction set (_base, _avx2, _avx512) may be shorter.
-#   - A function has at most six parameters; more belong into a struct.
+#   - A function has at most six parameters; more belong into a struct. Nine of ten functions have at most 27 lines.
 #   - A header that no other module can see, because none includes it or a header that does, ends in _internal.h, and no
 #     other module includes one that ends so. Tests may. The last module has nothing above it that could see it.
 # tools/sizes.allow has the exceptions, each with its reason.
@@ -64,6 +64,8 @@ fi
 {
     awk '$1 < 100 && $2 !~ /_(base|avx2|avx512)\.c$/ { print $2 ": " $1 " lines: it belongs into the file of its family" }
         $1 > 900 { print $2 ": " $1 " lines: split it by subject" }' "$work/files"
+    awk '{ print $2 }' "$work/functions" | sort -n | awk '{ x[NR] = $1 } END {
+        if (x[int(0.9 * NR + 0.5)] > 27) print "src: the 90th percentile of functions is " x[int(0.9 * NR + 0.5)] " lines: at most 27" }'
     sort -u "$work/functions" | awk '$1 > 6 { print $4 ": " $3 " has " $1 " parameters: at most six, or a struct" }'
     last=$(sed -n 's/^MODULES = .* //p' Makefile)
     grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.[ch] |
@@ -93,4 +95,4 @@ if [ -s "$work/left" ]; then
     echo "sizes: $(wc -l <"$work/left") files, functions or headers out of measure" >&2
     exit 1
 fi
-echo "sizes: files have 100 to 900 lines, functions at most six parameters; private headers are named so"
+echo "sizes: files have 100 to 900 lines, functions at most six parameters, nine of ten at most 27 lines; private headers are named so"

@@ -73,25 +73,28 @@ enum {
 
 static const struct script_parameter openpbr_parameters[] = {
     [BASE_WEIGHT] = SHARE("base_weight", "1", "Factor of base_color."),
-    [BASE_COLOUR] = TINT("base_color", "{0.8, 0.8, 0.8}", "Diffuse colour; of metals the reflectance head on."),
+    [BASE_COLOUR] =
+        TINT("base_color", "{0.8, 0.8, 0.8}", "Diffuse colour; for metals the reflectance at normal incidence."),
     [BASE_DIFFUSE_ROUGHNESS] = SHARE("base_diffuse_roughness", "0", "Roughness of the diffuse base; 0 is Lambert's."),
     [BASE_METALNESS] = SHARE("base_metalness", "0", "Share of the base that is metal."),
     [SPECULAR_WEIGHT] = {"specular_weight", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1",
-                         "Factor of the reflectance head on (by the index), and of metal's reflection."},
-    [SPECULAR_COLOUR] = TINT("specular_color", "{1, 1, 1}", "Colour of the gloss; of metals the tint at 82 degrees."),
-    [SPECULAR_ROUGHNESS] = SHARE("specular_roughness", "0.3", "Roughness of gloss, metal and glass; 0 is polished."),
+                         "Factor of the reflectance at normal incidence; for dielectrics it changes the index."},
+    [SPECULAR_COLOUR] =
+        TINT("specular_color", "{1, 1, 1}", "Colour of the specular reflection; for metals the tint at 82 degrees."),
+    [SPECULAR_ROUGHNESS] = SHARE("specular_roughness", "0.3", "Roughness of reflection and refraction; 0 is polished."),
     [SPECULAR_ANISOTROPY] =
         SHARE("specular_roughness_anisotropy", "0", "How much smoother it is along the tangent than across."),
     [SPECULAR_IOR] = INDEX("specular_ior", "1.5", "Index of refraction of the base."),
-    [TRANSMISSION_WEIGHT] = SHARE("transmission_weight", "0", "Share of the dielectric base that light passes."),
+    [TRANSMISSION_WEIGHT] = SHARE("transmission_weight", "0", "Share of the dielectric base that transmits light."),
     [TRANSMISSION_COLOUR] =
-        TINT("transmission_color", "{1, 1, 1}", "Colour of light that passed the surface, or transmission_depth."),
-    [TRANSMISSION_DEPTH] = {"transmission_depth", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
-                            "Length of the way inside after which white light has transmission_color; 0: any."},
+        TINT("transmission_color", "{1, 1, 1}", "Colour of transmitted light, after the distance transmission_depth."),
+    [TRANSMISSION_DEPTH] =
+        {"transmission_depth", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
+         "Distance inside the solid after which white light has transmission_color; 0: at the surface."},
     [TRANSMISSION_SCATTER] = {"transmission_scatter", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                              "Scattering inside: not there yet, but for black."},
+                              "Scattering inside the solid. Not there yet: must be black."},
     [TRANSMISSION_SCATTER_ANISOTROPY] = {"transmission_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1),
-                                         NULL, "0", "Without effect while transmission_scatter is black."},
+                                         NULL, "0", "No effect, because transmission_scatter is black."},
     [TRANSMISSION_DISPERSION_SCALE] = LATER("transmission_dispersion_scale", KIND_NUMBER, "0"),
     [TRANSMISSION_DISPERSION_ABBE] = LATER("transmission_dispersion_abbe_number", KIND_NUMBER, "20"),
     [SUBSURFACE_WEIGHT] = LATER("subsurface_weight", KIND_NUMBER, "0"),
@@ -105,12 +108,13 @@ static const struct script_parameter openpbr_parameters[] = {
     [COAT_ROUGHNESS] = SHARE("coat_roughness", "0", "Roughness of the coat; 0 is polished."),
     [COAT_ANISOTROPY] = SHARE("coat_roughness_anisotropy", "0", "Likewise for the coat."),
     [COAT_IOR] = INDEX("coat_ior", "1.6", "Index of refraction of the coat."),
-    [COAT_DARKENING] = SHARE("coat_darkening", "1", "How much the coat darkens the base by reflections inside."),
+    [COAT_DARKENING] = SHARE("coat_darkening", "1", "How much internal reflections of the coat darken the base."),
     [FUZZ_WEIGHT] = SHARE("fuzz_weight", "0", "Share of the surface with fuzz."),
     [FUZZ_COLOUR] = TINT("fuzz_color", "{1, 1, 1}", "Colour of the fuzz."),
-    [FUZZ_ROUGHNESS] = SHARE("fuzz_roughness", "0.5", "Roughness of the fuzz: how far it shows from the rim inwards."),
+    [FUZZ_ROUGHNESS] =
+        SHARE("fuzz_roughness", "0.5", "Roughness of the fuzz; a rough fuzz is visible farther from the rim."),
     [EMISSION_LUMINANCE] = {"emission_luminance", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "0",
-                            "Emitted light, below coat and fuzz; 1 is the radiance 1."},
+                            "Emitted light, below coat and fuzz; 1 means radiance 1."},
     [EMISSION_COLOUR] = TINT("emission_color", "{1, 1, 1}", "Its colour."),
     [THIN_FILM_WEIGHT] = LATER("thin_film_weight", KIND_NUMBER, "0"),
     [THIN_FILM_THICKNESS] = LATER("thin_film_thickness", KIND_NUMBER, "0.5"),
@@ -340,7 +344,7 @@ static bool metal(struct script_context *context, const struct script_value *arg
 
 static const struct script_function rows[] = {
     GR("openpbr_material", openpbr_parameters, RESULT_MATERIAL, openpbr,
-       "Layers of metal, glass, gloss over a diffuse base, clear coat and fuzz: OpenPBR Surface 1.1.", "base_color?"),
+       "A layered surface of metal, glass, glossy diffuse, clear coat and fuzz: OpenPBR Surface 1.1.", "base_color?"),
     GR("metal_material", metal_parameters, RESULT_MATERIAL, metal, "A metal with its measured reflectance.",
        "metal roughness?"),
 };

@@ -219,8 +219,8 @@ static const struct script_parameter quadric_parameters[] = {
     [QUADRIC_Z] = COEFFICIENT("z"),
     [QUADRIC_CONSTANT] = {"constant", KIND_NUMBER, OPTIONAL, ANY, NULL, "0",
                           "Constant term; the solid is where the sum is negative."},
-    [QUADRIC_MIN] = POSITION("min", "without end", "Corner of a box that limits it."),
-    [QUADRIC_MAX] = POSITION("max", "without end", "The opposite corner."),
+    [QUADRIC_MIN] = POSITION("min", "infinite", "Corner of a box that limits it."),
+    [QUADRIC_MAX] = POSITION("max", "infinite", "The opposite corner."),
     [QUADRIC_OPEN] = OPEN_ENDS,
 };
 

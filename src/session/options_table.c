@@ -19,7 +19,7 @@
 
 const char *const option_group_titles[OPTION_GROUP_COUNT] = {
     [OPTION_GROUP_PICTURE] = "Anti-aliasing and rays",
-    [OPTION_GROUP_SHADING] = "Size, crop and search",
+    [OPTION_GROUP_SHADING] = "Size, acceleration and colour",
     [OPTION_GROUP_FILES] = "Files",
     [OPTION_GROUP_COMPATIBILITY] = "Scenes written for other programs",
     [OPTION_GROUP_SANDBOX] = "Sandbox",
@@ -54,7 +54,7 @@ const struct option option_table[] = {
     {OPTION_GROUP_PICTURE, "--spp", OPTION_INTEGER, "N", 1, PATH_SAMPLES_MAX, FIELD(settings.path_samples), "64",
      "N samples for a pixel, with --integrator path"},
     {OPTION_GROUP_PICTURE, "--max-depth", OPTION_INTEGER, "N", 0, DEPTH_MAX, FIELD(settings.max_depth), "16",
-     "a path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one bounce more"},
+     "a path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce"},
     {OPTION_GROUP_PICTURE, "--roulette-depth", OPTION_INTEGER, "N", 0, DEPTH_MAX, FIELD(settings.roulette_depth), "2",
      "Russian roulette may end a path after N scattering events"},
     {OPTION_GROUP_PICTURE, "--noise", OPTION_NUMBER, "X", 1e-6, 10, FIELD(settings.noise), "all samples",
@@ -97,7 +97,7 @@ const struct option option_table[] = {
      "encode PNG files with the sRGB transfer function; without it, values are linear"},
     {OPTION_GROUP_SHADING, "--colour", OPTION_CHOICE, LIST_BARS(COLOUR_PIPELINES), NO_RANGE, FIELD(settings.colour),
      "auto",
-     "linear: decode colour pictures from sRGB and encode PNG files so; classic: numbers as they are; auto: "
+     "linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: numbers as they are; auto: "
      "linear with --integrator path"},
     {OPTION_GROUP_SHADING, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
      "16 bits per channel in PNG files"},
@@ -133,7 +133,7 @@ const struct option option_table[] = {
     {OPTION_GROUP_COMPATIBILITY, "--ambient", OPTION_CHOICE, "kd|plain", NO_RANGE, FIELD(settings.ambient_plain), "kd",
      "multiply ambient light by kd, or add it unchanged"},
     {OPTION_GROUP_COMPATIBILITY, "--lenient", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.lenient), NULL,
-     "survive whatever a script does with gr, with warnings, and render what can be shown"},
+     "make errors in calls of gr warnings, and render what can be shown"},
     {OPTION_GROUP_COMPATIBILITY, "--dialect", OPTION_TEXT, "NAME|FILE.lua", NO_RANGE, FIELD(script.dialect), "none",
      "run lua/dialects/NAME.lua, or FILE.lua, before the scene: it defines the functions of another program"},
 
