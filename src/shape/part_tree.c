@@ -14,14 +14,14 @@
 #include <math.h>
 
 /* A part, and where its box lies along the axis of the split. */
-struct placed_part {
+struct part_middle {
     double middle;
     uint32_t part;
 };
 
 struct builder {
     const struct box *boxes;   /* of the parts, by number */
-    struct placed_part *order; /* a node has a piece of it */
+    struct part_middle *order; /* a node has a piece of it */
     struct part_node *nodes;
     uint32_t node_count, leaf_size;
     double pad; /* boxes are larger by it on every side */
@@ -34,7 +34,7 @@ static double middle(const struct box *b, int axis) {
 
 /* By middle, then by number: a total order, so the tree is a function of the boxes. */
 static bool comes_before(const void *one, const void *other) {
-    const struct placed_part *p = one, *q = other;
+    const struct part_middle *p = one, *q = other;
     return p->middle != q->middle ? p->middle < q->middle : p->part < q->part;
 }
 
@@ -77,7 +77,7 @@ bool part_tree_build(struct arena *arena, const struct box *boxes, uint32_t coun
     }
     /* Rounding grows with the largest coordinate, and so do the boxes. */
     for (uint32_t i = 0; i < count; i++) {
-        b.order[i] = (struct placed_part){.part = i};
+        b.order[i] = (struct part_middle){.part = i};
         b.pad = fmax(b.pad, fmax(vec3_max_abs(boxes[i].min), vec3_max_abs(boxes[i].max)));
     }
     b.pad *= 0x1p-40;
