@@ -1,10 +1,10 @@
-/* Calls under --lenient. The arguments are first read as always. If that raises an error, or the function fails, the
+/* Calls with --lenient. The arguments are first read as usual. If that raises an error, or the function fails, the
  * error becomes a warning, and the arguments are matched again: by type to the positional form that takes most of them,
- * or by the letters of their names. What is left over is converted, missing arguments get a default, values out of
- * range the nearest one. If the function fails again, only what the positional forms name is passed. If that fails too,
- * the result is a ghost: a group of the nodes of the call.
+ * or by the letters of their names. Remaining arguments are converted, missing ones get a default, values out of
+ * range the nearest one. If the function fails again, it gets only the arguments of its positional forms. If that fails
+ * too, the result is a ghost: a group of the nodes of the call.
  *
- * Nothing here catches what a script must not catch: limits, memory, errors of the machine. */
+ * Errors that a script must not catch pass through: limits, memory, errors of the machine. */
 #include "script/lenient_internal.h"
 
 #include "base/hash.h"
@@ -29,7 +29,7 @@ static uint64_t kind_of_warning(const char *where, const char *text) {
     return hash;
 }
 
-/* `line` has the function already: "gr.sphere: radius must be > 0". */
+/* `line` already names the function: "gr.sphere: radius must be > 0". */
 static void warn_line(struct script_context *c, const char *line) {
     struct lenient *lenient = c->lenient;
     char where[PATH_SIZE + 32];
@@ -57,7 +57,7 @@ void lenient_warn(struct script_context *c, const char *format, ...) {
     warn_line(c, line);
 }
 
-/* What the script has made. */
+/* Nodes and lights that the script has made. */
 
 bool lenient_begin(struct script_context *c) {
     c->lenient = c->options->lenient ? arena_alloc(&c->keep, sizeof *c->lenient) : NULL;
@@ -127,7 +127,7 @@ void *lenient_ghost_as(struct script_context *c, const struct handle *handle, en
     return ghost->node;
 }
 
-/* The ghost at `at` takes what the value at `index` is: a node becomes its child. */
+/* Adds the node at `index`, if it is one, to the ghost at `at` as a child. */
 static void ghost_take(struct script_context *c, int at, int index) {
     const struct handle *given = handle_at(c->lua, index), *holder = handle_at(c->lua, at);
     struct ghost *ghost = ghost_of(holder);
@@ -147,7 +147,7 @@ static void ghost_take(struct script_context *c, int at, int index) {
         ghost->material = lenient_ghost_as(c, given, HANDLE_MATERIAL, false);
 }
 
-/* Arguments first to last, and the entries of tables among them. */
+/* Adds the arguments `first` to `last`, and the entries of tables among them. */
 static void ghost_take_arguments(struct script_context *c, int at, int first, int last) {
     lua_State *L = c->lua;
     for (int i = first; i <= last; i++) {
@@ -163,7 +163,7 @@ static void ghost_take_arguments(struct script_context *c, int at, int first, in
     }
 }
 
-/* gr.shiny_material({1, 0, 0}, ...) has a colour: it is plain in that colour. */
+/* gr.shiny_material({1, 0, 0}, ...) has a colour: the result is a plain material of that colour. */
 static void ghost_take_colour(struct script_context *c, struct ghost *ghost, int first, int last) {
     lua_State *L = c->lua;
     if (ghost->material || !(strstr(ghost->name, "aterial") || strstr(ghost->name, "MATERIAL")))
@@ -183,7 +183,7 @@ static void ghost_take_colour(struct script_context *c, struct ghost *ghost, int
     }
 }
 
-/* The ghost is called: index 1. A method returns what is before the colon. */
+/* A call of the ghost at index 1. A method returns the object before the colon. */
 static int ghost_call(lua_State *L) {
     struct script_context *c = context_of(L);
     const struct handle *handle = handle_at(L, 1);
@@ -328,13 +328,13 @@ void lenient_open(lua_State *L) {
     }
 }
 
-/* Reading under protection. */
+/* Protected reading of arguments. */
 
 struct protected_reading {
     const struct script_function *function;
     const struct script_parameter *parameter; /* only this one, or NULL for all */
     struct script_value *args;                /* of the function, or the one value */
-    bool complete;                            /* false: an argument is a ghost that stands for nothing */
+    bool complete;                            /* false: an argument is a ghost without a value */
 };
 
 /* Index 1: the reading; the arguments follow. */
@@ -366,7 +366,7 @@ static bool survives(struct script_context *c, int count) {
     return false;
 }
 
-/* Reads all arguments from `first` on as always. False: it raised an error. */
+/* Reads all arguments from `first` on in the usual way. False: it raised an error. */
 static bool read_all(struct script_context *c, const struct script_function *function, int first,
                      struct script_value *args, bool *complete) {
     lua_State *L = c->lua;
@@ -423,7 +423,7 @@ static int fit_taken(const struct match *m, int p, int taken) {
     return taken > 0 ? m->fit[p][taken - 1] : 0;
 }
 
-/* What remains in any order, and two arguments are exchanged where both fit better so. */
+/* Matches the remaining arguments in any order, and exchanges two arguments where both then fit better. */
 static void match_rest(struct match *m) {
     for (int p = 0; p < m->parameter_count; p++) {
         for (int a = 1; a <= m->argument_count && !m->taken[p]; a++) {
@@ -574,7 +574,7 @@ static void name_positional(struct script_context *c, const struct script_functi
     }
 }
 
-/* The parameter that a field means: that name, the same letters, or the nearest word. */
+/* The parameter of a field: with this name, with the same letters in any case, or with the most similar name. */
 static const struct script_parameter *meant_field(const struct script_function *function, const char *field) {
     struct suggestion suggestion;
     suggest_begin(&suggestion, field);
@@ -609,7 +609,7 @@ static void name_fields(struct script_context *c, const struct script_function *
     }
 }
 
-/* Nodes behind the positional arguments, or entries without names, for the parameter that takes any number of them. */
+/* Nodes after the positional arguments, or unnamed entries, for the parameter that accepts any number of nodes. */
 static void name_rest(struct script_context *c, const struct script_function *function, int first, int named) {
     lua_State *L = c->lua;
     int index;
@@ -638,7 +638,7 @@ static void read_named(struct script_context *c, const struct script_function *f
         if (lua_isnil(L, -1))
             continue;
         lua_pushvalue(L, -1);
-        lua_setfield(L, named, p->name); /* keeps its text */
+        lua_setfield(L, named, p->name); /* keeps the string alive */
         struct protected_reading reading = {.function = function, .parameter = p, .args = &args[k]};
         lua_pushcfunction(L, read_protected);
         lua_insert(L, -2);
@@ -649,7 +649,7 @@ static void read_named(struct script_context *c, const struct script_function *f
     }
 }
 
-/* A missing factor of node:scale is that of x. */
+/* A missing factor of node:scale is equal to that of x. */
 static void complete_scale(struct script_value *args) {
     if (args[STEP_VECTOR].given || !args[STEP_X].given)
         return;
@@ -658,7 +658,7 @@ static void complete_scale(struct script_value *args) {
             args[k] = args[STEP_X];
 }
 
-/* False: something is missing for which there is no default. */
+/* False: an argument without a default is missing. */
 static bool forgive(struct script_context *c, const struct script_function *function, int first,
                     struct script_value *args) {
     lua_State *L = c->lua;
@@ -693,7 +693,7 @@ static bool forgive(struct script_context *c, const struct script_function *func
     return true;
 }
 
-/* Only what a positional form has. */
+/* Keeps only the arguments of the positional forms. */
 static void drop_fields(const struct script_function *function, struct script_value *args) {
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         bool keep = false, optional;
@@ -742,7 +742,7 @@ static int push_lost(lua_State *L, const struct script_function *function, int f
     }
     luaL_checkstack(L, 20, NULL);
     lenient_push_ghost(L, function->name, false);
-    if (function->run == gr_difference) /* what is left of it is its first operand */
+    if (function->run == gr_difference) /* its first operand remains */
         for (int i = first; i <= last && !ghost_of(handle_at(L, last + 1))->node; i++)
             ghost_take_arguments(c, last + 1, i, i);
     else
@@ -750,7 +750,7 @@ static int push_lost(lua_State *L, const struct script_function *function, int f
     return 1;
 }
 
-/* Runs the function with these arguments; the error of a scene becomes a warning. */
+/* Runs the function with these arguments; an error of the scene becomes a warning. */
 static bool run(struct script_context *c, const struct script_function *function, const struct script_value *args,
                 struct script_result *result) {
     struct error error = {0};

@@ -1,14 +1,14 @@
-/* --lenient: whatever a script does with gr is survived, with one warning per kind and line (docs/language.md 12.5). */
+/* --lenient: errors in calls of gr become warnings, one for each kind and line (docs/language.md 12.5). */
 #ifndef GRAY_SCRIPT_LENIENT_INTERNAL_H
 #define GRAY_SCRIPT_LENIENT_INTERNAL_H
 
 #include "script/context_internal.h"
 
-/* What a call of something unknown returns. It accepts every call and index, holds the nodes that it was given, and is
+/* The result of a call of an unknown function. It accepts every call and index, holds the nodes of the call, and is
  * ignored where it cannot stand for anything. */
 struct ghost {
     const char *name;
-    struct node *node; /* NULL until it holds something or is added somewhere */
+    struct node *node; /* NULL until it has a child or a parent */
     const struct material *material;
     bool is_method; /* a call returns the node before the colon */
 };
@@ -21,7 +21,7 @@ struct lenient {
     uint32_t warned_count;
     struct node **nodes; /* all that the script made, in order */
     uint32_t node_count, node_room;
-    struct scene_light lights[LENIENT_LIGHTS]; /* the first that it made */
+    struct scene_light lights[LENIENT_LIGHTS]; /* the first lights that it made */
     uint32_t light_count;
     struct node *last; /* made or returned last */
     struct node *root; /* of the last gr.render that failed, or NULL */
@@ -36,11 +36,11 @@ void lenient_open(lua_State *L);                    /* after dispatch_open */
 int lenient_call(lua_State *L, struct script_context *context, const struct script_function *function);
 void lenient_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void lenient_push_ghost(lua_State *L, const char *name, bool is_method);
-/* What the ghost stands for, or NULL; a node is made where there is none if `make` is set. */
+/* The node of the ghost, or NULL; if `make` is set, a missing node is created. */
 void *lenient_ghost_as(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
 /* Pushes the field at index 2 of the value at index 1 if the script has set it. */
 bool lenient_own_field(lua_State *L);
-/* Pushes the function of gr, whatever the script has done to its table. */
+/* Pushes the original function of gr, even if the script has replaced it. */
 void lenient_push_function(lua_State *L, const char *name);
 
 /* lenient_values.c: pushes the value at `index` in the form that the parameter wants, or nil. */
@@ -53,17 +53,17 @@ void lenient_default(struct script_context *context, const struct script_functio
 int lenient_fit(lua_State *L, int index, const struct script_parameter *parameter);
 
 /* lenient_picture.c */
-/* Unit cube, for a mesh that is not there. */
+/* A unit cube in place of a missing mesh. */
 struct node *lenient_placeholder(struct script_context *context, const char *name, const struct material *material,
                                  struct error *error);
-/* Checks, for a picture that is not there; 4 x 3 squares, so that it is a sky as well. */
+/* A checker pattern in place of a missing picture: 4 x 3 squares, so that it can also be a sky. */
 struct image *lenient_checks(struct script_context *context, struct error *error);
 /* Makes scenes out of which no world can be built into ones that can be shown: combined solids of open or moving
  * operands become groups, the first operand alone for a difference. */
 void lenient_simplify(struct script_context *context);
-/* A camera that shows everything under the node. */
+/* A camera that shows everything below the node. */
 void lenient_camera(const struct node *root, struct camera *camera);
-/* The node that a picture is of if the script does not say, or NULL. */
+/* The root of a picture if the script names none, or NULL. */
 struct node *lenient_root(struct script_context *context);
 /* After the script: a picture of its scene if gr.render made none. `failed`: the script ended with an error. */
 void lenient_last_picture(struct script_context *context, bool failed);

@@ -1,5 +1,5 @@
-/* What --lenient shows where a scene has nothing: a cube for a mesh, checks for a picture, and a picture of the scene
- * with a camera of its own where a script ends without one. */
+/* Replacements of --lenient: a cube for a missing mesh, a checker pattern for a picture, and a picture of the scene
+ * with a default camera if a script ends without a picture. */
 #include "script/lenient_internal.h"
 
 #include "math/elementary.h"
@@ -144,7 +144,7 @@ struct node *lenient_root(struct script_context *c) {
 void lenient_picture_name(const struct script_context *c, char *out, size_t size) {
     const char *slash = strrchr(c->path, '/'), *name = slash ? slash + 1 : c->path, *dot = strrchr(name, '.');
     int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
-    while (length > 1 && name[0] == '.') /* a hidden name is none of a picture */
+    while (length > 1 && name[0] == '.') /* a picture has no hidden name */
         name++, length--;
     snprintf(out, size, "%.*s-lenient.png", length, name);
 }

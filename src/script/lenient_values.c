@@ -179,7 +179,7 @@ static void push_list(lua_State *L, int index, enum handle_type type) {
     }
 }
 
-/* A group of the nodes in a table where one node is meant. */
+/* A group of the nodes of a table, where the parameter is one node. */
 static void push_node(struct script_context *c, int index) {
     lua_State *L = c->lua;
     if (is_handle(L, index, HANDLE_NODE)) {
@@ -206,7 +206,7 @@ static void push_node(struct script_context *c, int index) {
     lua_replace(L, list);
 }
 
-/* A colour where a material is meant is its kd. */
+/* A colour becomes the kd of a material. */
 static void push_material(struct script_context *c, int index) {
     lua_State *L = c->lua;
     if (is_handle(L, index, HANDLE_MATERIAL)) {
@@ -296,7 +296,7 @@ static bool same_letters(const char *a, const char *b, size_t b_length) {
     return i == b_length;
 }
 
-/* Pushes the word of the list that is meant, or nil. */
+/* Pushes the most similar word of the list, or nil. */
 static void push_choice(lua_State *L, int index, const struct script_parameter *p) {
     if (p->kind == KIND_AXIS && lua_istable(L, index)) { /* {0, 1, 0} is y */
         double x, max = 0;

@@ -2,8 +2,8 @@
  * still `true` becomes `false`. The result of the paths under an answer `true` waits in its decision for that of the
  * paths under `false`, and both become one selection. So the selections nest as the branches of the function do.
  *
- * What was recorded is compared with what Lua gives at RECORD_POINTS points, so that a function which reads more than
- * its arguments is found out. */
+ * The recording is compared with the results of Lua at RECORD_POINTS points. This detects a function that depends on
+ * more than its arguments. */
 #include "script/record_internal.h"
 
 #include "base/mem.h"
@@ -68,7 +68,7 @@ static void push_arguments(lua_State *L, int first) {
     lua_setfield(L, -2, "time");
 }
 
-/* Errors get their position while the stack is there. */
+/* Errors get their position while the stack still exists. */
 static int add_position(lua_State *L) {
     struct script_context *context = context_of(L);
     char where[PATH_SIZE + 32];
@@ -108,7 +108,8 @@ static bool call_function(lua_State *L, int function, int first) {
     return status == LUA_OK;
 }
 
-/* Whether the value on top is a number, a symbol or three of them; how many. Replaces it by a sentence else. */
+/* The count of numbers in the value on top: 1 for a number or symbol, 3 for three of them; else 0, and a sentence that
+ * describes the value replaces it. */
 static bool is_result(lua_State *L, int *count) {
     int top = lua_gettop(L);
     if (is_symbol(L, top) && !context_of(L)->recorder->active) {
@@ -138,7 +139,7 @@ static bool is_result(lua_State *L, int *count) {
 
 /* --- paths --- */
 
-/* The node of output `k` of a result, NaN of an error. */
+/* The node of output `k` of a result; NaN for an error. */
 static uint32_t output_of(lua_State *L, const struct path_result *result, int k) {
     if (result->count == 0) {
         lua_pushnumber(L, (double)NAN);
@@ -158,7 +159,7 @@ static struct path_result join(lua_State *L, const struct decision *decision, co
     return out;
 }
 
-/* One call; the first error of all stays at the index `error`. */
+/* One call. The index `error` holds the first error of all calls. */
 static struct path_result record_path(lua_State *L, int function, int first, int error) {
     struct recorder *recorder = context_of(L)->recorder;
     struct path_result result = {.count = 0};
@@ -187,7 +188,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
     return result;
 }
 
-/* Raises the text at an index. It names its position itself. */
+/* Raises the text at an index, which contains its position. */
 _Noreturn static void raise_text(lua_State *L, int index) {
     const char *text = lua_tostring(L, index);
     /* t[x] of a symbol is nil */
@@ -230,8 +231,8 @@ static struct path_result record_paths(lua_State *L, int function, int first) {
 
 /* --- comparison --- */
 
-/* Of point `i`: numbers of all sizes up to 100, whole and half ones, zeros of both signs, equal coordinates; u, v and
- * time between 0 and 1, unit vectors. */
+/* The inputs of point `i`: numbers of all sizes up to 100, whole and half ones, zeros of both signs, equal coordinates;
+ * u, v and time between 0 and 1, unit vectors. */
 static void test_point(uint32_t i, double out[EXPR_INPUT_COUNT]) {
     uint64_t key = random_combine(18, i);
     for (int k = 0; k < EXPR_INPUT_COUNT; k++) {
@@ -329,7 +330,7 @@ static void begin(lua_State *L) {
     recorder->active = true;
 }
 
-/* What a recording came to. */
+/* The result of a recording. */
 struct recording {
     struct expr_program *program;
     const char *source;

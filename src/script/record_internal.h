@@ -23,7 +23,7 @@ struct number {
     uint32_t node, is_integer;
 };
 
-/* What a path came to: one number or three, or an error, where every number is NaN. */
+/* The result of a path: one number, three numbers, or an error, for which every number is NaN. */
 struct path_result {
     int count; /* 1 or 3; 0: an error */
     uint32_t nodes[3];
@@ -32,7 +32,7 @@ struct path_result {
 struct decision {
     uint32_t condition;
     bool answer;
-    struct path_result if_true; /* where the answer is false: of the paths with the other one */
+    struct path_result if_true; /* while the answer is false: the result of the paths with true */
 };
 
 /* The recorder of a script. Owner: the context. recorder_destroy also frees the data of a recording that did not

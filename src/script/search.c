@@ -28,7 +28,7 @@ static bool add_file(struct file_search *search, const char *path) {
     return path != NULL;
 }
 
-/* Lists one folder; what is `skipped` is left out. False without memory. */
+/* Lists one folder without the entry `skipped`. False: no memory. */
 static bool list_folder(struct file_search *search, const struct path_policy *path_policy, const char *path,
                         const char *skipped, size_t *budget, struct listed_folder ***tail) {
     struct path_policy_entry *entries;
@@ -119,7 +119,7 @@ static bool has_dots(const char *name) {
 
 bool search_may(const struct path_policy *path_policy, const char *folder, const char *name) {
     char beside[4096];
-    if (name[0] == '/') /* that of another machine, or a folder that scenes may not read */
+    if (name[0] == '/') /* a path of another machine, or of a folder that scenes may not read */
         return path_policy_is_outside(path_policy, name) ? !has_dots(name) : !path_policy_leads_out(path_policy, name);
     if ((size_t)snprintf(beside, sizeof beside, "%s%s", folder, name) >= sizeof beside)
         return true;
