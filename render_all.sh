@@ -1,12 +1,44 @@
 #!/bin/sh
 # Installs what is missing, builds, renders every demo and writes gallery/index.html, screenshot01.png and screenshot02.png.
-# Continues after a failure; at the end it lists the failures and exits with 1.
+# Continues after a failure; at the end it lists the failures and exits with 1. data/gallery.txt has the order of the
+# scenes and their times, from which the time left is estimated.
 # A scene describes itself in comments of its first lines:
 #   -- TITLE: its name in the gallery           -- OPTIONS: words for the command line
 cd "$(dirname "$0")" || exit 1
 gallery=gallery
 limit=${GRAY_SCENE_LIMIT:-300} # seconds for one scene
 failed=""
+
+# The plan: lines "[title]" and "SCRIPT SECONDS". Scenes that data/gallery.txt does not name come before its last part.
+plan() {
+    unlisted=""
+    for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.lua \
+        data/classic/*.lua; do
+        case $script in */make_*) continue ;; esac # writes models, is not a scene
+        [ ! -f "$script" ] || grep -q "^$script " data/gallery.txt || unlisted="$unlisted$script 10
+"
+    done
+    last=$(grep -n '^\[' data/gallery.txt | tail -n 1 | cut -d : -f 1)
+    head -n $((last - 1)) data/gallery.txt | grep -v '^#'
+    [ -z "$unlisted" ] || printf '[More]\n%s' "$unlisted"
+    tail -n +"$last" data/gallery.txt
+}
+
+# "about 6 minutes", of seconds
+about_time() {
+    awk -v s="$1" 'BEGIN {
+        if (s < 90) printf "about %d seconds", s < 1 ? 1 : s + 0.5
+        else printf "about %d minutes", s / 60 + 0.5
+    }'
+}
+
+processors=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
+plan=$(plan)
+scenes=$(echo "$plan" | grep -c '^data/')
+total=$(echo "$plan" | awk -v n="$processors" '/^data/ { s += $2 / n + 0.1 } END { print s }')
+building=""
+[ -x build/release/gray ] || building="after the build, "
+echo "rendering $scenes scenes takes $building$(about_time "$total") with $processors processors"
 
 tools/setup.sh || exit 1
 make -s -j2 || { echo "render_all.sh: the build failed" >&2; exit 1; }
@@ -30,7 +62,8 @@ render() { # render SCRIPT NAME
     case $name in
     10demo | 14demo) options="$options --size 1280x960 -ss 4 -al-samples 8" ;;
     esac
-    echo "$script $options"
+    # shellcheck disable=SC2086
+    echo "scene $number of $scenes: $script" $options
     begun=$(date +%s%N)
     # shellcheck disable=SC2086
     timeout "$limit" ./gray $options -o "$gallery/$name-%02d.png" -- "$script" >"$gallery/$name.txt"
@@ -44,53 +77,69 @@ render() { # render SCRIPT NAME
     set -- "$gallery/$name"-[0-9]*.png
     [ $# -eq 1 ] && [ -f "$1" ] && mv -- "$1" "$gallery/$name.png"
     [ -s "$gallery/$name.txt" ] || rm -f "$gallery/$name.txt"
-    echo "   $seconds s"
 }
 
 # One entry of the page: pictures, title, script, time, and what the script printed.
 describe() { # describe SCRIPT NAME SECONDS
     title=$(about "$1" TITLE)
     title=$(printf '%s' "${title:-$2}" | as_html)
+    set -- "$1" "$2" "$3" "$gallery/$2.png" "$gallery/$2"-[0-9]*.png "$gallery"/?*"$2"-[0-9]*.png
+    script=$1
+    name=$2
+    taken=$3
+    shift 3
     echo "<figure>"
-    shown=no
-    for picture in "$gallery/$2.png" "$gallery/$2"-[0-9]*.png "$gallery"/?*"$2"-[0-9]*.png; do
+    shown=0
+    for picture in "$@"; do
         [ -f "$picture" ] || continue
-        shown=yes
+        shown=$((shown + 1))
+        [ $shown -ne 2 ] || echo "<div>"
         file=$(basename "$picture" | as_html)
         echo "<a href=\"$file\"><img src=\"$file\" alt=\"$title\" loading=\"lazy\"></a>"
     done
-    [ $shown = yes ] || echo "<p class=\"none\">no picture</p>"
-    echo "<figcaption><b>$title</b><br><a href=\"../$1\">$1</a>, $3 s</figcaption>"
-    if [ -s "$gallery/$2.txt" ]; then
+    [ $shown -lt 2 ] || echo "</div>"
+    [ $shown -gt 0 ] || echo "<p class=\"none\">no picture</p>"
+    echo "<figcaption><b>$title</b><br><a href=\"../$script\">$script</a>, $taken s</figcaption>"
+    if [ -s "$gallery/$name.txt" ]; then
         echo "<pre>"
-        head -c 4000 "$gallery/$2.txt" | as_html
+        head -c 4000 "$gallery/$name.txt" | as_html
         echo "</pre>"
     fi
     echo "</figure>"
 }
 
-section() { # section TITLE CLASS SCRIPT...
-    heading=$1
-    class=$2
-    shift 2
-    echo "<h2>$heading</h2><div class=\"$class\">" >>"$gallery/body.html"
-    for script in "$@"; do
-        [ -f "$script" ] || continue
-        case $script in */make_*) continue ;; esac # writes models, is not a scene
-        base=$(basename "$script" .lua)
-        [ "$class" = small ] && base="classic-$base"
-        render "$script" "$base"
-        describe "$script" "$base" "$seconds" >>"$gallery/body.html"
-    done
-    echo "</div>" >>"$gallery/body.html"
-}
-
 : >"$gallery/body.html"
-section "Demos" large data/*demo.lua data/pyramid-fog.lua data/light.lua data/relief.lua
-section "Path tracing" large data/path/*.lua
-section "Solids" large data/solids.lua data/swept.lua data/csg/*.lua data/functions/*.lua data/meshes.lua
-section "The Lua library" large data/library/show_*.lua
-section "Classic scenes" small data/classic/*.lua
+number=0
+open=no
+planned=0 # seconds of the scenes so far, as planned and as they were
+taken_all=0
+while read -r script cost <&3; do
+    case $script in
+    \[*)
+        [ $open = no ] || echo "</div>" >>"$gallery/body.html"
+        open=yes
+        title="$script${cost:+ $cost}"
+        title=${title#?}
+        echo "<h2>$(printf '%s' "${title%?}" | as_html)</h2><div class=\"part\">" >>"$gallery/body.html"
+        continue
+        ;;
+    data/*) ;;
+    *) continue ;;
+    esac
+    number=$((number + 1))
+    base=$(basename "$script" .lua)
+    case $script in data/classic/*) base="classic-$base" ;; esac
+    render "$script" "$base"
+    # The plan is for one kind of machine: after some seconds, what was taken so far corrects it.
+    planned=$(awk "BEGIN { print $planned + $cost / $processors + 0.1 }")
+    taken_all=$(awk "BEGIN { print $taken_all + $seconds }")
+    left=$(awk "BEGIN { f = $planned > 5 ? $taken_all / $planned : 1; print ($total - $planned) * f }")
+    [ "$number" -eq "$scenes" ] && echo "   $seconds s" || echo "   $seconds s, $(about_time "$left") left"
+    describe "$script" "$base" "$seconds" >>"$gallery/body.html"
+done 3<<PLAN
+$plan
+PLAN
+[ $open = no ] || echo "</div>" >>"$gallery/body.html"
 
 {
     cat <<'HEAD'
@@ -100,12 +149,11 @@ section "Classic scenes" small data/classic/*.lua
 <style>
 body { font: 16px/1.4 sans-serif; margin: 2em auto; max-width: 84em; padding: 0 1em; background: #222; color: #ddd }
 a { color: #9cf }
-.large, .small { display: flex; flex-wrap: wrap; gap: 1.5em }
-figure { margin: 0; max-width: 100% }
-.large figure { width: 26em }
-.small figure { width: 12em }
-figure img { max-width: 100%; display: block; margin-bottom: .3em }
-pre { white-space: pre-wrap; font-size: 12px }
+.part { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(26em, 100%), 1fr)); gap: 1.5em; align-items: start }
+figure { margin: 0; min-width: 0 }
+figure img { width: 100%; aspect-ratio: 4 / 3; object-fit: scale-down; background: #191919; display: block; margin-bottom: .3em }
+figure div { display: grid; grid-template-columns: repeat(4, 1fr); gap: .3em }
+pre { white-space: pre-wrap; font-size: 12px; max-height: 12em; overflow: auto }
 .none { color: #f88 }
 </style></head><body>
 <h1>gray: gallery</h1>

@@ -1,15 +1,25 @@
 #!/bin/sh
-# Installs missing packages that the build needs, from the Debian archive of the machine; announces it first.
-# Does nothing if everything is installed. On systems not derived from Debian it lists what to install by hand.
-# Usage: tools/setup.sh [--check | --tests]
-#   --check   only prints what is missing (exit status 1)
-#   --tests   also installs what only some tests need (clang); if that fails, they are skipped
+# Installs missing packages from the Debian archive of the machine, and announces it first: what the build needs, and
+# optional libraries: a window (SDL2), JPEG and EXR pictures, glTF meshes, fonts. An optional one that cannot be installed
+# is named and left out. Does nothing if everything is installed. A user who may not install packages gets one line with
+# the command. On systems not derived from Debian it lists what to install by hand.
+# Usage: tools/setup.sh [--minimal | --check | --tests]
+#   --minimal   only what the build needs
+#   --check     only prints what is missing; exit status 1 if the build needs it
+#   --tests     what the build needs, and what only some tests need (clang); if that fails, they are skipped
 set -u
+mode=${1:-}
 missing=""
+optional=""
 need() { # need PACKAGE COMMAND...: the command shows whether it is installed
     package=$1
     shift
     "$@" >/dev/null 2>&1 || missing="$missing $package"
+}
+want() {
+    package=$1
+    shift
+    "$@" >/dev/null 2>&1 || optional="$optional $package"
 }
 
 have_lua() {
@@ -31,50 +41,67 @@ need pkg-config command -v pkg-config
 need liblua5.4-dev have_lua
 need libpng-dev pkg-config --exists libpng
 need zlib1g-dev pkg-config --exists zlib
+case $mode in
+--minimal) ;;
+--tests) want clang command -v clang ;;
+*)
+    want libsdl2-dev pkg-config --exists sdl2
+    want libjpeg-dev pkg-config --exists libjpeg
+    want libjansson-dev pkg-config --exists jansson
+    want libfreetype-dev pkg-config --exists freetype2
+    want libopenexr-dev pkg-config --exists OpenEXR
+    ;;
+esac
 
-# Optional packages: never asks for a password, never waits long for a network, never fails.
-install_optional() { # install_optional PACKAGE
-    without="tests that need it are skipped"
-    as_root=
-    [ "$(id -u)" -eq 0 ] || as_root="sudo -n"
-    if ! command -v apt-get >/dev/null 2>&1 || ! $as_root true 2>/dev/null; then
-        echo "$1 is not installed, and this user cannot install it: $without" >&2
-        return
-    fi
-    echo "installing with apt-get: $1 (optional)" >&2
-    quick="-o Acquire::Retries=0 -o Acquire::http::Timeout=10 -o Acquire::https::Timeout=10"
-    # shellcheck disable=SC2086
-    {
-        $as_root env DEBIAN_FRONTEND=noninteractive timeout 240 apt-get $quick install -y --no-install-recommends "$1" ||
-            { $as_root timeout 60 apt-get $quick update &&
-                $as_root env DEBIAN_FRONTEND=noninteractive timeout 240 \
-                    apt-get $quick install -y --no-install-recommends "$1"; }
-    } >&2 || echo "$1 could not be installed: $without" >&2
-}
-if [ -z "$missing" ]; then
-    [ "${1:-}" != --tests ] || command -v clang >/dev/null 2>&1 || install_optional clang
-    exit 0
+[ -n "$missing$optional" ] || exit 0
+[ -n "$missing" ] || failure=0
+if [ "$mode" = --check ]; then
+    [ -z "$missing" ] || echo "missing:$missing" >&2
+    [ -z "$optional" ] || echo "missing, optional:$optional" >&2
+    exit "${failure:-1}"
 fi
-
-echo "missing:$missing" >&2
-[ "${1:-}" = --check ] && exit 1
+case $mode in
+--tests) without="tests that need it are skipped" ;;
+*) without="it is left out" ;;
+esac
+[ -n "$missing" ] && what="gray needs packages" || what="optional packages are missing"
 if ! command -v apt-get >/dev/null 2>&1; then
-    echo "this machine has no apt-get; please install the packages of these names (or what your system calls them)" >&2
-    exit 1
+    echo "$what; this machine has no apt-get, please install what your system calls$missing$optional" >&2
+    exit "${failure:-1}"
 fi
 as_root=""
 if [ "$(id -u)" -ne 0 ]; then
-    if ! command -v sudo >/dev/null 2>&1; then
-        echo "installing needs root: run as root: apt-get install$missing" >&2
-        exit 1
+    as_root="sudo -n"
+    if ! $as_root true 2>/dev/null; then
+        echo "$what; to install them: sudo apt-get install -y --no-install-recommends$missing$optional" >&2
+        exit "${failure:-1}"
     fi
-    as_root=sudo
 fi
-echo "installing with apt-get:$missing" >&2
-export DEBIAN_FRONTEND=noninteractive
-# The lists of a fresh machine may be absent or old: fetch them when the first try fails.
-# shellcheck disable=SC2086
-$as_root apt-get install -y --no-install-recommends $missing >&2 ||
-    { $as_root apt-get update >&2 && $as_root apt-get install -y --no-install-recommends $missing >&2; } ||
-    { echo "the packages could not be installed:$missing" >&2; exit 1; }
-[ "${1:-}" != --tests ] || command -v clang >/dev/null 2>&1 || install_optional clang
+
+# The lists of a fresh machine may be absent or old: they are fetched when the first try fails.
+install() { # install SECONDS OPTION... PACKAGE...
+    seconds=$1
+    shift
+    # shellcheck disable=SC2086
+    $as_root env DEBIAN_FRONTEND=noninteractive timeout "$seconds" \
+        apt-get install -y --no-install-recommends "$@" >&2
+}
+if [ -n "$missing" ]; then
+    echo "installing with apt-get:$missing" >&2
+    # shellcheck disable=SC2086
+    install 3600 $missing || { $as_root apt-get update >&2 && install 3600 $missing; } ||
+        { echo "the packages could not be installed:$missing" >&2; exit 1; }
+fi
+if [ -n "$optional" ]; then
+    # Never waits long for a network, never fails: together, and if that is not possible one by one.
+    quick="-o Acquire::Retries=0 -o Acquire::http::Timeout=10 -o Acquire::https::Timeout=10"
+    echo "installing with apt-get (optional):$optional" >&2
+    # shellcheck disable=SC2086
+    if ! install 600 $quick $optional; then
+        $as_root timeout 60 apt-get $quick update >&2
+        for package in $optional; do
+            install 240 $quick "$package" || echo "$package could not be installed: $without" >&2
+        done
+    fi
+fi
+exit 0

@@ -604,10 +604,14 @@ static int run_script(struct render_process *process, const char *path) {
     process->status = 0;
     process->warned_count = 0;
     begin_memory(process);
+    uint64_t before = process->pictures;
     bool ok = script_run(path, &process->options->script, &host, &arena, &traceback, &error);
     int status = ok ? process->status : (int)error.kind;
     if (!ok && error.kind != ERROR_CANCELLED)
         report_error(process, &arena, &error, traceback);
+    const char *nothing = "%s: there is no picture, because the script rendered none with gr.render";
+    if (ok && process->pictures == before && (nothing = arena_format(&arena, nothing, path)) != NULL)
+        message(process, SCRIPT_NOTICE, nothing);
     arena_destroy(&arena);
     finish_output(process);
     return status;

@@ -248,10 +248,16 @@ static void forbid(unsigned call, int value, unsigned number) {
         test_skip("no seccomp filter in this kernel");
 }
 
-/* The program's message with these arguments begins like this and is one line; "": no message. */
+/* The program's message with these arguments begins like this and is one line; "": no message. The notice that there is
+ * no picture follows. */
 static void check_said(const char *arguments, const char *begin) {
     struct test_result result = test_gray_scene("x = 1", arguments, NULL);
     CHECK_EQ_INT(result.status, 0);
+    char *notice =
+        strstr(result.err, "scene.lua: there is no picture, because the script rendered none with gr.render\n");
+    CHECK((notice != NULL) != (strstr(arguments, "-q") != NULL) && (!notice || strchr(notice, '\n')[1] == '\0'));
+    if (notice)
+        *notice = '\0';
     const char *end = strchr(result.err, '\n');
     bool good = begin[0] ? strncmp(result.err, begin, strlen(begin)) == 0 && end && end[1] == '\0' : !result.err[0];
     if (!good)

@@ -53,3 +53,17 @@ TEST(a_colour_in_bytes_is_a_warning) {
     free(result.out);
     free(result.err);
 }
+
+TEST(a_script_without_a_picture_says_so) {
+    struct test_result result = test_gray_scene("gr.sphere('ball')", "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.err, "scene.lua: there is no picture, because the script rendered none with gr.render"));
+    free(result.out);
+    free(result.err);
+    says("gr.sphere('ball')", NULL); /* not with -q */
+    result = test_gray_scene(RENDER(""), "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(!strstr(result.err, "no picture"));
+    free(result.out);
+    free(result.err);
+}

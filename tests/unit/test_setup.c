@@ -1,0 +1,196 @@
+/* tools/setup.sh, with an archive, a user and libraries that the test makes up; render_all.sh, with a program and
+ * scenes that it makes up. */
+#define _GNU_SOURCE
+#include "tests/harness.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+/* Programs that stand before those of the machine: pkg-config and command -v know what is listed in the file `have`,
+ * apt-get adds to it, except what is in $refuse. */
+static void make_machine(void) {
+    CHECK(system(NULL) != 0);
+    char *line = NULL;
+    if (asprintf(
+            &line,
+            "cd '%s' && mkdir bin && cd bin && "
+            "printf '#!/bin/sh\\ngrep -qx \"$2\" ../have\\n' >pkg-config && "
+            "printf '#!/bin/sh\\necho $uid\\n' >id && "
+            "printf '#!/bin/sh\\n[ \"$sudo\" = yes ] && shift && exec \"$@\"\\n' >sudo && "
+            "cat >apt-get <<'END'\n"
+            "#!/bin/sh\n"
+            "echo \"$@\" >>../log\n"
+            "for word in \"$@\"; do case $word in lib*-dev) case \" $refuse \" in *\" $word \"*) exit 100 ;; esac ;; "
+            "esac; done\n"
+            "for word in \"$@\"; do case $word in lib*-dev) echo $word >>../installed ;; esac; done\n"
+            "exit 0\n"
+            "END\n"
+            "chmod +x *",
+            test_folder()) < 0)
+        exit(1);
+    CHECK(system(line) == 0);
+    free(line);
+}
+
+#define NEEDED "lua5.4\\nlibpng\\nzlib\\n"
+#define ALL NEEDED "sdl2\\nlibjpeg\\njansson\\nfreetype2\\nOpenEXR\\n"
+
+/* The status; standard error is in the file err. */
+static int set_up(const char *have, const char *environment, const char *option) {
+    char *line = NULL, root[4096];
+    CHECK(realpath(".", root) != NULL);
+    if (asprintf(&line,
+                 "cd '%s/bin' && rm -f ../log ../installed && printf '%s' >../have && "
+                 "%s PATH=\"$PWD:$PATH\" CC=gcc sh '%s/tools/setup.sh' %s 2>../err",
+                 test_folder(), have, environment, root, option) < 0)
+        exit(1);
+    int status = system(line);
+    free(line);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void check_file(const char *name, const char *text) {
+    char *found = test_read_file(test_path(name), NULL);
+    if (!found && text)
+        test_fail(__FILE__, __LINE__, "%s is not there", name);
+    else if (found && (!text || strcmp(found, text) != 0))
+        test_fail(__FILE__, __LINE__, "%s has \"%s\", not \"%s\"", name, found, text ? text : "");
+    free(found);
+}
+
+TEST(the_set_up_installs_the_optional_libraries_too) {
+    make_machine();
+    CHECK_EQ_INT(set_up(NEEDED, "uid=0", ""), 0);
+    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\n");
+    CHECK_EQ_INT(set_up(NEEDED, "uid=7 sudo=yes", ""), 0);
+    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\n");
+    CHECK_EQ_INT(set_up(ALL, "uid=0", ""), 0);
+    check_file("err", "");
+    check_file("log", NULL);
+}
+
+TEST(a_library_that_cannot_be_had_is_named_and_left_out) {
+    make_machine();
+    CHECK_EQ_INT(set_up(NEEDED, "uid=0 refuse='libjansson-dev libopenexr-dev'", ""), 0);
+    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibfreetype-dev\n");
+    check_file("err", "installing with apt-get (optional): libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev "
+                      "libopenexr-dev\n"
+                      "libjansson-dev could not be installed: it is left out\n"
+                      "libopenexr-dev could not be installed: it is left out\n");
+}
+
+TEST(a_minimal_set_up_has_what_the_build_needs) {
+    make_machine();
+    CHECK_EQ_INT(set_up(NEEDED, "uid=0", "--minimal"), 0);
+    check_file("log", NULL);
+    CHECK_EQ_INT(set_up("lua5.4\\nzlib\\n", "uid=0", "--minimal"), 0);
+    check_file("installed", "libpng-dev\n");
+    CHECK_EQ_INT(set_up("lua5.4\\nzlib\\n", "uid=0 refuse=libpng-dev", "--minimal"), 1);
+    CHECK_EQ_INT(set_up(ALL, "uid=0", "--check"), 0);
+    CHECK_EQ_INT(set_up("zlib\\n", "uid=0", "--check"), 1);
+    check_file("log", NULL);
+}
+
+TEST(a_user_who_may_not_install_gets_one_line_with_the_command) {
+    make_machine();
+    CHECK_EQ_INT(set_up("lua5.4\\n", "uid=7", ""), 1);
+    check_file("err",
+               "gray needs packages; to install them: sudo apt-get install -y --no-install-recommends libpng-dev "
+               "zlib1g-dev libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev\n");
+    CHECK_EQ_INT(set_up(ALL "no", "uid=7", ""), 0);
+    check_file("err", "");
+    CHECK_EQ_INT(set_up(NEEDED, "uid=7", ""), 0);
+    check_file("err", "optional packages are missing; to install them: sudo apt-get install -y --no-install-recommends "
+                      "libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev\n");
+    check_file("log", NULL);
+}
+
+/* A tree with render_all.sh, a program that writes what is no picture, and two scenes beside those of the plan. */
+static void make_gallery(const char *plan) {
+    char *line = NULL, root[4096];
+    CHECK(realpath(".", root) != NULL);
+    test_write_text(test_path("plan"), plan);
+    if (asprintf(&line,
+                 "cd '%s' && mkdir -p tools data/path data/csg data/functions data/library data/classic && "
+                 "cp '%s/render_all.sh' . && cp plan data/gallery.txt && "
+                 "printf '#!/bin/sh\\n' >tools/setup.sh && chmod +x tools/setup.sh && "
+                 "printf 'all:\\n' >Makefile && "
+                 "for f in $(sed -n 's/ [0-9]*$//p' plan | grep ^data) data/path/new.lua data/csg/make_it.lua; do "
+                 "echo '-- TITLE: '$(basename $f .lua) '& more' >$f; done && "
+                 "cat >gray <<'END'\n"
+                 "#!/bin/sh\n"
+                 "for word in \"$@\"; do case $word in *%%02d.png) out=${word%%%%%%02d*}; esac; done\n"
+                 "case $out in *broken*) exit 1;; *clock*) echo picture >${out}02.png;; *path*) echo printed;; esac\n"
+                 "echo picture >${out}01.png\n"
+                 "END\n"
+                 "chmod +x gray",
+                 test_folder(), root) < 0)
+        exit(1);
+    CHECK(system(line) == 0);
+    free(line);
+}
+
+/* Runs it; out.txt has what it prints. */
+static int render_all(void) {
+    char *line = NULL;
+    if (asprintf(&line, "cd '%s' && sh render_all.sh >out.txt 2>err.txt", test_folder()) < 0)
+        exit(1);
+    int status = system(line);
+    free(line);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(rendering_all_scenes_says_how_long_it_takes_and_puts_the_best_first) {
+    make_gallery("# a comment\n[Best pictures]\ndata/14demo.lua 95000\ndata/10demo.lua 3\n[Classic]\n"
+                 "data/classic/clock.lua 1\n[Test charts]\ndata/01demo.lua 1\n");
+    CHECK_EQ_INT(render_all(), 0);
+    char *out = test_read_file(test_path("out.txt"), NULL),
+         *page = test_read_file(test_path("gallery/index.html"), NULL);
+    CHECK(out && strncmp(out, "rendering 5 scenes takes after the build, about ", 48) == 0 &&
+          strstr(out, " minutes with "));
+    CHECK(strstr(out, "scene 1 of 5: data/14demo.lua --size 1280x960"));
+    CHECK(strstr(out, "scene 5 of 5: data/01demo.lua"));
+    CHECK(strstr(out, "left\nscene 5 of 5"));
+    const char *const order[] = {"<h2>Best pictures</h2>", ">14demo &amp; more<",  ">10demo &amp; more<",
+                                 "<h2>Classic</h2>",       "classic-clock-01.png", "<h2>More</h2>",
+                                 ">new &amp; more<",       "<h2>Test charts</h2>", ">01demo &amp; more<"};
+    const char *at = page;
+    for (size_t i = 0; at && i < sizeof order / sizeof *order; i++) {
+        at = strstr(at, order[i]);
+        if (!at)
+            test_fail(__FILE__, __LINE__, "%s is not in its place", order[i]);
+    }
+    CHECK(page && !strstr(page, "make_it"));
+    free(out);
+    free(page);
+}
+
+TEST(a_scene_that_fails_is_named_at_the_end) {
+    make_gallery("[A]\ndata/broken.lua 1\ndata/14demo.lua 1\n[B]\ndata/10demo.lua 1\n");
+    CHECK_EQ_INT(render_all(), 1);
+    char *err = test_read_file(test_path("err.txt"), NULL);
+    CHECK(err && strstr(err, "render_all.sh: failed: data/broken.lua\n"));
+    free(err);
+}
+
+TEST(every_scene_of_the_gallery_is_there_with_its_time) {
+    char *plan = test_read_file("data/gallery.txt", NULL);
+    int scenes = 0;
+    CHECK(plan != NULL);
+    for (char *line = strtok(plan, "\n"); line; line = strtok(NULL, "\n")) {
+        char script[256];
+        double seconds;
+        if (strncmp(line, "data/", 5) != 0)
+            continue;
+        CHECK(sscanf(line, "%255s %lf", script, &seconds) == 2 && seconds > 0);
+        char *text = test_read_file(script, NULL);
+        if (!text)
+            test_fail(__FILE__, __LINE__, "%s is not there", script);
+        free(text);
+        scenes++;
+    }
+    CHECK(scenes > 40);
+    free(plan);
+}
