@@ -793,12 +793,14 @@ function gr.patch(material, points, patches) end
 
 ---@class gr.fn.fields
 ---@field f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.
+---@field points? integer points (a whole number, 1 to 16; default 16): Points of a pixel's footprint at most over which the function is averaged: 1, 2, 4, 8 or 16.
 
 ---A Lua function as a texture; wherever a texture is taken, one may stand.
 ---@param f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.
+---@param points? integer points (a whole number, 1 to 16; default 16): Points of a pixel's footprint at most over which the function is averaged: 1, 2, 4, 8 or 16.
 ---@return gr.texture
 ---@overload fun(fields: gr.fn.fields): gr.texture
-function gr.fn(f) end
+function gr.fn(f, points) end
 
 ---@class gr.marble_texture.fields
 ---@field f number f (a number): Factor of the point before the noise.

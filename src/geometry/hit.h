@@ -52,9 +52,9 @@ struct hit {
     bool has_uv, has_colour;
     struct vec3 colour; /* of the vertices, interpolated */
     double u, v;
-    struct vec3 dpdu, dpdv; /* world; for spheres only if bumps need them */
-    /* If bumps need them: the world vectors of one unit along the operand's outward normal and along its tangents by
-     * frame_tangents; the derivatives of pattern_normal along these if known (spheres), else 0. */
+    struct vec3 dpdu, dpdv; /* world; for spheres only if bumps or functions need them */
+    /* If bumps or functions need them: the world vectors of one unit along the operand's outward normal and along its
+     * tangents by frame_tangents; the derivatives of pattern_normal along these if known (spheres), else 0. */
     struct vec3 raise, along_a, along_b;
     double curvature;
     double offset;        /* a secondary ray starts this far (world units) from point along the normal */

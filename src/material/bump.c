@@ -12,6 +12,7 @@
  * programs write it. */
 #include "material/bump.h"
 
+#include "material/texture_function_internal.h"
 #include "material/texture_mapping.h"
 #include "math/frame.h"
 
@@ -81,15 +82,14 @@ static struct hit moved(const struct hit *hit, struct vec3 a, struct vec3 b, dou
     return out;
 }
 
-/* The same formula with the tangents of the object's space. The differences are as wide as the footprint, at least
- * 2^-17 of the coordinates (the cube root of the rounding error, where central differences are best). */
-static void turn_by_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
-                            struct vec3 *normal) {
-    struct vec3 n = vec3_cross(hit->along_a, hit->along_b), a, b;
-    double area = vec3_length(n);
+/* The slopes of the surface along the tangents of the object's space. The differences are as wide as the footprint, at
+ * least 2^-17 of the coordinates (the cube root of the rounding error, where central differences are best). */
+static bool slopes_by_differences(const struct bump *bump, const struct texture *textures, const struct hit *hit,
+                                  double slopes[2]) {
+    struct vec3 a, b;
     double step = fmax(0.5 * hit->footprint * hit->pattern_scale, 0x1p-17 * vec3_max_abs(hit->pattern_point));
-    if (!(area > 0) || !isfinite(area) || !(step > 0))
-        return;
+    if (!(step > 0))
+        return false;
     frame_tangents(vec3_normalize(hit->pattern_normal), &a, &b);
     const struct hit at[4] = {moved(hit, a, b, step, 0), moved(hit, a, b, -step, 0), moved(hit, a, b, 0, step),
                               moved(hit, a, b, 0, -step)};
@@ -99,13 +99,29 @@ static void turn_by_texture(const struct bump *bump, const struct texture *textu
         texture_reader_init(&reader, &at[i], textures, NULL);
         height[i] = texture_read_scalar(texture_at(textures, bump->texture), &reader);
     }
-    double f_a = scale * (height[0] - height[1]);
-    double f_b = scale * (height[2] - height[3]);
-    if (f_a == 0 && f_b == 0)
+    slopes[0] = scale * (height[0] - height[1]);
+    slopes[1] = scale * (height[2] - height[3]);
+    return true;
+}
+
+/* The same formula with the tangents of the object's space. A recorded function has derivatives, except where it jumps.
+ */
+static void turn_by_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
+                            struct vec3 *normal) {
+    const struct texture *texture = texture_at(textures, bump->texture);
+    struct vec3 n = vec3_cross(hit->along_a, hit->along_b);
+    double area = vec3_length(n), slopes[2];
+    if (!(area > 0) || !isfinite(area))
+        return;
+    bool has_derivatives =
+        texture->kind == TEXTURE_FUNCTION && texture_function_slopes(texture, hit, bump->height, slopes);
+    if (!has_derivatives && !slopes_by_differences(bump, textures, hit, slopes))
+        return;
+    if (slopes[0] == 0 && slopes[1] == 0)
         return;
     struct vec3 up = hit->raise;
-    struct vec3 d =
-        vec3_add(vec3_scale(vec3_cross(hit->along_a, up), f_b), vec3_scale(vec3_cross(up, hit->along_b), f_a));
+    struct vec3 d = vec3_add(vec3_scale(vec3_cross(hit->along_a, up), slopes[1]),
+                             vec3_scale(vec3_cross(up, hit->along_b), slopes[0]));
     double outward = vec3_dot(n, hit->normal_geometric) < 0 ? -1 / area : 1 / area;
     struct vec3 turned = vec3_add_scaled(*normal, d, outward);
     if (vec3_length_squared(turned) > 0)

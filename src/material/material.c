@@ -118,6 +118,15 @@ bool material_has_image(const struct material *material) {
     return material_has_bump(material);
 }
 
+bool material_has_function(const struct material *material) {
+    for (int i = 0; i < INPUT_COUNT; i++) {
+        const struct texture *texture = material_texture(material, (enum material_input)i);
+        if (texture && texture->has_function)
+            return true;
+    }
+    return false;
+}
+
 bool material_is_transparent(const struct material *material, double *ior) {
     const struct phong *numbers = numbers_of(material);
     if (!numbers->has_ior)

@@ -2,6 +2,7 @@
  * changed, as if each texture were painted over those below. */
 #include "material/texture.h"
 
+#include "material/texture_function_internal.h"
 #include "material/texture_mapping.h"
 #include "math/noise.h"
 
@@ -45,6 +46,7 @@ static struct texture over(enum texture_kind kind, const struct texture *a, cons
             continue;
         out.size += below[i]->size;
         out.has_image = out.has_image || below[i]->has_image;
+        out.has_function = out.has_function || below[i]->has_function;
     }
     out.size = out.size > TEXTURE_SIZE ? TEXTURE_SIZE + 1 : out.size;
     return out;
@@ -86,7 +88,13 @@ struct texture texture_function(const struct expr_program *program, bool has_coo
     return (struct texture){.kind = TEXTURE_FUNCTION,
                             .size = 1,
                             .has_image = has_coordinates,
-                            .recorded = {program, "", MAPPING_BY_SHAPE, average, largest}};
+                            .has_function = true,
+                            .recorded = {.program = program,
+                                         .source = "",
+                                         .mapping = MAPPING_BY_SHAPE,
+                                         .points = FUNCTION_POINTS,
+                                         .average = average,
+                                         .largest = largest}};
 }
 
 const struct texture *texture_parameter(enum material_input input) {
@@ -270,28 +278,6 @@ static bool takes_component(enum texture_function function, struct vec3 colour, 
     return function == FUNCTION_RED || function == FUNCTION_GREEN || function == FUNCTION_BLUE;
 }
 
-static double not_nan(double x) {
-    return x == x ? x : 0;
-}
-
-/* The function at the hit; a number counts for all three components. u and v are those of images, v from below. */
-static struct vec3 function_at(const struct texture *texture, const struct hit *hit) {
-    const struct vec3 *p = &hit->pattern_point, *n = &hit->normal, *v = &hit->view, *w = &hit->point;
-    double inputs[EXPR_INPUT_COUNT] = {p->x, p->y, p->z, 0,    0,    n->x, n->y,     n->z,
-                                       v->x, v->y, v->z, w->x, w->y, w->z, hit->time};
-    double out[EXPR_OUTPUTS];
-    const struct texture_image image = {.mapping = texture->recorded.mapping, .wrap = IMAGE_REPEAT};
-    struct texcoord at;
-    if (texture->has_image && texture_coordinates(&image, hit, &at)) {
-        inputs[EXPR_U] = at.u;
-        inputs[EXPR_V] = 1 - at.v;
-    }
-    expr_evaluate(texture->recorded.program, inputs, out);
-    if (texture->recorded.program->output_count == 1)
-        return vec3_all(not_nan(out[0]));
-    return vec3_make(not_nan(out[0]), not_nan(out[1]), not_nan(out[2]));
-}
-
 /* --- trees --- */
 
 static struct vec3 part_colour(union texture_ref part, struct texture_reader *reader) {
@@ -342,7 +328,7 @@ static struct vec3 evaluate_colour(const struct texture *texture, struct texture
                          function_of(function, amount, of.z));
     }
     case TEXTURE_FUNCTION:
-        return function_at(texture, reader->hit);
+        return texture_function_colour(texture, reader->hit);
     }
     return vec3_all(0);
 }
@@ -385,7 +371,7 @@ static double evaluate_scalar(const struct texture *texture, struct texture_read
         return function_of(function, texture->map.amount, part_scalar(texture->map.of, reader));
     }
     case TEXTURE_FUNCTION: {
-        struct vec3 colour = function_at(texture, reader->hit);
+        struct vec3 colour = texture_function_colour(texture, reader->hit);
         return texture->recorded.program->output_count == 1 ? colour.x : mean(colour);
     }
     }

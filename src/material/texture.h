@@ -21,7 +21,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { TEXTURE_SIZE = 16384 };
+/* FUNCTION_POINTS: the maximum number of points of a footprint at which a function is evaluated. */
+enum { TEXTURE_SIZE = 16384, FUNCTION_POINTS = 16 };
 
 /* PARAMETER: the number that a material has for one of its inputs; white outside of materials. VERTEX_COLOUR: the
  * colours of a mesh's vertices, interpolated; white where there are none. MARBLE, WOOD: patterns between 0 and 1 of the
@@ -153,9 +154,10 @@ union texture_ref {
 
 struct texture {
     enum texture_kind kind;
-    bool shared;    /* several inputs of a material read it: evaluated once per hit */
-    bool has_image; /* of the whole tree: it needs the ray's footprint */
-    uint32_t size;  /* of the tree */
+    bool shared;       /* several inputs of a material read it: evaluated once per hit */
+    bool has_image;    /* of the whole tree: it needs the ray's footprint */
+    bool has_function; /* of the whole tree: it needs the tangents of the pattern */
+    uint32_t size;     /* of the tree */
     union {
         struct {
             struct vec3 colour;
@@ -190,6 +192,7 @@ struct texture {
             const struct expr_program *program; /* one output or three; of the script's arena */
             const char *source;                 /* "scene.lua:12", or "" */
             enum texture_mapping mapping;       /* of u and v */
+            int points;                         /* of a footprint at most: a power of two up to FUNCTION_POINTS */
             struct vec3 average, largest;       /* of some points: estimates */
         } recorded;
     };
@@ -214,7 +217,7 @@ struct texture texture_image(const struct texture_image *image, const struct tex
 struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio);
 struct texture texture_multiply(const struct texture *a, const struct texture *b);
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
-/* A function of the inputs in EXPR_INPUTS, with one output or three; NaN counts as 0. has_coordinates: it reads u or v.
+/* A function of the inputs in EXPR_INPUTS, with one output or three. has_coordinates: it reads u or v.
  * The estimates are the results of texture_estimate. */
 struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
                                 struct vec3 largest);

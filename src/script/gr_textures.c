@@ -107,20 +107,30 @@ static bool multiply(struct script_context *context, const struct script_value *
     return b && give(context, texture_multiply(a, b), result, error);
 }
 
-enum { FN_F };
+enum { FN_F, FN_POINTS };
 static const struct script_parameter fn_parameters[] = {
     [FN_F] = PART("f", "A Lua function f(p, s) of the point, or anything else that is a texture."),
+    [FN_POINTS] = {"points", KIND_WHOLE, OPTIONAL, IN_RANGE(1, FUNCTION_POINTS), NULL, "16",
+                   "Points of a pixel's footprint at most over which the function is averaged: 1, 2, 4, 8 or 16."},
 };
 
 static bool fn(struct script_context *context, const struct script_value *args, struct script_result *result,
                struct error *error) {
     const struct texture *texture = gr_texture_of(context, &args[FN_F], error);
-    return texture && give(context, *texture, result, error);
+    if (!texture)
+        return false;
+    struct texture own = *texture;
+    int points = args[FN_POINTS].given ? (int)args[FN_POINTS].number : FUNCTION_POINTS;
+    while (points & (points - 1)) /* a power of two */
+        points &= points - 1;
+    if (own.kind == TEXTURE_FUNCTION && args[FN_POINTS].given)
+        own.recorded.points = points;
+    return give(context, own, result, error);
 }
 
 static const struct script_function rows[] = {
     GR("fn", fn_parameters, RESULT_TEXTURE, fn,
-       "A Lua function as a texture; wherever a texture is taken, one may stand.", "f"),
+       "A Lua function as a texture; wherever a texture is taken, one may stand.", "f points?"),
     GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
        "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
     GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,

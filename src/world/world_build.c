@@ -23,10 +23,10 @@ static bool make_materials(struct flattening *f) {
     uint32_t count = world->material_count;
     world->materials = arena_alloc_array(arena, count, sizeof *world->materials);
     world->material_has_image = arena_alloc_array(arena, count, sizeof *world->material_has_image);
-    world->material_has_bump = arena_alloc_array(arena, count, sizeof *world->material_has_bump);
+    world->material_has_tangents = arena_alloc_array(arena, count, sizeof *world->material_has_tangents);
     world->material_medium = arena_alloc_array(arena, count, sizeof *world->material_medium);
     world->media = arena_alloc_array(arena, count, sizeof *world->media);
-    if (!world->materials || !world->material_has_image || !world->material_has_bump || !world->material_medium ||
+    if (!world->materials || !world->material_has_image || !world->material_has_tangents || !world->material_medium ||
         !world->media)
         return error_no_memory(f->error, "the materials of the scene");
     for (uint32_t i = 0; i < count; i++)
@@ -37,7 +37,7 @@ static bool make_materials(struct flattening *f) {
         const struct material *material = &world->materials[i];
         struct medium medium = {.absorption = material_absorption(material)};
         world->material_has_image[i] = material_has_image(material);
-        world->material_has_bump[i] = material_has_bump(material);
+        world->material_has_tangents[i] = material_has_bump(material) || material_has_function(material);
         world->material_medium[i] = MEDIUM_NONE;
         if (material_is_transparent(material, &medium.ior)) {
             world->material_medium[i] = world->medium_count;
@@ -79,8 +79,7 @@ static bool build(struct world *world, const struct world_input *input, struct a
         return error_no_memory(error, "the boxes of the scene");
     if (input->linear_colours && !sky_decode(&world->sky, error))
         return false;
-    if (!make_materials(&flattening) ||
-        !world_primitive_boxes(world, flattening.limits, pool, error))
+    if (!make_materials(&flattening) || !world_primitive_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);
     return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error);

@@ -36,10 +36,10 @@ bool world_native_uv(const struct world *world, const struct hit *hit, double *u
     return shape_native_uv(geometry_shape(primitive_geometry(world, hit->primitive), hit->leaf), hit, u, v);
 }
 
-/* What bumps need: the world's vectors of one unit along the operand's normal and along its tangents, and on spheres
- * the tangents of their coordinates, which other materials do not need. */
-static void describe_bump(const struct prototype *prototype, const struct affine *map, const struct csg_leaf *leaf,
-                          struct hit *hit) {
+/* What bumps and recorded functions need: the world's vectors of one unit along the operand's normal and along its
+ * tangents, and on spheres the tangents of their coordinates, which other materials do not need. */
+static void describe_tangents(const struct prototype *prototype, const struct affine *map, const struct csg_leaf *leaf,
+                              struct hit *hit) {
     const struct shape *shape = geometry_shape(&prototype->geometry, hit->leaf);
     bool is_ball = shape_layout(shape) == LAYOUT_SPHERE;
     struct vec3 normal = vec3_normalize(hit->pattern_normal), raise = normal, u = {0}, v = {0}, a, b;
@@ -155,10 +155,10 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
     hit->material = material;
     hit->convexity = convexity_of(prototype, leaf, crossing);
     hit->time = ray->time;
-    if (world->material_has_bump[material]) {
+    if (world->material_has_tangents[material]) {
         if (!map)
             world_from_object = transform_identity();
-        describe_bump(prototype, &world_from_object.forward, leaf, hit);
+        describe_tangents(prototype, &world_from_object.forward, leaf, hit);
     }
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->offset = offset_of(map, map ? stretch_of(world, index, map) : 1, &surface, hit->point);

@@ -263,8 +263,8 @@ static void check_equal(const char *a, const char *b, const char *options_b) {
     " return (1 - math.cos(math.pi * t)) / 2 end"
 
 TEST(marble_written_in_lua_is_the_picture_of_the_built_in_marble) {
-    check_equal("kd = " LUA_MARBLE, "kd = gr.marble_texture(2, 3, 4)", "");
-    check_equal("kd = {0.5, 0.5, 0.5}, bump = gr.bump(" LUA_MARBLE ", 0.1)",
+    check_equal("kd = gr.fn(" LUA_MARBLE ", 1)", "kd = gr.marble_texture(2, 3, 4)", "");
+    check_equal("kd = {0.5, 0.5, 0.5}, bump = gr.bump(gr.multiply_texture(gr.fn(" LUA_MARBLE ", 1), 1), 0.1)",
                 "kd = {0.5, 0.5, 0.5}, bump = gr.bump(gr.marble_texture(2, 3, 4), 0.1)", "");
 }
 
