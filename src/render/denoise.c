@@ -43,6 +43,7 @@ _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARI
 static const float colour_noise = 1e-3F; /* of the squared colours: the unit in which errors are compared */
 static const struct denoise_bandwidth bandwidths[DENOISE_BANDWIDTHS] = {{DENOISE_WINDOW, 2}, {5, 3}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
+static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
 static const float choice_slope = 12;       /* how strongly the bandwidth with the smaller error is preferred */
 
 /* A picture as planes of floats. */
@@ -451,12 +452,13 @@ static float mean_of_halves(const struct level *level, int c, size_t at) {
     return 0.5F * (level->estimate[0][c][at] + level->estimate[1][c][at]);
 }
 
-/* The mean of the halves. A pixel that is brighter or darker than all of its neighbours was so in both of them,
- * by more than a standard deviation. */
-static float supported_mean(const struct level *level, int c, int x, int y) {
+/* The mean of the halves. A pixel that is brighter or darker than all of its neighbours is so in both of them, by more
+ * than its samples explain: few bright paths in a pixel bring a mean that is hardly larger than its standard error,
+ * a detail of the scene is found by many. error: the standard error of the pixel's mean. */
+static float supported_mean(const struct level *level, int c, int x, int y, float error) {
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
-    float sigma = sqrtf(level->variance[c][at]), high = (a < b ? a : b) - sigma, low = (a < b ? b : a) + sigma;
+    float margin = support_errors * error, high = (a < b ? a : b) - margin, low = (a < b ? b : a) + margin;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
             size_t q = nearest_at(level, x + i, y + j);
@@ -478,7 +480,8 @@ static void finish_row(void *context, uint32_t y, int worker) {
         float share = row[x].share;
         for (int c = 0; c < 3; c++)
             d->out[pixel_at(d->level, x, (int)y)][c] =
-                supported_mean(d->level, c, x, (int)y) + (share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c]);
+                supported_mean(d->level, c, x, (int)y, sqrtf(fabsf(bounded(row[x].variance[c])))) +
+                (share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c]);
     }
 }
 
