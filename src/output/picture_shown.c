@@ -6,48 +6,21 @@
 #include "base/mem.h"
 #include "output/oidn_internal.h"
 #include "render/aov.h"
-#include "render/denoise.h"
 #include "render/path_film.h"
 
 #include <string.h>
 
-/* Features of the film are in the order of enum denoise_feature, and glow follows. */
-static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
-    const struct film *film = context;
-    for (uint32_t x = 0; x < film->width; x++) {
-        struct path_pixel pixel = path_film_load(film, (size_t)y * film->width + x);
-        double weight = pixel.weights[0] + pixel.weights[1];
-        for (int half = 0; half < 2; half++) {
-            int from = pixel.weights[half] != 0 ? half : 1 - half; /* of one sample there is one half */
-            struct vec3 colour = path_pixel_half(&pixel, from);
-            row[x].colour[half][0] = (float)colour.x;
-            row[x].colour[half][1] = (float)colour.y;
-            row[x].colour[half][2] = (float)colour.z;
-            for (int i = 0; i < DENOISE_FEATURES; i++)
-                row[x].features[half][i] = (float)path_pixel_feature(&pixel, from, PATH_ALBEDO + i);
-            for (int i = 0; i < 3; i++)
-                row[x].glow[half][i] = (float)path_pixel_feature(&pixel, from, PATH_GLOW + i);
-        }
-        struct vec3 variance = path_pixel_variance_of_samples(&pixel);
-        row[x].variance[0] = (float)variance.x;
-        row[x].variance[1] = (float)variance.y;
-        row[x].variance[2] = (float)variance.z;
-        row[x].share = weight != 0 ? (float)(pixel.weights[0] / weight) : 0.5F;
-    }
-}
-
 static bool denoise_film(const struct film *film, enum denoiser denoiser, struct pool *pool, float (*out)[3],
                          struct error *error) {
-    struct film source = *film;
+    struct film copy = *film;
+    const struct denoise_source source = path_film_denoise_source(&copy);
     switch (denoiser) {
     case DENOISER_NONE:
         return true;
     case DENOISER_GRAY:
-        return denoise(&(struct denoise_source){film->width, film->height, film->x0, film->y0, film_row, &source}, pool,
-                       out, error);
+        return denoise(&source, pool, out, error);
     case DENOISER_OIDN:
-        return oidn_run(&(struct denoise_source){film->width, film->height, film->x0, film->y0, film_row, &source}, out,
-                        error);
+        return oidn_run(&source, out, error);
     }
     return true;
 }

@@ -6,6 +6,7 @@
 #include "render/integrator_internal.h"
 #include "render/path_film.h"
 
+#include <math.h>
 #include <stdio.h>
 
 struct film_record path_tracer_record(const struct settings *settings) {
@@ -149,32 +150,24 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
 
 static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part, uint32_t begin, uint32_t end) {
+    uint32_t expected = tracer->noise > 0 ? worker->samples_expected : tracer->samples;
     for (int64_t y = part->y0; y < part->y1; y++) {
         if (!sample_row(tracer, renderer, worker, part, y, (struct sample_range){begin, end}))
             return false;
-        double done =
-            (double)(end - begin) / tracer->samples * (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0);
-        renderer_tile_goes_on(renderer, worker, 1, (double)begin / tracer->samples + done);
+        double rows = (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0);
+        if (expected > 0)
+            renderer_tile_goes_on(renderer, worker, 1, (begin + (end - begin) * rows) / expected);
     }
     return true;
 }
 
 /* --- noise --- */
 
-/* gray checks the noise of a tile after 16, 24, 32, 48, 64 ... samples. Returns the first of these numbers above
- * `samples`. */
-static uint32_t next_check(uint32_t samples) {
-    uint32_t power = 16;
-    while (power <= samples / 2)
-        power *= 2;
-    return samples < power ? power : samples < power + power / 2 ? power + power / 2 : 2 * power;
-}
-
 static bool is_check(uint32_t samples) {
-    return samples >= 16 && next_check(samples - 1) == samples;
+    return samples >= 16 && path_next_check(samples - 1) == samples;
 }
 
-static bool is_quiet(const struct path_tracer *tracer, const struct film *film, const struct rectangle *part) {
+static double noise_of(const struct film *film, const struct rectangle *part) {
     double sum = 0, pixels = (double)((part->x1 - part->x0) * (part->y1 - part->y0));
     for (int64_t y = part->y0; y < part->y1; y++) {
         for (int64_t x = part->x0; x < part->x1; x++) {
@@ -182,7 +175,17 @@ static bool is_quiet(const struct path_tracer *tracer, const struct film *film, 
             sum += path_pixel_noise(&pixel);
         }
     }
-    return sum <= tracer->noise * tracer->noise * pixels;
+    return sqrt(sum / pixels);
+}
+
+/* Looks at the noise of the tile, and so at how many samples it will have. True: it is at a check, and has little
+ * enough noise. */
+static bool is_quiet(const struct path_tracer *tracer, const struct film *film, struct worker *worker,
+                     const struct rectangle *part, uint32_t samples) {
+    double noise = noise_of(film, part);
+    bool quiet = is_check(samples) && noise <= tracer->noise;
+    worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise, tracer->noise, tracer->samples);
+    return quiet;
 }
 
 /* Takes the samples of a pass, until the noise of the tile is small enough. A tile that an earlier pass has finished
@@ -191,14 +194,15 @@ static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer
                                const struct rectangle *part) {
     const struct film *film = renderer->job->film;
     uint32_t done = renderer->pass.begin, end = renderer->pass.end;
+    worker->samples_expected = 0;
     if (done > 0 && path_film_load(film, pixel_index(film, part->x0, part->y0)).samples < done)
         return true;
-    while (!(is_check(done) && is_quiet(tracer, film, part))) {
+    while (!((is_check(done) || done == end) && is_quiet(tracer, film, worker, part, done))) {
         if (done == end) {
             atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
             return true;
         }
-        uint32_t check = next_check(done), next = check < end ? check : end;
+        uint32_t check = path_next_check(done), next = check < end ? check : end;
         if (!sample_part(tracer, renderer, worker, part, done, next))
             return false;
         done = next;

@@ -9,6 +9,7 @@
 #define GRAY_RENDER_PATH_FILM_H
 
 #include "math/vec3.h"
+#include "render/denoise.h"
 #include "render/film.h"
 #include "render/path_parts.h"
 
@@ -54,5 +55,19 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
  * from the halves. The noise of a tile is the square root of the mean over its pixels: an estimate of its relative
  * error. */
 double path_pixel_noise(const struct path_pixel *pixel);
+
+/* --noise looks at a tile after 16, 24, 32, 48, 64 ... samples: the first of these numbers above `samples`. */
+uint32_t path_next_check(uint32_t samples);
+/* The number of samples, at most `limit`, after which a tile is expected to have the noise `wanted`, if it has `noise`
+ * after `samples`: noise falls with the square root of the number, and a tile ends at a check. wanted > 0. 0: one
+ * sample shows no noise. */
+uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, uint32_t limit);
+
+/* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the film.
+ */
+struct denoise_source path_film_denoise_source(struct film *film);
+/* Replaces the colours of the film by denoised ones, to be looked at. Its sums stay: more samples may follow, and files
+ * are written from them. Errors: no memory, cancelled; then the film is unchanged. */
+bool path_film_show_denoised(struct film *film, struct pool *pool, struct error *error);
 
 #endif

@@ -6,6 +6,7 @@
 #include "base/mem.h"
 #include "render/aov.h"
 #include "render/film.h"
+#include "render/path_film.h"
 #include "render/pixel_trace.h"
 #include "render/settings.h"
 
@@ -92,6 +93,21 @@ static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
              make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
 }
 
+/* A tile has the samples of the pass, or little enough noise. */
+static void note_pass(const struct renderer *renderer, const struct worker *worker, struct pass_tile *tile,
+                      double seconds) {
+    const struct sample_pass *pass = &renderer->pass;
+    bool noise = renderer->job->settings.noise > 0;
+    if (noise && tile->samples < pass->begin)
+        return;
+    uint32_t expected = worker->samples_expected > 0 ? worker->samples_expected : tile->expected;
+    tile->seconds += seconds;
+    tile->expected = noise ? expected : pass->limit;
+    tile->samples = noise && expected > 0 && expected < pass->end ? expected : pass->end;
+    if (tile->expected > 0 && tile->expected < tile->samples)
+        tile->expected = tile->samples;
+}
+
 void renderer_pass_item(void *context, uint32_t position, int index) {
     struct renderer *renderer = context;
     struct film *film = renderer->job->film;
@@ -100,7 +116,11 @@ void renderer_pass_item(void *context, uint32_t position, int index) {
     if (renderer_is_done(renderer) || (before != FILM_TILE_WANTED && before < FILM_TILE_PASSED))
         return;
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    bool whole = make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
+    struct worker *worker = &renderer->workers[index];
+    double begun = clock_seconds(CLOCK_MONOTONIC);
+    bool whole = make_part(renderer, worker, tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
+    if (whole && renderer->pass_tiles)
+        note_pass(renderer, worker, &renderer->pass_tiles[tile], worker->tile_ended - begun);
     uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
     atomic_store_explicit(&film->tiles[tile], whole ? after : before, memory_order_release);
 }
@@ -311,6 +331,7 @@ static void end_rendering(struct renderer *renderer, int workers) {
     mem_free(renderer->closed);
     mem_free(renderer->order);
     mem_free(renderer->quarters);
+    mem_free(renderer->pass_tiles);
     time_estimate_destroy(&renderer->time_estimate);
 }
 
@@ -383,12 +404,24 @@ static bool is_unfinished(const struct renderer *renderer) {
     return film_tiles_in(film, FILM_TILE_DONE) + film_tiles_in(film, FILM_TILE_ELSEWHERE) < film_tile_count(film);
 }
 
+/* A picture that is looked at is denoised when it has all samples; without memory for that it stays as it is. The part
+ * of a shard lacks its neighbours. False: stopped. */
+static bool show_denoised(struct renderer *renderer) {
+    struct film *film = renderer->job->film;
+    struct error error = {0};
+    if (!renderer->job->settings.passes || !(path_film_parts(film->record) & PATH_PART_FEATURES) ||
+        film_tiles_in(film, FILM_TILE_ELSEWHERE) > 0)
+        return true;
+    return path_film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
+}
+
 static bool make_passes(struct renderer *renderer, struct render_statistics *statistics) {
     if (!renderer_make_passes(renderer))
         return false;
-    end_passes(renderer);
     statistics->passes_samples = renderer->pass.end;
-    return true;
+    bool ok = show_denoised(renderer);
+    end_passes(renderer);
+    return ok;
 }
 
 static bool make_tiles(struct renderer *renderer, struct render_statistics *statistics, struct error *error) {
@@ -492,30 +525,29 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
     return fitting < (double)count ? (uint32_t)fmax(fitting, 1) : count;
 }
 
-/* Tiles that have little enough noise count as done. */
-static void report_progress(struct renderer *renderer, uint32_t limit, double now) {
-    struct progress_estimate *estimate = renderer->job->progress_estimate;
-    double done = renderer->pass.end, left = (double)limit - done, passed = now - renderer->begun;
-    if (!estimate)
-        return;
-    if (time_left(renderer, now) < left / done * passed) {
-        done = passed;
-        left = fmax(time_left(renderer, now), 0);
-    }
-    progress_estimate_report(estimate, done, left, clock_nanoseconds(CLOCK_MONOTONIC));
+/* elapsed: seconds since the first pass began. */
+static void report_progress(struct renderer *renderer, double elapsed, double now) {
+    double left = time_estimate_of_passes(renderer->pass_tiles, film_tile_count(renderer->job->film), elapsed);
+    double limit = fmax(time_left(renderer, now), 0);
+    if (left >= 0 || limit < HUGE_VAL)
+        progress_estimate_report(renderer->job->progress_estimate, elapsed, left >= 0 ? fmin(left, limit) : limit,
+                                 clock_nanoseconds(CLOCK_MONOTONIC));
 }
 
-static void begin_progress(const struct renderer *renderer) {
+/* Without memory there is no time estimate. */
+static void begin_progress(struct renderer *renderer) {
     struct progress_estimate *estimate = renderer->job->progress_estimate;
-    if (estimate)
-        atomic_store(&estimate->begun, clock_nanoseconds(CLOCK_MONOTONIC));
+    if (!estimate)
+        return;
+    renderer->pass_tiles = mem_alloc_zero(film_tile_count(renderer->job->film), sizeof *renderer->pass_tiles);
+    atomic_store(&estimate->begun, clock_nanoseconds(CLOCK_MONOTONIC));
 }
 
 bool renderer_make_passes(struct renderer *renderer) {
     uint32_t limit = renderer->pass.end, count = film_tile_count(renderer->job->film);
     double begun = clock_seconds(CLOCK_MONOTONIC), now = begun;
     begin_progress(renderer);
-    renderer->pass = (struct sample_pass){.begin = 0, .end = 1, .open = true};
+    renderer->pass = (struct sample_pass){.limit = limit, .begin = 0, .end = 1, .open = true};
     for (;;) {
         atomic_store(&renderer->unsatisfied, false);
         if (!pool_run(renderer->pool, count, renderer_pass_item, renderer) || renderer_is_done(renderer))
@@ -523,7 +555,8 @@ bool renderer_make_passes(struct renderer *renderer) {
         now = clock_seconds(CLOCK_MONOTONIC);
         uint32_t done = renderer->pass.end;
         double seconds = fmax((now - begun) / done, 1e-9);
-        report_progress(renderer, limit, now);
+        if (renderer->pass_tiles)
+            report_progress(renderer, now - begun, now);
         if (done == limit || !atomic_load(&renderer->unsatisfied) || time_left(renderer, now) < seconds)
             return true;
         renderer->pass.number++;

@@ -33,12 +33,13 @@ struct worker {
     int index;
     double tile_ended;                /* seconds, of the last one */
     uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
+    uint32_t samples_expected;        /* of the pixels of the tile under way (--noise); 0: not known yet */
 };
 
 /* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */
 struct sample_pass {
-    uint32_t number, begin, end;
-    bool open; /* more passes may follow */
+    uint32_t number, begin, end, limit; /* limit: of the end of all passes */
+    bool open;                          /* more passes may follow */
 };
 
 struct renderer {
@@ -65,8 +66,9 @@ struct renderer {
     _Atomic uint8_t *quarters; /* of each of the others, how many are done; and QUARTER_FAILED */
     bool estimated;            /* the cost of the tiles has been estimated */
     struct time_estimate time_estimate;
-    uint64_t worked;           /* processor time when the first tile began */
-    _Atomic uint64_t reported; /* time of the last progress report in nanoseconds */
+    struct pass_tile *pass_tiles; /* NULL: no time estimate of passes */
+    uint64_t worked;              /* processor time when the first tile began */
+    _Atomic uint64_t reported;    /* time of the last progress report in nanoseconds */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };

@@ -55,6 +55,18 @@ struct time_estimate_work {
 };
 struct time_estimate_work time_estimate_work(const struct time_estimate *time_estimate, const struct film *film);
 
+/* A tile of a picture that is made pass by pass: the seconds of its samples so far, the samples that each of its pixels
+ * has, and how many it will have; 0: not known yet. */
+struct pass_tile {
+    double seconds;
+    uint32_t samples, expected;
+};
+
+/* Seconds until all tiles have their samples, if further samples cost what those before did. elapsed: seconds of the
+ * passes so far, in which threads shared the work of the tiles; but no tile is shared, so the rest takes no less than
+ * the costliest tile that is left. Negative: not known yet. */
+double time_estimate_of_passes(const struct pass_tile *tiles, uint32_t count, double elapsed);
+
 /* How much of the work of a picture is done, and when it will be over: not how many tiles, but what they cost
  * (render/time_estimate.h, docs/progress.md). Shared memory: the other process may read while it is written. */
 

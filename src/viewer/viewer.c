@@ -2,6 +2,7 @@
  * about a thirtieth of a second; then finer ones, and finally the picture with the settings of the script. The cost of
  * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
+#include "render/path_film.h"
 #include "viewer/viewer_internal.h"
 
 #include <math.h>
@@ -176,6 +177,9 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     viewer->pass.result = report->stopped ? RESULT_STOPPED : viewer->pass.view.plain ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
+    /* Tiles that were done before a pass was stopped may be denoised now. */
+    if (path_film_parts(viewer->pass.film.record) != 0)
+        memset(viewer->display.drawn, 0, viewer->display.tiles);
     viewer_draw_tiles(viewer);
     /* Passes that take no time do not help to choose divide. */
     double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);

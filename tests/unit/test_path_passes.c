@@ -1,5 +1,6 @@
 /* Samples that come in passes, until a time is over or a tile has little enough noise. */
 #include "render/path_film.h"
+#include "render/time_estimate.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -54,6 +55,31 @@ TEST(a_picture_of_passes_has_the_bytes_of_one_whose_tiles_get_all_samples_in_one
     CHECK_EQ_INT(film_tiles_in(&s.film, FILM_TILE_DONE), film_tile_count(&s.film));
     CHECK(stage_pixel(&s, 5, 5).x > 0 && stage_pixel(&s, WIDTH - 5, 5).y > 0);
     free(whole);
+    stage_end(&s);
+}
+
+TEST(a_picture_that_is_looked_at_is_shown_denoised_when_it_has_all_samples) {
+    struct stage s;
+    struct error error = {0};
+    char warning[256];
+    begin(&s, 2);
+    s.settings.path_samples = 6;
+    s.settings.denoise = DENOISER_GRAY;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    struct pool *pool = pool_create(1, warning);
+    const struct denoise_source source = path_film_denoise_source(&s.film);
+    static float denoised[WIDTH * HEIGHT][3];
+    CHECK(denoise(&source, pool, denoised, &error));
+    pool_destroy(pool);
+    size_t count = (size_t)WIDTH * HEIGHT, floats = count * s.film.record.floats * sizeof *s.film.floats;
+    CHECK(memcmp(denoised, s.film.pixels, sizeof denoised) != 0);
+    void *sums = memcpy(malloc(floats), s.film.floats, floats);
+    s.settings.passes = true;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(memcmp(denoised, s.film.pixels, sizeof denoised) == 0);
+    CHECK(memcmp(sums, s.film.floats, floats) == 0); /* of which files are made */
+    CHECK_EQ_INT(film_tiles_in(&s.film, FILM_TILE_DONE), film_tile_count(&s.film));
+    free(sums);
     stage_end(&s);
 }
 
@@ -148,6 +174,39 @@ TEST(spp_is_the_limit_of_samples_where_the_noise_asks_for_more) {
             CHECK_EQ_INT(pixel_at(&s, x, y).samples, 20);
     }
     stage_end(&s);
+}
+
+/* If the noise is c / sqrt(N), a tile ends at the first check with c <= wanted sqrt(N). */
+TEST(the_samples_of_a_tile_are_expected_from_the_square_root_of_their_number) {
+    static const double factors[] = {0.3, 1, 2.5, 7};
+    for (int i = 0; i < 4; i++) {
+        const double wanted = 0.1, factor = factors[i];
+        uint32_t ends = 16;
+        while (factor / sqrt(ends) > wanted)
+            ends = path_next_check(ends);
+        for (uint32_t n = 16; n < ends; n = path_next_check(n))
+            CHECK_EQ_INT(path_samples_expected(n, factor / sqrt(n), wanted, 65536), ends);
+        CHECK_EQ_INT(path_samples_expected(ends, factor / sqrt(ends), wanted, 65536), ends);
+    }
+    CHECK_EQ_INT(path_samples_expected(16, 0.2, 0.1, 65536), 64);
+    CHECK_EQ_INT(path_samples_expected(4, 0.4, 0.1, 65536), 64);
+    CHECK_EQ_INT(path_samples_expected(4, 0.1, 0.1, 65536), 16);
+    CHECK_EQ_INT(path_samples_expected(1, 0, 0.1, 65536), 0);
+    CHECK_EQ_INT(path_samples_expected(16, 0.2, 0.1, 40), 40);
+    CHECK_EQ_INT(path_samples_expected(24, HUGE_VAL, 0.1, 65536), 65536);
+    CHECK_EQ_INT(path_samples_expected(32, 0, 0.1, 65536), 32);
+}
+
+TEST(the_time_left_of_passes_is_that_of_the_samples_that_tiles_are_expected_to_have) {
+    /* A quarter of the seconds of both threads was for each of the first two. */
+    struct pass_tile tiles[] = {{1, 16, 32}, {1, 16, 16}, {2, 32, 64}, {0, 0, 0}};
+    CHECK_NEAR(time_estimate_of_passes(tiles, 4, 2), 2, 1e-12); /* the longest */
+    CHECK_NEAR(time_estimate_of_passes(tiles, 4, 4), 3, 1e-12); /* one thread */
+    tiles[2].expected = 48;
+    CHECK_NEAR(time_estimate_of_passes(tiles, 4, 2), 1, 1e-12);
+    tiles[1].expected = 0;
+    CHECK(time_estimate_of_passes(tiles, 4, 2) < 0);
+    CHECK(time_estimate_of_passes(tiles + 3, 1, 2) < 0);
 }
 
 /* Against a picture of many samples, as --noise defines it. */
