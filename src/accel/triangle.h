@@ -55,7 +55,10 @@ int triangle_edge_tie(double ax, double ay, double bx, double by);
 
 static inline double triangle_edge(double ax, double ay, double bx, double by) {
     double p = ax * by, q = ay * bx, e = p - q;
-    return fabs(e) > 0x1p-49 * (fabs(p) + fabs(q)) ? e : triangle_edge_exact(ax, ay, bx, by);
+    /* Products of zeros, as for triangles along the axes, are exact. One branch, which can be predicted. */
+    bool clear = fabs(e) > 0x1p-49 * (fabs(p) + fabs(q)),
+         zero = (e == 0) & ((ax == 0) | (by == 0)) & ((ay == 0) | (bx == 0));
+    return __builtin_expect(clear | zero, 1) ? e : triangle_edge_exact(ax, ay, bx, by);
 }
 
 /* Whether the whole line meets the triangle, and where. hit->triangle does not change. */

@@ -302,6 +302,10 @@ static struct vec3 load(const double v[3]) {
     return vec3_make(v[0], v[1], v[2]);
 }
 
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* at: the barycentric coordinates; e1, e2: the edges from the first corner. */
 static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 at, struct vec3 e1, struct vec3 e2,
                         struct surface *out) {
@@ -326,14 +330,12 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
                 c = load(mesh->vertices[corner[2]]);
     struct vec3 e1 = vec3_sub(b, a), e2 = vec3_sub(c, a);
     double u = crossing->u, v = crossing->v, w = 1 - u - v;
-    surface_make(out, (struct vec3){0, 0, 0}, (struct vec3){0, 0, 0}, 0);
-    out->point = vec3_add_scaled(vec3_add_scaled(vec3_scale(a, w), b, u), c, v);
-    out->error = 0x1p-49 * fmax(vec3_max_abs(a), fmax(vec3_max_abs(b), vec3_max_abs(c)));
-    out->normal = mesh_triangle_normal(mesh, triangle);
+    struct vec3 normal = mesh_normal_of_edges(e1, e2);
     /* A triangle without area represents the seam it closes: it faces the ray. */
-    if (vec3_max_abs(out->normal) == 0)
-        out->normal = crossing->enter ? vec3_negate(ray->direction) : ray->direction;
-    out->shading_normal = out->normal;
+    if (vec3_max_abs(normal) == 0)
+        normal = crossing->enter ? vec3_negate(ray->direction) : ray->direction;
+    surface_make(out, vec3_add_scaled(vec3_add_scaled(vec3_scale(a, w), b, u), c, v), normal,
+                 0x1p-49 * larger(vec3_max_abs(a), larger(vec3_max_abs(b), vec3_max_abs(c))));
     if (mesh->normals && mesh->normal_corners[triangle][0] != MESH_NONE) {
         const uint32_t *n = mesh->normal_corners[triangle];
         struct vec3 mixed = vec3_scale(load(mesh->normals[n[0]]), w);
@@ -342,8 +344,6 @@ void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct 
         if (vec3_length_squared(mixed) > 0x1p-60)
             out->shading_normal = mixed;
     }
-    out->pattern_point = out->point;
-    out->pattern_normal = out->normal;
     if (mesh->uvs && mesh->uv_corners[triangle][0] != MESH_NONE)
         describe_uv(mesh, triangle, vec3_make(w, u, v), e1, e2, out);
     if (mesh->colours) {

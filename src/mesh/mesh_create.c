@@ -63,21 +63,14 @@ bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input) 
            memcmp(mesh->face_vertex, input->vertex_index, corners * sizeof *input->vertex_index) == 0;
 }
 
-struct vec3 mesh_triangle_normal(const struct mesh *mesh, uint32_t triangle) {
-    const double *a = mesh->vertices[mesh->corners[triangle][0]];
-    const double *b = mesh->vertices[mesh->corners[triangle][1]];
-    const double *c = mesh->vertices[mesh->corners[triangle][2]];
-    double e[3], f[3];
-    for (int k = 0; k < 3; k++) {
-        e[k] = b[k] - a[k];
-        f[k] = c[k] - a[k];
-    }
-    return vec3_make(triangle_edge(e[1], e[2], f[1], f[2]), triangle_edge(e[2], e[0], f[2], f[0]),
-                     triangle_edge(e[0], e[1], f[0], f[1]));
+static struct vec3 edge_of(const struct mesh *mesh, const uint32_t corners[3], int end) {
+    const double *a = mesh->vertices[corners[0]], *b = mesh->vertices[corners[end]];
+    return vec3_make(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
 
 static bool is_degenerate(const struct mesh *mesh, uint32_t triangle) {
-    return vec3_max_abs(mesh_triangle_normal(mesh, triangle)) == 0;
+    const uint32_t *corners = mesh->corners[triangle];
+    return vec3_max_abs(mesh_normal_of_edges(edge_of(mesh, corners, 1), edge_of(mesh, corners, 2))) == 0;
 }
 
 static bool same_position(const struct mesh *mesh, uint32_t a, uint32_t b) {

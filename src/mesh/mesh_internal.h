@@ -37,8 +37,11 @@ struct mesh {
 
 #define MESH_NONE UINT32_MAX
 
-/* (b - a) x (c - a); zero only where the three (rounded differences of) points lie on a line. */
-struct vec3 mesh_triangle_normal(const struct mesh *mesh, uint32_t triangle);
+/* The cross product of the edges of a triangle from its first corner; zero only if they are parallel. */
+static inline struct vec3 mesh_normal_of_edges(struct vec3 e, struct vec3 f) {
+    return vec3_make(triangle_edge(e.y, e.z, f.y, f.z), triangle_edge(e.z, e.x, f.z, f.x),
+                     triangle_edge(e.x, e.y, f.x, f.y));
+}
 
 /* Fills closed, outward and open_edge. False: no memory. */
 bool mesh_find_topology(struct mesh *mesh);
