@@ -24,6 +24,7 @@ struct material material_flatten(const struct material *material) {
     out.name = NULL;
     out.serial = 0;
     out.depth = 1;
+    out.plain = false;
     return out;
 }
 
@@ -63,6 +64,8 @@ void material_inputs_at(const struct material *material, const struct hit *hit, 
     copy_numbers(numbers_of(material), out);
     out->normal = hit->normal;
     out->fresnel = material->fresnel;
+    if (material->plain)
+        return;
     texture_reader_init(&reader, hit, material->textures, numbers_of(material));
     read_colour(inputs[INPUT_KD], &reader, &out->kd);
     read_colour(inputs[INPUT_KS], &reader, &out->ks);

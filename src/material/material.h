@@ -81,6 +81,7 @@ struct material {
     /* The tables that `inputs` and `bump` are indices of, those of a world; NULL: the material is authored. */
     const struct texture *textures;
     const struct bump *bumps;
+    bool plain;                  /* in a world: every input is a number, and nothing turns the normal */
     enum material_input changed; /* of MATERIAL_IMAGE */
     bool fresnel;
     struct phong phong; /* of a base */

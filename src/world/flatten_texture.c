@@ -117,8 +117,11 @@ static bool number_all(const struct world *world, struct numbering *textures, st
 static void refer(struct world *world, const struct numbering *textures, const struct numbering *bumps) {
     for (uint32_t i = 0; i < world->material_count; i++) {
         struct material *material = &world->materials[i];
-        for (int k = 0; k < INPUT_COUNT; k++)
+        material->plain = !material->bump.authored;
+        for (int k = 0; k < INPUT_COUNT; k++) {
+            material->plain = material->plain && !material->inputs[k].authored;
             material->inputs[k] = texture_index(textures, material->inputs[k]);
+        }
         material->bump = bump_index(bumps, material->bump);
         material->textures = world->textures;
         material->bumps = world->bumps;
