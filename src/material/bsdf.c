@@ -14,6 +14,8 @@
 #include "math/elementary.h"
 #include "math/frame.h"
 
+#include <stddef.h>
+
 const char *lobe_name(enum lobe_kind kind) {
 #define LOBE_NAME(kind, name, flags) [kind] = (name),
     static const char *const names[] = {LOBES(LOBE_NAME)};
@@ -109,13 +111,38 @@ static double power_pdf(double cosine, double exponent) {
     return cosine > 0 ? (e + 1) / (2 * PI) * lobe_power(cosine, e) : 0;
 }
 
+/* Sine and cosine of -pi/4 to pi/4 by their series, to 2^-52; without branches, for directions only. */
+static void short_sincos(double x, double *sine, double *cosine) {
+    double z = x * x, s = -1.0 / 1307674368000, c = 1.0 / 20922789888000;
+    s = s * z + 1.0 / 6227020800;
+    s = s * z - 1.0 / 39916800;
+    s = s * z + 1.0 / 362880;
+    s = s * z - 1.0 / 5040;
+    s = s * z + 1.0 / 120;
+    s = s * z - 1.0 / 6;
+    c = c * z - 1.0 / 87178291200;
+    c = c * z + 1.0 / 479001600;
+    c = c * z - 1.0 / 3628800;
+    c = c * z + 1.0 / 40320;
+    c = c * z - 1.0 / 720;
+    c = c * z + 1.0 / 24;
+    c = c * z - 0.5;
+    *sine = x + x * (z * s);
+    *cosine = 1 + z * c;
+}
+
+/* In proportion to the cosine: sample_disc, raised to the hemisphere. In each eighth of the disc the angle to the next
+ * axis is at most pi/4. */
 static struct vec3 diffuse_sample(struct vec3 normal, struct sample2 u) {
-    struct sample2 disc = sample_disc(u);
+    double x = 2 * u.x - 1, y = 2 * u.y - 1, sine, cosine;
+    bool wide = fabs(x) > fabs(y);
+    double radius = wide ? x : y, other = wide ? y : x;
+    short_sincos(radius != 0 ? PI / 4 * (other / radius) : 0, &sine, &cosine);
+    double along = radius * cosine, across = radius * sine, height = 1 - radius * radius;
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
-    double height = 1 - disc.x * disc.x - disc.y * disc.y;
     struct vec3 out = vec3_scale(normal, height > 0 ? sqrt(height) : 0);
-    return vec3_add_scaled(vec3_add_scaled(out, a, disc.x), b, disc.y);
+    return vec3_add_scaled(vec3_add_scaled(out, a, wide ? along : across), b, wide ? across : along);
 }
 
 static double blinn_pdf(const struct lobe *lobe, struct vec3 normal, struct vec3 wo, struct vec3 wi) {
@@ -259,6 +286,7 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
 struct lobe_direction {
     struct vec3 direction;
     double share;
+    double pdf; /* of a lobe with f |cos| in proportion to its density; of all others 0 */
     bool delta, transmits;
 };
 
@@ -304,10 +332,12 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
     struct vec3 facet;
     out->delta = out->transmits = false;
     out->share = 1;
+    out->pdf = 0;
     switch (lobe->kind) {
     case LOBE_DIFFUSE:
         out->direction = diffuse_sample(bsdf->lit, u);
-        return classic_cosine(bsdf, out->direction) > 0;
+        out->pdf = classic_cosine(bsdf, out->direction) / PI;
+        return out->pdf > 0;
     case LOBE_PHONG:
         out->direction = power_sample(dielectric_mirror(bsdf->lit, wo), lobe->exponent, u);
         return classic_cosine(bsdf, out->direction) > 0;
@@ -346,12 +376,16 @@ static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
 }
 
 /* Lobes are chosen in proportion to it. Without a boundary no facet reflects. */
-static double lobe_chance(const struct bsdf *bsdf, uint32_t lobes, int i) {
-    const struct lobe *lobe = &bsdf->lobes[i];
-    if (!(lobes >> i & 1) || !lobe_counts(bsdf, lobe) ||
-        (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1))
+static double lobe_chance(const struct bsdf *bsdf, const struct lobe *lobe) {
+    if (!lobe_counts(bsdf, lobe) || (lobe->kind == LOBE_GGX_REFLECTION && bsdf->fresnel_of_facets && bsdf->eta == 1))
         return 0;
     return vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe);
+}
+
+/* The only lobe of a set, or NULL: there are none or several. */
+static const struct lobe *only_lobe(const struct bsdf *bsdf, uint32_t lobes) {
+    lobes &= (UINT32_C(1) << bsdf->count) - 1;
+    return lobes != 0 && (lobes & (lobes - 1)) == 0 ? &bsdf->lobes[__builtin_ctz(lobes)] : NULL;
 }
 
 /* The chances of all lobes, and their sum. */
@@ -361,7 +395,7 @@ struct lobe_chances {
 static void lobe_chances_make(const struct bsdf *bsdf, uint32_t lobes, struct lobe_chances *out) {
     out->all = 0;
     for (int i = 0; i < bsdf->count; i++) {
-        out->of[i] = lobe_chance(bsdf, lobes, i);
+        out->of[i] = lobes >> i & 1 ? lobe_chance(bsdf, &bsdf->lobes[i]) : 0;
         out->all += out->of[i];
     }
 }
@@ -381,9 +415,9 @@ static double pdf_of_chances(const struct bsdf *bsdf, const struct lobe_chances 
 
 struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi) {
     struct vec3 sum = {0, 0, 0};
-    for (int i = 0; i < bsdf->count; i++) {
-        const struct lobe *lobe = &bsdf->lobes[i];
-        if (!(lobes >> i & 1) || !lobe_counts(bsdf, lobe))
+    for (uint32_t left = lobes & ((UINT32_C(1) << bsdf->count) - 1); left; left &= left - 1) {
+        const struct lobe *lobe = &bsdf->lobes[__builtin_ctz(left)];
+        if (!lobe_counts(bsdf, lobe))
             continue;
         bool transmits = (lobe_flags(lobe->kind) & BSDF_TRANSMITS) && vec3_dot(wi, bsdf->geometric_side) < 0;
         double factor = radiance_factor(bsdf, mode, transmits);
@@ -396,37 +430,51 @@ struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mo
 
 double bsdf_pdf(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct vec3 wi) {
     struct lobe_chances chances;
+    const struct lobe *only = only_lobe(bsdf, lobes);
+    if (only)
+        return lobe_chance(bsdf, only) > 0 ? lobe_pdf(bsdf, only, wo, wi) : 0;
     lobe_chances_make(bsdf, lobes, &chances);
     return pdf_of_chances(bsdf, &chances, wo, wi);
 }
 
-bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
-                 struct bsdf_sample *out) {
-    /* Choose a lobe; the rest of u.x is reused. */
-    struct lobe_chances chances;
+/* Chooses a lobe with u->x, whose rest is uniform again. NULL: no lobe contributes. */
+static const struct lobe *choose_lobe(const struct bsdf *bsdf, const struct lobe_chances *chances, struct sample2 *u,
+                                      double *chance) {
     double from = 0;
     int chosen = -1;
-    lobe_chances_make(bsdf, lobes, &chances);
     for (int i = 0; i < bsdf->count; i++) {
-        double share = lobe_share(&chances, i);
+        double share = lobe_share(chances, i);
         if (!(share > 0))
             continue;
-        if (chosen >= 0 && u.x < from)
+        if (chosen >= 0 && u->x < from)
             break;
         chosen = i;
-        out->pdf = share;
+        *chance = share;
         from += share;
     }
     if (chosen < 0)
-        return false;
-    const struct lobe *lobe = &bsdf->lobes[chosen];
-    if (out->pdf < 1) {
-        double within = (u.x - (from - out->pdf)) / out->pdf;
-        u.x = within > 0 ? within < 1 ? within : 0x1.fffffffffffffp-1 : 0;
+        return NULL;
+    if (*chance < 1) {
+        double within = (u->x - (from - *chance)) / *chance;
+        u->x = within > 0 ? within < 1 ? within : 0x1.fffffffffffffp-1 : 0;
     }
+    return &bsdf->lobes[chosen];
+}
 
+bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
+                 struct bsdf_sample *out) {
+    const struct lobe *only = only_lobe(bsdf, lobes), *lobe = only;
+    struct lobe_chances chances;
+    chances.all = 0;
+    out->pdf = 1;
+    if (!only) {
+        lobe_chances_make(bsdf, lobes, &chances);
+        lobe = choose_lobe(bsdf, &chances, &u, &out->pdf);
+    } else if (!(lobe_chance(bsdf, only) > 0)) {
+        return false;
+    }
     struct lobe_direction sampled;
-    if (!lobe_sample(bsdf, lobe, wo, u, &sampled))
+    if (!lobe || !lobe_sample(bsdf, lobe, wo, u, &sampled))
         return false;
     out->direction = sampled.direction;
     out->flags = sampled.transmits ? BSDF_TRANSMITS : BSDF_REFLECTS;
@@ -435,7 +483,12 @@ bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, s
         out->weight = vec3_scale(lobe->weight, radiance_factor(bsdf, mode, sampled.transmits) / out->pdf);
         return true;
     }
-    out->pdf = pdf_of_chances(bsdf, &chances, wo, out->direction);
+    if (only && sampled.pdf > 0) {
+        out->pdf = sampled.pdf;
+        out->weight = lobe->weight;
+        return true;
+    }
+    out->pdf = only ? lobe_pdf(bsdf, only, wo, out->direction) : pdf_of_chances(bsdf, &chances, wo, out->direction);
     if (!(out->pdf > 0))
         return false;
     out->weight = vec3_scale(bsdf_eval(bsdf, lobes, mode, wo, out->direction), 1 / out->pdf);
