@@ -176,16 +176,17 @@ static double pdf_of(double weight) {
 
 static struct light_sample delta_sample(const struct light *light, const struct light_context *context,
                                         struct sample2 xi) {
-    struct light_sample sample = {.pdf = 1, .is_delta = true};
     struct light_arrival arrival;
     if (!light_arrive(light, context->point, &arrival))
-        return sample;
-    sample.direction = arrival.direction;
-    sample.target = arrival.middle;
-    if (!context->single)
-        sample.target.at = light_target_at(light, context, xi);
-    sample.radiance = sample.intensity = vec3_scale(light->colour, arrival.strength);
-    return sample;
+        return (struct light_sample){.pdf = 1, .is_delta = true};
+    struct vec3 radiance = vec3_scale(light->colour, arrival.strength);
+    return (struct light_sample){
+        .direction = arrival.direction,
+        .target = {context->single ? arrival.middle.at : light_target_at(light, context, xi), arrival.middle.distant},
+        .radiance = radiance,
+        .pdf = 1,
+        .intensity = radiance,
+        .is_delta = true};
 }
 
 /* A lamp with a surface of its own: `weight` is the intensity of radiance 1. */

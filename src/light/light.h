@@ -80,6 +80,23 @@ static inline bool light_is_delta(const struct light *light) {
     return !light->emissive;
 }
 
+/* Whether all of its samples for a point have the same target. */
+static inline bool light_is_point(const struct light *light) {
+    switch (light->kind) {
+    case LIGHT_POINT:
+    case LIGHT_DIRECTIONAL:
+    case LIGHT_SPOT:
+        return true;
+    case LIGHT_PARALLELOGRAM:
+    case LIGHT_DISC:
+    case LIGHT_SPHERE:
+    case LIGHT_MESH:
+    case LIGHT_SKY:
+        break;
+    }
+    return false;
+}
+
 /* The end of shadow rays: a point, or the direction of an infinitely distant one. */
 struct light_target {
     struct vec3 at;

@@ -73,9 +73,16 @@ struct path_segment {
     struct vec3 thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
 };
 
-/* Light that arrives directly from one light of the scene: `choice` selects the light, `xi` a point on it. */
+/* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension a point on
+ * it, if its points differ. */
+struct path_light_draw {
+    double choice;
+    const struct sampler *sampler;
+    uint32_t dimension;
+};
+/* Light that arrives directly from one light of the scene. */
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, double choice, struct sample2 xi);
+                        const struct path_vertex *vertex, const struct path_light_draw *draw);
 /* For each kind of scattering and each channel: its fraction of the light that these lobes of the vertex scatter
  * from wi. The fractions add up to 1. */
 void path_shares(const struct path_vertex *vertex, uint32_t lobes, struct vec3 wi, struct vec3 out[PATH_SCATTERINGS]);

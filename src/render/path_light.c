@@ -44,7 +44,12 @@ static struct vec3 scattered(const struct path_vertex *vertex, uint32_t lobes, s
 static struct ray shadow_ray(const struct path_vertex *vertex, const struct world_light_sample *sample,
                              struct medium_stack *crossed) {
     const struct hit *hit = vertex->hit;
-    struct ray shadow = {.origin = vertex->receiver.from, .time = hit->time, .media = vertex->ray->media};
+    struct ray shadow;
+    shadow.origin = vertex->receiver.from;
+    shadow.t_min = 0;
+    shadow.time = hit->time;
+    shadow.footprint = (struct footprint){0, 0};
+    shadow.media = vertex->ray->media;
     if (!(vec3_dot(sample->direction, vertex->bsdf->geometric_side) > 0)) {
         double offset = hit->front ? -hit->offset : hit->offset;
         shadow.origin = vec3_add_scaled(hit->point, hit->normal_geometric, offset);
@@ -134,14 +139,20 @@ static void share_direct(const struct path_vertex *vertex, struct vec3 wi, struc
 }
 
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, double choice, struct sample2 xi) {
+                        const struct path_vertex *vertex, const struct path_light_draw *draw) {
     const struct world_lights *lights = &tracer->lights;
     const struct vec3 none = {0, 0, 0};
     const struct light_receiver *receiver = &vertex->receiver;
     struct world_light_sample sample;
     double pmf;
-    struct light_part part = light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, choice, &pmf);
-    if (part.light == LIGHT_NONE || !world_lights_sample(lights, receiver, part, xi, &sample))
+    struct light_part part =
+        light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, draw->choice, &pmf);
+    if (part.light == LIGHT_NONE)
+        return none;
+    struct sample2 xi = {0, 0};
+    if (!light_is_point(&lights->lights[part.light]))
+        xi = sampler_point(draw->sampler, draw->dimension);
+    if (!world_lights_sample(lights, receiver, part, xi, &sample))
         return none;
     struct vec3 f = scattered(vertex, vertex->lobes, sample.direction);
     uint32_t traced = tracer->photon_lights ? vertex->lobes & bsdf_lobes_with(vertex->bsdf, BSDF_TRACED) : 0;
@@ -150,8 +161,6 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
         f = vec3_sub(f, vec3_sub(by_traced, without_thrown(tracer, part.light, vertex->thrown, by_traced)));
     }
     double pdf = pmf * sample.pdf;
-    const struct light *light = &lights->lights[part.light];
-    bool shown = part.light >= state->job->world->light_count || light_is_seen(light);
     if (sample.is_delta) {
         f = vec3_scale(f, 1 / pdf);
     } else {
@@ -159,7 +168,8 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
     struct vec3 highlight = none;
-    if (vertex->substitute && !shown)
+    if (vertex->substitute && part.light < state->job->world->light_count &&
+        !light_is_seen(&lights->lights[part.light]))
         highlight = vec3_scale(scattered(vertex, vertex->substitute, sample.direction), 1 / pdf);
     if (vertex->direct_shares)
         share_direct(vertex, sample.direction, f, highlight);

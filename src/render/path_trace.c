@@ -56,10 +56,10 @@ static void add_light(struct path *path, struct vec3 radiance) {
 
 /* The light of the lights that the vertex scatters directly. */
 static void add_direct(const struct path_tracer *tracer, struct integrator_state *state, struct path *path,
-                       struct path_vertex *vertex, double choice, struct sample2 position) {
+                       struct path_vertex *vertex, const struct path_light_draw *draw) {
     struct vec3 first[PATH_SCATTERINGS];
     vertex->direct_shares = path->parts && path->depth == 0 ? first : NULL;
-    struct vec3 light = vec3_mul(path->weight, path_direct(tracer, state, vertex, choice, position));
+    struct vec3 light = vec3_mul(path->weight, path_direct(tracer, state, vertex, draw));
     path->light = vec3_add(path->light, light);
     if (path->parts && vec3_max_abs(light) > 0)
         add_to_groups(path->parts, path->depth + 1, path->depth == 0 ? first : path->parts->shares, light);
@@ -275,6 +275,8 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
         return false;
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;
+    if (!path->sight && path->depth >= tracer->max_depth && !tracer->lights.met)
+        return false;
     path->scatter = vertex->receiver;
     path->ray = hit_ray(hit, &path->ray, sample.direction, &path->media);
     path->kind = transmits ? RAY_REFRACTED : RAY_REFLECTED;
@@ -322,10 +324,10 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         add_photons(tracer, state, path, &vertex);
         vertex.thrown = vec3_add(path->received, path->thrown);
     }
-    struct sample2 choice = sampler_point(sampler, dimension), on_light = sampler_point(sampler, dimension + 1),
-                   direction = sampler_point(sampler, dimension + 2);
-    add_direct(tracer, state, path, &vertex, choice.x, on_light);
-    return scatter(tracer, state, path, &vertex, direction, choice.y);
+    bool chooses = tracer->lights.sampler.count > 1 || path->depth >= tracer->roulette_depth;
+    struct sample2 choice = chooses ? sampler_point(sampler, dimension) : (struct sample2){0, 0};
+    add_direct(tracer, state, path, &vertex, &(struct path_light_draw){choice.x, sampler, dimension + 1});
+    return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
 }
 
 /* --clamp: the colour is kept. Pictures become darker where samples differ much. */

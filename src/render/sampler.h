@@ -60,12 +60,16 @@ static inline uint32_t sobol_pascal(uint32_t index) {
     return index;
 }
 
-/* Point `index` of the sequence with that seed. */
-static inline struct sample2 sobol_point(uint32_t index, uint64_t seed) {
+/* The point of the sequence with that seed whose index has these bits reversed. */
+static inline struct sample2 sobol_point_reversed(uint32_t reversed, uint64_t seed) {
     uint64_t more = random_mix(seed + UINT64_C(0x9e3779b97f4a7c15));
-    index = sobol_reversed(sobol_permuted(sobol_reversed(index), (uint32_t)seed));
+    uint32_t index = sobol_reversed(sobol_permuted(reversed, (uint32_t)seed));
     return sobol_reversed_pair(sobol_permuted(index, (uint32_t)more),
                                sobol_permuted(sobol_pascal(index), (uint32_t)(more >> 32)));
+}
+
+static inline struct sample2 sobol_point(uint32_t index, uint64_t seed) {
+    return sobol_point_reversed(sobol_reversed(index), seed);
 }
 
 /* A sample of a pixel of the whole picture. */
@@ -85,7 +89,7 @@ struct sampler {
     enum sampler_kind kind;
     uint64_t key;       /* of the sample: the root of the keys of its rays */
     uint64_t pixel_key; /* of the strata; or of the sequences of the sample's half */
-    uint32_t cell;      /* of `side` x `side` samples of the pixel; SOBOL: number of the sample in its half */
+    uint32_t cell;      /* of `side` x `side` samples of the pixel; SOBOL: number of the sample in its half, reversed */
     uint32_t side;      /* 1: the sample is alone */
 };
 
@@ -110,12 +114,12 @@ static inline struct sampler sampler_make_sobol(uint64_t seed, uint64_t pixel, u
     return (struct sampler){.kind = SAMPLER_SOBOL,
                             .key = random_combine(key, number),
                             .pixel_key = random_combine(key, UINT64_MAX - number % 2),
-                            .cell = (uint32_t)(number / 2),
+                            .cell = sobol_reversed((uint32_t)(number / 2)),
                             .side = 1};
 }
 /* Its point in a dimension. */
 static inline struct sample2 sampler_point(const struct sampler *sampler, uint32_t dimension) {
-    return sobol_point(sampler->cell, random_combine(sampler->pixel_key, dimension));
+    return sobol_point_reversed(sampler->cell, random_combine(sampler->pixel_key, dimension));
 }
 
 /* A point of the unit square for the lens, and a time from 0 to 1 for the shutter: one of as many cells as the pixel

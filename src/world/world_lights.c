@@ -357,6 +357,7 @@ static bool allocate(struct building *b) {
     for (uint32_t i = 0; i < world->prototype_count; i++) {
         b->of_prototype[i] = emission_of_prototype(world, &world->prototypes[i]);
         b->out->holes = b->out->holes || world->prototypes[i].holes;
+        b->out->met = b->out->met || b->of_prototype[i].emissive || b->of_prototype[i].varies;
     }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         b->of_primitive[i] = LIGHT_NONE;
@@ -389,8 +390,12 @@ static bool build(struct building *b, struct world_lights_options options) {
             return false;
     }
     const struct light_sampler_options choice = {options.choice, b->pool};
-    return (!options.background || take_background(b)) && build_area_lights(b) &&
-           light_sampler_build(&out->sampler, choice, out->lights, out->count, b->arena, b->error);
+    if ((options.background && !take_background(b)) || !build_area_lights(b))
+        return false;
+    out->met = out->met || out->area_light_count > 0;
+    for (uint32_t i = 0; i < out->count; i++)
+        out->met = out->met || !light_is_delta(&out->lights[i]);
+    return light_sampler_build(&out->sampler, choice, out->lights, out->count, b->arena, b->error);
 }
 
 bool world_lights_build(struct world_lights *out, const struct world *world, struct world_lights_options options,
@@ -451,27 +456,45 @@ static struct light_sample view_sample(const struct view *view, uint32_t triangl
     return sample;
 }
 
+/* A light without extent, whose samples for a receiver are equal. */
+static bool sample_point_light(const struct light *light, struct vec3 point, struct world_light_sample *out) {
+    struct light_arrival arrival;
+    if (!light_arrive(light, point, &arrival))
+        return false;
+    out->direction = arrival.direction;
+    out->target = arrival.middle;
+    out->radiance = vec3_scale(vec3_scale(light->colour, arrival.strength), radiance_of(1));
+    out->pdf = 1;
+    out->is_delta = true;
+    out->decided = false;
+    out->triangle = 0;
+    out->skip_primitive = 0;
+    return !is_dark(out->radiance);
+}
+
 bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver,
                          struct light_part part, struct sample2 xi, struct world_light_sample *out) {
     uint32_t number = part.light;
     const struct emitter *emitter = &lights->emitters[number];
     struct view view;
-    if (!world_lights_illuminate(lights, number, receiver->primitive) || !view_make(lights, receiver, number, &view))
+    out->light = number;
+    if (!world_lights_illuminate(lights, number, receiver->primitive))
+        return false;
+    if (light_is_point(&lights->lights[number]))
+        return sample_point_light(&lights->lights[number], receiver->point, out);
+    if (!view_make(lights, receiver, number, &view))
         return false;
     struct light_sample sample = view_sample(&view, part.triangle, receiver, xi);
     if (!(sample.pdf > 0) || !is_own_triangle(lights, number, part.triangle))
         return false;
     bool own = emitter->shown && receiver->primitive == emitter->primitive && receiver->primitive != WORLD_NOTHING;
-    *out = (struct world_light_sample){.direction = sample.direction,
-                                       .target = sample.target,
-                                       .radiance = sample.radiance,
-                                       .pdf = sample.pdf,
-                                       .is_delta = emitter->unmet,
-                                       .decided = emitter->decided || own,
-                                       .light = number,
-                                       .triangle = part.triangle};
-    if (sample.is_delta)
-        out->radiance = vec3_scale(sample.intensity, radiance_of(1));
+    out->direction = sample.direction;
+    out->target = sample.target;
+    out->radiance = sample.is_delta ? vec3_scale(sample.intensity, radiance_of(1)) : sample.radiance;
+    out->pdf = sample.pdf;
+    out->is_delta = emitter->unmet;
+    out->decided = emitter->decided || own;
+    out->triangle = part.triangle;
     bool single = emitter->shown && !emitter->by_triangle && !out->decided;
     out->skip_primitive = single ? emitter->primitive + 1 : 0;
     return out->decided || !is_dark(out->radiance);

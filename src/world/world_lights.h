@@ -49,6 +49,7 @@ struct world_lights {
     const uint32_t *area_lights;
     uint32_t area_light_count;
     bool holes; /* something in the world has holes */
+    bool met;   /* scattered rays may meet light */
 };
 
 /* background: scattered rays meet the sky of the world, which is then one more light unless it is black; where the
