@@ -38,15 +38,15 @@ static bool nearest_of_mesh(const struct world *world, uint32_t index, const str
     return found;
 }
 
-/* Repeats a query of one primitive with more scratch until it fits. */
+/* Repeats a query of one primitive with more scratch until it fits; meshes need none. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out) {
     const struct geometry *geometry = primitive_geometry(world, index);
-    bool is_mesh = geometry_mesh(geometry) != NULL;
     struct geom_scratch *geom = &scratch->geom;
+    if (geometry_mesh(geometry))
+        return nearest_of_mesh(world, index, ray_object, geom, out);
     for (;;) {
-        bool found = is_mesh ? nearest_of_mesh(world, index, ray_object, geom, out)
-                             : geometry_nearest(geometry, ray_object, geom, out);
+        bool found = geometry_nearest(geometry, ray_object, geom, out);
         if (!geom->overflow)
             return found;
         if (!geom_scratch_grow(geom)) {
