@@ -369,8 +369,21 @@ static float mean_of(const struct level *level, const float *plane, int x, int y
     return sum / (float)(across * down);
 }
 
-/* Computes a row of the level from the level before. */
-static void shrink(void *context, uint32_t y, int worker) {
+/* Compute a row of the level from the level before. */
+static void shrink_features(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
+    (void)worker;
+    for (int x = 0; x < level->width; x++) {
+        int fx = finer_from(x, level->x0, finer->x0, finer->width, &across);
+        size_t at = pixel_at(level, x, (int)y);
+        for (int f = 0; f < DENOISE_FEATURES; f++)
+            level->feature[f][at] = mean_of(finer, finer->feature[f], fx, fy, across, down);
+    }
+}
+
+static void shrink_colours(void *context, uint32_t y, int worker) {
     const struct denoiser *d = context;
     const struct level *level = d->level, *finer = level - 1;
     int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
@@ -383,8 +396,6 @@ static void shrink(void *context, uint32_t y, int worker) {
                 level->colour[half][c][at] = mean_of(finer, finer->colour[half][c], fx, fy, across, down);
             level->variance[c][at] = mean_of(finer, finer->variance[c], fx, fy, across, down) / (float)(across * down);
         }
-        for (int f = 0; f < DENOISE_FEATURES; f++)
-            level->feature[f][at] = mean_of(finer, finer->feature[f], fx, fy, across, down);
     }
 }
 
@@ -580,17 +591,21 @@ static bool make_estimates(struct denoiser *d, struct error *error) {
     return run(d, across * down, regress_block, error);
 }
 
-/* The planes that a level computes from the one before. */
+/* The planes that a level computes from the one before, whose features nothing reads afterwards. */
 static bool make_coarse(struct denoiser *d, struct error *error) {
     struct level *level = d->level;
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        if (!make_plane(level, &level->feature[f]))
+            return no_memory(error);
+    if (!run(d, (uint32_t)level->height, shrink_features, error))
+        return false;
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        free_plane(&level[-1].feature[f]);
     for (int c = 0; c < 3; c++)
         if (!make_plane(level, &level->colour[0][c]) || !make_plane(level, &level->colour[1][c]) ||
             !make_plane(level, &level->variance[c]))
             return no_memory(error);
-    for (int f = 0; f < DENOISE_FEATURES; f++)
-        if (!make_plane(level, &level->feature[f]))
-            return no_memory(error);
-    return run(d, (uint32_t)level->height, shrink, error);
+    return run(d, (uint32_t)level->height, shrink_colours, error);
 }
 
 static bool denoise_all(struct denoiser *d, struct error *error) {
