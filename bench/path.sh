@@ -65,26 +65,45 @@ prepare() {
     [ -s "$out/meshes.obj" ] || "$gray" -q bench/path/meshes.lua >"$out/meshes.obj" || exit 1
 }
 
+# cycles_pass SCENE SPP SEED, embree_pass SCENE SPP SEED: processor seconds of one more sample a pixel of the peer.
+cycles_pass() { cycles_run "$1" speed:2:1:0 speed:1:1:0 "speed:$2:$3:0" | per_pass; }
+
+embree_once() {
+    $timer -f %U -o "$out/embree.time" pathtracer -c "$models/$1.ecs" --threads 1 --size 128 128 --spp "$2" \
+        --max-path-length $depth -o "$out/embree.ppm" >/dev/null 2>&1
+    echo "$1 $2 $(tail -n 1 "$out/embree.time")"
+}
+
+embree_pass() { { embree_once "$1" 1; embree_once "$1" "$2"; } | per_pass; }
+
+# speed_row SCENE SCRIPT PASS: thousands of samples a second of gray and of the peer, whose passes PASS measures.
+speed_row() {
+    row_scene=$1 row_script=$2 pass=$3
+    spp=$(gray_run "$row_script" speed 8 1 --roulette-depth $depth |
+        awk -v s="$seconds" '{ n = int(8 * s / ($1 > .01 ? $1 : .01)); print (n > 8 ? n : 8) }')
+    run=0
+    : >"$out/speed.peer"
+    : >"$out/speed.gray"
+    while [ $run -lt "$runs" ]; do
+        run=$((run + 1))
+        gray_run "$row_script" speed "$spp" $run --roulette-depth $depth >>"$out/speed.gray"
+        $pass "$row_scene" "$spp" $run >>"$out/speed.peer"
+    done
+    g=$(awk -v n="$spp" '{ print 16.384 * n / $1 }' "$out/speed.gray" | median)
+    p=$(awk '{ print 16.384 / $1 }' "$out/speed.peer" | median)
+    awk -v scene="$row_scene" -v g="$g" -v p="$p" -v e="$(cut -d ' ' -f 2 "$out/speed.gray" | median)" \
+        'BEGIN { printf "%-12s %9.1f %9.1f %6.2f %7.2f\n", scene, g, p, g / p, e }'
+}
+
+speed_heading() {
+    echo "thousands of samples a second, no roulette; events: scattering events of a sample of gray"
+    printf '%-12s %9s %9s %6s %7s\n' scene gray "$1" ratio events
+}
+
 speed() {
     installed blender 'samples a second against Cycles' || return
-    echo 'thousands of samples a second, no roulette; events: scattering events of a sample of gray'
-    printf '%-12s %9s %9s %6s %7s\n' scene gray Cycles ratio events
-    for scene in cornell spheres; do
-        spp=$(gray_run "$(script_of $scene)" speed 8 1 --roulette-depth $depth |
-            awk -v s="$seconds" '{ n = int(8 * s / ($1 > .01 ? $1 : .01)); print (n > 8 ? n : 8) }')
-        run=0
-        : >"$out/speed.cycles"
-        : >"$out/speed.gray"
-        while [ $run -lt "$runs" ]; do
-            run=$((run + 1))
-            gray_run "$(script_of $scene)" speed "$spp" $run --roulette-depth $depth >>"$out/speed.gray"
-            cycles_run $scene speed:2:1:0 speed:1:1:0 "speed:$spp:$run:0" | per_pass >>"$out/speed.cycles"
-        done
-        g=$(awk -v n="$spp" '{ print 16.384 * n / $1 }' "$out/speed.gray" | median)
-        c=$(awk '{ print 16.384 / $1 }' "$out/speed.cycles" | median)
-        awk -v scene=$scene -v g="$g" -v c="$c" -v e="$(cut -d ' ' -f 2 "$out/speed.gray" | median)" \
-            'BEGIN { printf "%-12s %9.1f %9.1f %6.2f %7.2f\n", scene, g, c, g / c, e }'
-    done
+    speed_heading Cycles
+    for scene in cornell spheres; do speed_row $scene "$(script_of $scene)" cycles_pass; done
 }
 
 # error_of REFERENCE PICTURE SECONDS: relMSE scaled to the time of the row, and the mean of the reference.
@@ -129,27 +148,8 @@ embree() {
     installed pathtracer "samples a second against Embree's pathtracer" || return
     [ -r $models/cornell_box.ecs ] || { echo "no $models/cornell_box.ecs: Embree's pathtracer left out"; return; }
     [ -n "$timer" ] || { echo "GNU time is not installed: Embree's pathtracer left out"; return; }
-    echo "thousands of samples a second on Embree's Cornell box, no roulette"
-    printf '%-12s %9s %9s %6s %7s\n' scene gray Embree ratio events
-    embree_once() {
-        $timer -f %U -o "$out/embree.time" pathtracer -c $models/cornell_box.ecs --threads 1 --size 128 128 --spp "$1" \
-            --max-path-length $depth -o "$out/embree.ppm" >/dev/null 2>&1
-        echo "embree $1 $(tail -n 1 "$out/embree.time")"
-    }
-    spp=$(gray_run bench/path/embree_box.lua speed 8 1 --roulette-depth $depth |
-        awk -v s="$seconds" '{ n = int(8 * s / ($1 > .01 ? $1 : .01)); print (n > 8 ? n : 8) }')
-    run=0
-    : >"$out/speed.embree"
-    : >"$out/speed.gray"
-    while [ $run -lt "$runs" ]; do
-        run=$((run + 1))
-        gray_run bench/path/embree_box.lua speed "$spp" $run --roulette-depth $depth >>"$out/speed.gray"
-        { embree_once 1; embree_once "$spp"; } | per_pass >>"$out/speed.embree"
-    done
-    g=$(awk -v n="$spp" '{ print 16.384 * n / $1 }' "$out/speed.gray" | median)
-    c=$(awk '{ print 16.384 / $1 }' "$out/speed.embree" | median)
-    awk -v g="$g" -v c="$c" -v e="$(cut -d ' ' -f 2 "$out/speed.gray" | median)" \
-        'BEGIN { printf "%-12s %9.1f %9.1f %6.2f %7.2f\n", "embree box", g, c, g / c, e }'
+    speed_heading Embree
+    speed_row cornell_box bench/path/embree_box.lua embree_pass
 }
 
 large() {
