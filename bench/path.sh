@@ -159,8 +159,11 @@ large() {
 denoise() {
     echo 'denoised 64 samples against raw ones'
     GRAY=$gray REFERENCE=${SHORT:+1024} bench/denoise.sh data/path/cornell.lua bench/path/spheres.lua bench/denoise/*.lua
-    large --integrator path --spp 4 --denoise -j 2 |
-        awk '{ printf "denoising 1280 x 960, two threads: %.1f s\n", substr($0, index($0, "\"write_seconds\":") + 16) + 0 }'
+    [ -n "$timer" ] || { echo 'GNU time is not installed: the time of denoising left out'; return; }
+    timed() { $timer -f '%e %U' -o "$out/denoise.time" "$gray" -q --no-fork --integrator path --spp 1 -j 2 \
+        --size 1280x960 -o "$out/large.pfm" "$@" data/path/cornell.lua && tail -n 1 "$out/denoise.time"; }
+    echo "$(timed) $(timed --denoise)" |
+        awk '{ printf "denoising 1280 x 960, two threads: %.1f s, %.1f s of processor time\n", $3 - $1, $4 - $2 }'
 }
 
 threads() {
