@@ -1,5 +1,5 @@
 -- TITLE: A room in the morning sun
--- OPTIONS: --spp 40
+-- OPTIONS: --spp 96
 -- The sun and the clear sky shine through one window; everything else is lit by light that comes back from the floor
 -- and the walls.
 local function matte(r, g, b) return gr.material { kd = { r, g, b }, two_sided = true } end

@@ -68,7 +68,6 @@ gr.render{
     integrator = 'path',
     spp = 256,
     denoise = true,
-    clamp = 20,
     eye = {0.4, 3.4, 11},
     target = {0.1, 0.75, 0},
     fov = 27,
