@@ -12,4 +12,5 @@ end
 scene:add_child(gr.nh_box(marble, {-20, -41, -25}, 40))
 
 local lamp = gr.area_light({-5, 7, 3}, {2, 0, 0}, {0, 0, 2}, {0.9, 0.9, 0.9}, {1, 0, 0})
-gr.render(scene, 'first.png', 480, 320, {0, 1.2, 8}, {0, -0.18, -1}, {0, 1, 0}, 32, {0.25, 0.25, 0.25}, {lamp})
+gr.render{node = scene, file = 'first.png', width = 480, height = 320, eye = {0, 1.2, 8}, view = {0, -0.18, -1}, fov = 32,
+          ambient = {0.25, 0.25, 0.25}, lights = {lamp}, background = 'gradient'}

@@ -9,7 +9,32 @@
 ---@class gr.texture
 ---@class gr.fog
 ---@class gr.sky
----@class gr.vector: number[] x, y, z and the methods dot, cross, length, normalize, mix, clamp
+---@class gr.vector: number[]
+---@field x number
+---@field y number
+---@field z number
+---@field dot fun(self: gr.vector, b: gr.triple): number
+---@field cross fun(self: gr.vector, b: gr.triple): gr.vector
+---@field length fun(self: gr.vector): number
+---@field normalize fun(self: gr.vector): gr.vector
+---@field mix fun(self: gr.vector, b: gr.triple, t: any): gr.vector
+---@field clamp fun(self: gr.vector, low: any, high: any): gr.vector
+---@operator add(any): gr.vector
+---@operator sub(any): gr.vector
+---@operator mul(any): gr.vector
+---@operator div(any): gr.vector
+---@operator unm: gr.vector
+---@class gr.glyph
+---@field code integer
+---@field x number
+---@field advance number
+---@field missing boolean
+---@field contours number[][][]
+---@class gr.glyphs: gr.glyph[]
+---@field width number
+---@field ascender number
+---@field descender number
+---@field line number
 ---@class gr.node
 local node = {}
 
@@ -1067,8 +1092,8 @@ function gr.bump_material(material, image, height) end
 ---Outlines of a line of text, in ems: a list of letters with code, x, advance, missing and contours (cubic, for gr.prism), and the fields width, ascender, descender and line.
 ---@param font string font (the name of a file): A font file: TrueType, OpenType or Type 1.
 ---@param text string text (a string): One line of text, in UTF-8.
----@return table
----@overload fun(fields: gr.glyphs.fields): table
+---@return gr.glyphs
+---@overload fun(fields: gr.glyphs.fields): gr.glyphs
 function gr.glyphs(font, text) end
 
 ---@class gr.openpbr_material.fields
@@ -1612,7 +1637,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1686,7 +1711,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}.
+---@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1762,11 +1787,13 @@ function gr.transform_order(order) end
 function node:add_child(node) end
 
 ---Returns the bounding box of this node and its children, with its own transforms: smallest and largest x, y, z.
----@return number[], number[]
+---@return number[]
+---@return number[]
 function node:bounds() end
 
 ---Returns the vertices and faces of a mesh, in object space, as gr.mesh accepts them.
----@return number[][], integer[][]
+---@return number[][]
+---@return integer[][]
 function node:faces() end
 
 ---Sets the material of a shape.
@@ -1834,6 +1861,65 @@ function node:rotate_quat(w, x, y, z) end
 ---@overload fun(self: gr.node, vector: gr.triple): gr.node
 function node:translate(x, y, z) end
 
+---@class gr.node.render.fields
+---@field file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
+---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
+---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
+---@field eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
+---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
+---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
+---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
+---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
+---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
+---@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
+---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
+---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
+---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
+---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for an area light.
+---@field reflect_limit? integer reflect_limit (a whole number, 0 to 1000; default -reflect-limit): How often a path may reflect.
+---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
+---@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): Squared distance of colours between side neighbours that marks a pixel.
+---@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same between corner neighbours.
+---@field use_tir? boolean use_tir (true or false; default -use-tir): Whether total internal reflection adds the refracted amount to the reflected one.
+---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of highlights.
+---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of random numbers.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): Acceleration structure; the picture is the same.
+---@field fog? gr.fog fog (a fog; default none): A fog.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples per pixel of integrator path; the option has priority.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error at which a tile of integrator path is finished; the option has priority.
+---@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker.
+---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
+---@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
+---@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
+---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
+---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
+---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
+---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
+---@field shift_x? number shift_x (a number, in widths; default 0): Shift of the window to the right.
+---@field shift_y? number shift_y (a number, in heights; default 0): Shift of the window upwards.
+---@field aperture? number aperture (a number, >= 0; default 0): Radius of the lens, in units of the scene; 0 is a pinhole. With a lens, gray resamples every pixel.
+---@field focus? number focus (a number, > 0; default target, else 1): Distance of the plane in focus, along the view.
+---@field focus_point? gr.triple focus_point (a point {x, y, z}; optional): A point of the plane in focus, instead of focus.
+---@field blades? integer blades (a whole number, 3 to 64; default round): Number of blades: the aperture is a polygon.
+---@field blade_angle? number blade_angle (a number, in degrees; default 0): Rotation of that polygon.
+---@field stereo? 'none'|'side'|'anaglyph' stereo ('none'|'side'|'anaglyph'; default 'none'): Two eyes: side by side (left picture on the left), or red and cyan.
+---@field eye_distance? number eye_distance (a number, >= 0; default screen / 30): Distance between the eyes.
+---@field screen? number screen (a number, > 0; default focus): Distance along the view where both eyes see the same point of the picture.
+---@field shutter? number[] shutter (a table of two rising numbers; default {0, 1}): Times when the shutter opens and closes, {open, close}; motion between them is blurred.
+---@field eye_to? gr.triple eye_to (a point {x, y, z}; default eye): Position of a moving camera at time 1.
+---@field view_to? gr.triple view_to (a direction {x, y, z}; default view): Its direction of view at time 1.
+---@field target_to? gr.triple target_to (a point {x, y, z}; default target): The point to look at, at time 1.
+---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
+
 ---The same as gr.render with this node.
 ---@param file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
@@ -1844,69 +1930,92 @@ function node:translate(x, y, z) end
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
 ---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
----@overload fun(self: gr.node, fields: gr.render.fields)
+---@overload fun(self: gr.node, fields: gr.node.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
 
 ---A vector: a table {x, y, z} with operators; of one number, three times that.
+---@return gr.vector
 function gr.vec(x, y, z) end
 
 ---The scalar product of two vectors.
+---@return number
 function gr.dot(a, b) end
 
 ---The vector product of two vectors.
+---@return gr.vector
 function gr.cross(a, b) end
 
 ---The length of a vector.
+---@return number
 function gr.length(v) end
 
 ---The vector divided by its length.
+---@return gr.vector
 function gr.normalize(v) end
 
 ---a + (b - a) * t, of numbers or vectors.
+---@return any
 function gr.mix(a, b, t) end
 
 ---x, at least low and at most high; of vectors by components.
+---@return any
 function gr.clamp(x, low, high) end
 
 ---0 below low, 1 above high, smooth between them.
+---@return any
 function gr.smoothstep(low, high, x) end
 
 ---0 where x < edge, else 1.
+---@return any
 function gr.step(edge, x) end
 
 ---The least of numbers or vectors, by components.
+---@return any
 function gr.min(...) end
 
 ---The greatest of numbers or vectors, by components.
+---@return any
 function gr.max(...) end
 
 ---a where x > 0, else b: a choice without a branch.
+---@return any
 function gr.where(x, a, b) end
 
 ---Entry i of a table of numbers or vectors, i rounded down and kept between 1 and #t.
+---@return any
 function gr.lookup(t, i) end
 
 ---Replaces the state s1, s2, ... by f(i, s1, s2, ...) for i = 1 to n while s1 > 0; f is last.
+---@return any ...
 function gr.loop(n, ...) end
 
 ---Perlin noise of a point, or of x, y, z: in about -1..1.
+---@return number
 function gr.noise(p) end
 
 ---The sum of |noise(2^k p)| / 2^k for octaves (4) values of k from 0 on.
+---@return number
 function gr.turbulence(p, octaves) end
 
 ---Distances from the nearest and the second nearest of random points, and a number of the nearest.
+---@return number
+---@return number
+---@return number
 function gr.cells(p) end
 
 ---A random number in 0..1 for each point.
+---@return number
 function gr.hash(p) end
 
 ---A colour of the screen: '#rrggbb', {r, g, b} or r, g, b; linear colours decode it.
+---@return gr.triple
 function gr.srgb(colour) end
 
 ---The light of a colour of the screen, a vector of numbers, by the sRGB function.
+---@return gr.vector
 function gr.linear(colour) end
 
 ---Whether x is a number of a recorded function, whose value is not known yet.
+---@return boolean
 function gr.is_recorded(x) end
 

@@ -99,6 +99,7 @@ struct script_context {
     bool changes_reported;      /* what was left out */
     bool number_repaired;       /* the notice about ".0" was printed */
     struct lenient *lenient;    /* NULL without --lenient */
+    bool only_named_pictures;   /* struct order_finding */
     uint32_t pictures;          /* that gr.render has made */
     char raised[1536];          /* the last error of a function of gr, without its position */
     bool unforgivable;          /* --lenient would not get over it */

@@ -268,13 +268,14 @@ static const char *annotation_result(const struct script_function *function) {
     case RESULT_SKY:
         return "gr.sky";
     case RESULT_GLYPHS:
-        return "table";
+        return "gr.glyphs";
     }
     UNREACHABLE("a result of no kind");
 }
 
 static void annotate_fields(struct document *document, const struct script_function *function) {
-    add(document, "---@class gr.%s.fields\n", function->name);
+    const char *owner = function->owner == OWNER_NODE ? "node." : "";
+    add(document, "---@class gr.%s%s.fields\n", owner, function->name);
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         char type[CHOICES_SIZE], line[LINE_SIZE];
@@ -312,6 +313,16 @@ static void annotate_overload(struct document *document, const struct script_fun
     add(document, "\n");
 }
 
+/* One line for each result: LuaLS numbers them. */
+static void annotate_results(struct document *document, const char *results) {
+    while (*results) {
+        size_t length = strcspn(results, ",");
+        add(document, "---@return %.*s\n", (int)length, results);
+        results += length;
+        results += strspn(results, ", ");
+    }
+}
+
 static void annotate_function(struct document *document, const struct script_function *function) {
     const char *form = function->forms[0], *result = annotation_result(function), *separator = "";
     bool table_form = has_table_form(function), optional;
@@ -333,12 +344,12 @@ static void annotate_function(struct document *document, const struct script_fun
         snprintf(names + used, sizeof names - used, ", ...");
     }
     if (result)
-        add(document, "---@return %s\n", result);
+        annotate_results(document, result);
     for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++)
         annotate_overload(document, function, function->forms[k]);
     if (table_form) {
-        add(document, "---@overload fun(%sfields: gr.%s.fields)",
-            function->owner == OWNER_NODE ? "self: gr.node, " : "", function->name);
+        const char *self = function->owner == OWNER_NODE ? "self: gr.node, " : "";
+        add(document, "---@overload fun(%sfields: gr.%s%s.fields)", self, self[0] ? "node." : "", function->name);
         add_result(document, function);
         add(document, "\n");
     }
@@ -353,19 +364,33 @@ const char *script_annotations(struct arena *arena) {
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
         "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
         "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class "
-        "gr.sky\n"
-        "---@class gr.vector: number[] x, y, z and the methods dot, cross, length, normalize, mix, clamp\n"
-        "---@class gr.node\n"
-        "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
+        "gr.sky\n");
+    add(&document,
+        "---@class gr.vector: number[]\n---@field x number\n---@field y number\n---@field z number\n"
+        "---@field dot fun(self: gr.vector, b: gr.triple): number\n"
+        "---@field cross fun(self: gr.vector, b: gr.triple): gr.vector\n"
+        "---@field length fun(self: gr.vector): number\n---@field normalize fun(self: gr.vector): gr.vector\n"
+        "---@field mix fun(self: gr.vector, b: gr.triple, t: any): gr.vector\n"
+        "---@field clamp fun(self: gr.vector, low: any, high: any): gr.vector\n"
+        "---@operator add(any): gr.vector\n---@operator sub(any): gr.vector\n---@operator mul(any): gr.vector\n"
+        "---@operator div(any): gr.vector\n---@operator unm: gr.vector\n");
+    add(&document, "---@class gr.glyph\n---@field code integer\n---@field x number\n---@field advance number\n"
+                   "---@field missing boolean\n---@field contours number[][][]\n"
+                   "---@class gr.glyphs: gr.glyph[]\n---@field width number\n---@field ascender number\n"
+                   "---@field descender number\n---@field line number\n"
+                   "---@class gr.node\n"
+                   "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
     for (int k = 0; k < function_count(); k++) {
         const struct script_function *function = function_at(k);
-        if (function->owner == OWNER_GR)
+        if (has_table_form(function))
             annotate_fields(&document, function);
         annotate_function(&document, function);
     }
     for (size_t k = 0; value_function_at(k); k++) {
         const struct value_function *function = value_function_at(k);
-        add(&document, "---%s\nfunction gr.%s(%s) end\n\n", function->help, function->name, function->parameters);
+        add(&document, "---%s\n", function->help);
+        annotate_results(&document, function->result);
+        add(&document, "function gr.%s(%s) end\n\n", function->name, function->parameters);
     }
     return document.failed ? NULL : document.text;
 }

@@ -6,8 +6,12 @@
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
+    /* Scenes in the table form alone are of today: their background is light and neutral, that of others navy. */
+    static const double neutral[][4] = {{-1, 0.62, 0.61, 0.6}, {0, 0.8, 0.81, 0.82}, {1, 0.9, 0.93, 0.96}};
     const struct script_value *background = &args[RENDER_BACKGROUND];
     *sky = (struct sky){.kind = SKY_GRADIENT};
+    if (context->only_named_pictures && !background->given)
+        *sky = (struct sky){.kind = SKY_STOPS, .stops = neutral, .stop_count = 3};
     if (args[RENDER_SKY].given && background->given)
         return error_set(error, ERROR_SCENE, "sky and background exclude each other");
     if (args[RENDER_SKY].given) {

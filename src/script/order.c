@@ -1,4 +1,5 @@
-/* Evidence for the order of transforms (docs/language.md 12.4): the convention of the course changed in autumn
+/* What the text of a scene shows before it runs: the form of its pictures, and the order of transforms
+ * (docs/language.md 12.4): the convention of the course changed in autumn
  * 2015 together with the stock scenes. Signs of the new one: names of the project dialect, tables with named fields, an
  * explicit call, a mesh by file name, table.unpack. Signs of the old one, which are used if there is no sign of the new
  * one: readobj, a bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project
@@ -151,6 +152,7 @@ static bool is_symbol(const struct token *token, char c) {
 /* What has been seen so far, in all files. */
 struct evidence {
     bool mentions_gr, is_new, is_old;
+    bool renders, renders_otherwise; /* gr.render{...}; any other use of gr.render, or a field background or sky */
     char new_reason[160], old_reason[160];
 };
 
@@ -229,11 +231,32 @@ static void follow_mesh_call(struct mesh_call *call, const struct token *token, 
     }
 }
 
+static bool is_after_dot(const struct token *w, int k) {
+    return is_symbol(&w[k - 1], '.') || is_symbol(&w[k - 1], ':');
+}
+
+/* gr.render{...}, gr.render({...}) and node:render{...} have the table form. */
+static void judge_picture(const struct token *w, struct evidence *evidence) {
+    const struct token *t = &w[WINDOW - 1];
+    bool after_name = is(&w[WINDOW - 2], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 2);
+    bool after_bracket =
+        is_symbol(&w[WINDOW - 2], '(') && is(&w[WINDOW - 3], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 3);
+    bool is_field = is(&w[WINDOW - 2], TOKEN_NAME, "background") || is(&w[WINDOW - 2], TOKEN_NAME, "sky");
+    if (after_name || after_bracket) {
+        evidence->renders = evidence->renders || is_symbol(t, '{');
+        bool open = is_symbol(t, '{') || (after_name && is_symbol(t, '('));
+        evidence->renders_otherwise = evidence->renders_otherwise || !open;
+    }
+    if ((is_field && is_symbol(t, '=')) || (is(t, TOKEN_NAME, "render_skybox") && is_after_dot(w, WINDOW - 1)))
+        evidence->renders_otherwise = true;
+}
+
 /* A token and those before it: w[WINDOW - 1] is the latest. */
 static void judge(const struct token *w, struct evidence *evidence, struct materials *materials,
                   struct mesh_call *call) {
     const struct token *t = &w[WINDOW - 1];
     bool after_dot = is_symbol(&w[WINDOW - 2], '.') || is_symbol(&w[WINDOW - 2], ':');
+    judge_picture(w, evidence);
     if (call->depth > 0)
         follow_mesh_call(call, t, materials, evidence);
     if (is(t, TOKEN_NAME, "gr") && !after_dot)
@@ -375,6 +398,7 @@ static void scan_file(struct search *search, const char *path, int depth) {
 static void conclude(const struct evidence *evidence, struct order_finding *finding) {
     bool old = evidence->is_old && !evidence->is_new;
     finding->order = old ? ORDER_OLD : ORDER_NEW;
+    finding->only_named_pictures = evidence->renders && !evidence->renders_otherwise;
     const char *reason = old ? evidence->old_reason : evidence->is_new ? evidence->new_reason : "";
     snprintf(finding->reason, sizeof finding->reason, "%s", reason);
 }

@@ -1,4 +1,5 @@
-/* The order in which transforms compose, decided from the text of a scene before it runs (docs/language.md 12.4). No
+/* The order in which transforms compose (docs/language.md 12.4), and whether all pictures have the table form without a
+ * background, decided from the text of a scene before it runs. No
  * Lua state is involved: a lexer skips comments and strings, a few patterns of words are evidence. */
 #ifndef GRAY_SCRIPT_ORDER_INTERNAL_H
 #define GRAY_SCRIPT_ORDER_INTERNAL_H
@@ -6,11 +7,13 @@
 #include "base/error.h"
 #include "scene/node.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 struct order_finding {
     enum transform_order order;
-    char reason[400]; /* "it uses readobj (line 3)"; "" without evidence */
+    char reason[400];         /* "it uses readobj (line 3)"; "" without evidence */
+    bool only_named_pictures; /* at least one gr.render{...}, no other form, no field background or sky */
 };
 
 struct path_policy;

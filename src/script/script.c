@@ -197,6 +197,9 @@ static bool conclude(struct script_context *context, int status, struct error *e
 
 static bool choose_order(struct script_context *context, struct error *error) {
     struct order_finding finding;
+    if (!order_detect(context->path, context->options->library_folder, context->path_policy, &finding, error))
+        return false;
+    context->only_named_pictures = finding.only_named_pictures;
     switch (context->options->transform_order) {
     case SCRIPT_ORDER_NEW:
         context->scene.order = ORDER_NEW;
@@ -210,8 +213,6 @@ static bool choose_order(struct script_context *context, struct error *error) {
     case SCRIPT_ORDER_AUTO:
         break;
     }
-    if (!order_detect(context->path, context->options->library_folder, context->path_policy, &finding, error))
-        return false;
     context->scene.order = finding.order;
     if (finding.order != ORDER_OLD)
         return true;

@@ -625,7 +625,9 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
     [RENDER_BACKGROUND] =
         {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
-         "Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}."},
+         "Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, "
+         "light "
+         "and neutral if all pictures of the script have the form gr.render{...} without background."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
                         "N x N samples for a marked pixel."},

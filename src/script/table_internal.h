@@ -169,6 +169,7 @@ int function_index(const struct script_function *function);
  * their arguments and effects are described in text. NULL after the last one. */
 struct value_function {
     const char *name, *parameters, *help;
+    const char *result; /* its type in annotations */
 };
 const struct value_function *value_function_at(size_t index);
 

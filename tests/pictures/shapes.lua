@@ -38,6 +38,7 @@ local function picture(name, things)
             .2, .2 },
         lights = { gr.light({ -4, 6, 9 }, { .8, .8, .75 }), gr.area_light({ 5, 0, 8 }, { 1, 0, 0 }, { 0, 1, 0 }, { .2, .2,
             .3 }, { 1, 0, 0 }) },
+        background = 'gradient',
     }
 end
 

@@ -397,6 +397,27 @@ TEST(names_in_the_forms_are_parameters) {
     }
 }
 
+/* LuaLS checks calls against these lines: a method has no field for its node, and each result has a line. */
+TEST(annotations_have_the_fields_and_results_of_calls) {
+    char *file = test_read_file("lua/gr.lua", NULL);
+    CHECK(file != NULL);
+    if (!file)
+        return;
+    const char *fields = strstr(file, "---@class gr.node.render.fields\n---@field file string");
+    CHECK(fields &&
+          strstr(fields, "---@overload fun(self: gr.node, fields: gr.node.render.fields)\nfunction node:render("));
+    CHECK(strstr(file, "---@return number[]\n---@return number[]\nfunction node:bounds()"));
+    CHECK(strstr(file, "---@return number[][]\n---@return integer[][]\nfunction node:faces()"));
+    CHECK(strstr(file, "---@return gr.glyphs\n"));
+    for (size_t k = 0; value_function_at(k); k++) {
+        char text[200];
+        (void)snprintf(text, sizeof text, "\n---@return %.20s", value_function_at(k)->result);
+        text[strcspn(text, ",")] = '\0';
+        CHECK(strstr(file, text) != NULL);
+    }
+    free(file);
+}
+
 TEST(annotation_file_is_current) {
     struct arena arena = {0};
     const char *annotations = script_annotations(&arena);

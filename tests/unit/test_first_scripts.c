@@ -1,6 +1,7 @@
 /* What newcomers meet first: defaults of positional calls, and messages about common mistakes. */
 #include "tests/harness.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,4 +67,25 @@ TEST(a_script_without_a_picture_says_so) {
     CHECK(!strstr(result.err, "no picture"));
     free(result.out);
     free(result.err);
+}
+
+static void check_corner(const char *scene, int r, int g, int b) {
+    says(scene, NULL);
+    struct test_picture picture = test_read_picture(test_path("x.png"));
+    const uint8_t *p = picture.rgb;
+    if (abs(p[0] - r) > 2 || abs(p[1] - g) > 2 || abs(p[2] - b) > 2)
+        test_fail(__FILE__, __LINE__, "%s: the corner is %d %d %d", scene, p[0], p[1], p[2]);
+    free(picture.rgb);
+}
+
+/* The corner of a picture of one row has a direction whose y is nearly 0. */
+TEST(only_pictures_that_are_all_named_have_a_light_background) {
+    const char *table = "gr.render{node = gr.node('n'), file = 'x.png', width = 9, height = 1, eye = {0, 0, 5}}";
+    char both[400];
+    check_corner(table, 204, 207, 209);
+    check_corner("gr.render(gr.node('n'), 'x.png', 9, 1, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)", 0, 0, 128);
+    (void)snprintf(both, sizeof both, "if x then gr.render(1) end %s", table);
+    check_corner(both, 0, 0, 128);
+    (void)snprintf(both, sizeof both, "%s if x then gr.render{background = 1} end", table);
+    check_corner(both, 0, 0, 128);
 }

@@ -29,6 +29,26 @@ TEST(names_of_the_project_dialect_mean_new) {
     }
 }
 
+TEST(named_pictures_without_a_background_are_told_from_all_others_by_the_text) {
+    static const char *const named[] = {"gr.render{node = n}", "gr.render({node = n})", "n:render{file = 'x.png'}",
+                                        "-- gr.render(n)\ngr.render {node = n, file = 'background = 1'}"};
+    static const char *const others[] = {"gr.render(n, 'x.png')",
+                                         "gr.render{node = n} gr.render(n)",
+                                         "local r = gr.render r{}",
+                                         "gr.render{node = n, background = {1, 1, 1}}",
+                                         "gr.render{node = n, sky = 'x'}",
+                                         "gr.render_skybox{node = n} gr.render{node = n}",
+                                         "n:render('x.png')",
+                                         "g['render']{node = n}",
+                                         ""};
+    for (size_t i = 0; i < sizeof named / sizeof *named; i++)
+        if (!order_of(named[i]).only_named_pictures)
+            test_fail(__FILE__, __LINE__, "%s: not only named pictures", named[i]);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (order_of(others[i]).only_named_pictures)
+            test_fail(__FILE__, __LINE__, "%s: only named pictures", others[i]);
+}
+
 TEST(other_signs_of_the_new_order) {
     expect(ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere{radius = 1} readobj()");
     expect(ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere({radius = 1}) readobj()");
