@@ -4,13 +4,13 @@
  * explicit call, a mesh by file name, table.unpack. Signs of the old one, which are used if there is no sign of the new
  * one: readobj, a bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project
  * dialect.
- *
- * The lexer follows the Lua 5.4 manual, section 3.1, as far as comments, strings and names go. */
+ */
 #include "script/order_internal.h"
 
 #include "base/arena.h"
 #include "base/file.h"
 #include "base/path_policy.h"
+#include "script/lexer_internal.h"
 #include "script/search_internal.h"
 
 #include <stdio.h>
@@ -25,130 +25,6 @@ enum {
     FILES = 64,
     WINDOW = 8
 };
-enum token_kind { TOKEN_END, TOKEN_NAME, TOKEN_STRING, TOKEN_NUMBER, TOKEN_SYMBOL };
-
-struct token {
-    enum token_kind kind;
-    const char *text; /* without quotes */
-    size_t length;
-    int line;
-};
-
-struct lexer {
-    const char *at, *end;
-    int line;
-};
-
-static bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-
-static bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-/* At "[": the level of a long bracket, or -1. */
-static int long_level(const struct lexer *lexer) {
-    const char *p = lexer->at + 1;
-    while (p < lexer->end && *p == '=')
-        p++;
-    return p < lexer->end && *p == '[' ? (int)(p - lexer->at - 1) : -1;
-}
-
-static struct token long_text(struct lexer *lexer, int level) {
-    lexer->at += level + 2;
-    struct token token = {TOKEN_STRING, lexer->at, 0, lexer->line};
-    for (; lexer->at < lexer->end; lexer->at++) {
-        if (*lexer->at == '\n')
-            lexer->line++;
-        if (*lexer->at != ']' || lexer->end - lexer->at < level + 2)
-            continue;
-        int k = 1;
-        while (k <= level && lexer->at[k] == '=')
-            k++;
-        if (k == level + 1 && lexer->at[k] == ']') {
-            token.length = (size_t)(lexer->at - token.text);
-            lexer->at += level + 2;
-            return token;
-        }
-    }
-    token.length = (size_t)(lexer->at - token.text);
-    return token;
-}
-
-static struct token quoted_text(struct lexer *lexer) {
-    char quote = *lexer->at++;
-    struct token token = {TOKEN_STRING, lexer->at, 0, lexer->line};
-    while (lexer->at < lexer->end && *lexer->at != quote && *lexer->at != '\n') {
-        if (*lexer->at == '\\' && lexer->at + 1 < lexer->end) {
-            lexer->at++;
-            if (*lexer->at == '\n')
-                lexer->line++;
-        }
-        lexer->at++;
-    }
-    token.length = (size_t)(lexer->at - token.text);
-    if (lexer->at < lexer->end)
-        lexer->at += *lexer->at == quote;
-    return token;
-}
-
-static void skip_line(struct lexer *lexer) {
-    while (lexer->at < lexer->end && *lexer->at != '\n')
-        lexer->at++;
-}
-
-static void skip_blanks_and_comments(struct lexer *lexer) {
-    while (lexer->at < lexer->end) {
-        char c = *lexer->at;
-        if (c == '\n')
-            lexer->line++;
-        if (c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v') {
-            lexer->at++;
-            continue;
-        }
-        if (c != '-' || lexer->end - lexer->at < 2 || lexer->at[1] != '-')
-            return;
-        lexer->at += 2;
-        int level = lexer->at < lexer->end && *lexer->at == '[' ? long_level(lexer) : -1;
-        if (level >= 0)
-            (void)long_text(lexer, level);
-        else
-            skip_line(lexer);
-    }
-}
-
-static struct token next_token(struct lexer *lexer) {
-    skip_blanks_and_comments(lexer);
-    struct token token = {TOKEN_END, lexer->at, 0, lexer->line};
-    if (lexer->at == lexer->end)
-        return token;
-    char c = *lexer->at;
-    if (c == '"' || c == '\'')
-        return quoted_text(lexer);
-    if (c == '[' && long_level(lexer) >= 0)
-        return long_text(lexer, long_level(lexer));
-    const char *p = lexer->at + 1;
-    if (is_letter(c) || is_digit(c)) {
-        token.kind = is_letter(c) ? TOKEN_NAME : TOKEN_NUMBER;
-        while (p < lexer->end && (is_letter(*p) || is_digit(*p) || (token.kind == TOKEN_NUMBER && *p == '.')))
-            p++;
-    } else {
-        token.kind = TOKEN_SYMBOL;
-    }
-    token.length = (size_t)(p - lexer->at);
-    lexer->at = p;
-    return token;
-}
-
-static bool is(const struct token *token, enum token_kind kind, const char *text) {
-    return token->kind == kind && strlen(text) == token->length && memcmp(token->text, text, token->length) == 0;
-}
-
-static bool is_symbol(const struct token *token, char c) {
-    return token->kind == TOKEN_SYMBOL && token->text[0] == c;
-}
-
 /* What has been seen so far, in all files. */
 struct evidence {
     bool mentions_gr, is_new, is_old;
@@ -175,7 +51,7 @@ static bool is_project_name(const struct token *token) {
         "geometry",          "csg_union",        "csg_difference",     "csg_intersection",   "csg_merge",
         "csg_inverse",       "clipped_by",       "bounded_by",         "area_light",         "render_skybox"};
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
-        if (is(token, TOKEN_NAME, names[k]))
+        if (token_is(token, TOKEN_NAME, names[k]))
             return true;
     return false;
 }
@@ -208,46 +84,47 @@ static void follow_mesh_call(struct mesh_call *call, const struct token *token, 
     bool starts = call->at_start;
     call->at_start = false;
     if (starts && call->argument == 1)
-        call->material_first = is_material(materials, token) || is(token, TOKEN_NAME, "gr");
+        call->material_first = is_material(materials, token) || token_is(token, TOKEN_NAME, "gr");
     if (starts && call->argument == 2) {
         call->second = *token;
         if (token->kind == TOKEN_STRING)
             say_new(evidence, "gr.mesh reads a file", call->line);
         else if (call->material_first)
             say_new(evidence, "gr.mesh is given a material", call->line);
-        else if (is_symbol(token, '{'))
+        else if (token_is_symbol(token, '{'))
             say_old(evidence, "gr.mesh is given vertex tables", call->line);
     }
     bool is_file = call->second.kind == TOKEN_STRING;
-    if (starts && call->argument == 3 && !is_file && !call->material_first && !is_symbol(token, ')'))
+    if (starts && call->argument == 3 && !is_file && !call->material_first && !token_is_symbol(token, ')'))
         say_old(evidence, "gr.mesh is given vertex tables", call->line);
-    if (is_symbol(token, '(') || is_symbol(token, '{') || is_symbol(token, '['))
+    if (token_is_symbol(token, '(') || token_is_symbol(token, '{') || token_is_symbol(token, '['))
         call->depth++;
-    if (is_symbol(token, ')') || is_symbol(token, '}') || is_symbol(token, ']'))
+    if (token_is_symbol(token, ')') || token_is_symbol(token, '}') || token_is_symbol(token, ']'))
         call->depth--;
-    if (is_symbol(token, ',') && call->depth == 1) {
+    if (token_is_symbol(token, ',') && call->depth == 1) {
         call->argument++;
         call->at_start = true;
     }
 }
 
 static bool is_after_dot(const struct token *w, int k) {
-    return is_symbol(&w[k - 1], '.') || is_symbol(&w[k - 1], ':');
+    return token_is_symbol(&w[k - 1], '.') || token_is_symbol(&w[k - 1], ':');
 }
 
 /* gr.render{...}, gr.render({...}) and node:render{...} have the table form. */
 static void judge_picture(const struct token *w, struct evidence *evidence) {
     const struct token *t = &w[WINDOW - 1];
-    bool after_name = is(&w[WINDOW - 2], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 2);
-    bool after_bracket =
-        is_symbol(&w[WINDOW - 2], '(') && is(&w[WINDOW - 3], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 3);
-    bool is_field = is(&w[WINDOW - 2], TOKEN_NAME, "background") || is(&w[WINDOW - 2], TOKEN_NAME, "sky");
+    bool after_name = token_is(&w[WINDOW - 2], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 2);
+    bool after_bracket = token_is_symbol(&w[WINDOW - 2], '(') && token_is(&w[WINDOW - 3], TOKEN_NAME, "render") &&
+                         is_after_dot(w, WINDOW - 3);
+    bool is_field = token_is(&w[WINDOW - 2], TOKEN_NAME, "background") || token_is(&w[WINDOW - 2], TOKEN_NAME, "sky");
     if (after_name || after_bracket) {
-        evidence->renders = evidence->renders || is_symbol(t, '{');
-        bool open = is_symbol(t, '{') || (after_name && is_symbol(t, '('));
+        evidence->renders = evidence->renders || token_is_symbol(t, '{');
+        bool open = token_is_symbol(t, '{') || (after_name && token_is_symbol(t, '('));
         evidence->renders_otherwise = evidence->renders_otherwise || !open;
     }
-    if ((is_field && is_symbol(t, '=')) || (is(t, TOKEN_NAME, "render_skybox") && is_after_dot(w, WINDOW - 1)))
+    if ((is_field && token_is_symbol(t, '=')) ||
+        (token_is(t, TOKEN_NAME, "render_skybox") && is_after_dot(w, WINDOW - 1)))
         evidence->renders_otherwise = true;
 }
 
@@ -255,39 +132,40 @@ static void judge_picture(const struct token *w, struct evidence *evidence) {
 static void judge(const struct token *w, struct evidence *evidence, struct materials *materials,
                   struct mesh_call *call) {
     const struct token *t = &w[WINDOW - 1];
-    bool after_dot = is_symbol(&w[WINDOW - 2], '.') || is_symbol(&w[WINDOW - 2], ':');
+    bool after_dot = token_is_symbol(&w[WINDOW - 2], '.') || token_is_symbol(&w[WINDOW - 2], ':');
     judge_picture(w, evidence);
     if (call->depth > 0)
         follow_mesh_call(call, t, materials, evidence);
-    if (is(t, TOKEN_NAME, "gr") && !after_dot)
+    if (token_is(t, TOKEN_NAME, "gr") && !after_dot)
         evidence->mentions_gr = true;
-    if (is(t, TOKEN_NAME, "readobj") && !after_dot)
+    if (token_is(t, TOKEN_NAME, "readobj") && !after_dot)
         say_old(evidence, "it uses readobj", t->line);
-    if (is(t, TOKEN_NAME, "unpack") && !after_dot)
+    if (token_is(t, TOKEN_NAME, "unpack") && !after_dot)
         say_old(evidence, "it calls unpack, not table.unpack", t->line);
-    if (is(t, TOKEN_NAME, "unpack") && after_dot && is(&w[WINDOW - 3], TOKEN_NAME, "table"))
+    if (token_is(t, TOKEN_NAME, "unpack") && after_dot && token_is(&w[WINDOW - 3], TOKEN_NAME, "table"))
         say_new(evidence, "it uses table.unpack", t->line);
 
-    bool gr_dot = is_symbol(&w[WINDOW - 2], '.') && is(&w[WINDOW - 3], TOKEN_NAME, "gr");
+    bool gr_dot = token_is_symbol(&w[WINDOW - 2], '.') && token_is(&w[WINDOW - 3], TOKEN_NAME, "gr");
     if (gr_dot && is_project_name(t))
         say_new(evidence, "it uses names of the project dialect", t->line);
-    if (gr_dot && is(t, TOKEN_NAME, "transform_order"))
+    if (gr_dot && token_is(t, TOKEN_NAME, "transform_order"))
         say_new(evidence, "it calls gr.transform_order", t->line);
-    bool assigned = gr_dot && is_symbol(&w[WINDOW - 4], '=') && w[WINDOW - 5].kind == TOKEN_NAME;
-    if (assigned && is(t, TOKEN_NAME, "material") && materials->count < 64)
+    bool assigned = gr_dot && token_is_symbol(&w[WINDOW - 4], '=') && w[WINDOW - 5].kind == TOKEN_NAME;
+    if (assigned && token_is(t, TOKEN_NAME, "material") && materials->count < 64)
         materials->names[materials->count++] = w[WINDOW - 5];
 
-    bool call_begins = is_symbol(&w[WINDOW - 3], '.') && is(&w[WINDOW - 4], TOKEN_NAME, "gr");
-    if (call_begins && is_symbol(t, '{'))
+    bool call_begins = token_is_symbol(&w[WINDOW - 3], '.') && token_is(&w[WINDOW - 4], TOKEN_NAME, "gr");
+    if (call_begins && token_is_symbol(t, '{'))
         say_new(evidence, "it uses tables with named fields", t->line);
-    if (call_begins && is_symbol(t, '(') && is(&w[WINDOW - 2], TOKEN_NAME, "mesh") && call->depth == 0)
+    if (call_begins && token_is_symbol(t, '(') && token_is(&w[WINDOW - 2], TOKEN_NAME, "mesh") && call->depth == 0)
         *call = (struct mesh_call){.depth = 1, .argument = 1, .line = t->line, .at_start = true};
-    bool primitive = is(&w[WINDOW - 3], TOKEN_NAME, "sphere") || is(&w[WINDOW - 3], TOKEN_NAME, "cube");
-    if (primitive && is_symbol(&w[WINDOW - 2], '(') && is_symbol(&w[WINDOW - 4], '.') && is_material(materials, t))
+    bool primitive = token_is(&w[WINDOW - 3], TOKEN_NAME, "sphere") || token_is(&w[WINDOW - 3], TOKEN_NAME, "cube");
+    if (primitive && token_is_symbol(&w[WINDOW - 2], '(') && token_is_symbol(&w[WINDOW - 4], '.') &&
+        is_material(materials, t))
         say_new(evidence, "a primitive is given its material", t->line);
-    bool named = is_symbol(t, '=') && w[WINDOW - 2].kind == TOKEN_NAME && is_symbol(&w[WINDOW - 3], '{') &&
-                 is_symbol(&w[WINDOW - 4], '(') && is_symbol(&w[WINDOW - 6], '.') &&
-                 is(&w[WINDOW - 7], TOKEN_NAME, "gr");
+    bool named = token_is_symbol(t, '=') && w[WINDOW - 2].kind == TOKEN_NAME && token_is_symbol(&w[WINDOW - 3], '{') &&
+                 token_is_symbol(&w[WINDOW - 4], '(') && token_is_symbol(&w[WINDOW - 6], '.') &&
+                 token_is(&w[WINDOW - 7], TOKEN_NAME, "gr");
     if (named)
         say_new(evidence, "it uses tables with named fields", t->line);
 }
@@ -297,10 +175,10 @@ static const struct token *required(const struct token *w, bool *is_module) {
     const struct token *t = &w[WINDOW - 1], *name = &w[WINDOW - 2];
     if (t->kind != TOKEN_STRING)
         return NULL;
-    if (is_symbol(name, '('))
+    if (token_is_symbol(name, '('))
         name = &w[WINDOW - 3];
-    *is_module = is(name, TOKEN_NAME, "require");
-    bool file = is(name, TOKEN_NAME, "dofile") || is(name, TOKEN_NAME, "loadfile");
+    *is_module = token_is(name, TOKEN_NAME, "require");
+    bool file = token_is(name, TOKEN_NAME, "dofile") || token_is(name, TOKEN_NAME, "loadfile");
     return *is_module || file ? t : NULL;
 }
 
@@ -355,13 +233,13 @@ static void follow(struct search *search, const struct token *token, bool is_mod
 static void scan_text(struct search *search, const char *text, size_t size, int depth) {
     struct lexer lexer = {text, text + size, 1};
     if (size > 0 && text[0] == '#')
-        skip_line(&lexer);
+        lexer_skip_line(&lexer);
     struct token window[WINDOW] = {0};
     struct materials materials = {.count = 0};
     struct mesh_call call = {0};
     do {
         memmove(window, window + 1, (WINDOW - 1) * sizeof *window);
-        window[WINDOW - 1] = next_token(&lexer);
+        window[WINDOW - 1] = lexer_next(&lexer);
         judge(window, &search->evidence, &materials, &call);
         bool is_module;
         const struct token *file = depth < DEPTH ? required(window, &is_module) : NULL;
