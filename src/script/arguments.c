@@ -4,6 +4,7 @@
 #include "base/unreachable.h"
 #include "math/range.h"
 #include "render/settings.h"
+#include "script/hints_internal.h"
 #include "script/lenient_internal.h"
 #include "script/record_internal.h"
 
@@ -235,7 +236,7 @@ static void check_holes(struct script_context *c, int index, const struct argume
     lua_State *L = c->lua;
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
         if (lua_isinteger(L, -2) && lua_tointeger(L, -2) > (lua_Integer)length)
-            context_raise(c, "%s[%u] is nil", argument_path->parameter->name, (unsigned)length + 1);
+            context_raise(c, "%s[%u] is nil%s", argument_path->parameter->name, (unsigned)length + 1, hint_of_nil(c));
     }
 }
 
@@ -251,7 +252,7 @@ static void read_list_of_handles(struct script_context *c, int index, struct arg
     for (uint32_t k = 0; k < length; k++) {
         argument_path.i = (lua_Integer)k + 1;
         if (lua_rawgeti(L, index, argument_path.i) == LUA_TNIL)
-            context_raise(c, "%s[%u] is nil", argument_path.parameter->name, (unsigned)k + 1);
+            context_raise(c, "%s[%u] is nil%s", argument_path.parameter->name, (unsigned)k + 1, hint_of_nil(c));
         void *pointer = read_handle(c, -1, &argument_path, is_lights ? HANDLE_LIGHT : HANDLE_NODE);
         lua_pop(L, 1);
         if (!pointer && !(argument_path.parameter->flags & REST)) /* a ghost; NULL in lists whose indices matter */
@@ -704,7 +705,7 @@ _Noreturn static void no_form_fits(struct script_context *c, const struct script
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s", separator, kind_words(p->kind));
     }
     if (lua_isnoneornil(c->lua, first))
-        context_raise(c, "%s is missing", names);
+        context_raise(c, "%s is missing%s", names, lua_isnil(c->lua, first) ? hint_of_nil(c) : "");
     context_raise(c, "%s must be %s, not %s", names, words, value_words(c->lua, first));
 }
 
@@ -722,7 +723,7 @@ static int read_rest(struct script_context *c, const struct script_parameter *p,
     for (; first < end; first++) {
         const struct handle *handle = handle_at(L, first);
         if (!handle)
-            context_raise(c, "%s[%u] is nil", p->name, (unsigned)value->count + 1);
+            context_raise(c, "%s[%u] is nil%s", p->name, (unsigned)value->count + 1, hint_of_nil(c));
         value->nodes[value->count++] =
             handle->type == HANDLE_GHOST ? lenient_ghost_as(c, handle, HANDLE_NODE, false) : handle->pointer;
     }
@@ -757,12 +758,12 @@ static bool read_positional(struct script_context *c, const struct script_functi
             if (function->owner == OWNER_NODE && lua_gettop(L) < first)
                 context_raise(c, "%s is missing; methods are called with a colon, as in n:%s(...)", p->name,
                               function->name);
-            context_raise(c, "%s is missing", p->name);
+            context_raise(c, "%s is missing%s", p->name, lua_isnil(L, slot) ? hint_of_nil(c) : "");
         }
         /* gr.render: the name of a variable is misspelt. */
         if (optional && function->result == RESULT_NOTHING && (p->kind == KIND_LIGHTS || p->kind == KIND_COLOUR) &&
             lua_isnil(L, slot))
-            context_raise(c, "%s is nil", p->name);
+            context_raise(c, "%s is nil%s", p->name, hint_of_nil(c));
         if (!arguments_read_one(c, slot, p, &args[index]))
             return false;
     }
@@ -816,7 +817,9 @@ static bool read_named(struct script_context *c, const struct script_function *f
         lua_pushstring(L, p->name);
         bool may_miss = (p->flags & OPTIONAL) || listed; /* nodes in a list: none needs a field name */
         if (lua_rawget(L, table) == LUA_TNIL && !may_miss)
-            context_raise(c, "%s is missing", p->name);
+            context_raise(c, "%s is missing%s", p->name, hint_of_nil(c));
+        if (p->kind == KIND_MATERIAL && lua_isnil(L, value))
+            hint_check_field(c, p->name);
         if (!arguments_read_one(c, value, p, &args[k]))
             return false;
         lua_pop(L, 1); /* the table keeps it */

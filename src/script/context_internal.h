@@ -92,6 +92,7 @@ struct script_context {
     uint32_t handle_count;
     const struct script_function *function; /* the one that runs */
     const char *subject;                    /* the node it is about, or NULL */
+    uint64_t checked_line;                  /* hint_check_field: a hash of its position */
     uint8_t *warned;                        /* WARNED_ bits by row of the table */
     struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
     uint32_t change_count, change_room, added, owned;
@@ -203,6 +204,8 @@ bool files_require(struct script_context *context, const char *name, char out[PA
 bool files_on_path(const struct script_context *context, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
 const char *files_repair_number(struct script_context *context, const char *name);
+/* The policy for a Lua file; NULL for the scene and its dialect: the user named them, they may be links to any file. */
+const struct path_policy *files_policy(const struct script_context *context, const char *path);
 /* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
 int files_load(lua_State *L, const char *path);
 /* File names that Lua has shortened are written in full again at the start of a message. */
@@ -217,6 +220,8 @@ void dialect_finish(lua_State *L);                                      /* after
 /* These add functions to a new state. All run protected and may raise. */
 void sandbox_open(
     lua_State *L); /* sandbox.c: the libraries, without the functions that an untrusted script must not have */
+/* Whether the library of Lua has this function, and the sandbox has not. */
+bool sandbox_removes(const char *library, const char *name);
 void streams_open(lua_State *L);                    /* streams.c: files and printing within what the scene was given */
 void streams_close(struct script_context *context); /* after the state */
 void protect_open(lua_State *L);                    /* protect.c */

@@ -172,6 +172,14 @@ _Noreturn static void raise_outside(lua_State *L, const struct error *error) {
     context_raise_error(context, error);
 }
 
+static bool is_dialect(const struct script_context *context, const char *path) {
+    return context->dialect && strcmp(path, context->dialect) == 0;
+}
+
+const struct path_policy *files_policy(const struct script_context *context, const char *path) {
+    return is_dialect(context, path) || strcmp(path, context->path) == 0 ? NULL : context->path_policy;
+}
+
 /* Pushes the chunk, or a message. Raises only before the file is mapped, so the file is always unmapped. A first line
  * that starts with # is skipped, but not its line end, so that line numbers stay correct. */
 int files_load(lua_State *L, const char *path) {
@@ -189,11 +197,7 @@ int files_load(lua_State *L, const char *path) {
     *source = (struct source_name){.path = name + 1, .next = context->sources};
     context->sources = source;
     struct file_bytes bytes;
-    /* The user named the scene itself and its dialect; they may be links to any file. */
-    bool is_dialect = context->dialect && strcmp(path, context->dialect) == 0;
-    bool is_named = is_dialect || strcmp(path, context->path) == 0;
-    const struct path_policy *path_policy = is_named ? NULL : context->path_policy;
-    if (!path_policy_map(path_policy, path, FILE_LIMIT, &bytes, &error)) {
+    if (!path_policy_map(files_policy(context, path), path, FILE_LIMIT, &bytes, &error)) {
         if (error.kind != ERROR_SCENE || error.limit)
             raise_outside(L, &error);
         lua_pushstring(L, error.text);
@@ -212,7 +216,7 @@ int files_load(lua_State *L, const char *path) {
     }
     int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, context->options->no_sandbox ? "bt" : "t");
     file_unmap(&bytes);
-    if (status == LUA_OK && !is_dialect) /* a dialect has the globals of the scene */
+    if (status == LUA_OK && !is_dialect(context, path)) /* a dialect has the globals of the scene */
         library_adopt(L, path);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "script/context_internal.h"
 
 #include "base/file.h"
+#include "script/hints_internal.h"
 #include "script/lenient_internal.h"
 #include "script/order_internal.h"
 #include "script/record_internal.h"
@@ -143,7 +144,8 @@ static int describe_error(lua_State *L) {
         return 1;
     }
     size_t first = strcspn(message, "\n");
-    error_set(&context->failure, ERROR_SCENE, "%s%.*s", has_position ? "" : where, (int)first, message);
+    error_set(&context->failure, ERROR_SCENE, "%s%.*s%s", has_position ? "" : where, (int)first, message,
+              hint_of_lua_error(L, message));
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     if (is_forgivable(context, message)) {

@@ -89,3 +89,39 @@ TEST(only_pictures_that_are_all_named_have_a_light_background) {
     (void)snprintf(both, sizeof both, "%s if x then gr.render{background = 1} end", table);
     check_corner(both, 0, 0, 128);
 }
+
+#define RED "red = gr.material({1, 0, 0})\n"
+
+TEST(nil_for_a_material_names_the_variable_and_one_that_is_spelt_like_it) {
+    says(RED "gr.sphere(redd)",
+         "scene.lua:2: gr.sphere: material or name is missing; 'redd' is nil, did you mean 'red'?");
+    says("local " RED "gr.nh_sphere(rad,\n {0, 0, 0}, 1)",
+         "scene.lua:2: gr.nh_sphere: name or material is missing; 'rad'");
+    says(RED "gr.sphere('b'):set_material(rad)",
+         "scene.lua:2: node:set_material: material is missing; 'rad' is nil, did");
+    says(RED "gr.sphere{material = rad}",
+         "scene.lua:2: gr.sphere: material is missing; 'rad' is nil, did you mean 'red'?");
+    says(RED "gr.sphere{\n material = zzzzz}", "gr.sphere: material is missing; 'zzzzz' is nil\n");
+    says("ball = gr.sphere('b')\ngr.node('a'):add_child(bal)", "node is missing; 'bal' is nil, did you mean 'ball'?");
+}
+
+TEST(a_material_that_may_be_nil_is_no_error) {
+    says("local function ball(m) return gr.sphere{material = m} end ball() ball(nil)", NULL);
+    says("opts = {} gr.sphere{material = opts.material}", NULL);
+    says("gr.sphere{material = nil}", NULL);
+    says("local _ENV = {gr = gr} gr.sphere{material = nothing}", NULL);
+    says("gr.sphere()", "gr.sphere: material or name is missing\n");
+}
+
+TEST(errors_of_lua_suggest_names_and_name_the_sandbox) {
+    says("os.execute('ls')", "(field 'execute'); the sandbox has no os.execute (docs/security.md)");
+    says("io.popen('ls')", "the sandbox has no io.popen (docs/security.md)");
+    says("os.tiem()", "(field 'tiem'); did you mean 'os.time'?");
+    says("local m = require 'lathe' m.trun()", "(field 'trun'); did you mean 'm.turn'?");
+    says("pirnt(1)", "(global 'pirnt'); did you mean 'print'?");
+    says("local t = {} t.x()", "attempt to call a nil value (field 'x')\n");
+    struct test_result result = test_gray_scene("os.execute('ls', 1, x.y)", "--no-sandbox -q scene.lua", NULL);
+    CHECK(!strstr(result.err, "the sandbox has no"));
+    free(result.out);
+    free(result.err);
+}

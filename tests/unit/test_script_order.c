@@ -29,7 +29,7 @@ TEST(names_of_the_project_dialect_mean_new) {
     }
 }
 
-TEST(named_pictures_without_a_background_are_told_from_all_others_by_the_text) {
+TEST(the_text_shows_whether_all_pictures_are_named_and_without_a_background) {
     static const char *const named[] = {"gr.render{node = n}", "gr.render({node = n})", "n:render{file = 'x.png'}",
                                         "-- gr.render(n)\ngr.render {node = n, file = 'background = 1'}"};
     static const char *const others[] = {"gr.render(n, 'x.png')",

@@ -1,0 +1,321 @@
+/* What a message adds about a name that the script may have misspelt. When an argument is nil, or Lua calls or indexes
+ * nil, the text of the running line is read again: names in it that are neither local nor global are likely errors, and
+ * the nearest name that does have a value is what may have been meant. This happens only when a message is made, and
+ * once for each line that makes a shape without a material. */
+#include "script/hints_internal.h"
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "script/lexer_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TEXT_LIMIT = 4096, NAMES_LIMIT = 2000, NAME_SIZE = 64 };
+
+/* The function that runs, and the text from its line on; a copy in the arena of the call. */
+struct running {
+    lua_State *L;
+    lua_Debug at;
+    const char *text;
+    size_t size;
+};
+
+static bool read_text(struct script_context *c, struct running *running, const char *path) {
+    struct file_bytes bytes;
+    struct error error = {0};
+    if (!path_policy_map(files_policy(c, path), path, FILE_LIMIT, &bytes, &error))
+        return false;
+    const char *from = (const char *)bytes.data, *end = from + bytes.size;
+    for (int line = 1; from && line < running->at.currentline; line++) {
+        from = memchr(from, '\n', (size_t)(end - from));
+        from += from != NULL;
+    }
+    if (from) {
+        running->size = (size_t)(end - from) < TEXT_LIMIT ? (size_t)(end - from) : TEXT_LIMIT;
+        running->text = arena_copy_text(&c->call, from, running->size);
+    }
+    file_unmap(&bytes);
+    return running->text != NULL;
+}
+
+/* Pushes the value of a local variable, an upvalue or a global; *is_global says which. */
+static void push_variable(const struct running *running, const char *name, bool *is_global) {
+    lua_State *L = running->L;
+    lua_Debug at = running->at;
+    int base = lua_gettop(L);
+    const char *other;
+    *is_global = false;
+    lua_pushnil(L);
+    bool found = false;
+    for (int n = 1; (other = lua_getlocal(L, &at, n)) != NULL; n++) {
+        if (strcmp(other, name) == 0) { /* the last one hides those before it */
+            lua_replace(L, base + 1);
+            found = true;
+        } else {
+            lua_pop(L, 1);
+        }
+    }
+    lua_getinfo(L, "f", &at);
+    for (int n = 1; !found && (other = lua_getupvalue(L, base + 2, n)) != NULL; n++) {
+        if (strcmp(other, name) == 0) {
+            lua_replace(L, base + 1);
+            found = true;
+        } else {
+            lua_pop(L, 1);
+        }
+    }
+    if (!found) {
+        *is_global = true;
+        lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+        lua_pushstring(L, name);
+        lua_rawget(L, -2);
+        lua_replace(L, base + 1);
+    }
+    lua_settop(L, base + 1);
+}
+
+/* Whether the globals of the function are those of the script: other environments may have more names. */
+static bool has_usual_globals(const struct running *running) {
+    lua_State *L = running->L;
+    bool is_global;
+    push_variable(running, "_ENV", &is_global);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    bool usual = is_global || lua_rawequal(L, -1, -2); /* a function that uses no global has no _ENV */
+    lua_pop(L, 2);
+    return usual;
+}
+
+/* False: no Lua function runs, or its text cannot be read. */
+static bool find_running(struct script_context *c, lua_State *L, struct running *running) {
+    *running = (struct running){.L = L};
+    if (!lua_checkstack(L, 20))
+        return false;
+    for (int level = 0; lua_getstack(L, level, &running->at); level++) {
+        lua_getinfo(L, "Sl", &running->at);
+        if (running->at.currentline <= 0)
+            continue;
+        const char *source = running->at.source;
+        return source[0] == '@' && has_usual_globals(running) && read_text(c, running, source + 1);
+    }
+    return false;
+}
+
+static bool is_nil_global(const struct running *running, const char *name) {
+    bool is_global;
+    push_variable(running, name, &is_global);
+    bool nil = is_global && lua_isnil(running->L, -1);
+    lua_pop(running->L, 1);
+    return nil;
+}
+
+static bool copy_name(const struct token *token, char name[NAME_SIZE]) {
+    static const char *const keywords[] = {"and",      "break",  "do",   "else", "elseif", "end",  "false", "for",
+                                           "function", "goto",   "if",   "in",   "local",  "nil",  "not",   "or",
+                                           "repeat",   "return", "then", "true", "until",  "while"};
+    if (token->kind != TOKEN_NAME || token->length >= NAME_SIZE)
+        return false;
+    memcpy(name, token->text, token->length);
+    name[token->length] = '\0';
+    for (size_t i = 0; i < sizeof keywords / sizeof *keywords; i++)
+        if (strcmp(name, keywords[i]) == 0)
+            return false;
+    return true;
+}
+
+/* Visits the tokens of the running line, and of those after it while a bracket is open; w[1] is visited between those
+ * beside it. */
+static bool find_token(const struct running *running,
+                       bool (*visit)(const struct running *, const struct token *w, void *), void *wanted) {
+    struct lexer lexer = {running->text, running->text + running->size, 1};
+    struct token w[4] = {{0}};
+    int depth = 0;
+    w[2] = lexer_next(&lexer);
+    w[3] = lexer_next(&lexer);
+    do {
+        w[0] = w[1], w[1] = w[2], w[2] = w[3];
+        w[3] = lexer_next(&lexer);
+        if (w[1].kind != TOKEN_END && visit(running, w, wanted))
+            return true;
+        depth += token_is_symbol(&w[1], '(') || token_is_symbol(&w[1], '{');
+        depth -= token_is_symbol(&w[1], ')') || token_is_symbol(&w[1], '}');
+    } while (w[2].kind != TOKEN_END && (depth > 0 || w[2].line == 1));
+    return false;
+}
+
+/* A name alone: no field, and not left of an assignment. */
+static bool is_variable(const struct token *w, char name[NAME_SIZE]) {
+    bool is_field = token_is_symbol(&w[0], '.') || token_is_symbol(&w[0], ':');
+    bool is_assigned = token_is_symbol(&w[2], '=') && !token_is_symbol(&w[3], '=');
+    return !is_field && !is_assigned && copy_name(&w[1], name);
+}
+
+static bool visit_nil(const struct running *running, const struct token *w, void *wanted) {
+    char *name = wanted;
+    return is_variable(w, name) && is_nil_global(running, name);
+}
+
+struct field {
+    const char *name;
+    char value[NAME_SIZE];
+};
+
+/* field = VARIABLE, where the variable is nil. */
+static bool visit_field(const struct running *running, const struct token *w, void *wanted) {
+    struct field *field = wanted;
+    bool is_field = token_is(&w[0], TOKEN_NAME, field->name) && token_is_symbol(&w[1], '=');
+    bool ends = !token_is_symbol(&w[3], '.') && !token_is_symbol(&w[3], '[') && !token_is_symbol(&w[3], '(') &&
+                w[3].kind != TOKEN_NAME && w[3].kind != TOKEN_STRING;
+    return is_field && ends && copy_name(&w[2], field->value) && is_nil_global(running, field->value);
+}
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Names that have a value, in byte order: traversal of a table has none. */
+struct names {
+    const char **list;
+    size_t count;
+};
+
+static void add_name(struct script_context *c, struct names *names, const char *name) {
+    const char *copy = names->count < NAMES_LIMIT ? arena_copy_text(&c->call, name, strlen(name)) : NULL;
+    if (copy)
+        names->list[names->count++] = copy;
+}
+
+static void add_keys(struct script_context *c, lua_State *L, struct names *names) {
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING)
+            add_name(c, names, lua_tostring(L, -2));
+}
+
+static const char *nearest(struct names *names, const char *name) {
+    struct suggestion suggestion;
+    qsort(names->list, names->count, sizeof *names->list, compare_names);
+    suggest_begin(&suggestion, name);
+    for (size_t i = 0; i < names->count; i++)
+        suggest_offer(&suggestion, names->list[i]);
+    return suggestion.best;
+}
+
+static bool begin_names(struct script_context *c, struct names *names) {
+    *names = (struct names){.list = arena_alloc_array(&c->call, NAMES_LIMIT, sizeof *names->list)};
+    return names->list != NULL;
+}
+
+/* The variable whose name is like this one. */
+static const char *nearest_variable(struct script_context *c, const struct running *running, const char *name) {
+    struct names names;
+    lua_State *L = running->L;
+    lua_Debug at = running->at;
+    const char *other;
+    if (!begin_names(c, &names))
+        return NULL;
+    for (int n = 1; (other = lua_getlocal(L, &at, n)) != NULL; lua_pop(L, 1), n++)
+        if (other[0] != '(' && !lua_isnil(L, -1))
+            add_name(c, &names, other);
+    lua_getinfo(L, "f", &at);
+    for (int n = 1; (other = lua_getupvalue(L, -1, n)) != NULL; lua_pop(L, 1), n++)
+        if (!lua_isnil(L, -1))
+            add_name(c, &names, other);
+    lua_pop(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
+    add_keys(c, L, &names);
+    lua_pop(L, 1);
+    return nearest(&names, name);
+}
+
+static const char *nil_words(struct script_context *c, const struct running *running, const char *name) {
+    const char *meant = nearest_variable(c, running, name);
+    const char *words = meant ? arena_format(&c->call, "; '%s' is nil, did you mean '%s'?", name, meant)
+                              : arena_format(&c->call, "; '%s' is nil", name);
+    return words ? words : "";
+}
+
+const char *hint_of_nil(struct script_context *c) {
+    struct running running;
+    char name[NAME_SIZE];
+    if (!find_running(c, c->lua, &running) || !find_token(&running, visit_nil, name))
+        return "";
+    return nil_words(c, &running, name);
+}
+
+void hint_check_field(struct script_context *c, const char *name) {
+    struct running running;
+    struct field field = {.name = name};
+    char where[PATH_SIZE + 32];
+    context_where(c, where, sizeof where);
+    uint64_t line = hash_bytes(where, strlen(where), 1);
+    if (c->checked_line == line) /* a loop */
+        return;
+    c->checked_line = line;
+    if (find_running(c, c->lua, &running) && find_token(&running, visit_field, &field))
+        context_raise(c, "%s is missing%s", name, nil_words(c, &running, field.value));
+}
+
+/* Errors of Lua. */
+
+struct access {
+    const char *field;
+    char table[NAME_SIZE];
+};
+
+/* TABLE.FIELD, where TABLE is a variable. */
+static bool visit_access(const struct running *running, const struct token *w, void *wanted) {
+    struct access *access = wanted;
+    (void)running;
+    bool before = token_is_symbol(&w[0], '.') || token_is_symbol(&w[0], ':');
+    return !before && token_is_symbol(&w[2], '.') && token_is(&w[3], TOKEN_NAME, access->field) &&
+           copy_name(&w[1], access->table);
+}
+
+static const char *field_words(struct script_context *c, const struct running *running, const char *field) {
+    struct access access = {.field = field};
+    struct names names;
+    lua_State *L = running->L;
+    bool is_global;
+    if (!find_token(running, visit_access, &access))
+        return "";
+    push_variable(running, access.table, &is_global);
+    const char *words = "", *meant = NULL;
+    if (lua_istable(L, -1) && is_global && !c->options->no_sandbox && sandbox_removes(access.table, field))
+        words = arena_format(&c->call, "; the sandbox has no %s.%s (docs/security.md)", access.table, field);
+    else if (lua_istable(L, -1) && begin_names(c, &names)) {
+        add_keys(c, L, &names);
+        meant = nearest(&names, field);
+    }
+    if (meant)
+        words = arena_format(&c->call, "; did you mean '%s.%s'?", access.table, meant);
+    lua_pop(L, 1);
+    return words ? words : "";
+}
+
+/* The name in "... a nil value (KIND 'NAME')". */
+static bool read_culprit(const char *message, const char *kind, char name[NAME_SIZE]) {
+    char begin[40];
+    (void)snprintf(begin, sizeof begin, " a nil value (%s '", kind);
+    const char *at = strstr(message, begin);
+    size_t length = at ? strcspn(at + strlen(begin), "'\n") : 0;
+    if (length == 0 || length >= NAME_SIZE)
+        return false;
+    memcpy(name, at + strlen(begin), length);
+    name[length] = '\0';
+    return true;
+}
+
+const char *hint_of_lua_error(lua_State *L, const char *message) {
+    struct script_context *c = context_of(L);
+    struct running running;
+    char name[NAME_SIZE];
+    bool field = read_culprit(message, "field", name), global = !field && read_culprit(message, "global", name);
+    if ((!field && !global) || !find_running(c, L, &running))
+        return "";
+    if (field)
+        return field_words(c, &running, name);
+    const char *meant = nearest_variable(c, &running, name);
+    const char *words = meant ? arena_format(&c->call, "; did you mean '%s'?", meant) : NULL;
+    return words ? words : "";
+}

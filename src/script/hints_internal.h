@@ -1,0 +1,15 @@
+/* Hints at misspelt names in messages. Texts are in the arena of the call, "" where there is nothing to say. */
+#ifndef GRAY_SCRIPT_HINTS_INTERNAL_H
+#define GRAY_SCRIPT_HINTS_INTERNAL_H
+
+#include "script/context_internal.h"
+
+/* "; 'redd' is nil, did you mean 'red'?": about the first name in the running call that is an undefined global. */
+const char *hint_of_nil(struct script_context *context);
+/* Raises an error if the running call has `name = VARIABLE` with an undefined global; once for each line. */
+void hint_check_field(struct script_context *context, const char *name);
+/* About "attempt to call a nil value (field 'x')" and the like. May not raise: it is called while an error is handled.
+ */
+const char *hint_of_lua_error(lua_State *L, const char *message);
+
+#endif
