@@ -1162,7 +1162,7 @@ function gr.openpbr_material(base_color) end
 function gr.metal_material(metal, roughness) end
 
 ---@class gr.light.fields
----@field colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
+---@field colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}): Colour and strength, or a function of the unit direction in which light leaves.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1172,14 +1172,14 @@ function gr.metal_material(metal, roughness) end
 
 ---A point light.
 ---@param position gr.triple position (a point {x, y, z}): Position.
----@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
+---@param colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}): Colour and strength, or a function of the unit direction in which light leaves.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@return gr.light
 ---@overload fun(fields: gr.light.fields): gr.light
 function gr.light(position, colour, falloff) end
 
 ---@class gr.area_light.fields
----@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength, or a function of the unit direction in which light leaves.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1197,14 +1197,14 @@ function gr.light(position, colour, falloff) end
 ---@param corner gr.triple corner (a point {x, y, z}): One corner of the parallelogram.
 ---@param v1 gr.triple v1 (a direction {x, y, z}): Edge from that corner.
 ---@param v2 gr.triple v2 (a direction {x, y, z}): The other edge from that corner.
----@param colour gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@param colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength, or a function of the unit direction in which light leaves.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@return gr.light
 ---@overload fun(fields: gr.area_light.fields): gr.light
 function gr.area_light(corner, v1, v2, colour, falloff) end
 
 ---@class gr.spherical_light.fields
----@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength, or a function of the unit direction in which light leaves.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1218,7 +1218,7 @@ function gr.area_light(corner, v1, v2, colour, falloff) end
 
 ---A sphere as a light, with soft shadows.
 ---@param position gr.triple position (a point {x, y, z}): Its centre.
----@param colour gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@param colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength, or a function of the unit direction in which light leaves.
 ---@param falloff gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@param radius number radius (a number, > 0): Its radius.
 ---@return gr.light
@@ -1226,7 +1226,7 @@ function gr.area_light(corner, v1, v2, colour, falloff) end
 function gr.spherical_light(position, colour, falloff, radius) end
 
 ---@class gr.disc_light.fields
----@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength, or a function of the unit direction in which light leaves.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1244,7 +1244,7 @@ function gr.spherical_light(position, colour, falloff, radius) end
 ---@param position gr.triple position (a point {x, y, z}): Its centre.
 ---@param normal gr.triple normal (a direction {x, y, z}): The direction it faces.
 ---@param radius number radius (a number, > 0): Its radius.
----@param colour gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
+---@param colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength, or a function of the unit direction in which light leaves.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
 ---@return gr.light
 ---@overload fun(fields: gr.disc_light.fields): gr.light
@@ -1264,7 +1264,7 @@ function gr.disc_light(position, normal, radius, colour, falloff) end
 function gr.directional_light(direction, colour) end
 
 ---@class gr.spot_light.fields
----@field colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
+---@field colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}): Colour and strength, or a function of the unit direction in which light leaves.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
 ---@field falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1279,7 +1279,7 @@ function gr.directional_light(direction, colour) end
 ---A point light that shines into a cone.
 ---@param position gr.triple position (a point {x, y, z}): Position.
 ---@param direction gr.triple direction (a direction {x, y, z}; default {0, -1, 0}): The axis of its cone.
----@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
+---@param colour gr.triple|string|gr.texture|function colour (a colour {r, g, b}): Colour and strength, or a function of the unit direction in which light leaves.
 ---@param inner number inner (a number, 0 to 180, in degrees; default three quarters of outer): Angle from the axis where the light begins to fall off.
 ---@param outer number outer (a number, > 0 and <= 180, in degrees; default 30, or inner if that is more): Angle from the axis where the light ends.
 ---@param falloff? gr.triple falloff (a table of 3 numbers; default {1, 0, 0}): Coefficients c0, c1, c2: the falloff is 1 / (c0 + c1 d + c2 d^2).
@@ -1306,11 +1306,11 @@ function gr.mesh_light(mesh, emission) end
 ---@field colour? gr.triple|string colour (a colour {r, g, b}; default {1, 1, 1} with emission): Colour and strength.
 ---@field include? gr.node[] include (a table of nodes; default all): Nodes that it lights, with their children.
 ---@field exclude? gr.node[] exclude (a table of nodes; default none): Nodes that it does not light, with their children.
----@field sky gr.triple|string|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, a colour, or 'gradient'.
+---@field sky gr.triple|string|gr.sky|gr.texture|function|'gradient' sky (a colour {r, g, b}, a sky, a function or 'gradient'): A sky, a colour, a function of the unit direction, or 'gradient'.
 ---@field samples? integer samples (a whole number, 1 to 64; default area_samples): N x N shadow rays for this light.
 
 ---A sky as a light; bright parts get more shadow rays.
----@param sky gr.triple|string|gr.sky|'gradient' sky (a colour {r, g, b}, a sky or 'gradient'): A sky, a colour, or 'gradient'.
+---@param sky gr.triple|string|gr.sky|gr.texture|function|'gradient' sky (a colour {r, g, b}, a sky, a function or 'gradient'): A sky, a colour, a function of the unit direction, or 'gradient'.
 ---@return gr.light
 ---@overload fun(fields: gr.sky_light.fields): gr.light
 function gr.sky_light(sky) end
@@ -1532,6 +1532,17 @@ function gr.sky_map(image) end
 ---@overload fun(fields: gr.sky_gradient.fields): gr.sky
 function gr.sky_gradient(stops) end
 
+---@class gr.sky_function.fields
+---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
+---@field rotation? number rotation (a number, in degrees; default 0): Rotation about y, counterclockwise seen from above.
+---@field f function|gr.texture f (a function): A function of the unit direction; it returns a colour or a number.
+
+---A sky whose colour is a function of the direction.
+---@param f function|gr.texture f (a function): A function of the unit direction; it returns a colour or a number.
+---@return gr.sky
+---@overload fun(fields: gr.sky_function.fields): gr.sky
+function gr.sky_function(f) end
+
 ---@class gr.clear_sky.fields
 ---@field intensity? number intensity (a number, >= 0; default 1): Factor of its brightness.
 ---@field rotation? number rotation (a number, in degrees; default 0): Rotation about y, counterclockwise seen from above.
@@ -1624,6 +1635,22 @@ function gr.fog_profile(profile, colour) end
 ---@overload fun(fields: gr.fog_grid.fields): gr.fog
 function gr.fog_grid(corner, size, cells, densities, colour) end
 
+---@class gr.fog_field.fields
+---@field colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour, or a function f(p, s) of the point, s.view and s.time.
+---@field clear_sky? boolean clear_sky (true or false; default false): Whether the fog leaves the sky unchanged.
+---@field corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
+---@field size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
+---@field density function|gr.texture density (a function): A function f(p, s) of the point and s.time; it returns a number of at least 0.
+
+---Fog in a box whose density is a function of the point; no fog outside.
+---@param corner gr.triple corner (a point {x, y, z}): The corner with the smallest coordinates.
+---@param size number|gr.triple size (a number or a table of 3 numbers, > 0): Length of the edges, one number or three.
+---@param density function|gr.texture density (a function): A function f(p, s) of the point and s.time; it returns a number of at least 0.
+---@param colour? gr.triple|string|gr.texture|function colour (a colour {r, g, b}; default {0.5, 0.5, 0.5}): Its colour, or a function f(p, s) of the point, s.view and s.time.
+---@return gr.fog
+---@overload fun(fields: gr.fog_field.fields): gr.fog
+function gr.fog_field(corner, size, density, colour) end
+
 ---@class gr.render.fields
 ---@field node gr.node node (a node): Root node of the picture.
 ---@field file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
@@ -1637,7 +1664,7 @@ function gr.fog_grid(corner, size, cells, densities, colour) end
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1711,7 +1738,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|'gradient' background (a colour {r, g, b}, a sky or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.

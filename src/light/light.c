@@ -7,6 +7,7 @@
 #include "light/light.h"
 
 #include "base/error.h"
+#include "expr/expr_field.h"
 #include "image/transfer.h"
 #include "light/light_internal.h"
 #include "light/light_mesh.h"
@@ -46,6 +47,20 @@ bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, 
     return true;
 }
 
+bool light_set_profile(struct light *light, const struct expr_program *profile, struct error *error) {
+    light->profile = profile;
+    return expr_field_reads_only(profile, EXPR_POINT_INPUTS,
+                                 "the colour of a light is a function of the direction alone", error) &&
+           (expr_field_largest(profile, &light->profile_largest) || error_no_memory(error, "a light"));
+}
+
+/* Of the light that leaves in a direction, of any length. */
+static struct vec3 colour_along(const struct light *light, struct vec3 direction) {
+    if (!light->profile)
+        return light->colour;
+    return vec3_mul(light->colour, expr_field_at(light->profile, vec3_normalize(direction)));
+}
+
 /* --- delta lights --- */
 
 bool light_middle(const struct light *light, struct light_target *out) {
@@ -74,6 +89,7 @@ bool light_arrive(const struct light *light, struct vec3 point, struct light_arr
         out->direction = out->middle.at;
         out->distance = INFINITY;
         out->strength = 1;
+        out->colour = light->colour;
         return true;
     }
     struct vec3 to_light = vec3_sub(out->middle.at, point);
@@ -81,6 +97,7 @@ bool light_arrive(const struct light *light, struct vec3 point, struct light_arr
     if (!(out->distance > 0))
         return false;
     out->direction = vec3_scale(to_light, 1 / out->distance);
+    out->colour = colour_along(light, vec3_negate(out->direction));
     out->strength = light_attenuation(light, out->distance);
     switch (light->kind) {
     case LIGHT_SPOT:
@@ -179,7 +196,7 @@ static struct light_sample delta_sample(const struct light *light, const struct 
     struct light_arrival arrival;
     if (!light_arrive(light, context->point, &arrival))
         return (struct light_sample){.pdf = 1, .is_delta = true};
-    struct vec3 radiance = vec3_scale(light->colour, arrival.strength);
+    struct vec3 radiance = vec3_scale(arrival.colour, arrival.strength);
     return (struct light_sample){
         .direction = arrival.direction,
         .target = {context->single ? arrival.middle.at : light_target_at(light, context, xi), arrival.middle.distant},
@@ -192,11 +209,12 @@ static struct light_sample delta_sample(const struct light *light, const struct 
 /* A lamp with a surface of its own: `weight` is the intensity of radiance 1. */
 static struct light_sample surface_sample(const struct light *light, const struct light_context *context,
                                           struct vec3 target, double weight) {
+    struct vec3 colour = colour_along(light, vec3_sub(context->from, target));
     return (struct light_sample){.direction = vec3_normalize(vec3_sub(target, context->point)),
                                  .target = {target, false},
-                                 .radiance = light->colour,
+                                 .radiance = colour,
                                  .pdf = pdf_of(weight),
-                                 .intensity = vec3_scale(light->colour, weight)};
+                                 .intensity = vec3_scale(colour, weight)};
 }
 
 static struct light_sample planar_sample(const struct light *light, const struct light_context *context,
@@ -308,7 +326,7 @@ struct vec3 light_emitted(const struct light *light, const struct ray *ray, cons
     case LIGHT_PARALLELOGRAM:
     case LIGHT_DISC:
     case LIGHT_SPHERE:
-        return light->colour;
+        return colour_along(light, vec3_negate(ray->direction));
     case LIGHT_MESH:
         t = &light->mesh->triangles[hit->triangle];
         if (light->mesh->one_sided && !(vec3_dot(t->normal, ray->direction) < 0))
@@ -347,7 +365,7 @@ double light_brightest(const struct light *light) {
     case LIGHT_SPHERE:
         break;
     }
-    return max;
+    return light->profile ? max * light->profile_largest : max;
 }
 
 bool light_surface_box(const struct light *light, struct box *out) {
@@ -425,8 +443,7 @@ enum light_extent light_bounds_of(const struct light *light, uint32_t part, stru
             light_bounds_fade(light, out);
             break;
         }
-        light_bounds_emit(light_magnitude(light->colour) * light->radius * light->radius,
-                          out); /* as a disc in all directions */
+        light_bounds_emit(light_strength(light) * light->radius * light->radius, out); /* as a disc in all directions */
         break;
     case LIGHT_MESH:
         light_triangle_bounds(light->mesh, part, out);
@@ -549,7 +566,7 @@ struct vec3 light_emitter_colour(const struct light_emitter *emitter) {
     case LIGHT_SKY:
         break;
     }
-    return light->colour;
+    return light->profile ? vec3_scale(light->colour, light->profile_largest) : light->colour;
 }
 
 double light_emitter_unit(const struct light_emitter *emitter) {
@@ -619,7 +636,8 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
     case LIGHT_DISC:
     case LIGHT_SPHERE:
         photon.origin = emitter_point(emitter, direction, xi);
-        photon.power = vec3_scale(light->colour, light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
+        photon.power = vec3_scale(colour_along(light, direction),
+                                  light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
         break;
     case LIGHT_MESH:
         return light_mesh_photon(light->mesh, direction, xi);

@@ -39,6 +39,7 @@ enum light_attenuation { ATTENUATION_COEFFICIENTS, ATTENUATION_RANGE, ATTENUATIO
 
 struct arena;
 struct error;
+struct expr_program;
 struct light_mesh;
 struct pool;
 struct sky;
@@ -49,6 +50,10 @@ struct light {
     struct vec3 position; /* of a parallelogram, disc, sphere: its centre */
     struct vec3 corner, edge1, edge2;
     struct vec3 colour; /* of a lamp: its radiance */
+    /* A factor of the colour: a function of the unit direction in which light leaves, with one output or three; NULL:
+     * 1. Of lights with a position. profile_largest: a bound of its components. */
+    const struct expr_program *profile;
+    double profile_largest;
     /* `colour` has this factor, a colour of the screen. light_decode makes it light and clears has_display. */
     struct vec3 display;
     bool has_display;
@@ -72,6 +77,10 @@ struct light {
 void light_decode(struct light *light);
 /* Creates data that queries of a light need (the table of a sky), in the arena. Errors: no memory. */
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error);
+
+/* Gives a light with a position the factor of its colour. Errors: the function reads more than the direction, or no
+ * memory. */
+bool light_set_profile(struct light *light, const struct expr_program *profile, struct error *error);
 
 /* --- light at a point --- */
 
@@ -119,6 +128,7 @@ struct light_arrival {
     struct vec3 direction; /* unit, to the light */
     double distance;       /* of its middle; infinite */
     double strength;       /* colour * strength arrives: the falloff times the cone of a spot */
+    struct vec3 colour;    /* of the light in that direction */
 };
 /* False: the point is at the light. */
 bool light_arrive(const struct light *light, struct vec3 point, struct light_arrival *out);

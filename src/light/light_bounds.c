@@ -172,7 +172,7 @@ double light_cone(const struct light *light, struct vec3 from_light) {
 }
 
 void light_bounds_fade(const struct light *light, struct light_bounds *out) {
-    double strength = light_magnitude(light->colour);
+    double strength = light_strength(light);
     const double *c = light->falloff;
     switch (light->attenuation) {
     case ATTENUATION_RANGE:

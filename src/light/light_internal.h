@@ -49,6 +49,10 @@ struct box light_disc_box(const struct light *light);
 static inline double light_magnitude(struct vec3 c) {
     return (fabs(c.x) + fabs(c.y) + fabs(c.z)) / 3;
 }
+/* A bound of the colour in every direction. */
+static inline double light_strength(const struct light *light) {
+    return light_magnitude(light->colour) * (light->profile ? light->profile_largest : 1);
+}
 static inline struct box light_box_centred(struct vec3 centre, struct vec3 half) {
     return (struct box){vec3_sub(centre, half), vec3_add(centre, half)};
 }

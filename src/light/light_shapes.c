@@ -84,7 +84,7 @@ struct box light_disc_box(const struct light *light) {
 }
 
 void light_bounds_shine(const struct light *light, struct vec3 normal, double area, struct light_bounds *out) {
-    light_bounds_emit(light_magnitude(light->colour) * area, out);
+    light_bounds_emit(light_strength(light) * area, out);
     out->axis = normal;
     out->cos_theta_o = 1;
     out->cos_theta_e = 0;

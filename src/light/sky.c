@@ -11,6 +11,7 @@
  * cells of the cross (see image.c). */
 #include "light/sky.h"
 
+#include "expr/expr_field.h"
 #include "image/levels.h"
 #include "math/elementary.h"
 
@@ -296,6 +297,12 @@ bool sky_from_faces(struct image *const images[6], struct sky *out, struct error
     return true;
 }
 
+bool sky_from_function(const struct expr_program *program, struct sky *out, struct error *error) {
+    *out = (struct sky){.kind = SKY_FUNCTION, .program = program};
+    return expr_field_reads_only(program, EXPR_POINT_INPUTS, "a sky is a function of the direction alone", error) &&
+           (expr_field_largest(program, &out->largest) || error_no_memory(error, "a sky"));
+}
+
 static struct vec3 stops_colour(const struct sky *sky, double y) {
     const double(*stops)[4] = sky->stops;
     uint32_t last = sky->stop_count - 1, i = 0;
@@ -324,6 +331,8 @@ static struct vec3 unturned_colour(const struct sky *sky, struct vec3 direction,
         return stops_colour(sky, direction.y);
     case SKY_CLEAR:
         return sky_clear_colour(&sky->clear, direction);
+    case SKY_FUNCTION:
+        return expr_field_at(sky->program, direction);
     }
     return vec3_all(0);
 }
@@ -357,6 +366,8 @@ static double unturned_brightest(const struct sky *sky) {
         max = fmax(max, largest(sky_clear_colour(&sky->clear,
                                                  vec3_normalize(vec3_make(sky->clear.sun.x, 0, sky->clear.sun.z)))));
         return fmax(max, largest(sky->clear.ground));
+    case SKY_FUNCTION:
+        return sky->largest;
     }
     return 1;
 }
@@ -402,6 +413,7 @@ bool sky_decode(struct sky *sky, struct error *error) {
     case SKY_CONSTANT:
     case SKY_STOPS:
     case SKY_CLEAR:
+    case SKY_FUNCTION:
         break;
     }
     return true;
@@ -427,6 +439,8 @@ bool sky_same(const struct sky *a, const struct sky *b) {
         return a->stops == b->stops && a->stop_count == b->stop_count;
     case SKY_CLEAR:
         return memcmp(&a->clear, &b->clear, sizeof a->clear) == 0;
+    case SKY_FUNCTION:
+        return a->program == b->program;
     }
     return false;
 }

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/list.h"
+#include "expr/expr_program.h"
 #include "image/image.h"
 #include "math/vec3.h"
 
@@ -15,7 +16,8 @@
     X(SKY_FACES, "six images")                                                                                         \
     X(SKY_MAP, "an image of all directions")                                                                           \
     X(SKY_STOPS, "colours by height")                                                                                  \
-    X(SKY_CLEAR, "the clear sky")
+    X(SKY_CLEAR, "the clear sky")                                                                                      \
+    X(SKY_FUNCTION, "a function")
 enum sky_kind { SKY_KINDS(LIST_MEMBER) };
 const char *sky_kind_name(enum sky_kind kind);
 
@@ -33,6 +35,8 @@ struct sky {
         double perez[3][5];      /* for Y, x, y */
         double scale[3];         /* zenith over Perez' function there */
     } clear;
+    const struct expr_program *program; /* of SKY_FUNCTION: of the unit direction alone */
+    double largest;                     /* a bound of its components */
     /* A rotation of the whole sky about the y axis and a factor; used only if `adjusted`. */
     bool adjusted;
     double turn_sine, turn_cosine, intensity;
@@ -45,6 +49,8 @@ bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct er
 bool sky_from_faces(struct image *const faces[6], struct sky *out, struct error *error);
 /* Turbidity: 2 is very clear, 10 hazy. sun: unit, at or above the horizon. */
 void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struct sky *out);
+/* Of a function with one output or three. Errors: it reads more than the direction, or no memory. */
+bool sky_from_function(const struct expr_program *program, struct sky *out, struct error *error);
 /* The unit direction to the sun: y up, -z north, +x east. day: 1..365; hour: of the clock; degrees, east and north
  * positive; zone: hours that the clock is ahead of Greenwich. */
 struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);

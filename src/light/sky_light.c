@@ -20,6 +20,8 @@ static uint32_t texels_across(const struct sky *sky) {
         return image_width(sky->image);
     case SKY_FACES:
         return 4 * image_width(sky->faces[0]);
+    case SKY_FUNCTION: /* of any detail */
+        return MAX_COLUMNS;
     case SKY_GRADIENT:
     case SKY_CONSTANT:
     case SKY_STOPS:

@@ -1,6 +1,8 @@
 /* See medium.h. */
 #include "material/medium.h"
 
+#include "material/fog_cells_internal.h"
+#include "material/fog_field.h"
 #include "math/elementary.h"
 
 #include <string.h>
@@ -25,13 +27,18 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
     if (!fog || !(FOG_AFFECTS & kind) || (fog->clear_sky && distance == INFINITY))
         return false;
     struct vec3 direction = vec3_scale(ray->direction, 1 / vec3_length(ray->direction));
-    out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
     out->source = fog->colour;
+    if (fog->kind == FOG_FIELD) {
+        const struct fog_line line = {ray->origin, direction, distance, ray->time};
+        out->transmittance = vec3_all(fog_field_transmittance(fog->field, &line, &out->source));
+        return true;
+    }
+    out->transmittance = vec3_all(fog_transmittance(fog, ray->origin, direction, distance));
     return true;
 }
 
 /* Beer's law along a straight line with densities that can be integrated exactly: no steps, no noise. The grid is
- * walked cell by cell (Amanatides and Woo, "A Fast Voxel Traversal Algorithm", Eurographics 1987). */
+ * walked cell by cell. */
 
 /* exp(-depth); NaN comes from infinity times 0 in unbounded fog: the transmittance is 0. */
 static double faded(double depth) {
@@ -80,49 +87,15 @@ static double profile_depth(const struct fog *fog, double y, double climb, doubl
     return (profile_sum(fog, end) - profile_sum(fog, y)) / climb;
 }
 
-/* The part of the line inside the box; false: none. */
-static bool clip(const struct fog *fog, struct vec3 o, struct vec3 d, double *from, double *to) {
-    for (int axis = 0; axis < 3; axis++) {
-        double start = vec3_get(o, axis), step = vec3_get(d, axis), low = vec3_get(fog->corner, axis);
-        double high = low + vec3_get(fog->size, axis);
-        if (step == 0) {
-            if (start < low || start >= high)
-                return false;
-            continue;
-        }
-        double a = (low - start) / step, b = (high - start) / step;
-        *from = fmax(*from, a < b ? a : b);
-        *to = fmin(*to, a < b ? b : a);
-    }
-    return *from < *to;
-}
-
 static double grid_depth(const struct fog *fog, struct vec3 o, struct vec3 d, double distance) {
-    double from = 0, to = distance, sum = 0, next[3], delta[3];
-    int64_t cell[3], step[3];
-    if (!clip(fog, o, d, &from, &to))
+    const struct fog_cells cells = {fog->corner, fog->size, {fog->cells[0], fog->cells[1], fog->cells[2]}};
+    struct fog_traversal traversal;
+    uint64_t cell;
+    double from, to, sum = 0;
+    if (!fog_traversal_begin(&traversal, &cells, o, d, distance))
         return 0;
-    for (int axis = 0; axis < 3; axis++) {
-        double start = vec3_get(o, axis), speed = vec3_get(d, axis), low = vec3_get(fog->corner, axis);
-        double width = vec3_get(fog->size, axis) / fog->cells[axis];
-        double at = floor((start + speed * from - low) / width);
-        cell[axis] = at < 0 ? 0 : at >= fog->cells[axis] ? (int64_t)fog->cells[axis] - 1 : (int64_t)at;
-        step[axis] = speed > 0 ? 1 : -1;
-        double border = low + width * (double)(cell[axis] + (speed > 0 ? 1 : 0));
-        next[axis] = speed == 0 ? INFINITY : (border - start) / speed;
-        delta[axis] = speed == 0 ? INFINITY : width / fabs(speed);
-    }
-    for (double t = from; t < to;) {
-        int axis = next[0] <= next[1] && next[0] <= next[2] ? 0 : next[1] <= next[2] ? 1 : 2;
-        double end = fmin(next[axis], to);
-        uint64_t index = (uint64_t)cell[0] + fog->cells[0] * ((uint64_t)cell[1] + fog->cells[1] * (uint64_t)cell[2]);
-        sum += fog->densities[index] * fmax(end - t, 0);
-        t = end;
-        next[axis] += delta[axis];
-        cell[axis] += step[axis];
-        if (cell[axis] < 0 || cell[axis] >= fog->cells[axis])
-            break;
-    }
+    while (fog_traversal_next(&traversal, &cell, &from, &to))
+        sum += fog->densities[cell] * fmax(to - from, 0);
     return sum;
 }
 
@@ -144,6 +117,10 @@ double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 
         return faded(profile_depth(fog, origin.y, direction.y, distance));
     case FOG_GRID:
         return faded(grid_depth(fog, origin, direction, distance));
+    case FOG_FIELD: {
+        struct vec3 source;
+        return fog_field_transmittance(fog->field, &(struct fog_line){origin, direction, distance, 0}, &source);
+    }
     }
     return 1;
 }

@@ -33,7 +33,7 @@ struct medium_stack {
 struct medium_boundary {
     struct medium medium; /* on the inner side of the surface */
     bool entering;        /* the ray comes from the outer side */
-    bool thin;              /* a wall with the same medium on both sides: nothing is entered or left */
+    bool thin;            /* a wall with the same medium on both sides: nothing is entered or left */
 };
 
 static inline double medium_stack_ior(const struct medium_stack *stack) {
@@ -61,13 +61,16 @@ enum fog_kind {
     FOG_HEIGHT,      /* density exp(-(y - base) / scale), integrated along the ray */
     FOG_PROFILE,     /* a density for every height, linear between, constant beyond; integrated */
     FOG_GRID,        /* a density for every cell of a box, none outside; integrated */
+    FOG_FIELD,       /* a density and perhaps a colour as functions of the point, in a box (fog_field.h) */
 };
+
+struct fog_field;
 
 /* Arrays belong to the script's arena. */
 struct fog {
     enum fog_kind kind;
-    struct vec3 colour;
-    bool display; /* `colour` is one of the screen */
+    struct vec3 colour; /* a bound, where the field has colours */
+    bool display;       /* `colour` is one of the screen */
     double density;
     double near, far;
     double base, scale;
@@ -76,10 +79,11 @@ struct fog {
     const double *sums; /* of the profile: integral of the density from heights[0] to heights[i] */
     struct vec3 corner, size;
     uint32_t cells[3]; /* densities[x + cells[0] (y + cells[1] z)] */
-    bool clear_sky;    /* fog does not affect the sky */
+    const struct fog_field *field;
+    bool clear_sky; /* fog does not affect the sky */
 };
 
-/* The transmittance over `distance` (may be INFINITY) along the unit direction; 0..1. */
+/* The transmittance over `distance` (may be INFINITY) along the unit direction; 0..1. Of FOG_FIELD at time 0. */
 double fog_transmittance(const struct fog *fog, struct vec3 origin, struct vec3 direction, double distance);
 
 enum medium_ray {

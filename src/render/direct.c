@@ -174,7 +174,7 @@ static struct vec3 light_of_delta(struct integrator_state *state, const struct l
     if (arrival.strength == 0 || (reflected.x == 0 && reflected.y == 0 && reflected.z == 0))
         return vec3_all(0);
     double share = visible_share(state, light, number, &arrival.middle, hit, key);
-    return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(light->colour, share * arrival.strength), reflected);
+    return share == 0 ? vec3_all(0) : vec3_mul(vec3_scale(arrival.colour, share * arrival.strength), reflected);
 }
 
 static struct vec3 one_light(struct integrator_state *state, const struct light *light, uint32_t number,

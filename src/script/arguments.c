@@ -475,6 +475,18 @@ static struct image *image_of(const struct script_texture *texture) {
     return image ? image->image : NULL;
 }
 
+static enum record_domain domain_of(const struct script_parameter *p) {
+    return p->flags & OR_PROFILE || p->kind == KIND_BACKGROUND ? RECORD_DIRECTIONS : RECORD_POINTS_OF_SPACE;
+}
+
+/* A function in place of a colour. */
+static bool read_function(struct script_context *c, int index, const struct script_parameter *p,
+                          struct script_value *value) {
+    value->program = record_function(c, index, p->name, domain_of(p), &value->source);
+    value->vector = vec3_all(1);
+    return value->program != NULL;
+}
+
 /* One argument at an absolute stack index. False: it is a ghost. */
 static bool read_value(struct script_context *c, int index, const struct script_parameter *p,
                        struct script_value *value) {
@@ -522,6 +534,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
             value->choice = read_choice(c, index, &argument_path);
         return true;
     case KIND_COLOUR:
+        if ((p->flags & (OR_PROFILE | OR_FUNCTION)) && read_function(c, index, p, value))
+            return true;
         if (!display_colour_read(c, index, p, value))
             value->vector = read_vector(c, index, &argument_path);
         return true;
@@ -575,6 +589,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
             context_raise(c, "%s must be an image, not another texture", argument_path_text(&argument_path, words));
         return value->texture != NULL;
     case KIND_BACKGROUND:
+        if (read_function(c, index, p, value))
+            return true;
         if (handle_at(L, index)) {
             value->sky = read_handle(c, index, &argument_path, HANDLE_SKY);
             return value->sky != NULL;
@@ -641,7 +657,7 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     case KIND_FUNCTION:
         handle = handle_at(L, index);
-        value->program = record_function(c, index, p->name);
+        value->program = record_function(c, index, p->name, domain_of(p), &value->source);
         if (!value->program && !(handle && handle->type == HANDLE_GHOST))
             wrong_type(c, &argument_path, kind_words(p->kind), index);
         return value->program != NULL;

@@ -144,8 +144,9 @@ enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FA
 enum { CROSS_IMAGE = SKY_OWN, CROSS_MIRROR };
 enum { MAP_IMAGE = SKY_OWN };
 enum { GRADIENT_STOPS = SKY_OWN };
+enum { SKYFUNCTION_F = SKY_OWN };
 enum { CLEAR_SUN = SKY_OWN, CLEAR_TURBIDITY = CLEAR_SUN + SUN_FIELDS, CLEAR_GROUND };
-binding gr_sky_faces, gr_sky_cross, gr_sky_map, gr_sky_gradient, gr_clear_sky, gr_sun_light;
+binding gr_sky_faces, gr_sky_cross, gr_sky_map, gr_sky_gradient, gr_sky_function, gr_clear_sky, gr_sun_light;
 
 /* gr_environment.c */
 enum { FOG_COLOUR, FOG_CLEAR_SKY, FOG_OWN };
@@ -154,7 +155,8 @@ enum { FOG_NEAR = FOG_OWN, FOG_FAR };
 enum { FOG_BASE = FOG_AMOUNT + 1, FOG_SCALE };
 enum { FOG_PROFILE_TABLE = FOG_OWN };
 enum { FOG_CORNER = FOG_OWN, FOG_SIZE, FOG_CELLS, FOG_DENSITIES };
-binding gr_fog, gr_linear_fog, gr_height_fog, gr_fog_profile, gr_fog_grid;
+enum { FOG_FIELD_DENSITY = FOG_SIZE + 1 }; /* after FOG_CORNER and FOG_SIZE */
+binding gr_fog, gr_linear_fog, gr_height_fog, gr_fog_profile, gr_fog_grid, gr_fog_field;
 
 /* Every light has these first; fields of fading and of lamps only where the kind has them. */
 enum {

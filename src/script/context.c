@@ -229,7 +229,7 @@ bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags)
         [KIND_MATERIAL] = 1 << HANDLE_MATERIAL,
         [KIND_MATERIALS] = LIKE_TABLE,
         [KIND_IMAGE] = LIKE_TEXT | 1 << HANDLE_TEXTURE,
-        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | 1 << HANDLE_SKY,
+        [KIND_BACKGROUND] = LIKE_TABLE | LIKE_TEXT | LIKE_FUNCTION | 1 << HANDLE_SKY,
         [KIND_FOG] = 1 << HANDLE_FOG,
         [KIND_CAUSTICS] = LIKE_TABLE | LIKE_NUMBER,
         [KIND_NODES] = LIKE_TABLE,
@@ -244,7 +244,8 @@ bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags)
         [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
     };
     assert(wanted[kind]); /* every kind has a case */
-    int accepted = wanted[kind] | (flags & OR_TEXTURE ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0);
+    int accepted =
+        wanted[kind] | (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }
 

@@ -185,7 +185,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
             (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
         return out;
     case KIND_COLOUR:
-        return "gr.triple|string";
+        return p->flags & (OR_PROFILE | OR_FUNCTION) ? "gr.triple|string|gr.texture|function" : "gr.triple|string";
     case KIND_POINT:
     case KIND_DIRECTION:
     case KIND_TRIPLE:
@@ -207,7 +207,7 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
     case KIND_IMAGE:
         return p->flags & OR_TEXTURE ? "string|gr.texture|function" : "string|gr.texture";
     case KIND_BACKGROUND:
-        return "gr.triple|string|gr.sky|'gradient'";
+        return "gr.triple|string|gr.sky|gr.texture|function|'gradient'";
     case KIND_FOG:
         return "gr.fog";
     case KIND_CAUSTICS:

@@ -1,4 +1,5 @@
 /* Skies, and the light of the sun. */
+#include "material/fog_field.h"
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
@@ -59,6 +60,12 @@ bool gr_sky_gradient(struct script_context *context, const struct script_value *
     }
     struct sky sky = {.kind = SKY_STOPS, .stops = (const double(*)[4])stops, .stop_count = given->count};
     return give_sky(context, &sky, args, result, error);
+}
+
+bool gr_sky_function(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
+    struct sky sky;
+    return sky_from_function(args[SKYFUNCTION_F].program, &sky, error) && give_sky(context, &sky, args, result, error);
 }
 
 /* The unit direction to the sun, from a direction or from time and geographic position. `sun` points to the first of
@@ -188,4 +195,20 @@ bool gr_fog_grid(struct script_context *context, const struct script_value *args
         densities[i] = args[FOG_DENSITIES].numbers[one ? 0 : i];
     fog.densities = densities;
     return give_fog(context, &fog, args, result, error);
+}
+
+bool gr_fog_field(struct script_context *context, const struct script_value *args, struct script_result *result,
+                  struct error *error) {
+    const struct script_value *colour = &args[FOG_COLOUR];
+    const struct fog_field_input in = {.density = args[FOG_FIELD_DENSITY].program,
+                                       .source = args[FOG_FIELD_DENSITY].source,
+                                       .colour = colour->program,
+                                       .corner = args[FOG_CORNER].vector,
+                                       .size = args[FOG_SIZE].vector};
+    struct fog fog = {.kind = FOG_FIELD, .field = fog_field_build(&context->scene.arena, &in, error)};
+    if (!fog.field || !give_fog(context, &fog, args, result, error))
+        return false;
+    if (colour->program)
+        ((struct fog *)result->pointer)->colour = vec3_all(fog_field_brightest(fog.field));
+    return true;
 }

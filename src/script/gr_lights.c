@@ -52,7 +52,7 @@ enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
     }
 
 static const struct script_parameter light_parameters[] = {
-    LIGHT_FIELDS(0),
+    LIGHT_FIELDS(OR_PROFILE),
     ATTENUATION_FIELDS,
     [POINT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
 };
@@ -72,7 +72,8 @@ static const struct script_parameter mesh_light_parameters[] = {
 
 static const struct script_parameter sky_light_parameters[] = {
     LIGHT_FIELDS(OPTIONAL),
-    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL, "A sky, a colour, or 'gradient'."},
+    [SKYLIGHT_SKY] = {"sky", KIND_BACKGROUND, 0, ANY, NULL, NULL,
+                      "A sky, a colour, a function of the unit direction, or 'gradient'."},
     [SKYLIGHT_SAMPLES] = SAMPLES_FIELD,
 };
 
@@ -82,7 +83,7 @@ static const struct script_parameter directional_parameters[] = {
 };
 
 static const struct script_parameter spot_parameters[] = {
-    LIGHT_FIELDS(0),
+    LIGHT_FIELDS(OR_PROFILE),
     ATTENUATION_FIELDS,
     [SPOT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Position."},
     [SPOT_DIRECTION] = {"direction", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, -1, 0}", "The axis of its cone."},
@@ -94,7 +95,7 @@ static const struct script_parameter spot_parameters[] = {
 };
 
 static const struct script_parameter area_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
+    LIGHT_FIELDS(OPTIONAL | OR_PROFILE),
     ATTENUATION_FIELDS,
     AREA_LIGHT_FIELDS,
     [AREA_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "One corner of the parallelogram."},
@@ -104,7 +105,7 @@ static const struct script_parameter area_parameters[] = {
 };
 
 static const struct script_parameter ball_light_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
+    LIGHT_FIELDS(OPTIONAL | OR_PROFILE),
     ATTENUATION_FIELDS,
     AREA_LIGHT_FIELDS,
     [BALL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
@@ -112,7 +113,7 @@ static const struct script_parameter ball_light_parameters[] = {
 };
 
 static const struct script_parameter disc_light_parameters[] = {
-    LIGHT_FIELDS(OPTIONAL),
+    LIGHT_FIELDS(OPTIONAL | OR_PROFILE),
     ATTENUATION_FIELDS,
     AREA_LIGHT_FIELDS,
     [PANEL_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Its centre."},
@@ -147,7 +148,7 @@ static bool give_light(struct script_context *context, const struct light *light
     kept->light.has_display = args[LIGHT_COLOUR].display;
     kept->light.display = kept->light.colour;
     result->pointer = kept;
-    return true;
+    return !args[LIGHT_COLOUR].program || light_set_profile(&kept->light, args[LIGHT_COLOUR].program, error);
 }
 
 static bool set_attenuation(struct light *light, const struct script_value *args, struct error *error) {
@@ -286,9 +287,11 @@ static bool gr_sky_light(struct script_context *context, const struct script_val
     if (!sky)
         return error_no_memory(error, "a sky");
     *sky = (struct sky){.kind = SKY_GRADIENT};
+    if (args[SKYLIGHT_SKY].program && !sky_from_function(args[SKYLIGHT_SKY].program, sky, error))
+        return false;
     if (args[SKYLIGHT_SKY].sky)
         *sky = *args[SKYLIGHT_SKY].sky;
-    else if (!args[SKYLIGHT_SKY].text)
+    else if (!args[SKYLIGHT_SKY].text && !args[SKYLIGHT_SKY].program)
         *sky = (struct sky){
             .kind = SKY_CONSTANT, .colour = args[SKYLIGHT_SKY].vector, .display = args[SKYLIGHT_SKY].display};
     light.sky = sky;

@@ -18,6 +18,8 @@ static bool choose_sky(struct script_context *context, const struct script_value
         struct image *image = gr_find_image(context, &args[RENDER_SKY], error);
         return image && sky_from_cross(image, args[RENDER_MIRROR].boolean, sky, error);
     }
+    if (background->program)
+        return sky_from_function(background->program, sky, error);
     if (background->sky) {
         *sky = *background->sky;
     } else if (background->given && !background->text) {

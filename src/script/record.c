@@ -233,7 +233,7 @@ static struct path_result record_paths(lua_State *L, int function, int first) {
 
 /* The inputs of point `i`: numbers of all sizes up to 100, whole and half ones, zeros of both signs, equal coordinates;
  * u, v and time between 0 and 1, unit vectors. */
-static void test_point(uint32_t i, double out[EXPR_INPUT_COUNT]) {
+static void test_point(uint32_t i, enum record_domain domain, double out[EXPR_INPUT_COUNT]) {
     uint64_t key = random_combine(18, i);
     for (int k = 0; k < EXPR_INPUT_COUNT; k++) {
         uint64_t bits = random_combine(key, (uint64_t)k);
@@ -244,7 +244,8 @@ static void test_point(uint32_t i, double out[EXPR_INPUT_COUNT]) {
         if (i % 31 == 30 && k > 0)
             out[k] = out[k - 1];
     }
-    static const int units[] = {EXPR_U, EXPR_V, EXPR_TIME}, directions[] = {EXPR_NORMAL_X, EXPR_VIEW_X};
+    static const int units[] = {EXPR_U, EXPR_V, EXPR_TIME};
+    const int directions[] = {EXPR_NORMAL_X, EXPR_VIEW_X, domain == RECORD_DIRECTIONS ? EXPR_POINT_X : EXPR_NORMAL_X};
     for (size_t n = 0; n < sizeof units / sizeof units[0]; n++)
         out[units[n]] = random_unit(random_combine(key, 100 + n));
     for (size_t n = 0; n < sizeof directions / sizeof directions[0]; n++) {
@@ -268,13 +269,14 @@ static void describe_outputs(const double *values, int count, char *out, size_t 
 
 struct comparison {
     const struct expr_program *program;
+    enum record_domain domain;
     double sum[3], largest[3];
 };
 
 static void compare_point(lua_State *L, int function, uint32_t i, struct comparison *comparison) {
     double inputs[EXPR_INPUT_COUNT], recorded[EXPR_OUTPUTS], called[3];
     int top = lua_gettop(L), count = 0, outputs = comparison->program->output_count;
-    test_point(i, inputs);
+    test_point(i, comparison->domain, inputs);
     for (int k = 0; k < EXPR_INPUT_COUNT; k++)
         lua_pushnumber(L, inputs[k]);
     if (!call_function(L, function, top + 1) || !is_result(L, &count))
@@ -332,6 +334,7 @@ static void begin(lua_State *L) {
 
 /* The result of a recording. */
 struct recording {
+    enum record_domain domain;
     struct expr_program *program;
     const char *source;
     struct comparison comparison;
@@ -365,7 +368,8 @@ static int record_protected(lua_State *L) {
     recorder->active = false;
     lua_settop(L, 2);
     compile(L, &result, recording);
-    recording->comparison = (struct comparison){.program = recording->program, .largest = {1, 1, 1}};
+    recording->comparison =
+        (struct comparison){.program = recording->program, .domain = recording->domain, .largest = {1, 1, 1}};
     for (uint32_t i = 0; i < RECORD_POINTS; i++)
         compare_point(L, 1, i, &recording->comparison);
     return 0;
@@ -408,15 +412,19 @@ static void record(struct script_context *context, int index, const char *name, 
         lua_error(L); /* a fatal error, which the context has recorded */
 }
 
-const struct expr_program *record_function(struct script_context *context, int index, const char *name) {
-    struct recording recording = {.program = NULL};
+const struct expr_program *record_function(struct script_context *context, int index, const char *name,
+                                           enum record_domain domain, const char **source) {
+    struct recording recording = {.domain = domain};
     const struct handle *handle = handle_at(context->lua, index);
     const struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
-    if (texture && texture->texture->kind == TEXTURE_FUNCTION)
+    if (texture && texture->texture->kind == TEXTURE_FUNCTION) {
+        *source = texture->texture->recorded.source;
         return texture->texture->recorded.program;
+    }
     if (lua_type(context->lua, index) != LUA_TFUNCTION)
         return NULL;
     record(context, index, name, &recording);
+    *source = recording.source;
     return recording.program;
 }
 

@@ -84,8 +84,11 @@ void recorder_destroy(struct recorder *recorder);
 /* The texture of the Lua function at an absolute index, kept by the scene. Raises every error, with the name of the
  * argument in front. */
 const struct script_texture *record_texture(struct script_context *context, int index, const char *name);
-/* The program of such a function, or of gr.fn of one; NULL of anything else. */
-const struct expr_program *record_function(struct script_context *context, int index, const char *name);
+/* The first argument of a function: a point, or a unit direction. */
+enum record_domain { RECORD_POINTS_OF_SPACE, RECORD_DIRECTIONS };
+/* The program of such a function, or of gr.fn of one; NULL of anything else. source: "scene.lua:12". */
+const struct expr_program *record_function(struct script_context *context, int index, const char *name,
+                                           enum record_domain domain, const char **source);
 
 /* display_colour.c */
 /* An argument that is a colour of the screen; where textures are accepted it is one. False: it is something else. */

@@ -551,6 +551,12 @@ static const struct script_parameter sky_gradient_parameters[] = {
                         "Colours by height, {y, r, g, b}; y of the unit direction, from -1 to 1; linear between."},
 };
 
+static const struct script_parameter sky_function_parameters[] = {
+    SKY_FIELDS,
+    [SKYFUNCTION_F] = {"f", KIND_FUNCTION, OR_PROFILE, ANY, NULL, NULL,
+                       "A function of the unit direction; it returns a colour or a number."},
+};
+
 static const struct script_parameter clear_sky_parameters[] = {
     SKY_FIELDS,
     SUN(CLEAR_SUN),
@@ -565,10 +571,12 @@ static const struct script_parameter sun_light_parameters[] = {
     SUN(SUNLIGHT_SUN),
 };
 
-#define FOG_FIELDS                                                                                                     \
-    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},        \
+#define FOG_CLEAR_SKY_FIELD                                                                                            \
     [FOG_CLEAR_SKY] = {                                                                                                \
         "clear_sky", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the fog leaves the sky unchanged."}
+#define FOG_FIELDS                                                                                                     \
+    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0.5, 0.5, 0.5}", "Its colour."},        \
+    FOG_CLEAR_SKY_FIELD
 #define FOG_DENSITY(text) [FOG_AMOUNT] = {"density", KIND_NUMBER, 0, ABOVE(0), NULL, NULL, text}
 
 static const struct script_parameter fog_parameters[] = {
@@ -607,6 +615,16 @@ static const struct script_parameter fog_grid_parameters[] = {
                        "Density of each cell; x varies fastest, then y, then z."},
 };
 
+static const struct script_parameter fog_field_parameters[] = {
+    [FOG_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL | OR_DISPLAY | OR_FUNCTION, ANY, NULL, "{0.5, 0.5, 0.5}",
+                    "Its colour, or a function f(p, s) of the point, s.view and s.time."},
+    FOG_CLEAR_SKY_FIELD,
+    [FOG_CORNER] = {"corner", KIND_POINT, 0, ANY, NULL, NULL, "The corner with the smallest coordinates."},
+    [FOG_SIZE] = {"size", KIND_SIZE, LOW_OPEN, ABOVE(0), NULL, NULL, "Length of the edges, one number or three."},
+    [FOG_FIELD_DENSITY] = {"density", KIND_FUNCTION, 0, ANY, NULL, NULL,
+                           "A function f(p, s) of the point and s.time; it returns a number of at least 0."},
+};
+
 static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
@@ -623,11 +641,10 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0, 0, 0}", "Ambient light."},
     [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "The lights."},
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
-    [RENDER_BACKGROUND] =
-        {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
-         "Background for rays that hit nothing: a colour, a sky, or 'gradient' for {0, 0, (1 + y)/2}; without one, "
-         "light "
-         "and neutral if all pictures of the script have the form gr.render{...} without background."},
+    [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
+                           "Background for rays that hit nothing: a colour, a sky, a function of the unit direction, "
+                           "or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of "
+                           "the script have the form gr.render{...} without background."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
                         "N x N samples for a marked pixel."},
@@ -836,6 +853,8 @@ static const struct script_function other_rows[] = {
     GR("sky_cross", sky_cross_parameters, RESULT_SKY, gr_sky_cross, "A sky from a 4 x 3 cross of images.", "image"),
     GR("sky_map", sky_map_parameters, RESULT_SKY, gr_sky_map, "A sky from one picture of the whole sphere.", "image"),
     GR("sky_gradient", sky_gradient_parameters, RESULT_SKY, gr_sky_gradient, "A sky with colours by height.", "stops"),
+    GR("sky_function", sky_function_parameters, RESULT_SKY, gr_sky_function,
+       "A sky whose colour is a function of the direction.", "f"),
     GR("clear_sky", clear_sky_parameters, RESULT_SKY, gr_clear_sky,
        "The clear sky model of Preetham, Shirley and Smits (1999).", "sun turbidity?"),
 
@@ -848,6 +867,8 @@ static const struct script_function other_rows[] = {
        "profile colour?"),
     GR("fog_grid", fog_grid_parameters, RESULT_FOG, gr_fog_grid, "Fog in the cells of a box; no fog outside.",
        "corner size cells densities colour?"),
+    GR("fog_field", fog_field_parameters, RESULT_FOG, gr_fog_field,
+       "Fog in a box whose density is a function of the point; no fog outside.", "corner size density colour?"),
 
     GR("render", render_parameters, RESULT_NOTHING, gr_render, "Renders a picture into a file.",
        "node file" RENDER_TAIL),
@@ -984,7 +1005,7 @@ const char *kind_words(enum kind kind) {
     case KIND_IMAGE:
         return "the name of a picture file or a texture";
     case KIND_BACKGROUND:
-        return "a colour {r, g, b}, a sky or 'gradient'";
+        return "a colour {r, g, b}, a sky, a function or 'gradient'";
     case KIND_FOG:
         return "a fog";
     case KIND_CAUSTICS:

@@ -40,7 +40,7 @@ enum kind {
     KIND_MATERIAL,   /* material */
     KIND_MATERIALS,  /* materials, count; names as well, in byte order, or a list: names is NULL */
     KIND_IMAGE,      /* image, or text: the name of its file */
-    KIND_BACKGROUND, /* vector, or text = "gradient", or sky */
+    KIND_BACKGROUND, /* vector, or text = "gradient", or sky, or program */
     KIND_FOG,        /* fog */
     KIND_CAUSTICS,   /* number: photons, vector.x: radius; a number alone is the photons */
     KIND_NODES,      /* nodes, count */
@@ -76,6 +76,7 @@ struct script_value {
     const struct material **materials;
     const struct script_texture *texture;
     const struct expr_program *program;
+    const char *source; /* of the program: "scene.lua:12" */
     const char **names;
     struct image *image;
     uint32_t count;
@@ -99,9 +100,13 @@ enum {
     NOT_ZERO = 8,
     OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
     OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
-    OR_DISPLAY = 128,  /* of KIND_COLOUR without OR_TEXTURE: a colour of the screen is accepted: `display` is set */
-    REST = 32,         /* takes the arguments after a positional form, and entries without names of the table form */
-    GHOST_IS_NONE = 16 /* with --lenient: a ghost is treated as missing, and the call continues */
+    /* Of KIND_COLOUR: a function of the direction is accepted: `program` is set, vector is 1. Of KIND_FUNCTION: it is
+     * one of the direction. */
+    OR_PROFILE = 512,
+    OR_FUNCTION = 1024, /* of KIND_COLOUR: a function of the point is accepted, likewise */
+    OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: a colour of the screen is accepted: `display` is set */
+    REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
+    GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
 };
 
 struct script_parameter {

@@ -38,8 +38,10 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
                       (colour_flags) | OR_DISPLAY,                                                                     \
                       ANY,                                                                                             \
                       NULL,                                                                                            \
-                      colour_flags ? "{1, 1, 1} with emission" : NULL,                                                 \
-                      "Colour and strength."},                                                                         \
+                      (colour_flags)&OPTIONAL ? "{1, 1, 1} with emission" : NULL,                                      \
+                      (colour_flags)&OR_PROFILE                                                                        \
+                          ? "Colour and strength, or a function of the unit direction in which light leaves."          \
+                          : "Colour and strength."},                                                                   \
     LIGHT_LISTS
 
 #endif

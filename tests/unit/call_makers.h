@@ -131,7 +131,8 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         text = "{{{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}}}";
         break;
     case KIND_FUNCTION:
-        text = "function(p) return p.x * p.x + p.y - p.z end";
+        text = strcmp(p->name, "density") == 0 ? "function(p) return p.x * p.x end"
+                                               : "function(p) return p.x * p.x + p.y - p.z end";
         break;
     case KIND_PAIRS:
         text = "{{0, 0}, {1, 0}, {1, 1}}";

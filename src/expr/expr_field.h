@@ -1,0 +1,22 @@
+/* Functions of a point or of a direction, in place of a hit: skies, colours of lights by direction, densities. */
+#ifndef GRAY_EXPR_EXPR_FIELD_H
+#define GRAY_EXPR_EXPR_FIELD_H
+
+#include "expr/expr_program.h"
+#include "math/vec3.h"
+
+/* Sets of inputs: bit `input` of enum expr_input. */
+enum { EXPR_POINT_INPUTS = 1U << EXPR_POINT_X | 1U << EXPR_POINT_Y | 1U << EXPR_POINT_Z };
+
+/* Whether the program reads only these inputs. Error: "the function reads s.u, but WORDS". */
+bool expr_field_reads_only(const struct expr_program *program, unsigned inputs, const char *words, struct error *error);
+
+/* The value for a point or a unit direction p; the other inputs are 0. One output is all three components. Numbers
+ * below 0 and those that are not finite count as 0. */
+struct vec3 expr_field_at(const struct expr_program *program, struct vec3 p);
+
+/* A bound of all components over all unit directions, at least 0: from intervals. Where these are infinite, it is an
+ * estimate from some directions. False: no memory. */
+bool expr_field_largest(const struct expr_program *program, double *largest);
+
+#endif

@@ -1,0 +1,36 @@
+/* Fog whose density, and perhaps colour, is a recorded function of the point, in a box. The light along a ray is an
+ * integral, found by Gauss' rule at points that depend on nothing but the ray: no noise. Bounds of the density over
+ * cells of the box (interval arithmetic) say which cells are empty, and how many points the others need. */
+#ifndef GRAY_MATERIAL_FOG_FIELD_H
+#define GRAY_MATERIAL_FOG_FIELD_H
+
+#include "base/arena.h"
+#include "base/error.h"
+#include "expr/expr_program.h"
+#include "math/vec3.h"
+
+struct fog_field;
+
+struct fog_field_input {
+    const struct expr_program *density; /* of p, s.world and s.time, with one output >= 0; optical depth per unit */
+    const char *source;                 /* of the density, for messages: "scene.lua:12" */
+    const struct expr_program *colour;  /* of these and s.view, with one output or three; NULL: one colour */
+    struct vec3 corner, size;           /* of the box, in world space; size > 0 */
+};
+
+/* The programs must outlive it. Errors: no memory; a program reads what a fog does not have, or is too large; a density
+ * is negative or not a number at one of 1,000 points of the box. */
+const struct fog_field *fog_field_build(struct arena *arena, const struct fog_field_input *in, struct error *error);
+/* A bound of the colour's components, or an estimate from 1,000 points where intervals give none. Only with a colour.
+ */
+double fog_field_brightest(const struct fog_field *field);
+
+struct fog_line {
+    struct vec3 origin, direction; /* unit */
+    double distance, time;         /* the distance may be infinite */
+};
+/* The transmittance along the line, 0 to 1. source: the light that the fog adds is source * (1 - transmittance); set
+ * only with a colour. */
+double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct vec3 *source);
+
+#endif
