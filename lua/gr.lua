@@ -42,6 +42,12 @@ gr = {}
 
 ---The version of the renderer.
 gr.version = ''
+---In an animation: the seconds since its first frame, else 0.
+gr.time = 0.0
+---Its argument t, from 0 to 1.
+gr.clock = 0.0
+---The number of the frame, from 1; 0 outside of animations.
+gr.frame = 0
 
 ---@class gr.node.fields
 ---@field name? string name (a string; default 'node'): Name of the node, for messages.
@@ -1852,8 +1858,8 @@ function node:scale(x, y, z) end
 ---@return gr.node
 function node:rotate(axis, angle) end
 
----Sets the velocity of this node while the shutter is open; its transforms are its pose at time 0.
----@param x number x (a number): Distance along x per unit of time, in the space of the parent.
+---Sets the velocity of this node per second while the shutter is open; its transforms are its pose at time 0.
+---@param x number x (a number): Distance along x per second, in the space of the parent.
 ---@param y number y (a number): Distance along y.
 ---@param z number z (a number): Distance along z.
 ---@return gr.node
@@ -1864,6 +1870,17 @@ function node:velocity(x, y, z) end
 ---@param node gr.node node (a node): A node whose own transforms are the pose of this one at time 1; it need not be in the scene.
 ---@return gr.node
 function node:moves_to(node) end
+
+---Rotates this node at a constant rate about an axis through the origin of its own space, before its transforms.
+---@param axis 'x'|'y'|'z' axis ('x', 'y' or 'z'): The axis.
+---@param degrees number degrees (a number, in degrees): Angle per second; 0: none.
+---@return gr.node
+---@overload fun(self: gr.node, direction: gr.triple, degrees: number): gr.node
+function node:spin(axis, degrees) end
+
+---Forgets the transforms of this node, so that an animation can set new ones in each frame.
+---@return gr.node
+function node:reset() end
 
 ---Rotates this node about any direction.
 ---@param axis gr.triple axis (a direction {x, y, z}): The axis, of any length except 0.
@@ -1959,6 +1976,21 @@ function node:translate(x, y, z) end
 ---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@overload fun(self: gr.node, fields: gr.node.render.fields)
 function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
+
+---@class gr.frames.fields
+---@field count? integer count (a whole number, >= 1; optional): Number of frames; or seconds.
+---@field draw function draw (a function): draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1.
+---@field seconds? number seconds (a number, > 0, in seconds; optional): Duration: seconds times fps is the number of frames, rounded.
+---@field fps? number fps (a number, 0.01 to 1000; default 30): Frames per second; --fps has priority.
+---@field loop? boolean loop (true or false; default false): The frame after the last one is the first: t stays below 1, and files play for ever.
+---@field shutter? number[] shutter (a table of two rising numbers, in frames; default {0, 0}): When the shutter opens and closes; {0, 0.5} is half the time of a frame, 180 degrees.
+---@field pure? boolean pure (true or false; default false): draw depends on its arguments only: it is not called for frames that are not rendered.
+
+---Renders an animation: calls draw for each frame, and renders what it returns.
+---@param count integer count (a whole number, >= 1; optional): Number of frames; or seconds.
+---@param draw function draw (a function): draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1.
+---@overload fun(fields: gr.frames.fields)
+function gr.frames(count, draw) end
 
 ---A vector: a table {x, y, z} with operators; of one number, three times that.
 ---@return gr.vector

@@ -410,6 +410,10 @@ void file_remove_temporary_folder(const char *folder) {
     (void)rmdir(folder);
 }
 
+bool file_remove_empty_folder(const char *folder) {
+    return rmdir(folder) == 0;
+}
+
 bool file_make_folders_for(const char *path, struct error *error) {
     char folder[4096];
     size_t length = strlen(path);

@@ -97,6 +97,11 @@ static void link_read(void *context, const char *path, const struct file_version
     note(link, channel_send(&link->channel, MESSAGE_READ, &read, sizeof read, -1));
 }
 
+static void link_frame(void *context) {
+    struct channel_services *link = context;
+    note(link, channel_send(&link->channel, MESSAGE_FRAME, NULL, 0, -1));
+}
+
 static bool link_again(void *context) {
     struct channel_services *link = context;
     struct message message;
@@ -116,6 +121,7 @@ struct host_services channel_services_make(struct channel_services *link, struct
                                   .line = link_line,
                                   .script_ended = link_script_ended,
                                   .read = link_read,
+                                  .frame = link_frame,
                                   .again = link_again};
 }
 

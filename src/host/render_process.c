@@ -45,6 +45,8 @@ struct render_process {
     struct file_set reported;        /* files already reported to the supervisor; empty under --watch */
     int status;                      /* --check: worst of the problems reported so far in this script */
     bool building;                   /* the world */
+    bool animates;                   /* the script has called gr.frames */
+    bool skips;                      /* this run of the script is a frame that is not rendered */
     uint64_t runs_before;            /* of the pool, before that */
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
@@ -371,7 +373,8 @@ static bool reserve_memory(struct render_process *process, const struct picture_
     return ok || too_much_memory(process, error);
 }
 
-static struct picture_request picture_request_of(const struct options *options, const struct render_job *job) {
+static struct picture_request picture_request_of(const struct options *options, const struct render_job *job,
+                                                 struct frame frame) {
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
                                     .exposure = job->settings.tone.exposure,
@@ -384,6 +387,7 @@ static struct picture_request picture_request_of(const struct options *options, 
                                     .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
                                     .lens = job->settings.lens,
+                                    .frame = frame,
                                     .check = options->check || is_asked(options)};
 }
 
@@ -404,7 +408,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     struct picture_request *asked = &work->asked;
     struct film *film = &work->film;
     const char *file = work->request->file;
-    *asked = picture_request_of(process->options, job);
+    *asked = picture_request_of(process->options, job, work->request->frame);
     struct render_area area;
     char warning[256] = "";
     size_t length = strlen(file);
@@ -522,7 +526,7 @@ static bool render_one(struct render_process *process, const struct render_reque
 /* With --check a scene that cannot be built is reported at once and the script continues, to find further errors. */
 static bool render(void *context, const struct render_request *request, struct error *error) {
     struct render_process *process = context;
-    if (render_one(process, request, error))
+    if (process->skips || render_one(process, request, error))
         return true;
     if (!process->options->check || error->kind != ERROR_SCENE || error->limit)
         return false;
@@ -584,8 +588,20 @@ static void begin_memory(struct render_process *process) {
     process->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory is the limit"};
 }
 
-/* Exit status of one script. */
-static int run_script(struct render_process *process, const char *path) {
+static void note_animation(void *context) {
+    struct render_process *process = context;
+    process->animates = true;
+    process->skips = false;
+}
+
+static void begin_frame(void *context) {
+    const struct render_process *process = context;
+    if (process->services->frame)
+        process->services->frame(process->services->context);
+}
+
+/* Exit status of one run of a script; frame: what it renders outside of gr.frames, or number 0. */
+static int run_once(struct render_process *process, const char *path, const struct frame *frame) {
     /* Without the sandbox, in a separate process, standard output is a copy of standard error here. */
     bool sandboxed = !process->options->script.no_sandbox, in_process = process->options->no_fork;
     struct script_host host = {.context = process,
@@ -595,14 +611,15 @@ static int run_script(struct render_process *process, const char *path) {
                                .message = message,
                                .cancelled = is_cancelled,
                                .error_text = scene_text,
+                               .frame = *frame,
+                               .frame_limit = options_picture_limit(process->options),
+                               .animates = note_animation,
+                               .frame_begins = begin_frame,
                                .output_is_error =
                                    options_output_is_stream(process->options) && (sandboxed || in_process)};
     struct arena arena = {0};
     struct error error = {0};
     const char *traceback = NULL;
-    process->script = path;
-    process->status = 0;
-    process->warned_count = 0;
     begin_memory(process);
     uint64_t before = process->pictures;
     bool ok = script_run(path, &process->options->script, &host, &arena, &traceback, &error);
@@ -614,6 +631,32 @@ static int run_script(struct render_process *process, const char *path) {
         message(process, SCRIPT_NOTICE, nothing);
     arena_destroy(&arena);
     finish_output(process);
+    return status;
+}
+
+/* Exit status of one script. With --frames, a script that does not call gr.frames runs for each frame again; the first
+ * run shows which kind it is. */
+static int run_script(struct render_process *process, const char *path) {
+    const struct frame_options *options = &process->options->script.frames;
+    const struct frame_selection *selection = &options->selection;
+    bool repeats = selection->step > 0 && options->turntable == 0;
+    struct frame frame = {.number = repeats,
+                          .count = repeats ? selection->last : 0,
+                          .rate = options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT,
+                          .loops = options->loops};
+    process->script = path;
+    process->status = 0;
+    process->warned_count = 0;
+    process->animates = false;
+    process->skips = repeats && !frame_is_selected(selection, frame.number);
+    int status = run_once(process, path, &frame);
+    process->skips = false;
+    while (repeats && status == 0 && !process->animates && frame.number < selection->last) {
+        if (!frame_is_selected(selection, ++frame.number))
+            continue;
+        begin_frame(process);
+        status = run_once(process, path, &frame);
+    }
     return status;
 }
 

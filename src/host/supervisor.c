@@ -180,7 +180,8 @@ static void run_and_watch(struct supervisor *supervisor) {
     struct error error;
     run_children(supervisor);
     while (supervisor->watch.open && !supervisor->ended) {
-        if (!supervisor->restarts && !output_write_held(&supervisor->output, &error))
+        if (!supervisor->restarts && (!output_write_held(&supervisor->output, &error) ||
+                                      (supervisor->status == 0 && !output_assemble(&supervisor->output, &error))))
             supervisor_note_error(supervisor, &error);
         if (!wait_for_change(supervisor))
             break;
@@ -191,6 +192,7 @@ static void run_and_watch(struct supervisor *supervisor) {
         supervisor->deadline = 0;
         supervisor->status = supervisor->next_script = 0;
         supervisor->script.used = 0;
+        supervisor->script.frames = 0;
         atomic_store(&supervisor->control->cancel, CANCEL_NOTHING);
         answer_again(supervisor, !supervisor->watch.assets_differ);
         run_children(supervisor);

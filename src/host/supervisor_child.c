@@ -160,6 +160,7 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error) 
     int saved = errno;
     supervisor->had_child = true;
     supervisor->script.used = 0;
+    supervisor->script.frames = 0;
     supervisor->script.out_of_time = supervisor->stall.found = false;
     supervisor->stall.checked = progress_clock();
     supervisor->stall.clock = supervisor->stall.seconds = 0;

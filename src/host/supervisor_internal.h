@@ -17,6 +17,7 @@
 struct script_clock {
     double used;      /* seconds of earlier stretches of the script */
     double since;     /* the child's clock when this stretch began */
+    uint64_t frames;  /* that it has begun: each has the whole time */
     bool runs;        /* a stretch is under way */
     bool out_of_time; /* the child was killed for that */
 };

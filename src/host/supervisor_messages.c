@@ -246,6 +246,7 @@ static void note_script(struct supervisor *supervisor, const struct message_scri
     }
     supervisor->next_script++;
     supervisor->script.used = 0;
+    supervisor->script.frames = 0;
     supervisor->retry.count = 0;
     supervisor->retry.pictures_before = supervisor->output.pictures;
     if (supervisor->retry.kept)
@@ -271,6 +272,7 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
 /* A message out of turn (a second picture before the first is finished ...) is not answered: it breaks the protocol. */
 void supervisor_take_message(struct supervisor *supervisor, const struct message *message) {
     const struct picture *current = &supervisor->output.current;
+    struct error ignored;
     switch (message->kind) {
     case MESSAGE_LINE:
         supervisor_report(supervisor, message->body.line.kind, message->body.line.text);
@@ -309,6 +311,13 @@ void supervisor_take_message(struct supervisor *supervisor, const struct message
         return;
     case MESSAGE_READ:
         note_read(supervisor, &message->body.read);
+        return;
+    case MESSAGE_FRAME: /* more frames than pictures are allowed would be a way around the time limit */
+        if (current->open || !options_allow_picture(supervisor->options, ++supervisor->script.frames, &ignored))
+            break;
+        supervisor_stop_script_clock(supervisor);
+        supervisor->script.used = 0;
+        supervisor_start_script_clock(supervisor);
         return;
     case MESSAGE_AGAIN:
         if (!supervisor->watch.open || current->open)

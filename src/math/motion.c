@@ -108,6 +108,10 @@ struct motion motion_of_velocity(struct vec3 velocity) {
     return (struct motion){.velocity = velocity};
 }
 
+struct motion motion_of_spin(const struct transform *pose, struct vec3 velocity, struct vec3 axis, double degrees) {
+    return (struct motion){.velocity = velocity, .rest = *pose, .spins = true, .spin_axis = axis, .spin = degrees};
+}
+
 bool motion_interpolate(const struct transform *from, const struct transform *to, struct vec3 velocity,
                         struct motion *out) {
     double det0 = affine_determinant(&from->forward), det1 = affine_determinant(&to->forward);
@@ -155,6 +159,13 @@ static struct vec3 translation_at(const struct motion *motion, double time) {
 
 struct transform motion_at(const struct motion *motion, double time) {
     struct transform moved = transform_translate(translation_at(motion, time));
+    if (motion->spins) {
+        struct motion still = *motion;
+        still.spins = false;
+        struct transform spin = transform_rotate_about(motion->spin_axis, fmod(motion->spin * time, 360));
+        struct transform pose = motion->has_end ? motion_at(&still, time) : transform_compose(&moved, &motion->rest);
+        return transform_compose(&pose, &spin);
+    }
     if (!motion->has_end)
         return moved;
     double share = clamped(time);
@@ -196,11 +207,22 @@ static struct box turned_bounds(const struct box *box, struct vec3 axis, double 
 }
 
 struct box motion_bounds(const struct motion *motion, const struct box *box, struct shutter shutter) {
-    struct box out = *box;
+    struct box out = *box, spun;
     if (box_is_empty(box))
         return out;
-    if (motion->has_end && !is_finite(box)) {
+    if ((motion->has_end || motion->spins) && !is_finite(box)) {
         out = (struct box){vec3_all(-INFINITY), vec3_all(INFINITY)};
+    } else if (motion->spins) {
+        double length = vec3_length(motion->spin_axis), from = motion->spin * shutter.open;
+        double to = motion->spin * shutter.close;
+        bool whole = fabs(to - from) >= 360;
+        spun = turned_bounds(box, vec3_scale(motion->spin_axis, 1 / length), whole ? 0 : from, whole ? 360 : to);
+        if (motion->has_end) {
+            struct motion still = *motion;
+            still.spins = false;
+            return motion_bounds(&still, &spun, shutter);
+        }
+        out = box_transform(&motion->rest.forward, &spun);
     } else if (motion->has_end) {
         double open = clamped(shutter.open), close = clamped(shutter.close);
         struct affine at_open = stretch_at(motion, open), at_close = stretch_at(motion, close);

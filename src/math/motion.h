@@ -15,7 +15,8 @@ static inline double shutter_time(struct shutter shutter, double ray_time) {
     return shutter.open + ray_time * (shutter.close - shutter.open);
 }
 
-/* parent_from_node(t) = translation(t) turn(t) stretch(t); without `has_end` only a translation. */
+/* parent_from_node(t) = translation(t) turn(t) stretch(t) spin(t); without `has_end` only translation(t), with `spins`
+ * translation(t) rest spin(t). */
 struct motion {
     struct vec3 velocity;  /* at all times */
     bool has_end;          /* two poses: from time 0 to time 1, at rest before and after */
@@ -25,9 +26,14 @@ struct motion {
     double degrees;        /* 0 .. 180 */
     struct affine first;   /* at time 0, without the translation: turn and stretch */
     struct affine change;  /* the first turn times the difference of the stretches */
+    bool spins;            /* a rotation about an axis through the origin of the node's own space */
+    struct vec3 spin_axis; /* its length does not matter */
+    double spin;           /* degrees per unit of time */
 };
 
 struct motion motion_of_velocity(struct vec3 velocity);
+/* A pose that spins and moves at a constant velocity. */
+struct motion motion_of_spin(const struct transform *pose, struct vec3 velocity, struct vec3 axis, double degrees);
 /* The linear parts are split into a rotation and a stretch; the rotation follows the shorter arc about one axis,
  * stretch and translation change linearly. False: one pose is a mirror image of the other, and no rotation connects
  * them. */

@@ -35,6 +35,8 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
         return false;
     checkpoint->written_at = progress_clock();
     bool there = file_is_regular(checkpoint->path);
+    if (there && !checkpoint->resume && checkpoint->files->options->checkpoint_implied)
+        there = false; /* its frames are made again, and it is replaced */
     if (there && !checkpoint->resume)
         return error_set(error, ERROR_USAGE,
                          "%.400s: a checkpoint of an earlier run exists; continue it with --resume, or remove it",

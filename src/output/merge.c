@@ -143,6 +143,22 @@ static int report_error(struct output_session *output, const struct error *error
     return (int)error->kind > status ? (int)error->kind : status;
 }
 
+/* `gray merge -o x.gif frame.png ...`: frames of --shard-pictures or of other programs. */
+static bool are_frames(const struct options *options) {
+    const char *dot = strrchr(options->scripts[0], '.');
+    return options->animation != ANIMATION_NONE && dot && strcmp(dot, ".png") == 0;
+}
+
+static int merge_frames(const struct options *options, struct output_session *output) {
+    struct error error;
+    int status = 0;
+    if (!animation_take_files(&output->animation, options->scripts, (uint32_t)options->script_count, &error))
+        status = report_error(output, &error, status);
+    if (!output_finish(output, status == 0, &error))
+        status = report_error(output, &error, status);
+    return status;
+}
+
 int merge_run(const struct options *options) {
     struct control control = {0};
     struct output_session output;
@@ -152,6 +168,8 @@ int merge_run(const struct options *options) {
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     output_init(&output, options, &control);
+    if (are_frames(options))
+        return merge_frames(options, &output);
     struct part *parts = mem_alloc_zero(count, sizeof *parts);
     if (!parts) {
         (void)error_no_memory(&error, "the parts");

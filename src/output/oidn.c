@@ -1,21 +1,13 @@
-/* See oidn_internal.h. The supervisor starts the program, never the process that runs scenes. PATH is that of the user;
- * an entry that is not absolute leads into the folder of the three files, where no program is. */
-#define _GNU_SOURCE
+/* See oidn_internal.h. */
 #include "output/oidn_internal.h"
 
 #include "base/file.h"
 #include "base/mem.h"
 #include "image/float_write.h"
 #include "image/image.h"
+#include "output/tool_internal.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
-#include <string.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 static char *const arguments[] = {(char[]){"oidnDenoise"},  (char[]){"--hdr"},
                                   (char[]){"colour.pfm"},   (char[]){"--alb"},
@@ -81,48 +73,10 @@ static bool write_inputs(const struct denoise_source *source, const char *folder
     return ok;
 }
 
-static bool start(const char *folder, pid_t *child, struct error *error) {
-    posix_spawn_file_actions_t actions;
-    if (posix_spawn_file_actions_init(&actions) != 0)
-        return error_no_memory(error, "oidnDenoise");
-    posix_spawnattr_t attributes;
-    sigset_t none, all;
-    if (posix_spawnattr_init(&attributes) != 0) {
-        (void)posix_spawn_file_actions_destroy(&actions);
-        return error_no_memory(error, "oidnDenoise");
-    }
-    (void)sigemptyset(&none);
-    (void)sigfillset(&all);
-    (void)posix_spawnattr_setsigmask(&attributes, &none);
-    (void)posix_spawnattr_setsigdefault(&attributes, &all);
-    (void)posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-    int failure = posix_spawn_file_actions_addchdir_np(&actions, folder);
-    for (int descriptor = 0; descriptor <= 2 && failure == 0; descriptor++)
-        failure = posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_RDWR, 0);
-    if (failure == 0)
-        failure = posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-    if (failure == 0)
-        failure = posix_spawnp(child, arguments[0], &actions, &attributes, arguments, environ);
-    (void)posix_spawn_file_actions_destroy(&actions);
-    (void)posix_spawnattr_destroy(&attributes);
-    if (failure == ENOENT)
-        return error_set(error, ERROR_MACHINE, "--denoise=oidn: there is no program oidnDenoise on PATH");
-    return failure == 0 ||
-           error_set(error, ERROR_MACHINE, "--denoise=oidn: oidnDenoise cannot be started: %s", strerror(failure));
-}
-
 static bool run_program(const char *folder, struct error *error) {
+    const struct tool tool = {"--denoise=oidn", arguments, folder, -1};
     pid_t child = 0;
-    int status = 0;
-    if (!start(folder, &child, error))
-        return false;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return error_set(error, ERROR_MACHINE, "--denoise=oidn: oidnDenoise: %s", strerror(errno));
-    if (WIFSIGNALED(status))
-        return error_set(error, ERROR_MACHINE, "--denoise=oidn: oidnDenoise was ended by signal %d", WTERMSIG(status));
-    return WEXITSTATUS(status) == 0 ||
-           error_set(error, ERROR_MACHINE, "--denoise=oidn: oidnDenoise failed (status %d)", WEXITSTATUS(status));
+    return tool_start(&tool, &child, error) && tool_wait(&tool, child, error);
 }
 
 static bool read_output(const struct denoise_source *source, const char *folder, float (*out)[3], struct error *error) {

@@ -58,25 +58,33 @@ void output_init(struct output_session *output, const struct options *options, s
     output->control = control;
     picture_files_init(&output->files, options);
     checkpoint_init(&output->checkpoint, options, &output->files);
+    animation_init(&output->animation, options, &output->files);
     progress_init(&output->progress, options->progress, options->quiet, options->threads);
     output->progress.stream = control ? &control->error_stream : NULL;
     report_display(output, display_open(&output->display, options->display, &error), &error);
 }
 
 static bool one_name_for_all(const struct output_session *output) {
-    return output->options->output && !output_name_numbered(output->options->output);
+    const struct options *options = output->options;
+    return options->output && options->animation == ANIMATION_NONE && !output_name_numbered(options->output);
+}
+
+/* The number in the name of a picture: of a frame its own, else that of the picture. */
+static unsigned number_of(const struct output_session *output, const struct picture_request *request) {
+    return request->frame.number > 0 ? request->frame.number : output->pictures;
 }
 
 /* The name of the picture, also of one that is only checked. */
-static bool choose_name(struct output_session *output, const char *from_script, char name[NAME_LIMIT],
+static bool choose_name(struct output_session *output, const struct picture_request *request, char name[NAME_LIMIT],
                         struct error *error) {
     char notice[NAME_LIMIT + 128];
-    if (one_name_for_all(output) && output->pictures > 1) {
+    const struct picture_label label = {request->file, number_of(output, request), request->frame.number > 0};
+    if (one_name_for_all(output) && output->pictures > 1 && !animation_streams(&output->animation, request)) {
         output->several_under_one_name = true;
         return error_set(error, ERROR_USAGE, "-o %s: several pictures are rendered, so the name needs %%d",
                          output->options->output);
     }
-    if (!picture_files_name(&output->files, from_script, output->pictures, name, notice, error))
+    if (!picture_files_name(&output->files, &label, name, notice, error))
         return false;
     if (notice[0] != '\0')
         output_report(output, LINE_NOTICE, notice);
@@ -216,7 +224,7 @@ static bool prepare_film(struct output_session *output, const char *written, boo
         return false;
     if (*already)
         picture_files_own(&output->files, written);
-    return true;
+    return !*already || output->options->shards || animation_add(&output->animation, written, error);
 }
 
 /* The picture is open from here on: progress and displays show it. */
@@ -244,13 +252,16 @@ bool output_begin(struct output_session *output, const struct picture_request *r
         return false;
     if (*already)
         return true;
-    if (!choose_name(output, request->file, picture->name, error) ||
+    if (!choose_name(output, request, picture->name, error) ||
         !picture_files_written(&output->files, picture->name, written, error))
         return false;
     if (picture_format(written) == PICTURE_EXR && !exr_can_write())
         return error_set(error, ERROR_SCENE, "%s: EXR pictures need OpenEXR, and this build was made without it",
                          written);
+    if (!animation_begin(&output->animation, request, number_of(output, request), error))
+        return false;
     picture->request = *request;
+    picture->request.deep = request->deep && output->options->animation == ANIMATION_NONE;
     picture->written = false;
     if (request->check) {
         picture->open = check_only(output, picture, error);
@@ -316,8 +327,11 @@ void output_write_checkpoint(struct output_session *output) {
 
 static bool write_picture(struct output_session *output, const struct picture *picture, struct error *error) {
     char name[NAME_LIMIT];
+    if (animation_streams(&output->animation, &picture->request))
+        return animation_put(&output->animation, picture, error);
     return picture_files_written(&output->files, picture->name, name, error) &&
            picture_write_files(&output->files, picture, name, error) &&
+           (output->options->shards || animation_add(&output->animation, name, error)) &&
            checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, name, error);
 }
 
@@ -422,7 +436,7 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         close_picture(&output->current);
         return true;
     }
-    if (one_name_for_all(output)) {
+    if (one_name_for_all(output) && !animation_streams(&output->animation, &output->current.request)) {
         /* Names of progress point into the picture, so it is reported before the picture moves. */
         progress_end(&output->progress, PROGRESS_WRITTEN);
         report_statistics(output, report);
@@ -520,18 +534,38 @@ bool output_write_held(struct output_session *output, struct error *error) {
 void output_restart(struct output_session *output) {
     close_picture(&output->held);
     output->pictures = 0;
+    animation_restart(&output->animation);
     output->files.quota.written = 0;
     output->several_under_one_name = false;
 }
 
+bool output_assemble(struct output_session *output, struct error *error) {
+    bool helps = output->farm && !farm_is_first(output->farm);
+    return helps || animation_finish(&output->animation, error);
+}
+
+/* Frames of an animation that was not written stay, for --resume or gray merge. */
+static void close_animation(struct output_session *output) {
+    char line[NAME_LIMIT + 128];
+    uint32_t left;
+    bool kept = output->options->keep_frames && output->animation.count == 0;
+    animation_destroy(&output->animation, &left);
+    if (left == 0 || kept || output->options->action != ACTION_RENDER)
+        return;
+    (void)snprintf(line, sizeof line, "gray: notice: %.3800s.frames holds %u frame%s", output->options->output, left,
+                   left > 1 ? "s" : "");
+    output_report(output, LINE_NOTICE, line);
+}
+
 bool output_finish(struct output_session *output, bool all_well, struct error *error) {
     struct error kept;
-    bool ok = output_write_held(output, error);
+    bool ok = output_write_held(output, error) && (!all_well || output_assemble(output, error));
     if (!checkpoint_finish(&output->checkpoint, ok && all_well, &kept)) {
         char line[sizeof kept.text + 64];
         (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", kept.text);
         output_report(output, LINE_WARNING, line);
     }
+    close_animation(output);
     picture_files_destroy(&output->files);
     display_close(&output->display);
     return ok;

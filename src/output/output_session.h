@@ -3,6 +3,7 @@
 #ifndef GRAY_OUTPUT_OUTPUT_SESSION_H
 #define GRAY_OUTPUT_OUTPUT_SESSION_H
 
+#include "output/animation.h"
 #include "output/checkpoint.h"
 #include "output/display.h"
 #include "output/farm.h"
@@ -25,6 +26,7 @@ struct output_session {
     void *wait_context;
     struct display display;       /* --display */
     struct checkpoint checkpoint; /* the checkpoint */
+    struct animation animation;   /* of the pictures */
     struct picture_files files;   /* names, and what they may replace */
     unsigned pictures;            /* begun so far, those under --check too */
     struct picture current;       /* being made */
@@ -59,6 +61,8 @@ void output_restart(struct output_session *output);
 bool output_flush_streams(struct output_session *output, struct error *error);
 /* With --no-sandbox: a warning. */
 void output_warn_no_sandbox(struct output_session *output);
+/* The animation of the run, when all its frames are written. */
+bool output_assemble(struct output_session *output, struct error *error);
 /* After all scripts: writes the picture that was held. all_well: everything else was written, so that the checkpoint
  * may go. False: error. */
 bool output_finish(struct output_session *output, bool all_well, struct error *error);

@@ -3,6 +3,7 @@
 #include "output/picture_files.h"
 
 #include "base/error.h"
+#include "image/animation.h"
 #include "image/image.h"
 #include "output/layers_internal.h"
 #include "render/aov.h"
@@ -44,6 +45,9 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     files->beside = files->picture;
     files->beside.is_direct = false;
     files->beside.role = FILE_ROLE_BESIDE;
+    files->animation = files->picture;
+    files->animation.may_replace = animation_is;
+    files->animation.expected = "an animation";
     files->part = (struct file_rules){.may_replace = tile_file_is,
                                       .expected = "a checkpoint or part",
                                       .advice = advice,
@@ -137,17 +141,50 @@ static bool name_from_script(struct picture_files *files, const char *from_scrip
     return true;
 }
 
-bool picture_files_name(struct picture_files *files, const char *from_script, unsigned number, char name[NAME_LIMIT],
+bool animation_folder(const char *animation, char out[NAME_LIMIT]) {
+    return snprintf(out, NAME_LIMIT, "%s.frames", animation) < NAME_LIMIT;
+}
+
+bool animation_sheet_name(const char *animation, char out[NAME_LIMIT], struct error *error) {
+    const char *last = last_part(animation), *dot = strrchr(last, '.');
+    int length = dot ? (int)(dot - animation) : (int)strlen(animation);
+    return snprintf(out, NAME_LIMIT, "%.*s.sheet.png", length, animation) < NAME_LIMIT || name_is_too_long(error);
+}
+
+static bool name_in_folder(const char *animation, unsigned number, char name[NAME_LIMIT], struct error *error) {
+    char folder[NAME_LIMIT];
+    bool fits = animation_folder(animation, folder) &&
+                snprintf(name, NAME_LIMIT, "%.*s/%06u.png", NAME_LIMIT - 32, folder, number) < NAME_LIMIT &&
+                strlen(folder) <= NAME_LIMIT - 32;
+    return fits || name_is_too_long(error);
+}
+
+/* A frame whose name, from a script, has no place for its number gets it before the extension. */
+static bool number_frame(unsigned number, char name[NAME_LIMIT], struct error *error) {
+    char pattern[NAME_LIMIT + 8];
+    const char *last = last_part(name), *dot = strrchr(last, '.');
+    int length = dot ? (int)(dot - name) : (int)strlen(name);
+    if (output_name_numbered(name))
+        (void)snprintf(pattern, sizeof pattern, "%s", name);
+    else
+        (void)snprintf(pattern, sizeof pattern, "%.*s.####%s", length, name, name + length);
+    return output_name(pattern, number, name, NAME_LIMIT) || name_is_too_long(error);
+}
+
+bool picture_files_name(struct picture_files *files, const struct picture_label *label, char name[NAME_LIMIT],
                         char notice[NAME_LIMIT + 128], struct error *error) {
     const char *output = files->options->output;
     notice[0] = '\0';
+    if (output && files->options->animation != ANIMATION_NONE)
+        return name_in_folder(output, label->number, name, error);
     if (output)
-        return output_name(output, number, name, NAME_LIMIT) || name_is_too_long(error);
+        return output_name(output, label->number, name, NAME_LIMIT) || name_is_too_long(error);
     if (files->folders_error.kind != ERROR_NONE) {
         *error = files->folders_error;
         return false;
     }
-    return name_from_script(files, from_script, name, notice, error);
+    return name_from_script(files, label->from_script, name, notice, error) &&
+           (!label->is_frame || number_frame(label->number, name, error));
 }
 
 bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error) {
@@ -170,9 +207,20 @@ bool picture_files_written(const struct picture_files *files, const char *name, 
 
 bool picture_files_checkpoint(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                               struct error *error) {
-    bool named = strcmp(files->options->checkpoint, "auto") != 0;
-    int length = named ? snprintf(out, NAME_LIMIT, "%s", files->options->checkpoint)
-                       : snprintf(out, NAME_LIMIT, "%s.checkpoint", name);
+    const struct options *options = files->options;
+    bool named = strcmp(options->checkpoint, "auto") != 0;
+    char folder[NAME_LIMIT], shard[64] = "";
+    int length;
+    if (named) {
+        length = snprintf(out, NAME_LIMIT, "%s", options->checkpoint);
+    } else if (options->animation != ANIMATION_NONE && animation_folder(options->output, folder)) {
+        if (options->shards || options->shards_of_pictures)
+            (void)snprintf(shard, sizeof shard, "%u-of-%u.", options->shard + options->shard_of_pictures,
+                           options->shards + options->shards_of_pictures);
+        length = snprintf(out, NAME_LIMIT, "%.4000s/%scheckpoint", folder, shard);
+    } else {
+        length = snprintf(out, NAME_LIMIT, "%s.checkpoint", name);
+    }
     return length < NAME_LIMIT ||
            error_set(error, ERROR_SCENE, "%.100s...: the name of its checkpoint is longer than %d bytes", name,
                      NAME_LIMIT - 1);

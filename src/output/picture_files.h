@@ -22,6 +22,7 @@ struct picture_files {
     struct file_quota quota;         /* --picture-bytes: of all files of pictures */
     struct file_rules picture;       /* the picture itself */
     struct file_rules beside;        /* layers, -write-*, --partial: as the picture, but never written in place */
+    struct file_rules animation;     /* -o x.gif and its like */
     struct file_rules part;          /* --shard */
     struct file_rules checkpoint;    /* --checkpoint auto */
     struct file_rules named_checkpoint;
@@ -37,9 +38,18 @@ void picture_files_keep(struct picture_files *files, struct file_identity identi
 /* A picture that an earlier run wrote and this one does not change: treated as written by this run. */
 void picture_files_own(struct picture_files *files, const char *name);
 
-/* The name of picture `number` (from 1). notice: a line to report, or empty. */
-bool picture_files_name(struct picture_files *files, const char *from_script, unsigned number, char name[NAME_LIMIT],
+/* What a picture is called by: the name that the script wrote, and its number, from 1, of a frame that of the frame. */
+struct picture_label {
+    const char *from_script;
+    unsigned number;
+    bool is_frame;
+};
+/* Its name. notice: a line to report, or empty. */
+bool picture_files_name(struct picture_files *files, const struct picture_label *label, char name[NAME_LIMIT],
                         char notice[NAME_LIMIT + 128], struct error *error);
+/* The folder for the frames of an animation, and its contact sheet. */
+bool animation_folder(const char *animation, char out[NAME_LIMIT]);
+bool animation_sheet_name(const char *animation, char out[NAME_LIMIT], struct error *error);
 /* The name of its main file: the picture, or with --shard its part. */
 bool picture_files_written(const struct picture_files *files, const char *name, char out[NAME_LIMIT],
                            struct error *error);

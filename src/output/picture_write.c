@@ -69,7 +69,8 @@ double picture_packing_time(const struct picture *picture, uint32_t *pixels) {
             packing_sample.tiles[packing_sample.count++] = tile;
         tile += done ? count / PACKING_SAMPLE_TILES : step;
     }
-    struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample, false};
+    struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample,
+                                false};
     double seconds = packing_sample.count > 0 ? png_write_trial(&source) : -1;
     *pixels = source.width * source.height;
     return request->deep ? 2 * seconds : seconds;
@@ -93,7 +94,8 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     case PICTURE_OTHER:
         break;
     }
-    struct png_source source = {.width = request->width, .height = request->height, .context = &rows, .srgb = tone.srgb};
+    struct png_source source = {
+        .width = request->width, .height = request->height, .context = &rows, .srgb = tone.srgb};
     if (request->deep)
         source.words = row_16;
     else
@@ -156,6 +158,24 @@ bool picture_write_files(const struct picture_files *files, const struct picture
     ok = ok && picture_shown_make(&shown, picture, denoiser, pool, error);
     if (ok) {
         ok = write_shown(files, &shown.picture, name, pool, error);
+        picture_shown_destroy(&shown);
+    }
+    pool_destroy(pool);
+    return ok;
+}
+
+bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
+                         struct error *error) {
+    enum denoiser denoiser = denoiser_of(files->options, picture);
+    struct pool *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
+    bool ok = (pool || denoiser != DENOISER_GRAY) || error_no_memory(error, "a picture that is denoised");
+    struct picture_shown shown;
+    ok = ok && picture_shown_make(&shown, picture, denoiser, pool, error);
+    if (ok) {
+        struct tone tone = picture_tone(&shown.picture.request);
+        const struct film *film = &shown.picture.film;
+        for (uint32_t y = 0; y < film->height; y++)
+            film_row_toned(film, FILM_FINAL, &tone, y, rgb + (size_t)3 * film->width * y);
         picture_shown_destroy(&shown);
     }
     pool_destroy(pool);

@@ -31,6 +31,9 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
  * its layers, those of -write-...; with --shard the part. */
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
                          struct error *error);
+/* The rows of its main file as bytes, 3 * width * height, as a PNG file of 8 bits per channel would hold them. */
+bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
+                         struct error *error);
 /* Seconds of one core for packing some finished tiles; *pixels: how many pixels these have. Negative: it could not be
  * measured. */
 double picture_packing_time(const struct picture *picture, uint32_t *pixels);

@@ -126,6 +126,13 @@ bool node_transform(struct scene *scene, struct node *node, enum node_step step,
     return true;
 }
 
+void node_reset_transform(struct node *node) {
+    node->parent_from_node = transform_identity();
+    node->singular = false;
+    for (int i = 0; node->separate && i < NODE_STEPS; i++)
+        node->separate[i] = transform_identity();
+}
+
 struct transform node_parent_from_node(const struct node *node) {
     if (node->kind != NODE_JOINT)
         return node->parent_from_node;

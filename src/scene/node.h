@@ -56,6 +56,12 @@ struct node_child {
     struct node_child *next;
 };
 
+/* A rotation at a constant rate, in the node's own space. */
+struct node_spin {
+    struct vec3 axis; /* not 0 */
+    double degrees;   /* per second */
+};
+
 struct node {
     const char *name; /* never NULL */
     enum node_kind kind;
@@ -68,7 +74,8 @@ struct node {
     const struct placements *placements; /* or NULL: the children are instantiated once for each of them */
     struct transform *separate;          /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
     struct transform parent_from_node;
-    struct vec3 velocity; /* in the parent's space, of every unit of time */
+    struct vec3 velocity;         /* in the parent's space, of every second */
+    const struct node_spin *spin; /* or NULL */
     /* Or NULL: at time 1 this node has the pose of that node's own transforms. */
     const struct node *moves_to;
     /* A NODE_GROUP ends here: there may be millions, and scene_node takes no memory for the rest. */
@@ -175,6 +182,8 @@ struct node *scene_combine(struct scene *scene, const char *name, enum node_csg 
                            uint32_t count, struct error *error);
 /* Applies one transform in the scene's order. False: no memory (only ORDER_SEPARATE needs any). */
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
+/* Forgets all transforms. */
+void node_reset_transform(struct node *node);
 /* Everything from the node to its parent, joint angles included (y after x). */
 struct transform node_parent_from_node(const struct node *node);
 /* Of geometry: a mesh without triangles has none. */
@@ -188,7 +197,7 @@ static inline bool node_is_placing(const struct node *node) {
 /* True once for each node: a warning about it is due. */
 bool scene_warns(struct scene *scene, const struct node *node);
 static inline bool node_moves(const struct node *node) {
-    return (node->moves_to && node->moves_to != node) || vec3_max_abs(node->velocity) > 0;
+    return (node->moves_to && node->moves_to != node) || vec3_max_abs(node->velocity) > 0 || node->spin;
 }
 struct material *scene_material(struct scene *scene, enum material_kind kind, const struct material *base,
                                 struct error *error);

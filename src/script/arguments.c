@@ -661,6 +661,10 @@ static bool read_value(struct script_context *c, int index, const struct script_
         if (!value->program && !(handle && handle->type == HANDLE_GHOST))
             wrong_type(c, &argument_path, kind_words(p->kind), index);
         return value->program != NULL;
+    case KIND_CALLBACK:
+        if (!lua_isfunction(L, index))
+            wrong_type(c, &argument_path, kind_words(p->kind), index);
+        return true;
     case KIND_COUNT:
         break;
     }

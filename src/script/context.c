@@ -242,6 +242,7 @@ bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags)
         [KIND_ROWS] = LIKE_TABLE,
         [KIND_CURVES] = LIKE_TABLE,
         [KIND_FUNCTION] = LIKE_FUNCTION | 1 << HANDLE_TEXTURE,
+        [KIND_CALLBACK] = LIKE_FUNCTION,
     };
     assert(wanted[kind]); /* every kind has a case */
     int accepted =

@@ -96,14 +96,17 @@ struct script_context {
     uint8_t *warned;                        /* WARNED_ bits by row of the table */
     struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
     uint32_t change_count, change_room, added, owned;
-    struct changed_view *views; /* the newest first */
-    bool changes_reported;      /* what was left out */
-    bool number_repaired;       /* the notice about ".0" was printed */
-    struct lenient *lenient;    /* NULL without --lenient */
-    bool only_named_pictures;   /* struct order_finding */
-    uint32_t pictures;          /* that gr.render has made */
-    char raised[1536];          /* the last error of a function of gr, without its position */
-    bool unforgivable;          /* --lenient would not get over it */
+    struct changed_view *views;   /* the newest first */
+    bool changes_reported;        /* what was left out */
+    bool number_repaired;         /* the notice about ".0" was printed */
+    struct lenient *lenient;      /* NULL without --lenient */
+    bool only_named_pictures;     /* struct order_finding */
+    uint32_t pictures;            /* that gr.render has made */
+    struct frame frame;           /* the one that is drawn; number 0: none */
+    struct shutter frame_shutter; /* in frames: of gr.frames */
+    bool animates;                /* in gr.frames */
+    char raised[1536];            /* the last error of a function of gr, without its position */
+    bool unforgivable;            /* --lenient would not get over it */
     struct error fatal;
     struct recorder *recorder; /* record_internal.h */
     bool ended;                /* os.exit was called with success */
@@ -157,6 +160,8 @@ void limits_count_output(struct script_context *context,
 /* Pause and resume the limits during work that is not the script's. */
 void limits_pause(struct script_context *context);
 void limits_resume(struct script_context *context);
+/* The time limit counts from here. */
+void limits_restart_time(struct script_context *context);
 
 /* context.c */
 void handles_open(lua_State *L);
@@ -173,6 +178,10 @@ void dispatch_open(lua_State *L); /* the global gr */
 void dispatch_push(lua_State *L, const struct script_function *function);
 void dispatch_push_methods(lua_State *L); /* the table of the methods of nodes, by name */
 int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result);
+
+/* gr_frames.c: calls `draw` of gr.frames for its frames and renders them; may raise. */
+int frames_run(lua_State *L, const struct script_result *result);
+void frames_open(lua_State *L); /* gr.time and its like */
 
 /* arguments.c: reads the arguments; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
  * so the call has no effect. `first` is the stack index of the first argument. */

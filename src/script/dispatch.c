@@ -89,7 +89,7 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
     lua_setfield(L, -2, "line");
     return 1;
 }
-_Static_assert(RESULT_GLYPHS == 10, "a new result kind needs its line in dispatch_answer()");
+_Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in dispatch_answer()");
 
 int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
     switch (function->result) {
@@ -122,6 +122,8 @@ int dispatch_answer(lua_State *L, const struct script_function *function, const 
         return 1;
     case RESULT_GLYPHS:
         return answer_glyphs(L, result->pointer);
+    case RESULT_FRAMES:
+        return frames_run(L, result);
     }
     return 0;
 }

@@ -232,6 +232,8 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
         return "number[][][]";
     case KIND_FUNCTION:
         return "function|gr.texture";
+    case KIND_CALLBACK:
+        return "function";
     case KIND_COUNT:
         break;
     }
@@ -249,6 +251,7 @@ static const char *annotation_type(const struct script_parameter *p, char out[CH
 static const char *annotation_result(const struct script_function *function) {
     switch (function->result) {
     case RESULT_NOTHING:
+    case RESULT_FRAMES:
         return NULL;
     case RESULT_SELF:
     case RESULT_NODE:
@@ -379,7 +382,10 @@ const char *script_annotations(struct arena *arena) {
                    "---@class gr.glyphs: gr.glyph[]\n---@field width number\n---@field ascender number\n"
                    "---@field descender number\n---@field line number\n"
                    "---@class gr.node\n"
-                   "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n\n");
+                   "local node = {}\n\ngr = {}\n\n---The version of the renderer.\ngr.version = ''\n"
+                   "---In an animation: the seconds since its first frame, else 0.\ngr.time = 0.0\n"
+                   "---Its argument t, from 0 to 1.\ngr.clock = 0.0\n"
+                   "---The number of the frame, from 1; 0 outside of animations.\ngr.frame = 0\n\n");
     for (int k = 0; k < function_count(); k++) {
         const struct script_function *function = function_at(k);
         if (has_table_form(function))

@@ -87,6 +87,32 @@ bool gr_velocity(struct script_context *context, const struct script_value *args
     return true;
 }
 
+bool gr_spin(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
+    (void)result;
+    const struct script_value *axis = &args[SPIN_AXIS], *direction = &args[SPIN_DIRECTION];
+    struct vec3 unit = {axis->choice == 0, axis->choice == 1, axis->choice == 2};
+    struct vec3 about = direction->given ? direction->vector : unit;
+    if (vec3_max_abs(about) == 0)
+        return error_set(error, ERROR_SCENE, "direction has length 0");
+    args[SELF].node->spin = NULL;
+    if (args[SPIN_DEGREES].number == 0)
+        return true;
+    struct node_spin *spin = arena_alloc(&context->scene.arena, sizeof *spin);
+    if (!spin)
+        return error_no_memory(error, "a motion");
+    *spin = (struct node_spin){about, args[SPIN_DEGREES].number};
+    args[SELF].node->spin = spin;
+    return true;
+}
+
+bool gr_reset(struct script_context *context, const struct script_value *args, struct script_result *result,
+              struct error *error) {
+    (void)context, (void)result, (void)error;
+    node_reset_transform(args[SELF].node);
+    return true;
+}
+
 /* Only the transforms of the other node itself are used, with their values at the time of rendering. */
 bool gr_moves_to(struct script_context *context, const struct script_value *args, struct script_result *result,
                  struct error *error) {

@@ -1,6 +1,7 @@
 /* gr.render. */
 #include "image/transfer.h"
 #include "math/elementary.h"
+#include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
 #include "script/lenient_internal.h"
 
@@ -114,14 +115,21 @@ static bool apply_lens(const struct script_value *args, struct lens *lens, const
     return true;
 }
 
-static bool apply_motion(const struct script_value *args, struct settings *settings, const struct camera *camera,
-                         struct error *error) {
+/* shutter: that of the animation of the frame. */
+static bool apply_motion(const struct script_value *args, const struct frame *frame, struct shutter shutter,
+                         struct settings *settings, const struct camera *camera, struct error *error) {
     if (args[RENDER_VIEW_TO].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view_to needs view, and target_to needs target");
     if (args[RENDER_TARGET_TO].given && !args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "target_to needs target");
     if (args[RENDER_SHUTTER].given)
         settings->shutter = (struct shutter){args[RENDER_SHUTTER].vector.x, args[RENDER_SHUTTER].vector.y};
+    else if (frame->number > 0)
+        settings->shutter = shutter;
+    if (frame->number > 0) { /* frames to seconds; a picture outside of animations is a frame of one second */
+        settings->shutter.open /= frame->rate;
+        settings->shutter.close /= frame->rate;
+    }
     const struct script_value *eye = &args[RENDER_EYE_TO], *up = &args[RENDER_UP_TO];
     const struct script_value *view = &args[args[RENDER_TARGET].given ? RENDER_TARGET_TO : RENDER_VIEW_TO];
     settings->motion = (struct camera_motion){.moves = eye->given || view->given || up->given,
@@ -147,6 +155,64 @@ static void repair_view(struct script_context *context, const struct script_valu
         lenient_warn(context, "%s is where the eye is: the camera looks along -z",
                      args[RENDER_TARGET].given ? "target" : "view");
     }
+}
+
+/* The middle of a turntable: on the line of sight, as near to the middle of the scene as possible. */
+static struct vec3 turntable_middle(const struct render_request *request, struct vec3 view) {
+    const struct camera *camera = &request->camera;
+    struct box box = box_empty();
+    struct error ignored;
+    if (request->settings.view_is_target)
+        return camera->view;
+    bool bounded = node_bounds(request->root, &box, &ignored) && !box_is_empty(&box) && vec3_finite(box.min) &&
+                   vec3_finite(box.max);
+    struct vec3 centre = bounded ? vec3_scale(vec3_add(box.min, box.max), 0.5) : vec3_all(0);
+    double length = vec3_dot(view, view);
+    double along = length > 0 ? vec3_dot(vec3_sub(centre, camera->eye), view) / length : 0;
+    return vec3_add_scaled(camera->eye, view, fmax(along, 0));
+}
+
+/* The camera and the poses that it moves to, turned about the line of `up` through the middle. */
+static void turn_camera(struct render_request *request, const struct render_request *first, struct vec3 middle,
+                        double degrees) {
+    struct transform turn = transform_rotate_about(first->camera.up, degrees);
+    bool is_target = first->settings.view_is_target;
+    const struct vec3 *from[] = {&first->camera.eye, &first->camera.view, &first->settings.motion.eye,
+                                 &first->settings.motion.view};
+    struct vec3 *to[] = {&request->camera.eye, &request->camera.view, &request->settings.motion.eye,
+                         &request->settings.motion.view};
+    for (int i = 0; i < 4; i++) {
+        bool is_direction = i % 2 == 1 && !is_target;
+        struct vec3 origin = is_direction ? vec3_all(0) : middle;
+        *to[i] = vec3_add(affine_vector(&turn.forward, vec3_sub(*from[i], origin)), origin);
+    }
+    request->settings.motion.up = affine_vector(&turn.forward, first->settings.motion.up);
+    if (first->settings.lens.focus == 0)
+        request->settings.lens.focus_point =
+            vec3_add(affine_vector(&turn.forward, vec3_sub(first->settings.lens.focus_point, middle)), middle);
+}
+
+/* --turntable: the pictures of one call. Other pictures are made once, by `render` itself. */
+static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
+    const struct frame_options *options = &context->options->frames;
+    struct render_request request = *first;
+    struct vec3 middle = turntable_middle(first, first->camera.view);
+    uint32_t count = (uint32_t)options->turntable;
+    if (vec3_max_abs(first->camera.up) == 0)
+        return error_set(error, ERROR_SCENE, "--turntable needs an up of another length than 0");
+    if (options->selection.step > 0 && options->selection.last > count)
+        return error_set(error, ERROR_SCENE, "--frames asks for frame %u, but the last one is %u",
+                         options->selection.last, count);
+    for (uint32_t number = 1; number <= count; number++) {
+        if (!frame_is_selected(&options->selection, number))
+            continue;
+        request.frame =
+            (struct frame){number, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true};
+        turn_camera(&request, first, middle, 360.0 * (number - 1) / count);
+        if (!context->host->render(context->host->context, &request, error))
+            return false;
+    }
+    return true;
 }
 
 bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -177,6 +243,7 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .light_count = args[RENDER_LIGHTS].count,
         .fog = args[RENDER_FOG].fog,
         .settings = context->host->settings,
+        .frame = context->frame,
     };
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct camera fitted;
@@ -200,14 +267,16 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         request.fog = fog;
     }
     if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
-        !apply_motion(args, &request.settings, &request.camera, error) ||
+        !apply_motion(args, &context->frame, context->frame_shutter, &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))
         return false;
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))
         return false;
     limits_pause(context);
-    bool done = context->host->render(context->host->context, &request, error);
+    bool turns = context->options->frames.turntable > 0;
+    bool done = turns ? render_turntable(context, &request, error)
+                      : context->host->render(context->host->context, &request, error);
     limits_resume(context);
     changes_take_off(&changed);
     context->pictures += done;

@@ -714,6 +714,7 @@ static int push_lost(lua_State *L, const struct script_function *function, int f
     int last = lua_gettop(L);
     switch (function->result) {
     case RESULT_NOTHING:
+    case RESULT_FRAMES:
         return 0;
     case RESULT_SELF:
         lua_pushvalue(L, 1);

@@ -433,6 +433,7 @@ void lenient_convert(struct script_context *c, int index, const struct script_fu
     case KIND_ROWS:
     case KIND_CURVES:
     case KIND_FUNCTION:
+    case KIND_CALLBACK:
         lua_pushvalue(L, index);
         return;
     case KIND_COUNT:
@@ -533,6 +534,7 @@ void lenient_default(struct script_context *c, const struct script_function *fun
     case KIND_ROWS:
     case KIND_CURVES:
     case KIND_FUNCTION:
+    case KIND_CALLBACK:
     case KIND_COUNT:
         break;
     }

@@ -93,7 +93,10 @@ _Noreturn static void end_script(lua_State *L, enum error_kind kind, const char 
     char where[PATH_SIZE + 32];
     context->lua = L;
     context_where(context, where, sizeof where);
-    error_set(&context->fatal, kind, "%s%s", where, what);
+    char frame[32] = "";
+    if (context->frame.number > 0)
+        (void)snprintf(frame, sizeof frame, " (frame %u)", context->frame.number);
+    error_set(&context->fatal, kind, "%s%s%s", where, what, frame);
     context_raise_fatal(L);
 }
 
@@ -149,6 +152,10 @@ void limits_output(lua_State *L, size_t size) {
 
 void limits_pause(struct script_context *context) {
     context->limits.time_begun -= clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+}
+
+void limits_restart_time(struct script_context *context) {
+    context->limits.time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
 void limits_resume(struct script_context *context) {

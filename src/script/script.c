@@ -144,8 +144,11 @@ static int describe_error(lua_State *L) {
         return 1;
     }
     size_t first = strcspn(message, "\n");
-    error_set(&context->failure, ERROR_SCENE, "%s%.*s%s", has_position ? "" : where, (int)first, message,
-              hint_of_lua_error(L, message));
+    char frame[32] = "";
+    if (context->frame.number > 0)
+        (void)snprintf(frame, sizeof frame, " (frame %u)", context->frame.number);
+    error_set(&context->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
+              hint_of_lua_error(L, message), frame);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     if (is_forgivable(context, message)) {
@@ -169,6 +172,7 @@ static int run_scene(lua_State *L) {
     dispatch_open(L);
     lenient_open(L);
     record_open(L);
+    frames_open(L);
     library_open(L);
     define_open(L);
     lua_settop(L, 0);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/list.h"
 #include "material/medium.h"
+#include "render/frame.h"
 #include "render/settings.h"
 #include "scene/node.h"
 
@@ -36,9 +37,10 @@ struct script_options {
     bool no_sandbox;
     const char *const *allow_read, *const *allow_write; /* folders */
     int allow_read_count, allow_write_count;
-    uint64_t memory_limit;      /* bytes; 0: 4 GiB, without the sandbox none */
-    double time_limit;          /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
-    uint64_t output_limit;      /* bytes printed and written; 0: 64 MiB, without the sandbox none */
+    uint64_t memory_limit; /* bytes; 0: 4 GiB, without the sandbox none */
+    double time_limit;     /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
+    uint64_t output_limit; /* bytes printed and written; 0: 64 MiB, without the sandbox none */
+    struct frame_options frames;
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
 
@@ -59,6 +61,7 @@ struct render_request {
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     uint32_t owned;           /* the same of materials and gr.change_own */
     bool keep;                /* a picture that exists under this name is not replaced */
+    struct frame frame;       /* of an animation; else its number is 0 */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
 
@@ -78,6 +81,12 @@ struct script_host {
      * text holds any bytes. NULL: the streams are those of the process. */
     void (*error_text)(void *context, const char *text, size_t size);
     bool output_is_error;
+    /* Animations; the functions may be NULL. A script without gr.frames runs once for each frame of --frames: `frame`
+     * is the frame of this run, else its number is 0. */
+    struct frame frame;
+    uint32_t frame_limit;                /* of gr.frames; 0: FRAMES_MAX */
+    void (*animates)(void *context);     /* the script has called gr.frames */
+    void (*frame_begins)(void *context); /* another frame of it: the script's time counts from here */
 };
 
 /* The time limit under these options; 0: none. */

@@ -256,7 +256,7 @@ static const struct script_parameter translate_parameters[] = {
 
 static const struct script_parameter velocity_parameters[] = {
     SELF_PARAMETER,
-    [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along x per unit of time, in the space of the parent."},
+    [STEP_X] = {"x", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along x per second, in the space of the parent."},
     [STEP_Y] = {"y", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along y."},
     [STEP_Z] = {"z", KIND_NUMBER, 0, ANY, NULL, NULL, "Distance along z."},
     [STEP_VECTOR] = {"vector", KIND_TRIPLE, 0, ANY, NULL, NULL, "The three numbers as a table."},
@@ -266,6 +266,13 @@ static const struct script_parameter moves_to_parameters[] = {
     SELF_PARAMETER,
     [MOVES_TO_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL,
                        "A node whose own transforms are the pose of this one at time 1; it need not be in the scene."},
+};
+
+static const struct script_parameter spin_parameters[] = {
+    SELF_PARAMETER,
+    [SPIN_AXIS] = {"axis", KIND_AXIS, 0, 0, 0, "x y z", NULL, NULL, "The axis."},
+    [SPIN_DEGREES] = {"degrees", KIND_NUMBER, 0, ANY, "degrees", NULL, "Angle per second; 0: none."},
+    [SPIN_DIRECTION] = {"direction", KIND_DIRECTION, 0, ANY, NULL, NULL, "Any direction as axis."},
 };
 
 static const struct script_parameter scale_parameters[] = {
@@ -892,11 +899,17 @@ static const struct script_function other_rows[] = {
     NODE("scale", scale_parameters, RESULT_SELF, gr_scale, "Scales this node.", "x y z", "vector"),
     NODE("rotate", rotate_parameters, RESULT_SELF, gr_rotate, "Rotates this node about an axis.", "axis angle"),
     NODE("velocity", velocity_parameters, RESULT_SELF, gr_velocity,
-         "Sets the velocity of this node while the shutter is open; its transforms are its pose at time 0.", "x y z",
-         "vector"),
+         "Sets the velocity of this node per second while the shutter is open; its transforms are its pose at time 0.",
+         "x y z", "vector"),
     NODE("moves_to", moves_to_parameters, RESULT_SELF, gr_moves_to,
          "Moves this node from its own pose at time 0 to the pose of another node at time 1, on the shorter rotation.",
          "node"),
+    NODE("spin", spin_parameters, RESULT_SELF, gr_spin,
+         "Rotates this node at a constant rate about an axis through the origin of its own space, before its "
+         "transforms.",
+         "axis degrees", "direction degrees"),
+    NODE("reset", self_parameters, RESULT_SELF, gr_reset,
+         "Forgets the transforms of this node, so that an animation can set new ones in each frame.", ""),
     NODE("rotate_axis", rotate_axis_parameters, RESULT_SELF, gr_rotate_axis, "Rotates this node about any direction.",
          "axis angle"),
     NODE("rotate_quat", rotate_quat_parameters, RESULT_SELF, gr_rotate_quat, "Rotates this node by a quaternion.",
@@ -912,7 +925,7 @@ static const struct function_rows other_functions = {other_rows, COUNT(other_row
 /* In the order of the manual. */
 static const struct function_rows *const parts[] = {&node_functions,    &shape_functions,    &swept_functions,
                                                     &texture_functions, &material_functions, &layered_functions,
-                                                    &light_functions,   &other_functions};
+                                                    &light_functions,   &other_functions,    &frame_functions};
 
 int function_count(void) {
     int count = 0;
@@ -1029,6 +1042,7 @@ const char *kind_words(enum kind kind) {
     case KIND_CURVES:
         return "a table of tables of pairs {x, z}";
     case KIND_FUNCTION:
+    case KIND_CALLBACK:
         return "a function";
     case KIND_COUNT:
         break;

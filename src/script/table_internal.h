@@ -53,6 +53,7 @@ enum kind {
     KIND_ROWS,       /* starts, numbers, count: lists of numbers of any length */
     KIND_CURVES,     /* starts, pairs, count: lists of pairs */
     KIND_FUNCTION,   /* program: a function of Lua, recorded */
+    KIND_CALLBACK,   /* a function of Lua that is called; it stays on the stack */
     KIND_COUNT,
 };
 
@@ -132,7 +133,8 @@ enum result_kind {
     RESULT_FACES,
     RESULT_FOG,
     RESULT_SKY,
-    RESULT_GLYPHS
+    RESULT_GLYPHS,
+    RESULT_FRAMES /* nothing; calls the function of the animation */
 };
 
 struct script_result {
@@ -163,7 +165,7 @@ struct function_rows {
     int count;
 };
 extern const struct function_rows shape_functions, swept_functions, texture_functions, layered_functions,
-    light_functions;
+    light_functions, frame_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */

@@ -34,6 +34,11 @@ static bool reply_is_valid(const struct preview_reply *reply) {
     return sound;
 }
 
+static bool frame_is_valid(const struct frame *frame) {
+    return frame->number == 0 || (frame->number <= frame->count && frame->count <= FRAMES_MAX &&
+                                  frame->rate >= FRAME_RATE_MIN && frame->rate <= FRAME_RATE_MAX);
+}
+
 bool message_is_valid(const struct message *message) {
     size_t before_text = offsetof(struct message_line, text);
     const struct picture_request *request = &message->body.request;
@@ -49,8 +54,8 @@ bool message_is_valid(const struct message *message) {
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && shown_is_valid(request) &&
                request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FILMIC &&
-               film_record_valid(request->record) && request->overlay <= OVERLAY_OF_GRID &&
-               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
+               frame_is_valid(&request->frame) && film_record_valid(request->record) &&
+               request->overlay <= OVERLAY_OF_GRID && (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
                (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
     case MESSAGE_DONE:
         return message->size == sizeof message->body.report;
@@ -59,6 +64,7 @@ bool message_is_valid(const struct message *message) {
     case MESSAGE_PREVIEW_COMMAND:
         return message->size == sizeof message->body.command;
     case MESSAGE_ABANDON:
+    case MESSAGE_FRAME:
     case MESSAGE_AGAIN:
         return message->size == 0;
     case MESSAGE_READ:

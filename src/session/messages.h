@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "math/affine.h"
+#include "render/frame.h"
 #include "render/overlay.h"
 #include "render/render.h"
 #include "scene/change.h"
@@ -27,6 +28,7 @@ enum message_kind {
     MESSAGE_ABANDON,       /* no body: the picture in progress will not be finished; no answer */
     MESSAGE_SCRIPT,        /* struct message_script: a script has ended; no answer */
     MESSAGE_READ,          /* struct message_read: a file was read; no answer */
+    MESSAGE_FRAME,         /* no body: the script begins another frame, its time counts from here; no answer */
     MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, possibly much later, by MESSAGE_ANSWER: ok: run them
                      * again
                      */
@@ -114,6 +116,7 @@ struct picture_request {
     uint32_t keep;       /* not 0: a picture that exists under this name is not replaced */
     uint32_t check;      /* not 0 for --check: only the names are checked, no film is needed */
     struct digest files; /* of all files read so far; zero if not needed */
+    struct frame frame;  /* of an animation, or number 0 */
     char file[4096];     /* as the script wrote it */
 };
 

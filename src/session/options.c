@@ -201,6 +201,21 @@ static bool read_shard(const char *text, uint32_t field[2]) {
     return true;
 }
 
+/* N: the frames 1 to N; A-B: A to B; A-B/STEP: every STEPth of these. */
+static bool read_frames(struct frame_selection *selection, const char *text) {
+    const char *dash = strchr(text, '-'), *slash = strchr(text, '/'), *end = text + strlen(text);
+    long long first = 1, last = 0, step = 1;
+    if (slash && (!dash || dash > slash || !read_integer(slash + 1, (size_t)(end - slash - 1), 1, FRAMES_MAX, &step)))
+        return false;
+    if (dash && !read_integer(text, (size_t)(dash - text), 1, FRAMES_MAX, &first))
+        return false;
+    const char *from = dash ? dash + 1 : text;
+    if (!read_integer(from, (size_t)((slash ? slash : end) - from), 1, FRAMES_MAX, &last) || first > last)
+        return false;
+    *selection = (struct frame_selection){(uint32_t)first, (uint32_t)last, (uint32_t)step};
+    return true;
+}
+
 static bool read_seed(struct options *options, const char *text) {
     if (!isdigit((unsigned char)text[0]) || text[strspn(text, "0123456789")] != '\0')
         return false;
@@ -302,6 +317,10 @@ static bool value_error(const struct option *option, const char *text, struct er
     case OPTION_SHARD:
         return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
                          option->names, text);
+    case OPTION_FRAMES:
+        return error_set(error, ERROR_USAGE,
+                         "%.*s needs N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B, not '%s'",
+                         shown, option->names, FRAMES_MAX, text);
     case OPTION_FOLDER:
         return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->names);
     case OPTION_DEFINE:
@@ -375,6 +394,9 @@ static bool apply_option(const struct option *option, const char *text, struct o
         break;
     case OPTION_SHARD:
         ok = read_shard(text, field);
+        break;
+    case OPTION_FRAMES:
+        ok = read_frames(field, text);
         break;
     case OPTION_LAYERS:
         ok = aov_parse(text, &options->settings.aov);
@@ -455,6 +477,13 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->noise, sizeof settings->noise, digest);
         digest = digest_bytes(&settings->clamp, sizeof settings->clamp, digest);
     }
+    const struct frame_options *frames = &options->script.frames;
+    if (frames->selection.step > 0 || frames->rate > 0 || frames->loops || frames->turntable > 0) {
+        const uint32_t numbers[] = {frames->selection.first, frames->selection.last, frames->selection.step,
+                                    frames->loops, (uint32_t)frames->turntable};
+        digest = digest_bytes(numbers, sizeof numbers, digest);
+        digest = digest_bytes(&frames->rate, sizeof frames->rate, digest);
+    }
     /* Films are the same for all denoisers. */
     if (settings->denoise != DENOISER_NONE)
         digest = digest_bytes("denoise", sizeof "denoise", digest);
@@ -472,12 +501,18 @@ struct digest options_digest(const struct options *options) {
     return digest;
 }
 
-bool options_allow_picture(const struct options *options, uint64_t number, struct error *error) {
+uint32_t options_picture_limit(const struct options *options) {
     enum { STANDARD = 100000 };
-    int limit = options->picture_count > 0 ? options->picture_count : STANDARD;
-    if (number <= (uint64_t)limit || (options->picture_count == 0 && options->script.no_sandbox))
+    if (options->picture_count > 0)
+        return (uint32_t)options->picture_count;
+    return options->script.no_sandbox ? UINT32_MAX : STANDARD;
+}
+
+bool options_allow_picture(const struct options *options, uint64_t number, struct error *error) {
+    uint32_t limit = options_picture_limit(options);
+    if (number <= limit || limit == UINT32_MAX)
         return true;
-    return error_set_limit(error, "the scripts render more than %d picture%s (--picture-count allows more)", limit,
+    return error_set_limit(error, "the scripts render more than %u picture%s (--picture-count allows more)", limit,
                            limit > 1 ? "s" : "");
 }
 
@@ -551,9 +586,14 @@ bool options_output_is_stream(const struct options *options) {
     return options->output && strcmp(options->output, "-") == 0 && !asks;
 }
 
-/* The %d of a name pattern: its offset and length, or a length of 0. Digits between % and d are a width. */
+/* The %d or ## of a name pattern: its offset and length, or a length of 0. Digits between % and d are a width. */
 static struct piece find_number(const char *pattern) {
     for (const char *at = pattern; *at; at++) {
+        size_t digits_wanted = strspn(at, "#");
+        if (digits_wanted >= 2)
+            return (struct piece){at, digits_wanted};
+        if (digits_wanted == 1)
+            continue;
         if (at[0] != '%')
             continue;
         if (at[1] == '%') {
@@ -576,8 +616,8 @@ bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
     size_t length = 0;
     for (const char *at = pattern; *at && length < size;) {
         if (position.length > 0 && at == position.text) {
-            int width = atoi(at + 1);
-            bool zeros = at[1] == '0';
+            bool hashes = at[0] == '#', zeros = hashes || at[1] == '0';
+            int width = hashes ? (int)position.length : atoi(at + 1);
             int printed = snprintf(out + length, size - length, zeros ? "%0*u" : "%*u", width, number);
             length += (size_t)printed;
             at += position.length;

@@ -43,6 +43,16 @@ struct display_choice {
     enum terminal_graphics graphics;
 };
 
+/* Formats of animations by the extension of -o; none: every picture is a file. */
+#define ANIMATION_FORMATS(X)                                                                                           \
+    X(ANIMATION_NONE, "")                                                                                              \
+    X(ANIMATION_APNG, ".apng")                                                                                         \
+    X(ANIMATION_GIF, ".gif")                                                                                           \
+    X(ANIMATION_Y4M, ".y4m")                                                                                           \
+    X(ANIMATION_MP4, ".mp4")                                                                                           \
+    X(ANIMATION_WEBM, ".webm")
+enum animation_format { ANIMATION_FORMATS(LIST_MEMBER) };
+
 /* Texts point into argv or into the arena given to options_parse. */
 struct options {
     enum options_action action;
@@ -50,17 +60,21 @@ struct options {
     struct script_options script; /* library_folder is filled in by main */
     const char *const *scripts;
     int script_count;
-    const char *output;            /* -o, or NULL: the names that the scripts choose */
-    bool force;                    /* --force: -o may replace a file that is no picture */
-    int width, height;             /* --size, or 0: the sizes that the scripts choose */
-    const char *targets_prefix;    /* -write-aa-targets, or NULL */
-    const char *first_pass_prefix; /* -write-pre-aa, or NULL */
-    int threads;                   /* 0: one per processor */
-    int picture_count;             /* limits on the pictures of a run; 0: 100,000 and 64 GiB, */
-    uint64_t picture_bytes;        /* without the sandbox none */
-    bool window;                   /* -gui */
-    bool quick, preview;           /* enum draft_level; preview also reduces the size to a quarter */
-    bool watch;                    /* --watch */
+    const char *output;              /* -o, or NULL: the names that the scripts choose */
+    enum animation_format animation; /* of `output` */
+    bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
+    bool contact_sheet;              /* --contact-sheet */
+    bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */
+    bool force;                      /* --force: -o may replace a file that is no picture */
+    int width, height;               /* --size, or 0: the sizes that the scripts choose */
+    const char *targets_prefix;      /* -write-aa-targets, or NULL */
+    const char *first_pass_prefix;   /* -write-pre-aa, or NULL */
+    int threads;                     /* 0: one per processor */
+    int picture_count;               /* limits on the pictures of a run; 0: 100,000 and 64 GiB, */
+    uint64_t picture_bytes;          /* without the sandbox none */
+    bool window;                     /* -gui */
+    bool quick, preview;             /* enum draft_level; preview also reduces the size to a quarter */
+    bool watch;                      /* --watch */
     bool check, quiet, verbose, no_fork;
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}; these are traced instead of rendering */
     uint32_t pixel_count;
@@ -68,6 +82,7 @@ struct options {
     bool dump_expr;          /* --dump-expr: so are the functions of textures */
     bool json;               /* all three: as JSON */
     const char *checkpoint;  /* --checkpoint: a file, or "auto", or NULL */
+    bool checkpoint_implied; /* by an animation: a file of an earlier run is replaced */
     double checkpoint_every; /* seconds */
     bool mpi;                /* one of several processes that make a picture together */
     double farm_stall;   /* seconds after which a render process of a farm that does not respond is killed; 0: never */
@@ -88,7 +103,8 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,
  * acceleration structures and verbosity are not part of it. */
 struct digest options_digest(const struct options *options);
-/* Whether the scripts of a run may render a picture of this number, counted from 1. */
+/* How many pictures the scripts of a run may render, and whether they may render one of this number, counted from 1. */
+uint32_t options_picture_limit(const struct options *options);
 bool options_allow_picture(const struct options *options, uint64_t number, struct error *error);
 /* How many bytes may be written into files of pictures; UINT64_MAX: any number. */
 uint64_t options_picture_bytes(const struct options *options);
@@ -99,7 +115,8 @@ bool display_parse(const char *text, struct display_choice *out);
 /* The options with their defaults, in groups, 100 columns wide. */
 void options_print_help(FILE *stream);
 
-/* The name of picture `number` under -o: %d, %3d or %03d is the number, %% a percent sign. */
+/* The name of picture `number` under -o: %d, %3d or %03d is the number, and so are two # or more, which are its digits;
+ * %% is a percent sign. */
 bool output_name_numbered(const char *pattern);
 bool output_name(const char *pattern, unsigned number, char *out, size_t size);
 

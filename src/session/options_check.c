@@ -2,6 +2,7 @@
 #include "session/options_internal.h"
 
 #include <string.h>
+#include <strings.h>
 
 static bool check_together(const struct options *options, struct error *error) {
     bool merge = options->action == ACTION_MERGE;
@@ -145,7 +146,42 @@ static bool check_time(const struct options *options, struct error *error) {
     return true;
 }
 
+/* By the extension; a name with a number is that of single pictures. */
+static enum animation_format animation_of(const char *output) {
+    static const char *const endings[] = {ANIMATION_FORMATS(LIST_WORD)};
+    const char *dot = output ? strrchr(output, '.') : NULL;
+    if (!dot || strchr(dot, '/') || output_name_numbered(output))
+        return ANIMATION_NONE;
+    for (int i = ANIMATION_NONE + 1; i < LIST_COUNT(ANIMATION_FORMATS); i++) {
+        if (strcasecmp(dot, endings[i]) == 0)
+            return (enum animation_format)i;
+    }
+    return ANIMATION_NONE;
+}
+
+/* Frames are kept until the animation is complete, as if --checkpoint auto were given. */
+static bool check_animation(struct options *options, struct error *error) {
+    const struct settings *settings = &options->settings;
+    options->animation = animation_of(options->output);
+    if (options->animation == ANIMATION_NONE) {
+        const char *only = options->keep_frames ? "--keep-frames" : options->contact_sheet ? "--contact-sheet" : NULL;
+        return !only || error_set(error, ERROR_USAGE, "%s is for animations, as -o x.gif", only);
+    }
+    if (options->window || settings->aov || options->targets_prefix || options->first_pass_prefix || options->partial)
+        return error_set(error, ERROR_USAGE,
+                         "-o %.600s is an animation: it takes no -gui, --aov, -write-aa-targets, -write-pre-aa or "
+                         "--partial",
+                         options->output);
+    bool questions = options->pixel_count > 0 || options->dump_scene || options->dump_expr;
+    if (options->checkpoint || options->no_fork || options->watch || options->check || questions ||
+        options->action != ACTION_RENDER || settings->time_limit > 0 || settings->overlay != OVERLAY_NONE)
+        return true;
+    options->checkpoint = "auto";
+    options->checkpoint_implied = true;
+    return true;
+}
+
 bool options_check(struct options *options, struct error *error) {
     return check_together(options, error) && check_questions(options, error) && check_parts(options, error) &&
-           check_time(options, error);
+           check_time(options, error) && check_animation(options, error);
 }

@@ -19,6 +19,7 @@ enum option_kind {
     OPTION_DEFINE,  /* -D */
     OPTION_FOLDER,  /* --allow-read, --allow-write: `low` selects one */
     OPTION_SHARD,   /* I/N: two uint32_t from the field on */
+    OPTION_FRAMES,  /* --frames: a struct frame_selection */
     OPTION_LAYERS,  /* --aov */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
     OPTION_DENOISE, /* --denoise, --denoise=gray, --denoise=oidn */
@@ -28,6 +29,7 @@ enum option_group {
     OPTION_GROUP_PICTURE,
     OPTION_GROUP_SHADING,
     OPTION_GROUP_FILES,
+    OPTION_GROUP_FRAMES,
     OPTION_GROUP_COMPATIBILITY,
     OPTION_GROUP_SANDBOX,
     OPTION_GROUP_RUN,

@@ -21,6 +21,7 @@ const char *const option_group_titles[OPTION_GROUP_COUNT] = {
     [OPTION_GROUP_PICTURE] = "Anti-aliasing and rays",
     [OPTION_GROUP_SHADING] = "Size, acceleration and colour",
     [OPTION_GROUP_FILES] = "Files",
+    [OPTION_GROUP_FRAMES] = "Animation",
     [OPTION_GROUP_COMPATIBILITY] = "Scenes written for other programs",
     [OPTION_GROUP_SANDBOX] = "Sandbox",
     [OPTION_GROUP_RUN] = "Execution",
@@ -104,7 +105,8 @@ const struct option option_table[] = {
 
     {OPTION_GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
      "name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; with several "
-     "pictures FILE must contain %d (or %03d), which counts from 1"},
+     "pictures FILE must contain %d (or %03d, or ####), which counts from 1, or be an animation: .apng, .gif, .y4m, "
+     ".mp4 or .webm"},
     {OPTION_GROUP_FILES, "--force", OPTION_FLAG, NULL, NO_RANGE, FIELD(force), NULL,
      "let -o FILE replace a file that is not a picture"},
     {OPTION_GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
@@ -119,6 +121,22 @@ const struct option option_table[] = {
     {OPTION_GROUP_FILES, "--overlay", OPTION_CHOICE, LIST_BARS(OVERLAYS), NO_RANGE, FIELD(settings.overlay), "none",
      "draw lines over the picture: bounding boxes of all primitives, or the cells of the acceleration structure (see "
      "--accel)"},
+
+    {OPTION_GROUP_FRAMES, "--frames", OPTION_FRAMES, "N|A-B|A-B/STEP", NO_RANGE, FIELD(script.frames.selection), "all",
+     "render the frames 1 to N, or A to B, or every STEPth of these; a script without gr.frames runs once for each of "
+     "them, with other values of gr.frame, gr.time and gr.clock"},
+    {OPTION_GROUP_FRAMES, "--fps", OPTION_NUMBER, "X", FRAME_RATE_MIN, FRAME_RATE_MAX, FIELD(script.frames.rate),
+     "the script's, or 30", "frames per second"},
+    {OPTION_GROUP_FRAMES, "--loop", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.frames.loops), NULL,
+     "the frame after the last one is the first: gr.clock stays below 1, and files of animations play for ever"},
+    {OPTION_GROUP_FRAMES, "--turntable", OPTION_INTEGER, "N", 1, FRAMES_MAX, FIELD(script.frames.turntable), NULL,
+     "render every picture N times, from a camera that goes once around the scene; a loop"},
+    {OPTION_GROUP_FRAMES, "--palette", OPTION_CHOICE, "all|frame", NO_RANGE, FIELD(frame_palettes), "all",
+     "256 colours of a GIF file for all frames, so that still parts stay still, or for each frame"},
+    {OPTION_GROUP_FRAMES, "--keep-frames", OPTION_FLAG, NULL, NO_RANGE, FIELD(keep_frames), NULL,
+     "keep the frames of the animation FILE as PNG files in the folder FILE.frames"},
+    {OPTION_GROUP_FRAMES, "--contact-sheet", OPTION_FLAG, NULL, NO_RANGE, FIELD(contact_sheet), NULL,
+     "for the animation dir/foo.gif also write dir/foo.sheet.png: small pictures of all frames"},
 
     {OPTION_GROUP_COMPATIBILITY, "--transform-order", OPTION_CHOICE, LIST_BARS(SCRIPT_ORDERS), NO_RANGE,
      FIELD(script.transform_order), "auto",

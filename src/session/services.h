@@ -26,6 +26,8 @@ struct host_services {
     void (*script_ended)(void *context, int index, int status);
     /* A script read a file, or opened it for writing. */
     void (*read)(void *context, const char *path, const struct file_version *version, bool written);
+    /* A script begins another frame of gr.frames: its time counts from here. NULL: nobody measures it. */
+    void (*frame)(void *context);
     /* --watch: all scripts have ended; waits, and returns whether they run again in this process. NULL: no watch. */
     bool (*again)(void *context);
     void (*poll)(void *context); /* called every few milliseconds while a picture is made; may be NULL */

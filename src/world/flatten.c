@@ -291,7 +291,13 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     struct transform parent_from_node = node_parent_from_node(node);
     *link = (struct moving_link){.above = parent->above, .above_from_node = parent->from_node};
     *out = (struct pose){world->link_count++, parent_from_node};
-    if (!node->moves_to || node->moves_to == node) {
+    bool moves_on = node->moves_to && node->moves_to != node;
+    if (!moves_on && node->spin) {
+        link->motion = motion_of_spin(&parent_from_node, node->velocity, node->spin->axis, node->spin->degrees);
+        out->from_node = transform_identity();
+        return flatten_check_transform(f, node, &parent_from_node);
+    }
+    if (!moves_on) {
         link->motion = motion_of_velocity(node->velocity);
         return true;
     }
@@ -302,6 +308,11 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     if (!motion_interpolate(&parent_from_node, &end, node->velocity, &link->motion))
         return error_set(f->error, ERROR_SCENE, "node '%.100s' moves to its mirror image, which no rotation reaches",
                          node->name);
+    if (node->spin) {
+        link->motion.spins = true;
+        link->motion.spin_axis = node->spin->axis;
+        link->motion.spin = node->spin->degrees;
+    }
     return true;
 }
 

@@ -259,6 +259,10 @@ static void say_argument(struct grammar *g, const struct script_parameter *p) {
             ONE_OF(g, "p:length() - 1", "p.x * p.y - p.z", "gr.noise(p * 3)", "math.floor(p.x * 2) + p.y", "p.z / p.x",
                    "{p.x, p.y, p.z}", "p.q", "math.sqrt(p.x - p.y) - 0.1", "p.x < p.y and 1 or -1"));
         return;
+    case KIND_CALLBACK:
+        say(g, "function(t, k) return %s end",
+            ONE_OF(g, "{}", "nil", "{node = gr.node('r'), width = 2, height = 2}", "gr.frame", "error('x')"));
+        return;
     case KIND_COUNT:
         break;
     }
@@ -271,6 +275,7 @@ static const char *list_of(enum result_kind result) {
     case RESULT_BOUNDS:
     case RESULT_FACES:
     case RESULT_GLYPHS:
+    case RESULT_FRAMES:
         return "{}";
     case RESULT_NODE:
         return "N";

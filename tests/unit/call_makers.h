@@ -130,6 +130,9 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
     case KIND_CURVES:
         text = "{{{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}}}";
         break;
+    case KIND_CALLBACK:
+        text = "function(t, frame) return {} end";
+        break;
     case KIND_FUNCTION:
         text = strcmp(p->name, "density") == 0 ? "function(p) return p.x * p.x end"
                                                : "function(p) return p.x * p.x + p.y - p.z end";

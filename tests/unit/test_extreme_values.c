@@ -209,6 +209,7 @@ static const char *use_of(const struct script_function *function) {
     case RESULT_BOUNDS:
     case RESULT_FACES:
     case RESULT_GLYPHS:
+    case RESULT_FRAMES:
         break;
     }
     return strstr(function->name, "render") ? "" : "root:add_child(ball) show{} show{}";
@@ -250,6 +251,7 @@ static bool is_numeric(enum kind kind) {
     case KIND_LIGHTS:
     case KIND_FACES:
     case KIND_FUNCTION:
+    case KIND_CALLBACK:
     case KIND_COUNT:
         break;
     }

@@ -49,6 +49,55 @@ TEST(a_motion_begins_and_ends_at_its_poses_and_its_inverse_is_one) {
     }
 }
 
+/* A point of the node's own space turns about the axis before the pose and the velocity act. */
+TEST(a_spin_turns_about_the_axis_of_the_node_at_its_rate) {
+    struct test_random random = {7};
+    for (int i = 0; i < 200; i++) {
+        struct transform pose = random_pose(&random);
+        struct vec3 velocity = random_vec(&random, 2), axis = random_vec(&random, 1);
+        double rate = test_uniform(&random, -2000, 2000), time = test_uniform(&random, -1, 2);
+        struct motion motion = motion_of_spin(&pose, velocity, axis, rate);
+        struct transform moved = transform_translate(vec3_scale(velocity, time));
+        struct transform turn = transform_rotate_about(axis, rate * time), at = motion_at(&motion, time);
+        struct transform expected = transform_compose(&moved, &pose);
+        expected = transform_compose(&expected, &turn);
+        CHECK(difference(&at.forward, &expected.forward) < 1e-9);
+        struct transform start = motion_at(&motion, 0);
+        CHECK(difference(&start.forward, &pose.forward) < 1e-12);
+    }
+}
+
+TEST(the_box_of_a_spinning_node_contains_it_at_all_times) {
+    struct test_random random = {8};
+    for (int i = 0; i < 200; i++) {
+        struct transform pose = random_pose(&random), end = random_pose(&random);
+        struct vec3 a = random_vec(&random, 2), b = random_vec(&random, 2), axis = random_vec(&random, 1);
+        struct box box = {vec3_min(a, b), vec3_max(a, b)};
+        double rate = test_uniform(&random, -900, 900);
+        struct shutter shutter = {test_uniform(&random, -1, 0.5), test_uniform(&random, 0.5, 1.5)};
+        struct motion motion = motion_of_spin(&pose, random_vec(&random, 2), axis, rate);
+        if (i % 2 == 1) {
+            CHECK(motion_interpolate(&pose, &end, random_vec(&random, 2), &motion));
+            motion.spins = true;
+            motion.spin_axis = axis;
+            motion.spin = rate;
+        }
+        struct box all = motion_bounds(&motion, &box, shutter);
+        for (int k = 0; k <= 50; k++) {
+            struct transform at = motion_at(&motion, shutter_time(shutter, k / 50.0));
+            for (int corner = 0; corner < 8; corner++) {
+                struct vec3 p = {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                 corner & 4 ? box.max.z : box.min.z};
+                p = affine_point(&at.forward, p);
+                for (int axis_number = 0; axis_number < 3; axis_number++) {
+                    CHECK(vec3_get(p, axis_number) > vec3_get(all.min, axis_number) - 1e-9);
+                    CHECK(vec3_get(p, axis_number) < vec3_get(all.max, axis_number) + 1e-9);
+                }
+            }
+        }
+    }
+}
+
 TEST(half_of_a_quarter_turn_is_an_eighth_whatever_the_stretch) {
     struct transform stretch = transform_scale(vec3_make(1, 2, 5)), turn = transform_rotate(2, 90);
     struct transform end = transform_compose(&turn, &stretch), eighth = transform_rotate(2, 45);

@@ -1,0 +1,178 @@
+/* See tool_internal.h and encoder_internal.h. The supervisor starts programs, never the process that runs scenes. The
+ * arguments are always the same: one thread and no times or versions in the file, so that
+ * its bytes can be compared. Odd sides are padded by one pixel, since both formats have half as many colours. */
+#define _GNU_SOURCE
+#include "output/encoder_internal.h"
+
+#include "base/fault.h"
+#include "base/file.h"
+#include "base/mem.h"
+#include "output/tool_internal.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* --- programs --- */
+
+static int describe(const struct tool *tool, posix_spawn_file_actions_t *actions) {
+    int failure = posix_spawn_file_actions_addchdir_np(actions, tool->folder);
+    if (failure == 0 && tool->input >= 0)
+        failure = posix_spawn_file_actions_adddup2(actions, tool->input, STDIN_FILENO);
+    for (int descriptor = tool->input >= 0; descriptor <= 2 && failure == 0; descriptor++)
+        failure = posix_spawn_file_actions_addopen(actions, descriptor, "/dev/null", O_RDWR, 0);
+    return failure ? failure : posix_spawn_file_actions_addclosefrom_np(actions, 3);
+}
+
+bool tool_start(const struct tool *tool, pid_t *child, struct error *error) {
+    const char *name = tool->arguments[0];
+    posix_spawn_file_actions_t actions;
+    if (posix_spawn_file_actions_init(&actions) != 0)
+        return error_no_memory(error, name);
+    posix_spawnattr_t attributes;
+    sigset_t none, all;
+    if (posix_spawnattr_init(&attributes) != 0) {
+        (void)posix_spawn_file_actions_destroy(&actions);
+        return error_no_memory(error, name);
+    }
+    (void)sigemptyset(&none);
+    (void)sigfillset(&all);
+    (void)posix_spawnattr_setsigmask(&attributes, &none);
+    (void)posix_spawnattr_setsigdefault(&attributes, &all);
+    (void)posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    int failure = describe(tool, &actions);
+    if (failure == 0)
+        failure = posix_spawnp(child, name, &actions, &attributes, tool->arguments, environ);
+    (void)posix_spawn_file_actions_destroy(&actions);
+    (void)posix_spawnattr_destroy(&attributes);
+    if (failure == ENOENT)
+        return error_set(error, ERROR_MACHINE, "%.600s: there is no program %s on PATH", tool->purpose, name);
+    return failure == 0 ||
+           error_set(error, ERROR_MACHINE, "%.600s: %s cannot be started: %s", tool->purpose, name, strerror(failure));
+}
+
+bool tool_wait(const struct tool *tool, pid_t child, struct error *error) {
+    const char *name = tool->arguments[0];
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return error_set(error, ERROR_MACHINE, "%.600s: %s: %s", tool->purpose, name, strerror(errno));
+    if (WIFSIGNALED(status))
+        return error_set(error, ERROR_MACHINE, "%.600s: %s was ended by signal %d", tool->purpose, name,
+                         WTERMSIG(status));
+    return WEXITSTATUS(status) == 0 ||
+           error_set(error, ERROR_MACHINE, "%.600s: %s failed (status %d)", tool->purpose, name, WEXITSTATUS(status));
+}
+
+/* --- ffmpeg --- */
+
+#define WORD(text) ((char[]){text})
+#define INPUT                                                                                                          \
+    WORD("ffmpeg"), WORD("-nostdin"), WORD("-v"), WORD("error"), WORD("-threads"), WORD("1"), WORD("-f"),              \
+        WORD("yuv4mpegpipe"), WORD("-i"), WORD("pipe:0"), WORD("-vf"),                                                 \
+        WORD("pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p"), WORD("-threads"), WORD("1"), WORD("-fflags"),            \
+        WORD("+bitexact"), WORD("-flags:v"), WORD("+bitexact"), WORD("-map_metadata"), WORD("-1"),                     \
+        WORD("-color_range"), WORD("tv"), WORD("-colorspace"), WORD("smpte170m"), WORD("-color_primaries"),            \
+        WORD("bt709"), WORD("-color_trc"), WORD("bt709")
+
+static char *const mp4_arguments[] = {INPUT,      WORD("-c:v"),      WORD("libx264"),    WORD("-crf"),
+                                      WORD("18"), WORD("-movflags"), WORD("+faststart"), WORD("video.mp4"),
+                                      NULL};
+static char *const webm_arguments[] = {INPUT,        WORD("-c:v"), WORD("libvpx-vp9"), WORD("-crf"), WORD("24"),
+                                       WORD("-b:v"), WORD("0"),    WORD("video.webm"), NULL};
+
+static bool send(int pipe, const uint8_t *bytes, size_t size) {
+    while (size > 0) {
+        ssize_t sent = MAY_FAIL(write(pipe, bytes, size));
+        if (sent < 0 && errno == EINTR)
+            continue;
+        if (sent <= 0)
+            return false;
+        bytes += sent;
+        size -= (size_t)sent;
+    }
+    return true;
+}
+
+/* Whether the program has taken all frames; an error only for frames that cannot be read. */
+static bool send_frames(int pipe, const struct animation_source *source, bool *taken, struct error *error) {
+    size_t pixels = (size_t)source->width * source->height;
+    char head[Y4M_HEAD_SIZE];
+    uint8_t *rgb = mem_alloc(3 * pixels), *frame = mem_alloc(Y4M_FRAME_HEAD + 3 * pixels);
+    bool ok = (rgb && frame) || error_no_memory(error, "a frame");
+    *taken = ok && send(pipe, (const uint8_t *)head, y4m_head(source, head));
+    for (uint32_t index = 0; ok && *taken && index < source->count; index++) {
+        ok = source->frame(source->context, index, rgb, error);
+        if (ok)
+            y4m_frame(rgb, pixels, frame);
+        *taken = ok && send(pipe, frame, Y4M_FRAME_HEAD + 3 * pixels);
+    }
+    mem_free(rgb);
+    mem_free(frame);
+    return ok;
+}
+
+static bool copy_file(const char *from, const struct file_target *target, struct error *error) {
+    enum { PIECE = 1 << 16 };
+    struct file_source source;
+    struct file_output output;
+    uint8_t *piece = mem_alloc(PIECE);
+    if (!piece)
+        return error_no_memory(error, target->path);
+    if (!file_source_open(&source, from, error) || !file_output_open(&output, target, error)) {
+        file_source_close(&source);
+        mem_free(piece);
+        return false;
+    }
+    bool ok = true;
+    for (uint64_t at = 0; ok && at < source.size; at += PIECE) {
+        size_t size = source.size - at < PIECE ? (size_t)(source.size - at) : PIECE;
+        ok = file_source_read(&source, at, piece, size) ||
+             error_set(error, ERROR_MACHINE, "%.600s: the file of ffmpeg cannot be read", target->path);
+        ok = ok && file_output_write(&output, piece, size, error);
+    }
+    file_source_close(&source);
+    mem_free(piece);
+    if (ok)
+        return file_output_commit(&output, error);
+    file_output_abandon(&output);
+    return false;
+}
+
+static bool encode(const struct tool *program, const struct animation_source *source, struct error *error) {
+    struct tool tool = *program;
+    int ends[2];
+    pid_t child = 0;
+    bool taken = false;
+    if (MAY_FAIL(pipe2(ends, O_CLOEXEC)) != 0)
+        return error_set(error, ERROR_MACHINE, "%.600s: %s", tool.purpose, strerror(errno));
+    tool.input = ends[0];
+    bool started = tool_start(&tool, &child, error);
+    (void)close(ends[0]);
+    bool sent = started && send_frames(ends[1], source, &taken, error);
+    (void)close(ends[1]);
+    struct error failure;
+    if (!started)
+        return false;
+    bool ended = tool_wait(&tool, child, sent ? error : &failure);
+    return sent && ended &&
+           (taken || error_set(error, ERROR_MACHINE, "%.600s: ffmpeg has not read all frames", tool.purpose));
+}
+
+bool encoder_write(const struct file_target *target, const struct animation_source *source,
+                   enum animation_format format, struct error *error) {
+    char folder[FILE_NAME_SIZE], file[FILE_NAME_SIZE + 16];
+    bool webm = format == ANIMATION_WEBM;
+    if (!file_make_temporary_folder(folder, sizeof folder, error))
+        return false;
+    const struct tool tool = {target->path, webm ? webm_arguments : mp4_arguments, folder, -1};
+    (void)snprintf(file, sizeof file, "%s/video.%s", folder, webm ? "webm" : "mp4");
+    bool ok = encode(&tool, source, error) && copy_file(file, target, error);
+    file_remove_temporary_folder(folder);
+    return ok;
+}

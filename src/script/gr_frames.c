@@ -1,0 +1,203 @@
+/* gr.frames: an animation in one script. The frames are rendered one after the other inside the call, so only one of
+ * them is in memory. `draw` is called for every frame from the first one on, also for frames that this run does not
+ * render, so that a script may move its nodes a little in each call; math.random starts from a seed of the frame. */
+#include "script/context_internal.h"
+
+#include "script/table_rows_internal.h"
+
+#include <lauxlib.h>
+#include <math.h>
+#include <string.h>
+
+enum { FRAMES_COUNT, FRAMES_DRAW, FRAMES_SECONDS, FRAMES_FPS, FRAMES_LOOP, FRAMES_SHUTTER, FRAMES_PURE, FRAMES_END };
+
+static const struct script_parameter frames_parameters[] = {
+    [FRAMES_COUNT] = {"count", KIND_WHOLE, OPTIONAL, ABOVE(1), NULL, NULL, "Number of frames; or seconds."},
+    [FRAMES_DRAW] = {"draw", KIND_CALLBACK, 0, ANY, NULL, NULL,
+                     "draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1."},
+    [FRAMES_SECONDS] = {"seconds", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), "seconds", NULL,
+                        "Duration: seconds times fps is the number of frames, rounded."},
+    [FRAMES_FPS] = {"fps", KIND_NUMBER, OPTIONAL, IN_RANGE(FRAME_RATE_MIN, FRAME_RATE_MAX), NULL, "30",
+                    "Frames per second; --fps has priority."},
+    [FRAMES_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                     "The frame after the last one is the first: t stays below 1, and files play for ever."},
+    [FRAMES_SHUTTER] = {"shutter", KIND_INTERVAL, OPTIONAL, ANY, "frames", "{0, 0}",
+                        "When the shutter opens and closes; {0, 0.5} is half the time of a frame, 180 degrees."},
+    [FRAMES_PURE] = {"pure", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                     "draw depends on its arguments only: it is not called for frames that are not rendered."},
+};
+
+/* What one call of gr.frames asks for. */
+struct frame_plan {
+    struct frame frame; /* its number is 0 */
+    bool pure;
+};
+
+static bool count_frames(struct script_context *context, const struct script_value *args, struct frame_plan *plan,
+                         struct error *error) {
+    const struct frame_options *options = &context->options->frames;
+    const struct frame_selection *selection = &options->selection;
+    double limit = context->host->frame_limit > 0 ? context->host->frame_limit : FRAMES_MAX;
+    double rate = args[FRAMES_FPS].given ? args[FRAMES_FPS].number : FRAME_RATE_DEFAULT;
+    plan->frame.rate = options->rate > 0 ? options->rate : rate;
+    if (args[FRAMES_COUNT].given == args[FRAMES_SECONDS].given)
+        return error_set(error, ERROR_SCENE,
+                         args[FRAMES_COUNT].given ? "count and seconds exclude each other"
+                                                  : "count or seconds is missing");
+    double count = args[FRAMES_COUNT].given ? args[FRAMES_COUNT].number
+                                            : fmax(1, floor(args[FRAMES_SECONDS].number * plan->frame.rate + 0.5));
+    if (count > limit)
+        return error_set(error, ERROR_SCENE, "%.15g frames are more than %.15g (--picture-count allows more)", count,
+                         limit);
+    plan->frame.count = (uint32_t)count;
+    if (selection->step > 0 && selection->last > plan->frame.count)
+        return error_set(error, ERROR_SCENE, "--frames asks for frame %u, but the last one is %u", selection->last,
+                         plan->frame.count);
+    return true;
+}
+
+static bool gr_frames(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
+    if (context->animates)
+        return error_set(error, ERROR_SCENE, "it is called while another one draws its frames");
+    if (context->options->frames.turntable > 0)
+        return error_set(error, ERROR_SCENE, "--turntable is for scripts without gr.frames");
+    struct frame_plan *plan = arena_alloc(&context->keep, sizeof *plan);
+    if (!plan)
+        return error_no_memory(error, "an animation");
+    *plan = (struct frame_plan){.pure = args[FRAMES_PURE].boolean};
+    plan->frame.loops = args[FRAMES_LOOP].boolean || context->options->frames.loops;
+    if (!count_frames(context, args, plan, error))
+        return false;
+    if (context->host->animates)
+        context->host->animates(context->host->context);
+    context->frame_shutter = (struct shutter){args[FRAMES_SHUTTER].vector.x, args[FRAMES_SHUTTER].vector.y};
+    result->pointer = plan;
+    return true;
+}
+
+static const struct script_function rows[] = {
+    GR("frames", frames_parameters, RESULT_FRAMES, gr_frames,
+       "Renders an animation: calls draw for each frame, and renders what it returns.", "count draw"),
+};
+const struct function_rows frame_functions = {rows, COUNT(rows)};
+
+/* --- calling draw --- */
+
+/* In the registry: Lua's table gr, and math.randomseed as it was before the script. */
+static const char gr_key, seed_key;
+
+static void set_frame(lua_State *L, const struct frame *frame) {
+    context_of(L)->frame = *frame;
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &gr_key);
+    lua_pushinteger(L, frame->number);
+    lua_setfield(L, -2, "frame");
+    lua_pushnumber(L, frame_time(frame));
+    lua_setfield(L, -2, "time");
+    lua_pushnumber(L, frame_clock(frame));
+    lua_setfield(L, -2, "clock");
+    lua_pop(L, 1);
+}
+
+static void seed_frame(lua_State *L, uint32_t number) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &seed_key);
+    lua_pushinteger(L, (lua_Integer)context_of(L)->options->seed);
+    lua_pushinteger(L, number);
+    lua_call(L, 2, 0);
+}
+
+/* The picture outside of the animation, also after an error that the script has caught. */
+static int leave_frames(lua_State *L) {
+    struct script_context *context = context_of(L);
+    context->animates = false;
+    set_frame(L, &context->host->frame);
+    return 0;
+}
+
+/* The fields of the table on top, in a new table; without a file a name that follows the script's. */
+static void push_fields(lua_State *L) {
+    struct script_context *context = context_of(L);
+    int given = lua_gettop(L);
+    lua_newtable(L);
+    lua_pushliteral(L, "file");
+    if (lua_rawget(L, given) == LUA_TNIL) {
+        const char *slash = strrchr(context->path, '/'), *name = slash ? slash + 1 : context->path;
+        const char *dot = strrchr(name, '.');
+        lua_pushlstring(L, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
+        lua_pushliteral(L, ".####.png");
+        lua_concat(L, 2);
+        lua_setfield(L, given + 1, "file");
+    }
+    lua_pop(L, 1);
+    for (lua_pushnil(L); lua_next(L, given);) {
+        lua_pushvalue(L, -2);
+        lua_insert(L, -2);
+        lua_rawset(L, given + 1);
+    }
+}
+
+static void draw_frame(lua_State *L, int draw, const struct frame *frame) {
+    struct script_context *context = context_of(L);
+    int top = lua_gettop(L);
+    if (context->host->frame_begins)
+        context->host->frame_begins(context->host->context);
+    limits_restart_time(context);
+    set_frame(L, frame);
+    seed_frame(L, frame->number);
+    lua_pushvalue(L, draw);
+    lua_pushnumber(L, frame_clock(frame));
+    lua_pushinteger(L, frame->number);
+    lua_call(L, 2, 1);
+    context->lua = L;
+    context->function = function_find(OWNER_GR, "frames");
+    context->subject = NULL;
+    if (!lua_istable(L, -1))
+        context_raise(context, "draw returned %s, not the table of fields for gr.render", value_words(L, -1));
+    if (frame_is_selected(&context->options->frames.selection, frame->number)) {
+        push_fields(L);
+        dispatch_push(L, function_find(OWNER_GR, "render"));
+        lua_insert(L, -2);
+        lua_call(L, 1, 0);
+    }
+    lua_settop(L, top);
+}
+
+int frames_run(lua_State *L, const struct script_result *result) {
+    struct script_context *context = context_of(L);
+    const struct frame_plan *plan = result->pointer;
+    const struct frame_selection *selection = &context->options->frames.selection;
+    if (lua_istable(L, 1)) {
+        lua_pushliteral(L, "draw");
+        (void)lua_rawget(L, 1);
+    } else {
+        lua_pushvalue(L, 2);
+    }
+    int draw = lua_gettop(L);
+    context->animates = true;
+    lua_newtable(L);
+    lua_newtable(L);
+    lua_pushcfunction(L, leave_frames);
+    lua_setfield(L, -2, "__close");
+    lua_setmetatable(L, -2);
+    lua_toclose(L, -1);
+    struct frame frame = plan->frame;
+    uint32_t last = selection->step > 0 ? selection->last : frame.count;
+    for (frame.number = 1; frame.number <= last; frame.number++) {
+        if (!plan->pure || frame_is_selected(selection, frame.number))
+            draw_frame(L, draw, &frame);
+    }
+    return 0;
+}
+
+void frames_open(lua_State *L) {
+    lua_getglobal(L, "gr");
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &gr_key);
+    lua_getglobal(L, "math");
+    lua_getfield(L, -1, "randomseed");
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &seed_key);
+    lua_pop(L, 1);
+    const struct frame *frame = &context_of(L)->host->frame;
+    set_frame(L, frame);
+    if (frame->number > 0)
+        seed_frame(L, frame->number);
+}

@@ -1,0 +1,445 @@
+/* Files of animations against decoders of this test, and their frames over kills, shards and errors. */
+#define _GNU_SOURCE
+#include "image/animation.h"
+#include "image/palette_internal.h"
+#include "image/png_write.h"
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <zlib.h>
+
+enum { WIDTH = 37, HEIGHT = 29, FRAMES = 7, PIXELS = WIDTH * HEIGHT };
+
+/* A gradient over a still half, with a square that moves; frame 3 is frame 2 again. */
+static bool picture_frame(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
+    (void)context, (void)error;
+    uint32_t k = index == 3 ? 2 : index;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        uint32_t x = i % WIDTH, y = i / WIDTH;
+        bool square = x >= 3 * k && x < 3 * k + 8 && y >= 15 && y < 23;
+        rgb[3 * i] = (uint8_t)(square ? 250 : 6 * x);
+        rgb[3 * i + 1] = (uint8_t)(square ? 20 * k : 8 * y);
+        rgb[3 * i + 2] = (uint8_t)(x * y);
+    }
+    return true;
+}
+
+static const struct animation_source pictures = {
+    .width = WIDTH, .height = HEIGHT, .count = FRAMES, .rate = 30, .loops = true, .frame = picture_frame};
+
+static uint32_t word_at(const uint8_t *bytes) {
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
+
+static void add_chunk(FILE *file, const char *kind, const uint8_t *bytes, uint32_t size) {
+    uint8_t head[8] = {(uint8_t)(size >> 24), (uint8_t)(size >> 16), (uint8_t)(size >> 8), (uint8_t)size};
+    memcpy(head + 4, kind, 4);
+    uLong crc = crc32(crc32(0, head + 4, 4), bytes, size);
+    uint8_t tail[4] = {(uint8_t)(crc >> 24), (uint8_t)(crc >> 16), (uint8_t)(crc >> 8), (uint8_t)crc};
+    CHECK(fwrite(head, 1, 8, file) == 8 && fwrite(bytes, 1, size, file) == size && fwrite(tail, 1, 4, file) == 4);
+}
+
+/* The data of one frame as a PNG file, read by libpng, at its place on the canvas. */
+static void draw_frame(const uint8_t *control, const uint8_t *data, uint32_t size, uint8_t *canvas) {
+    uint8_t header[13] = {[8] = 8, [9] = 2};
+    memcpy(header, control + 4, 8);
+    const char *path = test_path("frame.png");
+    FILE *file = fopen(path, "wb");
+    CHECK(file != NULL);
+    if (!file)
+        return;
+    CHECK(fwrite("\x89PNG\r\n\x1a\n", 1, 8, file) == 8);
+    add_chunk(file, "IHDR", header, 13);
+    add_chunk(file, "IDAT", data, size);
+    add_chunk(file, "IEND", NULL, 0);
+    (void)fclose(file);
+    struct test_picture part = test_read_picture(path);
+    uint32_t x0 = word_at(control + 12), y0 = word_at(control + 16);
+    CHECK(x0 + part.width <= WIDTH && y0 + part.height <= HEIGHT);
+    for (uint32_t y = 0; y < part.height; y++)
+        memcpy(canvas + 3 * ((y0 + y) * WIDTH + x0), part.rgb + (size_t)3 * part.width * y, (size_t)3 * part.width);
+    free(part.rgb);
+}
+
+TEST(an_apng_file_has_the_bytes_of_every_frame) {
+    static uint8_t canvas[3 * PIXELS], wanted[3 * PIXELS];
+    struct error error;
+    const char *path = test_path("x.apng");
+    CHECK(apng_write(FILE_AT(path), &pictures, &error));
+    size_t size = 0, changed = 0;
+    uint8_t *file = (uint8_t *)test_read_file(path, &size);
+    const uint8_t *control = NULL;
+    uint32_t frames = 0, sequence = 0;
+    for (size_t at = 8; at + 12 <= size; at += 12 + word_at(file + at)) {
+        const uint8_t *data = file + at + 8;
+        uint32_t length = word_at(file + at);
+        bool first = memcmp(file + at + 4, "IDAT", 4) == 0, later = memcmp(file + at + 4, "fdAT", 4) == 0;
+        if (memcmp(file + at + 4, "acTL", 4) == 0) {
+            CHECK_EQ_INT(word_at(data), FRAMES);
+            CHECK_EQ_INT(word_at(data + 4), 0);
+        }
+        if (memcmp(file + at + 4, "fcTL", 4) == 0) {
+            control = data;
+            CHECK_EQ_INT(word_at(data), sequence++);
+            CHECK_EQ_INT(word_at(data + 20), 1 << 16 | 30);
+            changed += frames > 0 ? (size_t)word_at(data + 4) * word_at(data + 8) : 0;
+        }
+        if (!first && !later)
+            continue;
+        if (later)
+            CHECK_EQ_INT(word_at(data), sequence++);
+        draw_frame(control, later ? data + 4 : data, later ? length - 4 : length, canvas);
+        (void)picture_frame(NULL, frames++, wanted, &error);
+        CHECK(memcmp(canvas, wanted, sizeof wanted) == 0);
+    }
+    CHECK_EQ_INT(frames, FRAMES);
+    CHECK_EQ_INT(changed, 4 * 8 * 11 + 8 * 14 + 1); /* the square and where it was; one pixel where nothing changes */
+    free(file);
+}
+
+/* --- GIF --- */
+
+struct gif_reader {
+    const uint8_t *at;
+    uint8_t canvas[PIXELS][3];
+    uint8_t palette[256][3];
+};
+
+/* All codes of a picture into `out`; how many there are. */
+static size_t lzw_decode(struct gif_reader *reader, uint8_t *out, size_t room) {
+    static uint16_t prefix[4096];
+    static uint8_t last[4096], bytes[1 << 20];
+    size_t size = 0, bit = 0, made = 0;
+    uint32_t depth = *reader->at++, clear = 1u << depth, next = clear + 2, width = depth + 1, before = UINT32_MAX;
+    while (*reader->at) {
+        memcpy(bytes + size, reader->at + 1, *reader->at);
+        size += *reader->at;
+        reader->at += 1 + *reader->at;
+    }
+    reader->at++;
+    while (bit + width <= 8 * size) {
+        uint32_t code = 0;
+        for (uint32_t k = 0; k < width; k++, bit++)
+            code |= (uint32_t)(bytes[bit / 8] >> (bit % 8) & 1) << k;
+        if (code == clear + 1)
+            return made;
+        if (code == clear) {
+            next = clear + 2;
+            width = depth + 1;
+            before = UINT32_MAX;
+            continue;
+        }
+        uint8_t string[4096];
+        size_t length = 0;
+        bool unknown = code >= next;
+        for (uint32_t at = unknown ? before : code;; at = prefix[at]) {
+            string[length++] = at < clear ? (uint8_t)at : last[at];
+            if (at < clear)
+                break;
+        }
+        uint8_t begin = string[length - 1];
+        CHECK(!unknown || (code == next && before != UINT32_MAX));
+        for (size_t k = length; k-- > 0 && made < room;)
+            out[made++] = string[k];
+        if (unknown && made < room)
+            out[made++] = begin;
+        if (before != UINT32_MAX && next < 4096) {
+            prefix[next] = (uint16_t)before;
+            last[next++] = begin;
+            width += next == 1u << width && width < 12;
+        }
+        before = code;
+    }
+    test_fail(__FILE__, __LINE__, "the code for the end is missing");
+    return made;
+}
+
+static void check_gif(bool for_each) {
+    static struct gif_reader reader;
+    static uint8_t rgb[3 * PIXELS], part[PIXELS];
+    struct error error;
+    const char *path = test_path(for_each ? "each.gif" : "all.gif");
+    CHECK(gif_write(FILE_AT(path), &pictures, for_each, &error));
+    size_t size = 0;
+    uint8_t *file = (uint8_t *)test_read_file(path, &size);
+    struct palette_count *count = palette_count_create();
+    struct palette_search *search = palette_search_create();
+    struct palette palette;
+    CHECK(memcmp(file, "GIF89a", 6) == 0 && file[6] == WIDTH && file[8] == HEIGHT);
+    reader.at = file + 13;
+    if (file[10] & 0x80) {
+        memcpy(reader.palette, reader.at, sizeof reader.palette);
+        reader.at += sizeof reader.palette;
+    }
+    for (uint32_t k = 0; k < FRAMES && !for_each; k++) {
+        (void)picture_frame(NULL, k, rgb, &error);
+        palette_count_add(count, rgb, PIXELS);
+    }
+    CHECK(memcmp(reader.at, "\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0", 19) == 0);
+    reader.at += 19;
+    static const uint32_t delays[3] = {3, 3, 4};
+    for (uint32_t k = 0; k < FRAMES; k++) {
+        CHECK(memcmp(reader.at, "\x21\xf9\x04", 3) == 0);
+        CHECK_EQ_INT(reader.at[4], delays[k % 3]);
+        reader.at += 8;
+        uint32_t x0 = reader.at[1], y0 = reader.at[3], width = reader.at[5], height = reader.at[7];
+        bool own = reader.at[9] & 0x80;
+        CHECK(own == for_each);
+        reader.at += 10;
+        if (own) {
+            memcpy(reader.palette, reader.at, sizeof reader.palette);
+            reader.at += sizeof reader.palette;
+        }
+        CHECK_EQ_INT(lzw_decode(&reader, part, PIXELS), width * height);
+        for (uint32_t i = 0; i < width * height; i++)
+            memcpy(reader.canvas[(y0 + i / width) * WIDTH + x0 + i % width], reader.palette[part[i]], 3);
+        (void)picture_frame(NULL, k, rgb, &error);
+        if (for_each) {
+            palette_count_clear(count);
+            palette_count_add(count, rgb, PIXELS);
+        }
+        CHECK(palette_make(count, &palette));
+        palette_search_begin(search, &palette);
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            uint8_t colour = palette_find(search, rgb + 3 * i, i % WIDTH, i / WIDTH);
+            CHECK(memcmp(reader.canvas[i], palette.colours[colour], 3) == 0);
+        }
+    }
+    CHECK_EQ_INT(*reader.at, 0x3b);
+    CHECK(reader.at + 1 == file + size);
+    palette_count_destroy(count);
+    palette_search_destroy(search);
+    free(file);
+}
+
+TEST(a_gif_file_has_the_colours_of_its_palette_after_the_dither) {
+    check_gif(false);
+    check_gif(true);
+}
+
+/* So many different strings that the table of codes is full several times. */
+static bool noise_frame(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
+    (void)context, (void)error;
+    struct test_random random = {index + 1};
+    for (int i = 0; i < 3 * PIXELS; i++)
+        rgb[i] = (uint8_t)test_uniform(&random, 0, 256);
+    return true;
+}
+
+TEST(ffmpeg_reads_what_is_written_where_it_is_installed) {
+    if (system("ffmpeg -version >/dev/null 2>&1") != 0)
+        test_skip("ffmpeg is not installed");
+    static uint8_t wanted[3 * PIXELS];
+    struct animation_source noise = pictures;
+    struct error error;
+    noise.frame = noise_frame;
+    CHECK(apng_write(FILE_AT(test_path("n.apng")), &noise, &error));
+    CHECK(y4m_write(FILE_AT(test_path("n.y4m")), &noise, &error));
+    CHECK(gif_write(FILE_AT(test_path("n.gif")), &noise, true, &error));
+    static const char *const names[] = {"n.apng", "n.y4m", "n.gif"};
+    static const int tolerance[] = {0, 2, 255};
+    for (int f = 0; f < 3; f++) {
+        char line[2048];
+        (void)snprintf(line, sizeof line,
+                       "cd '%s' && ffmpeg -v error -i %s -f rawvideo -pix_fmt rgb24 -vsync 0 -y out.rgb 2>err.txt && "
+                       "! test -s err.txt",
+                       test_folder(), names[f]);
+        CHECK_EQ_INT(system(line), 0);
+        size_t size = 0;
+        uint8_t *out = (uint8_t *)test_read_file(test_path("out.rgb"), &size);
+        CHECK_EQ_INT(size, sizeof wanted * FRAMES);
+        int worst = 0;
+        for (uint32_t k = 0; k < FRAMES && size == sizeof wanted * FRAMES; k++) {
+            (void)noise_frame(NULL, k, wanted, &error);
+            for (int i = 0; i < 3 * PIXELS; i++) {
+                int difference = abs(out[(size_t)k * sizeof wanted + (size_t)i] - wanted[i]);
+                worst = difference > worst ? difference : worst;
+            }
+        }
+        if (worst > tolerance[f])
+            test_fail(__FILE__, __LINE__, "%s differs by %d levels", names[f], worst);
+        free(out);
+    }
+}
+
+TEST(delays_of_a_gif_file_add_up_to_its_duration) {
+    const double rates[] = {30, 25, 24, 60, 29.97, 7, 0.5};
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
+        uint32_t sum = 0;
+        for (uint32_t k = 0; k < 1000; k++) {
+            sum += gif_delay(rates[i], k);
+            CHECK(fabs(sum - 100 * (k + 1) / rates[i]) < 1);
+        }
+    }
+}
+
+TEST(few_colours_are_kept_and_thresholds_are_a_permutation) {
+    struct palette_count *count = palette_count_create();
+    struct palette_search *search = palette_search_create();
+    struct palette palette;
+    uint8_t colours[200][3];
+    bool found[64] = {false};
+    for (int i = 0; i < 200; i++) {
+        colours[i][0] = (uint8_t)(i % 10 * 25 + 3);
+        colours[i][1] = (uint8_t)(i / 10 * 12 + 1);
+        colours[i][2] = (uint8_t)(i + 50);
+    }
+    palette_count_add(count, &colours[0][0], 200);
+    CHECK(palette_make(count, &palette));
+    CHECK_EQ_INT(palette.spread, 0);
+    palette_search_begin(search, &palette);
+    for (uint32_t i = 0; i < 200; i++)
+        CHECK(memcmp(palette.colours[palette_find(search, colours[i], i, 3 * i)], colours[i], 3) == 0);
+    int sum = 0;
+    for (uint32_t y = 8; y < 16; y++) {
+        for (uint32_t x = 16; x < 24; x++) {
+            int value = palette_threshold(x, y);
+            CHECK(value >= -126 && value <= 126 && (value + 126) % 4 == 0);
+            CHECK(!found[(value + 126) / 4]);
+            found[(value + 126) / 4] = true;
+            sum += value;
+        }
+    }
+    CHECK_EQ_INT(sum, 0);
+    palette_count_destroy(count);
+    palette_search_destroy(search);
+}
+
+static void noise_row(void *context, uint32_t y, uint8_t *line) {
+    const uint8_t *rgb = context;
+    memcpy(line, rgb + (size_t)3 * WIDTH * y, (size_t)3 * WIDTH);
+}
+
+TEST(frames_are_read_back_to_the_byte_and_damaged_ones_are_refused) {
+    static uint8_t rgb[3 * PIXELS], back[3 * PIXELS];
+    struct error error;
+    const char *path = test_path("frame.png"), *cut = test_path("cut.png");
+    (void)noise_frame(NULL, 3, rgb, &error);
+    CHECK(png_write(FILE_AT(path), WIDTH, HEIGHT, noise_row, rgb, &error));
+    CHECK(png_frame_read(path, WIDTH, HEIGHT, back, &error));
+    CHECK(memcmp(rgb, back, sizeof rgb) == 0);
+    CHECK(!png_frame_read(path, HEIGHT, WIDTH, back, &error));
+    CHECK(strstr(error.text, "has 37 x 29 pixels, not 29 x 37 as the first frame") != NULL);
+    size_t size = 0;
+    char *file = test_read_file(path, &size);
+    for (size_t length = 0; length + 16 < size; length += length < 100 ? 1 : 13) {
+        test_write_file(cut, file, length);
+        CHECK(!png_frame_read(cut, WIDTH, HEIGHT, back, &error));
+    }
+    for (size_t at = 0; at + 16 < size; at += at < 100 ? 1 : 13) {
+        file[at] = (char)(file[at] ^ 0x41);
+        test_write_file(cut, file, size);
+        CHECK(!png_frame_read(cut, WIDTH, HEIGHT, back, &error));
+        file[at] = (char)(file[at] ^ 0x41);
+    }
+    free(file);
+}
+
+/* --- the program --- */
+
+#define SCENE                                                                                                          \
+    "local root, ball = gr.node('r'), gr.sphere(gr.material({0.9, 0.4, 0.2}, {0.5, 0.5, 0.5}, 20))\n"                  \
+    "root:add_child(ball)\n"                                                                                           \
+    "local lamp = gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0})\n"                                                         \
+    "gr.frames{count = 12, loop = true, draw = function(t, k)\n"                                                       \
+    "  if k == FAIL then error('no') end\n"                                                                            \
+    "  ball:translate(0.1, math.random() / 10, 0)\n"                                                                   \
+    "  return {node = root, width = 60, height = 44, eye = {0, 0, 6}, view = {0, 0, -1}, up = {0, 1, 0}, fov = 40,\n"  \
+    "          ambient = {0.2, 0.2, 0.2}, lights = {lamp}}\n"                                                          \
+    "end}\n"
+
+static void gives(const char *line, int status, const char *says) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    test_write_text(test_path("scene.lua"), SCENE);
+    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; } >err.txt 2>&1", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command), got = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    char *said = test_read_file(test_path("err.txt"), NULL);
+    if (got != status || !said || !strstr(said, says))
+        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\":\n%s", line, got, status, says,
+                  said ? said : "");
+    free(said);
+    free(command);
+}
+
+TEST(an_animation_that_was_killed_goes_on_to_the_bytes_of_one_run) {
+    gives("$gray -q scene.lua -o one.gif && ! test -e one.gif.frames", 0, "");
+    for (int k = 1; k <= 8; k++) {
+        char line[512];
+        (void)snprintf(line, sizeof line,
+                       "$gray -q -j 1 scene.lua -o x.gif --checkpoint auto --checkpoint-every 0 --resume & p=$!; "
+                       "sleep 0.0%d; kill -9 $p; wait $p; $gray -q scene.lua -o x.gif --resume && cmp x.gif one.gif && "
+                       "! test -e x.gif.frames && rm x.gif",
+                       k);
+        gives(line, 0, "");
+    }
+}
+
+TEST(any_division_of_an_animation_gives_the_bytes_of_one_run) {
+    gives("$gray -q scene.lua -o one.apng; for i in 1 2 3; do $gray -q scene.lua -o a.apng --shard-pictures $i/3 "
+          "|| exit 1; done; $gray merge -q --loop -o a.apng a.apng.frames/*.png && cmp a.apng one.apng",
+          0, "");
+    gives("for i in 1 2; do $gray -q scene.lua -o b.apng --shard $i/2 || exit 1; done; "
+          "$gray merge -q --loop -o b.apng b.apng.frames/*.part && cmp b.apng one.apng",
+          0, "");
+    gives("$gray -q scene.lua -o 'c.##.png'; $gray merge -q --loop -o c.apng c.*.png && cmp c.apng one.apng && "
+          "test -e c.12.png",
+          0, "");
+}
+
+TEST(an_error_in_a_frame_keeps_the_frames_before_it_and_names_it) {
+    gives("$gray scene.lua -D FAIL=8 -o x.gif", 1, "no (frame 8)");
+    gives("ls x.gif.frames | grep -c png; test -e x.gif", 1, "7");
+    gives("$gray scene.lua -D FAIL=8 -o 'x.####.png'; ls x.0*.png | wc -l", 0, "7");
+}
+
+/* A file system with room for a few frames. */
+TEST(a_full_disk_keeps_the_frames_before_it) {
+    if (system("unshare -rm sh -c 'mount -t tmpfs -o size=8k t /mnt' 2>/dev/null") != 0)
+        test_skip("this user may not mount a small file system");
+    gives("$gray -q scene.lua -o 'a.##.png' && mkdir disk && export gray && "
+          "unshare -rm sh -c \"mount -t tmpfs -o size=24k t disk && $gray -q scene.lua -o 'disk/a.##.png'; s=\\$?; "
+          "n=\\$(ls disk | wc -l); test \\$n -ge 2 && test \\$n -lt 12 && test -e disk/a.01.png && "
+          "for f in \\$(ls disk); do cmp disk/\\$f \\$f || exit 1; done; exit \\$s\"",
+          3, "No space left on device");
+}
+
+TEST(every_picture_of_an_old_script_is_a_frame) {
+    gives("cat > old.lua <<'END'\n"
+          "local node = gr.node('r')\nnode:add_child(gr.sphere{})\n"
+          "for i = 1, 4 do node:translate(0.3, 0, 0) gr.render(node, 'old' .. i .. '.png', 30, 20, {0, 0, 6}, "
+          "{0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {}) end\n"
+          "END\n"
+          "$gray -q old.lua -o old.apng && $gray -q old.lua && $gray merge -q -o m.apng old?.png && cmp m.apng "
+          "old.apng && $gray -q old.lua -o sheet.gif --contact-sheet --keep-frames && ls sheet.gif.frames && "
+          "test -s sheet.sheet.png",
+          0, "000001.png\n000002.png\n000003.png\n000004.png\n");
+    gives("$gray -q old.lua -o x.png", 2, "several pictures are rendered");
+    gives("cat > two.lua <<'END'\n"
+          "local node = gr.node('r')\nnode:add_child(gr.sphere{})\n"
+          "for i = 1, 2 do gr.render(node, 'x.png', 30 + i, 20, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {}) "
+          "end\n"
+          "END\n"
+          "$gray -q two.lua -o two.gif",
+          1, "-o two.gif: frame 2 has 32 x 20 pixels, and the first one 31 x 20");
+    gives("echo text > t.gif; $gray -q old.lua -o t.gif", 1, "t.gif: ");
+}
+
+TEST(a_stream_is_the_y4m_file) {
+    gives("$gray -q scene.lua -o x.y4m && $gray -q scene.lua -o - > y && cmp x.y4m y && head -c 66 y", 0,
+          "YUV4MPEG2 W60 H44 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\nFRAME\n");
+}
+
+TEST(videos_have_the_same_bytes_each_time) {
+    if (system("ffmpeg -hide_banner -encoders 2>/dev/null | grep -q libx264") != 0)
+        test_skip("ffmpeg with libx264 is not installed");
+    gives("$gray -q scene.lua -o x.mp4 && $gray -q scene.lua -o y.mp4 && cmp x.mp4 y.mp4", 0, "");
+    gives("PATH=/nowhere $gray -q scene.lua -o z.mp4", 3, "z.mp4: there is no program ffmpeg on PATH");
+    gives("ls z.mp4.frames | grep -c png", 0, "12");
+}
