@@ -157,12 +157,45 @@ bool expr_shorten_decided(const struct expr_program *program, const struct expr_
     return true;
 }
 
+/* Constants that are not read are left out, so that evaluating a point does not copy them. */
 bool expr_keep(const struct expr_program *program, struct arena *arena, struct expr_program *out) {
+    uint16_t moved[EXPR_VALUES]; /* the new number of each value; first, of constants, whether they are read */
+    const uint32_t first = program->constant_count, values = first + program->register_count;
+    memset(moved, 0, first * sizeof *moved);
+    for (uint32_t n = 0; n < program->count; n++) {
+        const struct expr_instruction *in = &program->code[n];
+        const uint16_t operands[3] = {in->a, in->b, in->c};
+        for (int k = 0; k < 3; k++)
+            if (operands[k] < first)
+                moved[operands[k]] = 1;
+    }
+    for (int i = 0; i < program->output_count; i++)
+        if (program->outputs[i] < first)
+            moved[program->outputs[i]] = 1;
+    uint32_t count = 0;
+    for (uint32_t v = 0; v < first; v++)
+        count += moved[v];
     struct expr_instruction *code = arena_alloc_array(arena, (size_t)program->count + 1, sizeof *code);
-    if (!code)
+    union expr_value *constants = arena_alloc_array(arena, (size_t)count + 1, sizeof *constants);
+    if (!code || !constants)
         return false;
-    memcpy(code, program->code, program->count * sizeof *code);
     *out = *program;
     out->code = code;
+    out->constants = constants;
+    out->constant_count = 0;
+    for (uint32_t v = 0; v < values; v++) {
+        bool is_read = v >= first || moved[v];
+        if (v < first && is_read)
+            constants[out->constant_count++] = program->constants[v];
+        moved[v] = (uint16_t)(v < first ? out->constant_count - is_read : v - first + count);
+    }
+    for (uint32_t n = 0; n < program->count; n++) {
+        const struct expr_instruction *in = &program->code[n];
+        code[n] = (struct expr_instruction){in->operation, moved[in->out], moved[in->a], moved[in->b], moved[in->c]};
+    }
+    for (int i = 0; i < out->input_count; i++)
+        out->inputs[i].value = moved[program->inputs[i].value];
+    for (int i = 0; i < out->output_count; i++)
+        out->outputs[i] = moved[program->outputs[i]];
     return true;
 }

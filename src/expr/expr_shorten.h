@@ -36,7 +36,7 @@ struct expr_decisions {
 bool expr_shorten_decided(const struct expr_program *program, const struct expr_decisions *decisions,
                           struct expr_stack *stack, void *scratch, struct expr_program *out);
 
-/* A copy with its code in the arena, which outlives the stack. False: no memory. */
+/* A copy with its code and the constants that it reads in the arena, which outlives the stack. False: no memory. */
 bool expr_keep(const struct expr_program *program, struct arena *arena, struct expr_program *out);
 
 #endif
