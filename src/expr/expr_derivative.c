@@ -4,9 +4,10 @@
  * jump is unbounded. */
 #include "expr/expr_derivative.h"
 
-#include "expr/expr_interval_internal.h"
+#include "expr/expr_slopes_internal.h"
 
 #include <float.h>
+#include <string.h>
 
 enum { D = EXPR_DIRECTIONS };
 
@@ -477,16 +478,12 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
     }
 }
 
-/* The largest slopes of the root of a value, where it is a sum of squares: d sqrt(x^2) is at most |dx|, and
- * d sqrt(a + b) at most sqrt((d sqrt a)^2 + (d sqrt b)^2) by Cauchy and Schwarz. Infinite where nothing is known. So
- * lengths have slopes of at most 1 also where the root may be of 0. */
-struct root_slopes {
-    double max[D];
-};
+/* The slopes of a root are bounded for what is a sum of squares: d sqrt(x^2) is at most |dx|, and d sqrt(a + b) at
+ * most sqrt((d sqrt a)^2 + (d sqrt b)^2) by Cauchy and Schwarz. So lengths have slopes of at most 1 also where the root
+ * may be of 0. */
 
 size_t expr_slopes_size(const struct expr_program *program) {
-    return ((size_t)program->constant_count + program->register_count) *
-           (sizeof(struct expr_range) + sizeof(struct root_slopes));
+    return ((size_t)program->constant_count + program->register_count) * sizeof(struct expr_rooted);
 }
 
 static bool is_zero(struct expr_interval a) {
@@ -510,12 +507,10 @@ static double root_of_sum(double a, double b) {
     return sqrt(a * a + b * b) * (1 + 4 * DBL_EPSILON);
 }
 
-/* Of an operand; of what is constant and not below 0 it is 0. */
-static double root_slope(const struct expr_program *program, const struct root_slopes *roots,
-                         const struct expr_range *operand, uint16_t value, int direction) {
-    if (is_zero(operand->slopes[direction]) && operand->value.low >= 0)
-        return 0;
-    return value < program->constant_count ? INFINITY : roots[value].max[direction];
+/* Of an operand; of what is constant along the direction and not below 0 it is 0. */
+static double root_slope(const struct expr_rooted *operand, int direction) {
+    bool is_constant = is_zero(operand->range.slopes[direction]) && operand->range.value.low >= 0;
+    return is_constant ? 0 : operand->roots[direction];
 }
 
 /* The slope of a root, by the chain rule and by what the operand is a sum of. */
@@ -529,33 +524,35 @@ static struct expr_interval slope_of_root(struct expr_interval by_chain, struct 
 }
 
 /* Of what is not known to be NaN everywhere, false. Of NaN and a number, min and max give the first. */
-static bool is_always_nan(enum expr_operation operation, const struct expr_range *from[3]) {
-    bool first = from[0]->is_nan, second = from[1]->is_nan;
+static bool is_always_nan(enum expr_operation operation, const struct expr_rooted *from[3]) {
+    bool first = from[0]->range.is_nan, second = from[1]->range.is_nan;
     if (operation == EXPR_SQRT)
-        return first || from[0]->value.high < 0;
+        return first || from[0]->range.value.high < 0;
     if (operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY || operation == EXPR_DIVIDE)
         return first || second;
     if (operation == EXPR_SELECT)
-        return second && from[2]->is_nan;
+        return second && from[2]->range.is_nan;
     return first && (operation == EXPR_NEGATE || operation == EXPR_ABS || operation == EXPR_MIN ||
                      operation == EXPR_MAX || operation == EXPR_SIN || operation == EXPR_COS);
 }
 
 /* Of min, max and selections. */
-static struct expr_interval slope_of_choice(enum expr_operation operation, const struct expr_range *from[3],
+static struct expr_interval slope_of_choice(enum expr_operation operation, const struct expr_rooted *from[3],
                                             int direction) {
-    struct expr_interval a = from[0]->slopes[direction], b = from[1]->slopes[direction];
-    struct expr_choice choice = expr_interval_decide(operation, from[0]->value, from[1]->value);
+    const struct expr_range *first = &from[0]->range, *second = &from[1]->range;
+    struct expr_interval a = first->slopes[direction], b = second->slopes[direction];
+    struct expr_choice choice = expr_interval_decide(operation, first->value, second->value);
     if (operation != EXPR_SELECT)
-        return from[1]->value.may_be_nan ? any_slope : chosen_slope(choice, a, b);
-    return !is_single(from[0]->value) && !is_zero(a) ? any_slope : chosen_slope(choice, b, from[2]->slopes[direction]);
+        return second->value.may_be_nan ? any_slope : chosen_slope(choice, a, b);
+    return !is_single(first->value) && !is_zero(a) ? any_slope
+                                                   : chosen_slope(choice, b, from[2]->range.slopes[direction]);
 }
 
-static struct expr_interval slope_along(const struct expr_range *from[3], const struct expr_interval by[3],
+static struct expr_interval slope_along(const struct expr_rooted *from[3], const struct expr_interval by[3],
                                         int direction) {
     struct expr_interval sum = zero;
     for (int j = 0; j < 3; j++) {
-        struct expr_interval term = from[j]->slopes[direction];
+        struct expr_interval term = from[j]->range.slopes[direction];
         if (is_zero(term) || is_zero(by[j]))
             continue;
         if (by[j].may_be_nan || !(by[j].low > -INFINITY || by[j].high < INFINITY))
@@ -567,87 +564,149 @@ static struct expr_interval slope_along(const struct expr_range *from[3], const 
     return sum.may_be_nan ? any_slope : sum;
 }
 
-#define INTERVAL_F(value) expr_interval_of_float(value.f)
-#define INTERVAL_I(value) expr_interval_of_integer(value.i)
-#define INTERVAL_B(value) expr_interval_of_truth(value.i)
-#define INTERVAL_N(value) unused
-#define OPERAND(k, T, number)                                                                                          \
-    if ((number) < program->constant_count) {                                                                          \
-        constants[k].value = INTERVAL_##T(program->constants[number]);                                                 \
-        from[k] = &constants[k];                                                                                       \
-    } else if (EXPR_TYPE_##T == EXPR_TYPE_N) {                                                                         \
-        constants[k].value = unused;                                                                                   \
-        from[k] = &constants[k];                                                                                       \
-    } else {                                                                                                           \
-        from[k] = &values[number];                                                                                     \
+void expr_rooted_apply(const struct expr_instruction *in, const struct expr_rooted *from[3], int directions,
+                       struct expr_rooted *out) {
+    enum expr_operation operation = (enum expr_operation)in->operation;
+    const struct expr_interval a = from[0]->range.value, b = from[1]->range.value, c = from[2]->range.value;
+    bool is_square = operation == EXPR_MULTIPLY && in->a == in->b;
+    bool is_choice = operation == EXPR_MIN || operation == EXPR_MAX || operation == EXPR_SELECT;
+    struct expr_rooted result;
+    struct expr_interval by[3];
+    result.range.value = is_square ? expr_interval_square(a) : expr_interval_apply(operation, a, b, c);
+    if (!is_choice)
+        slopes_of(operation, a, b, c, result.range.value, by);
+    for (int k = 0; k < directions; k++) {
+        struct expr_interval *slope = &result.range.slopes[k];
+        *slope = is_choice ? slope_of_choice(operation, from, k) : slope_along(from, by, k);
+        result.roots[k] = INFINITY;
+        if (is_square)
+            result.roots[k] = largest(from[0]->range.slopes[k]);
+        else if (operation == EXPR_ADD)
+            result.roots[k] = root_of_sum(root_slope(from[0], k), root_slope(from[1], k));
+        else if (operation == EXPR_SQRT)
+            *slope = slope_of_root(*slope, from[0]->range.slopes[k], root_slope(from[0], k));
     }
-#define EVALUATE_RANGE(member, name, R, A, B, C, expression)                                                           \
-    case member:                                                                                                       \
-        OPERAND(0, A, in->a)                                                                                           \
-        OPERAND(1, B, in->b)                                                                                           \
-        OPERAND(2, C, in->c)                                                                                           \
+    result.range.is_nan = is_always_nan(operation, from);
+    *out = result;
+}
+
+struct expr_interval expr_interval_of_constant(enum expr_type type, union expr_value value) {
+    switch (type) {
+    case EXPR_TYPE_F:
+        return expr_interval_of_float(value.f);
+    case EXPR_TYPE_I:
+        return expr_interval_of_integer(value.i);
+    case EXPR_TYPE_B:
+        return expr_interval_of_truth(value.i);
+    case EXPR_TYPE_N:
         break;
+    }
+    return unused;
+}
+
+/* Operands of an instruction; what is constant is written to `constants`. */
+static void find_operands(const struct expr_program *program, const struct expr_instruction *in,
+                          const struct expr_rooted *values, struct expr_rooted constants[3],
+                          const struct expr_rooted *from[3]) {
+    const uint16_t operands[3] = {in->a, in->b, in->c};
+    for (int k = 0; k < 3; k++) {
+        enum expr_type type = expr_operand_type((enum expr_operation)in->operation, k);
+        bool is_constant = type != EXPR_TYPE_N && operands[k] < program->constant_count;
+        from[k] = type != EXPR_TYPE_N && !is_constant ? &values[operands[k]] : &constants[k];
+        if (type == EXPR_TYPE_N)
+            constants[k].range.value = unused;
+        else if (is_constant)
+            constants[k].range.value = expr_interval_of_constant(type, program->constants[operands[k]]);
+    }
+}
 
 void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                           const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
                           struct expr_choice *choices, void *rows) {
-    struct root_slopes *roots = (void *)((struct expr_range *)rows + program->constant_count + program->register_count);
-    struct expr_range *values = rows, constants[3] = {{.value = zero}, {.value = zero}, {.value = zero}};
+    struct expr_rooted *values = rows, constants[3];
+    for (int k = 0; k < 3; k++)
+        constants[k] = (struct expr_rooted){{zero, {zero, zero, zero}, false}, {INFINITY, INFINITY, INFINITY}};
     for (int i = 0; i < program->input_count; i++) {
-        struct expr_range *value = &values[program->inputs[i].value];
-        value->value = inputs[program->inputs[i].input];
-        value->is_nan = false;
+        struct expr_rooted *value = &values[program->inputs[i].value];
+        value->range.value = inputs[program->inputs[i].input];
+        value->range.is_nan = false;
         for (int k = 0; k < directions->count; k++) {
             double seed = directions->seeds[program->inputs[i].input][k];
-            value->slopes[k] = (struct expr_interval){seed, seed, false};
-            roots[program->inputs[i].value].max[k] = INFINITY;
+            value->range.slopes[k] = (struct expr_interval){seed, seed, false};
+            value->roots[k] = INFINITY;
         }
     }
     for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        enum expr_operation operation = (enum expr_operation)in->operation;
-        const struct expr_range *from[3] = {constants, constants, constants};
-        struct expr_range result;
-        struct expr_interval by[3];
-        switch (operation) {
-            EXPR_OPERATIONS(EVALUATE_RANGE)
-        case EXPR_CONSTANT:
-        case EXPR_INPUT:
-        case EXPR_OPERATION_COUNT:
-            break;
-        }
-        struct expr_interval a = from[0]->value, b = from[1]->value, c = from[2]->value;
-        result.value = operation == EXPR_MULTIPLY && in->a == in->b ? expr_interval_square(a)
-                                                                    : expr_interval_apply(operation, a, b, c);
-        bool is_choice = operation == EXPR_MIN || operation == EXPR_MAX || operation == EXPR_SELECT;
-        if (!is_choice)
-            slopes_of(operation, a, b, c, result.value, by);
-        struct root_slopes root;
-        for (int k = 0; k < directions->count; k++) {
-            result.slopes[k] = is_choice ? slope_of_choice(operation, from, k) : slope_along(from, by, k);
-            root.max[k] = INFINITY;
-            if (operation == EXPR_MULTIPLY && in->a == in->b)
-                root.max[k] = largest(from[0]->slopes[k]);
-            else if (operation == EXPR_ADD)
-                root.max[k] = root_of_sum(root_slope(program, roots, from[0], in->a, k),
-                                          root_slope(program, roots, from[1], in->b, k));
-            else if (operation == EXPR_SQRT)
-                result.slopes[k] =
-                    slope_of_root(result.slopes[k], from[0]->slopes[k], root_slope(program, roots, from[0], in->a, k));
-        }
+        const struct expr_rooted *from[3];
+        find_operands(program, in, values, constants, from);
         if (choices)
-            choices[in - program->code] = expr_interval_decide(operation, a, b);
-        result.is_nan = is_always_nan(operation, from);
-        values[in->out] = result;
-        roots[in->out] = root;
+            choices[in - program->code] =
+                expr_interval_decide((enum expr_operation)in->operation, from[0]->range.value, from[1]->range.value);
+        expr_rooted_apply(in, from, directions->count, &values[in->out]);
     }
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         bool is_constant = value < program->constant_count;
-        outputs[i].is_nan = !is_constant && values[value].is_nan;
-        outputs[i].value = is_constant ? expr_interval_of_float(program->constants[value].f) : values[value].value;
+        outputs[i].is_nan = !is_constant && values[value].range.is_nan;
+        outputs[i].value =
+            is_constant ? expr_interval_of_float(program->constants[value].f) : values[value].range.value;
         for (int k = 0; k < directions->count; k++)
             outputs[i].slopes[k] = is_constant                   ? zero
                                    : outputs[i].value.may_be_nan ? any_slope
-                                                                 : values[value].slopes[k];
+                                                                 : values[value].range.slopes[k];
     }
+}
+
+/* --- over eight boxes --- */
+
+size_t expr_lanes_size(const struct expr_program *program) {
+    return (size_t)program->register_count * sizeof(struct expr_lanes);
+}
+
+static void read_lanes(const struct expr_program *program, uint16_t output, int directions, struct expr_lanes *values,
+                       struct expr_lane_range *out) {
+    if (output < program->constant_count) {
+        struct expr_interval constant = expr_interval_of_float(program->constants[output].f);
+        *out = (struct expr_lane_range){.may_be_nan = constant.may_be_nan ? (1U << EXPR_LANES) - 1 : 0};
+        for (int i = 0; i < EXPR_LANES; i++) {
+            out->low[i] = constant.low;
+            out->high[i] = constant.high;
+        }
+        return;
+    }
+    const struct expr_lanes *value = &values[output - program->constant_count];
+    out->may_be_nan = value->may_be_nan;
+    out->is_nan = value->is_nan;
+    memcpy(out->low, value->low, sizeof out->low);
+    memcpy(out->high, value->high, sizeof out->high);
+    for (int k = 0; k < directions; k++)
+        for (int i = 0; i < EXPR_LANES; i++) {
+            bool is_any = value->may_be_nan >> i & 1;
+            out->slopes[k].low[i] = is_any ? -INFINITY : value->slopes[k].low[i];
+            out->slopes[k].high[i] = is_any ? INFINITY : value->slopes[k].high[i];
+        }
+}
+
+void expr_evaluate_slopes_lanes(const struct expr_program *program, const struct expr_lane_inputs *inputs,
+                                const struct expr_directions *directions, struct expr_lane_range outputs[EXPR_OUTPUTS],
+                                struct expr_choice *choices, void *rows) {
+    static void (*const run[])(const struct expr_program *, int, bool, struct expr_lanes *,
+                               struct expr_choice *) = {[CPU_ISA_BASE] = expr_run_slopes_base,
+                                                        [CPU_ISA_AVX2] = expr_run_slopes_avx2,
+                                                        [CPU_ISA_AVX512] = expr_run_slopes_avx512};
+    struct expr_lanes *values = rows;
+    for (int i = 0; i < program->input_count; i++) {
+        enum expr_input input = (enum expr_input)program->inputs[i].input;
+        struct expr_lanes *value = &values[program->inputs[i].value - program->constant_count];
+        memcpy(value->low, inputs->low[input], sizeof value->low);
+        memcpy(value->high, inputs->high[input], sizeof value->high);
+        value->may_be_nan = value->is_nan = 0;
+        value->has_roots = false;
+        for (int k = 0; k < directions->count; k++)
+            for (int n = 0; n < EXPR_LANES; n++)
+                value->slopes[k].low[n] = value->slopes[k].high[n] = directions->seeds[input][k];
+    }
+    run[cpu_isa()](program, directions->count, inputs->are_cases, values, choices);
+    for (int i = 0; i < program->output_count; i++)
+        read_lanes(program, program->outputs[i], directions->count, values, &outputs[i]);
 }

@@ -42,4 +42,32 @@ void expr_evaluate_slopes(const struct expr_program *program, const struct expr_
                           const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
                           struct expr_choice *choices, void *rows);
 
+/* Boxes of expr_evaluate_slopes_lanes. */
+enum { EXPR_LANES = 8 };
+
+/* Eight boxes, or the cases of one box: then all lanes have the same ends, and the first three jumps that the box may
+ * contain (a floor that takes two values, a remainder that passes the end of one period, a comparison that is not
+ * decided) are divided among them, so that in a lane there is only one side of each. Every point of the box belongs to
+ * a lane; each lane bounds the values of its points, but slopes across a jump are in none of them. */
+struct expr_lane_inputs {
+    double low[EXPR_INPUT_COUNT][EXPR_LANES], high[EXPR_INPUT_COUNT][EXPR_LANES];
+    bool are_cases;
+};
+
+struct expr_lane_range {
+    double low[EXPR_LANES], high[EXPR_LANES];
+    struct {
+        double low[EXPR_LANES], high[EXPR_LANES];
+    } slopes[EXPR_DIRECTIONS];
+    uint32_t may_be_nan, is_nan; /* bit i: in box i */
+};
+
+/* The size in bytes of the memory that expr_evaluate_slopes_lanes needs. */
+size_t expr_lanes_size(const struct expr_program *program);
+/* expr_evaluate_slopes of eight boxes at once; the ends may differ in their last digits. The boxes are lanes of the
+ * choices. rows: expr_lanes_size bytes, aligned to 64, with any contents. */
+void expr_evaluate_slopes_lanes(const struct expr_program *program, const struct expr_lane_inputs *inputs,
+                                const struct expr_directions *directions, struct expr_lane_range outputs[EXPR_OUTPUTS],
+                                struct expr_choice *choices, void *rows);
+
 #endif

@@ -2,68 +2,7 @@
  * on vectors of boxes, everything else box by box with expr_interval_apply. The steps are those of expr_interval.c, and
  * so are the results. */
 #include "expr/expr_interval_internal.h"
-
-#include <float.h>
-
-#if defined(__AVX512F__)
-#include <immintrin.h>
-typedef __m512d vector;
-enum { WIDTH = 8 };
-#define LOAD(p) _mm512_load_pd(p)
-#define STORE(p, v) _mm512_store_pd(p, v)
-#define ALL(x) _mm512_set1_pd(x)
-#define MIN_OF(a, b) _mm512_min_pd(a, b)
-#define MAX_OF(a, b) _mm512_max_pd(a, b)
-#define ROOT_OF(a) _mm512_sqrt_pd(a)
-#define SIZE_OF(a) _mm512_abs_pd(a)
-#define IS_LESS(a, b) (uint64_t) _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ)
-#define IS_LESS_EQUAL(a, b) (uint64_t) _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ)
-#define IS_NAN(a) (uint64_t) _mm512_cmp_pd_mask(a, a, _CMP_UNORD_Q)
-#define CHOOSE(mask, a, b) _mm512_mask_blend_pd((__mmask8)(mask), b, a)
-#elif defined(__AVX2__)
-#include <immintrin.h>
-typedef __m256d vector;
-enum { WIDTH = 4 };
-#define LOAD(p) _mm256_load_pd(p)
-#define STORE(p, v) _mm256_store_pd(p, v)
-#define ALL(x) _mm256_set1_pd(x)
-#define MIN_OF(a, b) _mm256_min_pd(a, b)
-#define MAX_OF(a, b) _mm256_max_pd(a, b)
-#define ROOT_OF(a) _mm256_sqrt_pd(a)
-#define SIZE_OF(a) _mm256_andnot_pd(_mm256_set1_pd(-0.0), a)
-#define IS_LESS(a, b) (uint64_t) _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LT_OQ))
-#define IS_LESS_EQUAL(a, b) (uint64_t) _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_LE_OQ))
-#define IS_NAN(a) (uint64_t) _mm256_movemask_pd(_mm256_cmp_pd(a, a, _CMP_UNORD_Q))
-#define CHOOSE(mask, a, b) choose_lanes(mask, a, b)
-static inline vector choose_lanes(uint64_t mask, vector a, vector b) {
-    const __m256i bits = _mm256_set_epi64x(8, 4, 2, 1);
-    __m256i chosen = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x((long long)mask), bits), bits);
-    return _mm256_blendv_pd(b, a, _mm256_castsi256_pd(chosen));
-}
-#else
-typedef double vector;
-enum { WIDTH = 1 };
-#define LOAD(p) (*(p))
-#define STORE(p, v) (*(p) = (v))
-#define ALL(x) (x)
-#define MIN_OF(a, b) ((a) < (b) ? (a) : (b))
-#define MAX_OF(a, b) ((a) > (b) ? (a) : (b))
-#define ROOT_OF(a) sqrt(a)
-#define SIZE_OF(a) fabs(a)
-#define IS_LESS(a, b) (uint64_t)((a) < (b))
-#define IS_LESS_EQUAL(a, b) (uint64_t)((a) <= (b))
-#define IS_NAN(a) (uint64_t)((a) != (a))
-#define CHOOSE(mask, a, b) ((mask)&1 ? (a) : (b))
-#endif
-
-/* Outwards; NaN of an infinity less an infinity is refused by the comparison. */
-static inline vector below(vector v) {
-    return MIN_OF(v - SIZE_OF(v) * ALL(DBL_EPSILON), v);
-}
-
-static inline vector above(vector v) {
-    return MAX_OF(v + SIZE_OF(v) * ALL(DBL_EPSILON), v);
-}
+#include "expr/expr_vector_internal.h"
 
 /* A number in all boxes: its ends, where a constant has the same vector for all of them, and whether it may be NaN. */
 struct ends {
@@ -193,7 +132,7 @@ static inline __attribute__((always_inline)) void run_boxes(struct machine *m, c
         struct expr_flags out = {0, 0};
         struct expr_choice decided = {0, 0};
         uint64_t unknown = 0;
-        switch ((unsigned)in->operation) { /* every other operation goes the general way */
+        switch ((unsigned)in->operation) { /* no list: every other operation, new ones too, is right box by box */
         case EXPR_ADD: {
             TWO;
             EACH(lo = al + bl; hi = ah + bh; UNKNOWN(lo + hi); lo = below(lo); hi = above(hi))

@@ -130,7 +130,7 @@ static void random_program_init(struct random_program *p, uint64_t seed, int ope
                                                  EXPR_TANH, EXPR_MIN,      EXPR_MAX,      EXPR_ABS,  EXPR_NOISE,
                                                  EXPR_ADD,  EXPR_MIN,      EXPR_MAX,      EXPR_ATAN, EXPR_NEGATE};
     static const enum expr_operation jumping[] = {EXPR_FLOOR, EXPR_SELECT, EXPR_SELECT,  EXPR_MODULO, EXPR_SQRT,
-                                                  EXPR_LOG,   EXPR_DIVIDE, EXPR_CELL_ID, EXPR_SELECT, EXPR_CEIL};
+                                                  EXPR_LOG,   EXPR_DIVIDE, EXPR_CELL_ID, EXPR_EXP,    EXPR_CEIL};
     struct error error = {0};
     uint32_t values[64], count = 0;
     *p = (struct random_program){.graph = {.count = 0}};
@@ -149,7 +149,7 @@ static void random_program_init(struct random_program *p, uint64_t seed, int ope
             operands[0] = expr_operation(&p->graph, bits & 1 << 5 ? EXPR_LESS : EXPR_LESS_EQUAL,
                                          values[(bits >> 40) % count], values[(bits >> 48) % count], EXPR_NONE);
         uint32_t value = expr_operation(&p->graph, operation, operands[0], operands[1], operands[2]);
-        if (operation == EXPR_MULTIPLY)
+        if (operation == EXPR_MULTIPLY || operation == EXPR_EXP)
             value = expr_operation(&p->graph, EXPR_TANH, value, EXPR_NONE, EXPR_NONE);
         values[count < 64 ? count++ : 5 + (bits >> 3) % 59] = value;
     }
@@ -455,6 +455,122 @@ static void check_slopes(const struct expr_program *program, uint64_t key, uint3
         }
     }
     mem_free(rows);
+}
+
+static bool is_near(double a, double b) {
+    return a == b || fabs(a - b) <= 1e-9 * (1 + fabs(a) + fabs(b));
+}
+
+/* Slabs of the box as lanes against each of them alone. */
+static void check_slope_lanes(const struct expr_program *program, uint64_t key) {
+    static const struct expr_directions directions = {3, {{0.3, 1, 0}, {-0.8, 0, 0}, {0.5, 0, 1}}};
+    struct expr_interval box[EXPR_INPUT_COUNT];
+    struct expr_lane_inputs inputs = {.are_cases = false};
+    struct expr_lane_range lanes[EXPR_OUTPUTS];
+    struct expr_choice *of_lanes = mem_alloc_zero(program->count + 1, sizeof *of_lanes);
+    struct expr_choice *of_one = mem_alloc_zero(program->count + 1, sizeof *of_one);
+    void *rows = mem_alloc_aligned(64, expr_lanes_size(program) + expr_slopes_size(program));
+    random_box(key, box);
+    for (int i = 0; i < EXPR_LANES; i++)
+        for (int k = 0; k < EXPR_INPUT_COUNT; k++) {
+            double width = k == EXPR_POINT_X ? (box[k].high - box[k].low) / EXPR_LANES : box[k].high - box[k].low;
+            inputs.low[k][i] = box[k].low + (k == EXPR_POINT_X ? i * width : 0);
+            inputs.high[k][i] = inputs.low[k][i] + width;
+        }
+    expr_evaluate_slopes_lanes(program, &inputs, &directions, lanes, of_lanes, rows);
+    for (int i = 0; i < EXPR_LANES; i++) {
+        struct expr_range one[EXPR_OUTPUTS];
+        for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+            box[k] = (struct expr_interval){inputs.low[k][i], inputs.high[k][i], false};
+        expr_evaluate_slopes(program, box, &directions, one, of_one, rows);
+        for (int o = 0; o < program->output_count; o++) {
+            bool same = is_near(lanes[o].low[i], one[o].value.low) && is_near(lanes[o].high[i], one[o].value.high) &&
+                        (lanes[o].may_be_nan >> i & 1) == one[o].value.may_be_nan;
+            for (int k = 0; k < 3; k++) { /* of quotients they are closer */
+                double low = lanes[o].slopes[k].low[i], high = lanes[o].slopes[k].high[i];
+                same = same && (low > one[o].slopes[k].low || is_near(low, one[o].slopes[k].low)) &&
+                       (high < one[o].slopes[k].high || is_near(high, one[o].slopes[k].high));
+            }
+            if (!same)
+                test_fail(__FILE__, __LINE__, "%a..%a, slope %a..%a in lane %d, alone %a..%a, slope %a..%a",
+                          lanes[o].low[i], lanes[o].high[i], lanes[o].slopes[0].low[i], lanes[o].slopes[0].high[i], i,
+                          one[o].value.low, one[o].value.high, one[o].slopes[0].low, one[o].slopes[0].high);
+        }
+        double a[EXPR_INPUT_COUNT], b[EXPR_INPUT_COUNT], at_a[EXPR_OUTPUTS], at_b[EXPR_OUTPUTS];
+        point_in(box, random_combine(key, (uint64_t)i), a);
+        memcpy(b, a, sizeof b);
+        b[EXPR_POINT_X] = uniform(random_combine(key, 50 + (uint64_t)i), box[0].low, box[0].high);
+        expr_evaluate(program, a, at_a);
+        expr_evaluate(program, b, at_b);
+        for (int o = 0; o < program->output_count; o++) {
+            double moved = b[0] - a[0], change = (at_b[o] - at_a[o]) / moved;
+            double error = 1e-11 * (1 + fabs(at_a[o]) + fabs(at_b[o])) / fabs(moved);
+            if (isfinite(change) &&
+                !(change >= lanes[o].slopes[1].low[i] - error && change <= lanes[o].slopes[1].high[i] + error))
+                test_fail(__FILE__, __LINE__, "a slope of %a, not of %a..%a", change, lanes[o].slopes[1].low[i],
+                          lanes[o].slopes[1].high[i]);
+        }
+        for (uint32_t n = 0; n < program->count; n++)
+            CHECK((of_lanes[n].first >> i & 1) == of_one[n].first && (of_lanes[n].second >> i & 1) == of_one[n].second);
+    }
+    mem_free(of_lanes);
+    mem_free(of_one);
+    mem_free(rows);
+}
+
+TEST(slopes_of_eight_boxes_are_those_of_each_box) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    for (uint64_t i = 0; i < 300; i++) {
+        struct random_program p;
+        random_program_init(&p, random_combine(37, i), 5 + (int)(i % 30), i % 2);
+        for (uint64_t k = 0; k < 6; k++) {
+            if (cpu_select_isa(sets[k % 3]))
+                check_slope_lanes(&p.program, random_combine(i, k));
+        }
+        random_program_destroy(&p);
+    }
+    CHECK(cpu_select_isa("auto"));
+}
+
+/* Every point of a box is in one of its cases. */
+TEST(cases_of_a_box_contain_the_values_of_its_points) {
+    static const struct expr_directions directions = {1, {{1}, {1}, {1}}};
+    uint64_t narrowed = 0;
+    for (uint64_t i = 0; i < 2000; i++) {
+        struct random_program p;
+        random_program_init(&p, random_combine(41, i), 5 + (int)(i % 12), true);
+        void *rows = mem_alloc_aligned(64, expr_lanes_size(&p.program));
+        struct expr_interval box[EXPR_INPUT_COUNT], plain[EXPR_OUTPUTS];
+        struct expr_lane_inputs inputs = {.are_cases = true};
+        struct expr_lane_range lanes[EXPR_OUTPUTS];
+        random_box(random_combine(i, 1), box);
+        for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+            for (int n = 0; n < EXPR_LANES; n++) {
+                inputs.low[k][n] = box[k].low;
+                inputs.high[k][n] = box[k].high;
+            }
+        expr_evaluate_slopes_lanes(&p.program, &inputs, &directions, lanes, NULL, rows);
+        expr_evaluate_interval(&p.program, box, plain, NULL, rows);
+        for (int o = 0; o < p.program.output_count; o++)
+            for (int n = 0; n < EXPR_LANES; n++)
+                narrowed += lanes[o].high[n] - lanes[o].low[n] < 0.9 * (plain[o].high - plain[o].low);
+        for (uint64_t n = 0; n < 50; n++) {
+            double at[EXPR_INPUT_COUNT], values[EXPR_OUTPUTS];
+            point_in(box, random_combine(i, n), at);
+            expr_evaluate(&p.program, at, values);
+            for (int o = 0; o < p.program.output_count; o++) {
+                bool found = false;
+                for (int k = 0; k < EXPR_LANES; k++)
+                    found = found || (values[o] >= lanes[o].low[k] && values[o] <= lanes[o].high[k]) ||
+                            (values[o] != values[o] && lanes[o].may_be_nan >> k & 1);
+                if (!found)
+                    test_fail(__FILE__, __LINE__, "%a is in no case of program %d", values[o], (int)i);
+            }
+        }
+        mem_free(rows);
+        random_program_destroy(&p);
+    }
+    CHECK(narrowed > 500);
 }
 
 TEST(slopes_of_random_programs_contain_difference_quotients) {

@@ -1,0 +1,597 @@
+/* Bounds and slopes over eight boxes, compiled for the instruction set of the file that includes this one: arithmetic,
+ * roots, choices, sines and exponentials on vectors of boxes, everything else box by box with expr_rooted_apply. The
+ * formulas are those of expr_derivative.c and expr_interval.c. Results have the same bits for every width of vectors.
+ */
+#include "expr/expr_slopes_internal.h"
+#include "expr/expr_vector_internal.h"
+#include "math/elementary_lanes.h"
+
+/* The part of an array that a vector covers. */
+#define EACH_VECTOR for (int i = 0; i < EXPR_LANES; i += WIDTH)
+
+/* The types of operands. */
+#define TYPES_OF(member, name, R, A, B, C, expression) [member] = {EXPR_TYPE_##A, EXPR_TYPE_##B, EXPR_TYPE_##C},
+static const uint8_t operand_types[EXPR_OPERATION_COUNT][3] = {EXPR_OPERATIONS(TYPES_OF)};
+
+/* Lower and upper ends. */
+struct span {
+    vector low, high;
+};
+
+enum { ALL_LANES = (1 << EXPR_LANES) - 1 };
+
+struct machine {
+    const struct expr_program *program;
+    struct expr_lanes *values, constants[3];
+    int directions;
+    bool are_cases;
+    int cases; /* that are divided among the lanes */
+};
+
+/* --- spans --- */
+
+static inline struct span outwards(struct span a) {
+    return (struct span){below(a.low), above(a.high)};
+}
+
+static inline struct span enclosure(struct span a, struct span b) {
+    return (struct span){MIN_OF(a.low, b.low), MAX_OF(a.high, b.high)};
+}
+
+static inline struct span pick(lanes_mask mask, struct span a, struct span b) {
+    return (struct span){PICK(mask, a.low, b.low), PICK(mask, a.high, b.high)};
+}
+
+static inline struct span anything(void) {
+    return (struct span){ALL(-(double)INFINITY), ALL((double)INFINITY)};
+}
+
+static inline struct span single_number(double x) {
+    return (struct span){ALL(x), ALL(x)};
+}
+
+/* Ends that are not numbers are unbounded. */
+static inline struct span repaired(struct span a) {
+    lanes_mask unknown = NAN_LANES(a.low + a.high);
+    return BITS(unknown) ? pick(unknown, anything(), a) : a;
+}
+
+static inline struct span sum_of(struct span a, struct span b) {
+    return repaired(outwards((struct span){a.low + b.low, a.high + b.high}));
+}
+
+/* Products of the ends; NaN for infinity times 0. */
+static inline struct span corners(struct span a, struct span b, vector *check) {
+    vector p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
+    *check = p + q + (r + s);
+    return (struct span){MIN_OF(MIN_OF(p, q), MIN_OF(r, s)), MAX_OF(MAX_OF(p, q), MAX_OF(r, s))};
+}
+
+static inline vector size_of(struct span a) {
+    return MAX_OF(-a.low, a.high) + ALL(0);
+}
+
+/* A slope times a derivative; a slope of 0 stays 0. */
+static inline struct span slope_times(struct span slope, struct span by) {
+    vector check;
+    struct span out = outwards(corners(slope, by, &check));
+    lanes_mask unknown = NAN_LANES(check);
+    if (!BITS(unknown))
+        return out;
+    out = pick(unknown, anything(), out);
+    lanes_mask is_some = LESS(ALL(0), size_of(slope));
+    return pick(is_some, out, single_number(0));
+}
+
+/* Of a slope that is divided by what is above 0, or may be 0. */
+static inline struct span over_positive(struct span slope, struct span by) {
+    lanes_mask below_0 = LESS(slope.low, ALL(0)), above_0 = LESS(ALL(0), slope.high);
+    return (struct span){PICK(below_0, slope.low / by.low, slope.low / by.high),
+                         PICK(above_0, slope.high / by.low, slope.high / by.high)};
+}
+
+/* --- operands --- */
+
+static inline struct span value_of(const struct expr_lanes *a, int i) {
+    return (struct span){LOAD(a->low + i), LOAD(a->high + i)};
+}
+
+static inline struct span slope_of(const struct expr_lanes *a, int k, int i) {
+    return (struct span){LOAD(a->slopes[k].low + i), LOAD(a->slopes[k].high + i)};
+}
+
+static inline void put_value(struct expr_lanes *out, int i, struct span a) {
+    STORE(out->low + i, a.low);
+    STORE(out->high + i, a.high);
+}
+
+static inline void put_slope(struct expr_lanes *out, int k, int i, struct span a) {
+    STORE(out->slopes[k].low + i, a.low);
+    STORE(out->slopes[k].high + i, a.high);
+}
+
+/* Results that are not numbers may be anything, and NaN. */
+static inline void put_computed(struct expr_lanes *out, int i, struct span a, vector check) {
+    lanes_mask unknown = NAN_LANES(check);
+    if (BITS(unknown)) {
+        a = pick(unknown, anything(), a);
+        out->may_be_nan |= (uint32_t)(BITS(unknown) << i);
+    }
+    put_value(out, i, a);
+}
+
+static inline const struct expr_lanes *operand(struct machine *run, const struct expr_instruction *in, int k,
+                                               uint16_t value) {
+    const uint32_t constants = run->program->constant_count;
+    enum expr_type type = (enum expr_type)operand_types[in->operation][k];
+    struct expr_lanes *out = &run->constants[k];
+    if (type != EXPR_TYPE_N && value >= constants)
+        return &run->values[value - constants];
+    out->may_be_nan = 0;
+    if (type == EXPR_TYPE_N)
+        return out;
+    struct expr_interval x = expr_interval_of_constant(type, run->program->constants[value]);
+    EACH_VECTOR put_value(out, i, (struct span){ALL(x.low), ALL(x.high)});
+    out->may_be_nan = x.may_be_nan ? ALL_LANES : 0;
+    return out;
+}
+
+/* The largest slopes of the root of an operand. */
+static inline vector root_of(const struct expr_lanes *a, int k, int i) {
+    vector known = a->has_roots ? LOAD(a->roots[k] + i) : ALL((double)INFINITY);
+    vector is_moving = MAX_OF(size_of(slope_of(a, k, i)), -LOAD(a->low + i));
+    return PICK(LESS(ALL(0), is_moving), known, ALL(0));
+}
+
+/* --- box by box --- */
+
+static struct expr_rooted lane_of(const struct expr_lanes *a, int directions, int lane) {
+    struct expr_rooted out;
+    out.range.value = (struct expr_interval){a->low[lane], a->high[lane], a->may_be_nan >> lane & 1};
+    out.range.is_nan = a->is_nan >> lane & 1;
+    for (int k = 0; k < directions; k++) {
+        out.range.slopes[k] = (struct expr_interval){a->slopes[k].low[lane], a->slopes[k].high[lane], false};
+        out.roots[k] = a->has_roots ? a->roots[k][lane] : (double)INFINITY;
+    }
+    return out;
+}
+
+static void run_singly(const struct machine *run, const struct expr_instruction *in, const struct expr_lanes *from[3],
+                       struct expr_lanes *out, struct expr_choice *decided) {
+    struct expr_lanes result;
+    result.may_be_nan = result.is_nan = 0;
+    result.has_roots = false;
+    for (int lane = 0; lane < EXPR_LANES; lane++) {
+        struct expr_rooted operands[3], of_lane;
+        const struct expr_rooted *pointers[3] = {&operands[0], &operands[1], &operands[2]};
+        for (int k = 0; k < 3; k++)
+            operands[k] = lane_of(from[k], run->directions, lane);
+        expr_rooted_apply(in, pointers, run->directions, &of_lane);
+        struct expr_choice choice =
+            expr_interval_decide((enum expr_operation)in->operation, operands[0].range.value, operands[1].range.value);
+        decided->first |= choice.first << lane;
+        decided->second |= choice.second << lane;
+        result.low[lane] = of_lane.range.value.low;
+        result.high[lane] = of_lane.range.value.high;
+        result.may_be_nan |= (uint32_t)of_lane.range.value.may_be_nan << lane;
+        result.is_nan |= (uint32_t)of_lane.range.is_nan << lane;
+        for (int k = 0; k < run->directions; k++) {
+            result.slopes[k].low[lane] = of_lane.range.slopes[k].low;
+            result.slopes[k].high[lane] = of_lane.range.slopes[k].high;
+        }
+    }
+    *out = result;
+}
+
+/* --- sines and exponentials --- */
+
+/* The functions at all ends of an operand, with the bits of single calls. */
+static void sincos_of(const double *from, double *sines, double *cosines) {
+    int other = 0;
+    for (int i = 0; i < EXPR_LANES; i++)
+        other |= !el_angle_fits(from[i]);
+    for (int i = 0; i < EXPR_LANES; i++)
+        el_sincos_lane(from[i], &sines[i], &cosines[i]);
+    for (int i = 0; other && i < EXPR_LANES; i++)
+        el_sincos(from[i], &sines[i], &cosines[i]);
+}
+
+static void exponentials_of(const double *from, double *out) {
+    int other = 0;
+    for (int i = 0; i < EXPR_LANES; i++)
+        other |= !el_exp_fits(from[i]);
+    for (int i = 0; i < EXPR_LANES; i++)
+        out[i] = el_exp_lane(from[i]);
+    for (int i = 0; other && i < EXPR_LANES; i++)
+        out[i] = el_exp(from[i]);
+}
+
+/* By three units, as for all elementary functions. */
+static inline struct span widened(struct span a) {
+    const vector unit = ALL(2 * DBL_EPSILON), tiny = ALL(DBL_TRUE_MIN);
+    vector low = a.low - SIZE_OF(a.low) * unit, high = a.high + SIZE_OF(a.high) * unit;
+    return (struct span){PICK(LESS(low, a.low), low - tiny, a.low), PICK(LESS(a.high, high), high + tiny, a.high)};
+}
+
+/* Where an angle start + n * 2 pi is between the ends, or closer to them than rounding errors. */
+static inline lanes_mask contains_angle(struct span a, double start) {
+    const double turn = 2 * PI, slack = 1e-9;
+    return LESS_EQUAL(CEIL_OF((a.low - ALL(start) - ALL(slack)) / ALL(turn)),
+                      FLOOR_OF((a.high - ALL(start) + ALL(slack)) / ALL(turn)));
+}
+
+/* Sine or cosine between ends that have these values, with its maximum at `top`. */
+static inline struct span wave(struct span a, vector at_low, vector at_high, double top) {
+    struct span out = {MIN_OF(at_low, at_high), MAX_OF(at_low, at_high)};
+    out.low = PICK(contains_angle(a, top + PI), ALL(-1), out.low);
+    out.high = PICK(contains_angle(a, top), ALL(1), out.high);
+    out = widened(out);
+    out = (struct span){MAX_OF(out.low, ALL(-1)), MIN_OF(out.high, ALL(1))};
+    lanes_mask is_known = LESS(a.high - a.low, ALL(2 * PI)),
+               is_small = LESS(size_of(enclosure(a, single_number(0))), ALL(1e6));
+    return pick(is_known, pick(is_small, out, (struct span){ALL(-1), ALL(1)}), (struct span){ALL(-1), ALL(1)});
+}
+
+/* The sine, the cosine, or both; of one NULL. */
+static void run_wave(struct machine *run, const struct expr_lanes *from, struct expr_lanes *of_sine,
+                     struct expr_lanes *of_cosine) {
+    double __attribute__((aligned(64))) sines[2][EXPR_LANES], cosines[2][EXPR_LANES];
+    sincos_of(from->low, sines[0], cosines[0]);
+    sincos_of(from->high, sines[1], cosines[1]);
+    uint32_t may_be_nan = from->may_be_nan, is_nan = from->is_nan;
+    EACH_VECTOR {
+        const struct span a = value_of(from, i);
+        const struct span sine = wave(a, LOAD(sines[0] + i), LOAD(sines[1] + i), PI / 2);
+        const struct span cosine = wave(a, LOAD(cosines[0] + i), LOAD(cosines[1] + i), 0);
+        may_be_nan |= (uint32_t)(IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-a.low, a.high)) << i);
+        for (int k = 0; k < run->directions; k++) {
+            const struct span slope = slope_of(from, k, i);
+            if (of_sine)
+                put_slope(of_sine, k, i, slope_times(slope, cosine));
+            if (of_cosine)
+                put_slope(of_cosine, k, i, slope_times(slope, (struct span){-sine.high, -sine.low}));
+        }
+        if (of_sine)
+            put_value(of_sine, i, sine);
+        if (of_cosine)
+            put_value(of_cosine, i, cosine);
+    }
+    for (int k = 0; k < 2; k++) {
+        struct expr_lanes *out = k == 0 ? of_sine : of_cosine;
+        if (!out)
+            continue;
+        out->may_be_nan = may_be_nan;
+        out->is_nan = is_nan;
+        out->has_roots = false;
+    }
+}
+
+static void run_exponential(struct machine *run, const struct expr_lanes *from, struct expr_lanes *out) {
+    double __attribute__((aligned(64))) ends[2][EXPR_LANES];
+    exponentials_of(from->low, ends[0]);
+    exponentials_of(from->high, ends[1]);
+    uint32_t may_be_nan = from->may_be_nan;
+    EACH_VECTOR {
+        struct span value = widened((struct span){LOAD(ends[0] + i), LOAD(ends[1] + i)});
+        value.low = MAX_OF(value.low, ALL(0));
+        for (int k = 0; k < run->directions; k++)
+            put_slope(out, k, i, slope_times(slope_of(from, k, i), value));
+        put_value(out, i, value);
+    }
+    out->may_be_nan = may_be_nan;
+    out->is_nan = 0;
+    out->has_roots = false;
+}
+
+/* --- arithmetic --- */
+
+static inline void run_product(struct machine *run, const struct expr_lanes *a, const struct expr_lanes *b,
+                               bool is_square, struct expr_lanes *out) {
+    const uint32_t is_nan = a->is_nan | b->is_nan;
+    const bool a_is_constant = a == &run->constants[0], b_is_constant = b == &run->constants[1];
+    out->may_be_nan = a->may_be_nan | b->may_be_nan;
+    EACH_VECTOR {
+        const struct span x = value_of(a, i), y = value_of(b, i);
+        vector check = ALL(0);
+        struct span value;
+        if (is_square) {
+            vector near = MAX_OF(MAX_OF(x.low, -x.high), ALL(0)), far = MAX_OF(-x.low, x.high);
+            value = (struct span){near * near, far * far};
+        } else {
+            value = corners(x, y, &check);
+        }
+        for (int k = 0; k < run->directions; k++) {
+            struct span slope, s = slope_of(a, k, i), t = slope_of(b, k, i);
+            if (is_square) {
+                slope = slope_times(s, x);
+                slope = (struct span){slope.low + slope.low, slope.high + slope.high};
+                vector largest = size_of(s);
+                STORE(out->roots[k] + i, largest + largest * ALL(4 * DBL_EPSILON));
+            } else if (b_is_constant || a_is_constant) {
+                slope = b_is_constant ? slope_times(s, y) : slope_times(t, x);
+            } else {
+                slope = sum_of(slope_times(s, y), slope_times(t, x));
+            }
+            put_slope(out, k, i, slope);
+        }
+        put_computed(out, i, outwards(value), check);
+    }
+    out->is_nan = is_nan;
+    out->has_roots = is_square;
+}
+
+static inline void run_sum(struct machine *run, const struct expr_lanes *a, const struct expr_lanes *b,
+                           bool is_difference, struct expr_lanes *out) {
+    const bool has_roots = !is_difference && (a->has_roots || b->has_roots), b_is_constant = b == &run->constants[1];
+    const uint32_t is_nan = a->is_nan | b->is_nan;
+    out->may_be_nan = a->may_be_nan | b->may_be_nan;
+    EACH_VECTOR {
+        struct span x = value_of(a, i), y = value_of(b, i);
+        for (int k = 0; k < run->directions; k++) {
+            vector root = has_roots ? root_of(a, k, i) : ALL(0), other = has_roots ? root_of(b, k, i) : ALL(0);
+            struct span s = slope_of(a, k, i), t = slope_of(b, k, i);
+            if (is_difference)
+                t = (struct span){-t.high, -t.low};
+            put_slope(out, k, i, b_is_constant ? s : sum_of(s, t));
+            if (has_roots) {
+                vector both = ROOT_OF(root * root + other * other);
+                STORE(out->roots[k] + i, both + both * ALL(4 * DBL_EPSILON));
+            }
+        }
+        if (is_difference)
+            y = (struct span){-y.high, -y.low};
+        struct span value = {x.low + y.low, x.high + y.high};
+        put_computed(out, i, outwards(value), value.low + value.high);
+    }
+    out->is_nan = is_nan;
+    out->has_roots = has_roots;
+}
+
+/* The quotient rule: (a' - value b') / b, with signs so that b is above 0. */
+static inline void run_quotient(struct machine *run, const struct expr_lanes *a, const struct expr_lanes *b,
+                                struct expr_lanes *out) {
+    const bool b_is_constant = b == &run->constants[1];
+    const uint32_t is_nan = a->is_nan | b->is_nan;
+    uint32_t may_be_nan = a->may_be_nan | b->may_be_nan;
+    EACH_VECTOR {
+        const struct span x = value_of(a, i), y = value_of(b, i);
+        lanes_mask is_negative = LESS(y.high, ALL(0));
+        struct span by = pick(is_negative, (struct span){-y.high, -y.low}, y);
+        struct span over = pick(is_negative, (struct span){-x.high, -x.low}, x);
+        lanes_mask has_zero = LESS_EQUAL(by.low, ALL(0));
+        struct span value = pick(has_zero, anything(), outwards(over_positive(over, by)));
+        /* NaN is 0 / 0 or infinity by infinity. */
+        vector nearest = MAX_OF(MAX_OF(x.low, -x.high), ALL(0));
+        uint64_t is_some = IS_LESS(ALL(0), nearest), zeros = BITS(has_zero) & ~is_some;
+        uint64_t infinite = IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-x.low, x.high)) &
+                            IS_LESS_EQUAL(ALL((double)INFINITY), MAX_OF(-y.low, y.high));
+        may_be_nan |= (uint32_t)((zeros | infinite) << i);
+        if (infinite)
+            value = (struct span){CHOOSE(infinite, ALL(-(double)INFINITY), value.low),
+                                  CHOOSE(infinite, ALL((double)INFINITY), value.high)};
+        for (int k = 0; k < run->directions; k++) {
+            struct span s = slope_of(a, k, i), t = slope_of(b, k, i), slope = s;
+            if (!b_is_constant) {
+                struct span other = slope_times(t, value);
+                slope = sum_of(slope, (struct span){-other.high, -other.low});
+            }
+            slope = pick(is_negative, (struct span){-slope.high, -slope.low}, slope);
+            slope = repaired(outwards(over_positive(slope, by)));
+            lanes_mask moves = LESS(ALL(0), MAX_OF(size_of(s), size_of(t)));
+            put_slope(out, k, i, pick(has_zero, pick(moves, anything(), single_number(0)), slope));
+        }
+        put_value(out, i, value);
+    }
+    out->may_be_nan = may_be_nan;
+    out->is_nan = is_nan;
+    out->has_roots = false;
+}
+
+static inline void run_root(struct machine *run, const struct expr_lanes *a, struct expr_lanes *out) {
+    uint32_t is_nan = a->is_nan;
+    out->may_be_nan = a->may_be_nan;
+    EACH_VECTOR {
+        const struct span x = value_of(a, i);
+        struct span value = {below(ROOT_OF(MAX_OF(x.low, ALL(0)))), above(ROOT_OF(x.high))};
+        is_nan |= (uint32_t)(IS_LESS(x.high, ALL(0)) << i);
+        out->may_be_nan |= (uint32_t)(IS_LESS(x.low, ALL(0)) << i);
+        for (int k = 0; k < run->directions; k++) {
+            struct span t = slope_of(a, k, i), half = {t.low * ALL(0.5), t.high * ALL(0.5)};
+            struct span slope = repaired(outwards(over_positive(half, value)));
+            vector max = root_of(a, k, i);
+            put_slope(out, k, i,
+                      (struct span){MAX_OF(slope.low, PICK(LESS(t.low, ALL(0)), -max, ALL(0))),
+                                    MIN_OF(slope.high, PICK(LESS(ALL(0), t.high), max, ALL(0)))});
+        }
+        put_computed(out, i, value, value.high);
+    }
+    out->is_nan = is_nan;
+    out->has_roots = false;
+}
+
+/* --- choices --- */
+
+static inline void run_extreme(struct machine *run, const struct expr_lanes *a, const struct expr_lanes *b, bool is_max,
+                               struct expr_lanes *out, struct expr_choice *decided) {
+    const uint32_t a_nan = a->may_be_nan, b_nan = b->may_be_nan, is_nan = a->is_nan;
+    EACH_VECTOR {
+        const struct span x = value_of(a, i), y = value_of(b, i);
+        lanes_mask first = is_max ? LESS_EQUAL(y.high, x.low) : LESS_EQUAL(x.high, y.low);
+        lanes_mask second = is_max ? LESS(x.high, y.low) : LESS(y.high, x.low);
+        struct span value = is_max ? (struct span){MAX_OF(x.low, y.low), MAX_OF(x.high, y.high)}
+                                   : (struct span){MIN_OF(x.low, y.low), MIN_OF(x.high, y.high)};
+        for (int k = 0; k < run->directions; k++) {
+            struct span s = slope_of(a, k, i), t = slope_of(b, k, i);
+            struct span slope = pick(first, s, pick(second, t, enclosure(s, t)));
+            if (b_nan)
+                slope = (struct span){CHOOSE(b_nan >> i, ALL(-(double)INFINITY), slope.low),
+                                      CHOOSE(b_nan >> i, ALL((double)INFINITY), slope.high)};
+            put_slope(out, k, i, slope);
+        }
+        decided->first |= BITS(first) << i;
+        decided->second |= BITS(second) << i;
+        if (b_nan && is_max)
+            value.low = CHOOSE(b_nan >> i, x.low, value.low);
+        else if (b_nan)
+            value.high = CHOOSE(b_nan >> i, x.high, value.high);
+        put_value(out, i, value);
+    }
+    decided->second &= ~(uint64_t)(a_nan | b_nan);
+    out->may_be_nan = a_nan;
+    out->is_nan = is_nan;
+    out->has_roots = false;
+}
+
+static inline void run_size(struct machine *run, const struct expr_lanes *a, struct expr_lanes *out,
+                            struct expr_choice *decided) {
+    uint32_t may_be_nan = a->may_be_nan, is_nan = a->is_nan;
+    EACH_VECTOR {
+        const struct span x = value_of(a, i);
+        lanes_mask is_positive = LESS_EQUAL(ALL(0), x.low), is_negative = LESS_EQUAL(x.high, ALL(0));
+        decided->first |= IS_LESS(ALL(0), x.low) << i;
+        for (int k = 0; k < run->directions; k++) {
+            struct span s = slope_of(a, k, i), t = {-s.high, -s.low};
+            put_slope(out, k, i, pick(is_positive, s, pick(is_negative, t, enclosure(s, t))));
+        }
+        put_value(out, i, (struct span){MAX_OF(MAX_OF(x.low, -x.high), ALL(0)), MAX_OF(-x.low, x.high)});
+    }
+    out->may_be_nan = may_be_nan;
+    out->is_nan = is_nan;
+    out->has_roots = false;
+}
+
+static inline void run_negation(struct machine *run, const struct expr_lanes *a, struct expr_lanes *out) {
+    EACH_VECTOR {
+        const struct span x = value_of(a, i);
+        for (int k = 0; k < run->directions; k++) {
+            struct span s = slope_of(a, k, i);
+            put_slope(out, k, i, (struct span){-s.high, -s.low});
+        }
+        put_value(out, i, (struct span){-x.high, -x.low});
+    }
+    out->may_be_nan = a->may_be_nan;
+    out->is_nan = a->is_nan;
+    out->has_roots = false;
+}
+
+/* --- cases --- */
+
+/* Lanes in which a case has its second side: half of them, others for each case. */
+static const uint32_t second_sides[] = {0xaa, 0xcc, 0xf0};
+
+/* Divides a jump of the result among the lanes, if there is one with two sides and room for it. */
+static void divide_case(struct machine *run, const struct expr_instruction *in, const struct expr_lanes *from[3],
+                        struct expr_lanes *out) {
+    bool is_divided = false;
+    struct expr_lanes result = *out;
+    for (int lane = 0; lane < EXPR_LANES && run->cases < (int)(sizeof second_sides / sizeof second_sides[0]); lane++) {
+        const bool second = second_sides[run->cases] >> lane & 1;
+        double low = out->low[lane], high = out->high[lane], slope = 0;
+        if ((out->may_be_nan | from[0]->may_be_nan | from[1]->may_be_nan) >> lane & 1)
+            continue;
+        if (in->operation == EXPR_MODULO) {
+            double period = from[1]->low[lane], a = from[0]->low[lane], b = from[0]->high[lane];
+            double before = expr_modulo(a, period), after = expr_modulo(b, period);
+            if (!(period > 0 && period >= from[1]->high[lane] && b - a < 0.5 * period && before > after))
+                continue;
+            low = second ? 0 : before - period * DBL_EPSILON;
+            high = second ? after + period * DBL_EPSILON : period;
+            slope = 1;
+        } else if (high == low + 1) {
+            low = second ? high : low;
+            high = low;
+        } else {
+            continue;
+        }
+        is_divided = true;
+        result.low[lane] = low;
+        result.high[lane] = high;
+        for (int k = 0; k < run->directions; k++) {
+            result.slopes[k].low[lane] = slope > 0 ? from[0]->slopes[k].low[lane] : 0;
+            result.slopes[k].high[lane] = slope > 0 ? from[0]->slopes[k].high[lane] : 0;
+        }
+    }
+    run->cases += is_divided;
+    *out = result;
+}
+
+static bool may_be_divided(enum expr_operation operation) {
+    return operation == EXPR_FLOOR || operation == EXPR_CEIL || operation == EXPR_FLOOR_DIVIDE ||
+           operation == EXPR_MODULO || expr_result_type(operation) == EXPR_TYPE_B;
+}
+
+/* --- all of them --- */
+
+static inline __attribute__((always_inline)) void run_lanes(struct machine *run, struct expr_choice *choices) {
+    const struct expr_program *program = run->program;
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+        struct expr_lanes *out = &run->values[(uint32_t)in->out - program->constant_count];
+        const struct expr_lanes *from[3] = {operand(run, in, 0, in->a), operand(run, in, 1, in->b),
+                                            operand(run, in, 2, in->c)};
+        struct expr_choice decided = {0, 0};
+        switch (
+            (unsigned)in->operation) { /* no list: every operation without vectors, new ones too, is right box by box */
+        case EXPR_ADD:
+        case EXPR_SUBTRACT:
+            run_sum(run, from[0], from[1], in->operation == EXPR_SUBTRACT, out);
+            break;
+        case EXPR_MULTIPLY:
+            run_product(run, from[0], from[1], in->a == in->b, out);
+            break;
+        case EXPR_DIVIDE:
+            run_quotient(run, from[0], from[1], out);
+            break;
+        case EXPR_NEGATE:
+            run_negation(run, from[0], out);
+            break;
+        case EXPR_ABS:
+            run_size(run, from[0], out, &decided);
+            break;
+        case EXPR_SQRT:
+            run_root(run, from[0], out);
+            break;
+        case EXPR_MIN:
+        case EXPR_MAX:
+            run_extreme(run, from[0], from[1], in->operation == EXPR_MAX, out, &decided);
+            break;
+        case EXPR_SIN:
+        case EXPR_COS: {
+            struct expr_lanes *other = NULL;
+            const bool is_sine = in->operation == EXPR_SIN;
+            if (expr_is_pair(in, end)) {
+                if (choices)
+                    choices[in - program->code] = decided;
+                other = &run->values[(uint32_t)(++in)->out - program->constant_count];
+            }
+            run_wave(run, from[0], is_sine ? out : other, is_sine ? other : out);
+            break;
+        }
+        case EXPR_EXP:
+            run_exponential(run, from[0], out);
+            break;
+        default: {
+            struct expr_lanes result;
+            run_singly(run, in, from, &result, &decided);
+            if (run->are_cases && may_be_divided((enum expr_operation)in->operation))
+                divide_case(run, in, from, &result);
+            *out = result;
+        }
+        }
+        if (choices)
+            choices[in - program->code] = decided;
+    }
+}
+
+void KERNEL(run_slopes)(const struct expr_program *program, int directions, bool are_cases, struct expr_lanes *values,
+                        struct expr_choice *choices) {
+    struct machine run = {.program = program, .values = values, .are_cases = are_cases, .cases = 0};
+    for (int k = 0; k < 3; k++)
+        run.constants[k] = (struct expr_lanes){.has_roots = false};
+    if (directions == 1) {
+        run.directions = 1;
+        run_lanes(&run, choices);
+    } else {
+        run.directions = directions;
+        run_lanes(&run, choices);
+    }
+}
