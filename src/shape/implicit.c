@@ -1,8 +1,8 @@
 /* Crossings of a line and an implicit solid. The line passes the regions (implicit_regions.c) in order. In a region
  * where the sign may change, the function's values at the ends of the stretch and bounds of its slope along the line
  * decide: a stretch on which the slope cannot have made a crossing has none; one with different signs and a slope of
- * one sign has one, which Chandrupatla's method finds; of anything else closer bounds are computed, over the stretch
- * alone, or it is halved. So nothing is lost however thin it is, until stretches are as short as the resolution.
+ * one sign has one, which Chandrupatla's method finds; anything else is divided into eight, whose bounds are computed
+ * at once. So nothing is lost however thin it is, until stretches are as short as the resolution.
  *
  * The sign is carried along the line, so crossings always alternate. Every region is searched from end to end, also for
  * rays that begin or end in it: the nearest hit and the list of all crossings have the same bits.
@@ -32,6 +32,7 @@ struct search {
     uint64_t work;
     struct crossing waiting; /* not given out yet: the next one may cancel it */
     bool has_waiting, has_found, is_done, is_full;
+    bool is_any;           /* any crossing does */
     bool is_unknown;       /* what `inside` is: the stretches before were left out */
     const struct ray *ray; /* of a nearest hit: its interval; then `found` */
     struct crossing *found;
@@ -128,29 +129,30 @@ static double evaluate(struct search *search, const struct expr_program *program
     return outputs[0];
 }
 
-static struct expr_interval stretch(double origin, double direction, double a, double b, double margin) {
-    double p = origin + direction * a, q = origin + direction * b;
-    return (struct expr_interval){(p < q ? p : q) - margin, (p < q ? q : p) + margin, false};
-}
-
-/* Bounds of the function and of its slope from a to b. */
-static struct expr_interval bound(struct search *search, const struct expr_program *program, double a, double b,
-                                  struct slope *slope) {
-    unsigned char memory[expr_slopes_size(program) + IMPLICIT_ALIGNMENT];
-    struct expr_interval inputs[EXPR_INPUT_COUNT];
-    struct expr_range outputs[EXPR_OUTPUTS];
+/* Bounds of the function and of its slope over the eighths of the stretch from a to b, or in the cases of all of it. */
+static void bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
+                          bool are_cases, struct expr_lane_range *out) {
+    unsigned char memory[expr_lanes_size(program) + IMPLICIT_ALIGNMENT];
+    struct expr_lane_inputs inputs;
+    struct expr_lane_range outputs[EXPR_OUTPUTS];
     struct expr_directions directions;
     double margin = search->solid->size * 0x1p-50;
     directions.count = 1;
+    inputs.are_cases = are_cases;
     for (int k = 0; k < 3; k++) {
         double d = vec3_get(search->line.direction, k);
-        inputs[EXPR_POINT_X + k] = stretch(search->origin[k], d, a, b, margin);
+        double *low = inputs.low[EXPR_POINT_X + k], *high = inputs.high[EXPR_POINT_X + k];
+        for (int i = 0; i < EXPR_LANES; i++) {
+            double p = search->origin[k] + d * ends[are_cases ? 0 : i];
+            double q = search->origin[k] + d * ends[are_cases ? EXPR_LANES : i + 1];
+            low[i] = (p < q ? p : q) - margin;
+            high[i] = (p < q ? q : p) + margin;
+        }
         directions.seeds[EXPR_POINT_X + k][0] = d;
     }
     search->work += 10 * (uint64_t)program->count;
-    expr_evaluate_slopes(program, inputs, &directions, outputs, NULL, implicit_aligned(memory));
-    *slope = (struct slope){outputs[0].slopes[0].low, outputs[0].slopes[0].high};
-    return outputs[0].is_nan ? (struct expr_interval){0, 0, false} : outputs[0].value; /* NaN is outside */
+    expr_evaluate_slopes_lanes(program, &inputs, &directions, outputs, NULL, implicit_aligned(memory));
+    *out = outputs[0];
 }
 
 static struct slope slope_in(const struct search *search, const struct implicit_region *region) {
@@ -221,51 +223,134 @@ static bool stays(const struct search *search, const struct part *part, struct s
     return below ? farthest < rounding : farthest > -rounding;
 }
 
-/* Halves of a region are cheaper than closer bounds, at first. */
-enum { HALVED = 3 };
+/* On which side of the surface a place is, as far as bounds say. */
+enum side { SIDE_OUTSIDE, SIDE_INSIDE, SIDE_UNKNOWN };
 
-static void search_part(struct search *search, uint32_t number, struct part part, struct slope slope, int depth) {
+static enum side side_of_lane(const struct expr_lane_range *range, int lane) {
+    if (range->low[lane] >= 0 || range->is_nan >> lane & 1) /* NaN is outside */
+        return SIDE_OUTSIDE;
+    return range->high[lane] < 0 && !(range->may_be_nan >> lane & 1) ? SIDE_INSIDE : SIDE_UNKNOWN;
+}
+
+/* On both sides of a jump the sign may be the same. */
+static enum side side_of_cases(struct search *search, const struct expr_program *program, double a, double b) {
+    const double ends[EXPR_LANES + 1] = {[0] = a, [EXPR_LANES] = b};
+    struct expr_lane_range range;
+    bound_eighths(search, program, ends, true, &range);
+    enum side side = side_of_lane(&range, 0);
+    for (int i = 1; i < EXPR_LANES; i++)
+        side = side_of_lane(&range, i) == side ? side : SIDE_UNKNOWN;
+    return side;
+}
+
+/* The line is on a known side from s on. */
+static void settle(struct search *search, bool inside, double s, uint32_t number, uint32_t first_number) {
+    if (search->is_unknown)
+        search->inside = inside;
+    search->is_unknown = false;
+    if (search->inside != inside)
+        cross(search, s, s > search->begin ? number : first_number);
+}
+
+/* A part with one crossing, or with an odd number that are next to each other. */
+static void pass_change(struct search *search, uint32_t number, const struct part *part) {
     const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
-    bool below = part.fa < 0, changes = below != (part.fb < 0);
-    for (int pass = depth < HALVED ? 1 : 0; pass < 2; pass++) {
-        if (changes ? slope.low >= 0 || slope.high <= 0 : stays(search, &part, slope))
-            break;
-        if (part.b - part.a <= search->solid->size * resolution || search->work > WORK)
-            break;
-        if (pass == 0) {
-            struct slope here;
-            struct expr_interval value = bound(search, program, part.a, part.b, &here);
-            slope.low = here.low > slope.low ? here.low : slope.low;
-            slope.high = here.high < slope.high ? here.high : slope.high;
-            if (!changes && (below ? value.high < 0 && !value.may_be_nan : value.low >= 0))
-                return;
-            continue;
-        }
-        double middle = part.a + (part.b - part.a) * 0.5, value = evaluate(search, program, middle);
-        search_part(search, number, (struct part){part.a, part.fa, middle, value}, slope, depth + 1);
-        if (!search->is_done)
-            search_part(search, number, (struct part){middle, value, part.b, part.fb}, slope, depth + 1);
+    double t = line_t(&search->line, part->a);
+    if (search->is_any && t > search->ray->t_min && line_t(&search->line, part->b) < search->ray->t_max &&
+        !(search->has_waiting && search->waiting.t >= t)) {
+        search->has_found = search->is_done = true; /* wherever it is */
         return;
     }
-    if (changes)
-        cross(search, find_change(search, program, part.a, part.fa, part.b, part.fb), number);
+    cross(search, find_change(search, program, part->a, part->fa, part->b, part->fb), number);
+}
+
+static void search_eighths(struct search *search, uint32_t number, const struct part *part, struct slope slope);
+
+static void search_part(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
+    bool changes = (part->fa < 0) != (part->fb < 0);
+    bool is_known = changes ? slope.low >= 0 || slope.high <= 0 : stays(search, part, slope);
+    if (!is_known && part->b - part->a > search->solid->size * resolution && search->work < WORK)
+        search_eighths(search, number, part, slope);
+    else if (changes)
+        pass_change(search, number, part);
+}
+
+/* The value at s, which is remembered for the next part. */
+static double value_at(struct search *search, const struct expr_program *program, double s) {
+    if (search->at != s)
+        search->value = evaluate(search, program, s);
+    search->at = s;
+    return search->value;
+}
+
+static void search_eighths(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
+    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
+    struct expr_lane_range range;
+    double ends[EXPR_LANES + 1];
+    for (int i = 0; i < EXPR_LANES; i++)
+        ends[i] = part->a + (part->b - part->a) * ((double)i / EXPR_LANES);
+    ends[EXPR_LANES] = part->b;
+    bound_eighths(search, program, ends, false, &range);
+    for (int i = 0; i < EXPR_LANES && !search->is_done; i++) {
+        enum side side = side_of_lane(&range, i);
+        struct slope here = {range.slopes[0].low[i], range.slopes[0].high[i]};
+        if (side == SIDE_UNKNOWN && !(here.low > -INFINITY && here.high < INFINITY))
+            side = side_of_cases(search, program, ends[i], ends[i + 1]);
+        if (side != SIDE_UNKNOWN) {
+            settle(search, side == SIDE_INSIDE, ends[i], number, number);
+            continue;
+        }
+        here.low = here.low > slope.low ? here.low : slope.low;
+        here.high = here.high < slope.high ? here.high : slope.high;
+        struct part eighth = {.a = ends[i], .b = ends[i + 1]};
+        eighth.fa = i == 0 ? part->fa : value_at(search, program, ends[i]);
+        eighth.fb = i == EXPR_LANES - 1 ? part->fb : value_at(search, program, ends[i + 1]);
+        settle(search, eighth.fa < 0, ends[i], number, number);
+        if (!search->is_done)
+            search_part(search, number, &eighth, here);
+    }
+}
+
+/* The box of a node. */
+struct node_box {
+    double lo[3], hi[3];
+};
+
+/* By the value in the middle of the region and the slopes: they bound the function by the least of some linear
+ * functions and by the largest of others, which are extreme at the ends of the stretch. */
+static enum side side_by_slopes(const struct search *search, const struct implicit_region *region,
+                                const struct node_box *box, double s0, double s1) {
+    double lows[2], highs[2];
+    for (int end = 0; end < 2; end++) {
+        double s = end == 0 ? s0 : s1, low = (double)region->middle_low, high = (double)region->middle_high, size = 0;
+        for (int k = 0; k < 3; k++) {
+            double off =
+                search->origin[k] + vec3_get(search->line.direction, k) * s - region_middle(box->lo[k], box->hi[k]);
+            double a = off * (double)region->low[k], b = off * (double)region->high[k];
+            low += a < b ? a : b;
+            high += a < b ? b : a;
+            size += fabs(a) + fabs(b);
+        }
+        lows[end] = low - size * 0x1p-44;
+        highs[end] = high + size * 0x1p-44;
+    }
+    if (lows[0] > 0 && lows[1] > 0)
+        return SIDE_OUTSIDE;
+    return highs[0] < 0 && highs[1] < 0 ? SIDE_INSIDE : SIDE_UNKNOWN;
 }
 
 static void pass_surface(struct search *search, uint32_t number, double s0, double s1) {
     const struct implicit_region *region = &search->solid->regions[number];
     const struct expr_program *program = &search->solid->programs[region->program];
     struct part part = {.a = s0, .b = s1};
-    part.fa = search->at == s0 ? search->value : evaluate(search, program, s0);
-    part.fb = evaluate(search, program, s1);
-    search->at = s1;
-    search->value = part.fb;
-    if (search->is_unknown)
-        search->inside = part.fa < 0;
-    search->is_unknown = false;
-    if ((part.fa < 0) != search->inside)
-        cross(search, s0, s0 > search->begin ? number : search->begin_part);
+    part.fa = value_at(search, program, s0);
+    part.fb = value_at(search, program, s1);
+    double value = part.fb;
+    settle(search, part.fa < 0, s0, number, search->begin_part);
     if (!search->is_done)
-        search_part(search, number, part, slope_in(search, region), 0);
+        search_part(search, number, &part, slope_in(search, region));
+    search->at = s1;
+    search->value = value;
 }
 
 /* A ray that begins later needs of a stretch only on which side the next one begins. */
@@ -273,18 +358,19 @@ static bool is_before(const struct search *search, double s) {
     return search->ray && line_t(&search->line, s) <= search->ray->t_min;
 }
 
-static void pass_region(struct search *search, enum region_kind kind, uint32_t number, double s0, double s1) {
+static void pass_region(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
+    const uint32_t value = search->solid->nodes[node], number = value >> 2;
     if (is_before(search, s1)) {
         search->is_unknown = true;
-    } else if (kind == REGION_SURFACE) {
-        pass_surface(search, number, s0, s1);
     } else {
-        bool inside = kind == REGION_INSIDE;
-        if (search->is_unknown)
-            search->inside = inside;
-        search->is_unknown = false;
-        if (search->inside != inside)
-            cross(search, s0, s0 > search->begin ? PART_WHOLE : search->begin_part);
+        enum region_kind kind = (enum region_kind)(value & 3);
+        enum side side = kind == REGION_INSIDE ? SIDE_INSIDE : SIDE_OUTSIDE;
+        if (kind == REGION_SURFACE)
+            side = side_by_slopes(search, &search->solid->regions[number], box, s0, s1);
+        if (side == SIDE_UNKNOWN)
+            pass_surface(search, number, s0, s1);
+        else
+            settle(search, side == SIDE_INSIDE, s0, kind == REGION_SURFACE ? number : PART_WHOLE, search->begin_part);
     }
     if (!search->ray || search->is_done)
         return;
@@ -294,17 +380,12 @@ static void pass_region(struct search *search, enum region_kind kind, uint32_t n
     search->is_done = search->is_done || t >= search->ray->t_max;
 }
 
-/* The box of a node. */
-struct node_box {
-    double lo[3], hi[3];
-};
-
 /* The stretch from s0 to s1, on which the line is in a node of the octree. */
 static void pass_node(struct search *search, uint32_t node, const struct node_box *box, double s0, double s1) {
     uint32_t value = search->solid->nodes[node], number = value >> 2, part = 0;
     enum region_kind kind = (enum region_kind)(value & 3);
     if (kind != REGION_SPLIT || is_before(search, s1)) {
-        pass_region(search, kind, number, s0, s1);
+        pass_region(search, node, box, s0, s1);
         return;
     }
     /* Through the parts in order: the line changes to the other half of an axis where it meets the middle. */
@@ -357,7 +438,7 @@ static bool search_begin(struct search *search, const struct implicit *solid, co
         search->inverse[k] = fabs(d) > 0x1p-1000 ? 1 / d : 0;
     }
     search->inside = search->is_unknown = search->has_waiting = search->has_found = search->is_done = search->is_full =
-        false;
+        search->is_any = false;
     search->work = 0;
     search->at = (double)NAN;
     search->ray = NULL;
@@ -393,15 +474,25 @@ bool implicit_crossings(const struct implicit *solid, const struct ray *ray, str
     return true;
 }
 
-bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out) {
+static bool find_first(const struct implicit *solid, const struct ray *ray, bool is_any, struct crossing *out) {
     struct search search;
     if (!search_begin(&search, solid, ray) || line_t(&search.line, search.begin) >= ray->t_max ||
         line_t(&search.line, search.end) <= ray->t_min)
         return false;
     search.ray = ray;
     search.found = out;
+    search.is_any = is_any;
     search_run(&search);
     return search.has_found;
+}
+
+bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out) {
+    return find_first(solid, ray, false, out);
+}
+
+bool implicit_any(const struct implicit *solid, const struct ray *ray) {
+    struct crossing ignored;
+    return find_first(solid, ray, true, &ignored);
 }
 
 /* --- points --- */

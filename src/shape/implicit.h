@@ -30,6 +30,8 @@ bool implicit_is_closed(const struct implicit *solid);
 bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
                         struct crossing_list *out);
 bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out);
+/* Whether there is a crossing in the ray's interval; faster, since it need not be known where. */
+bool implicit_any(const struct implicit *solid, const struct ray *ray);
 bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);

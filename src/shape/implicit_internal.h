@@ -13,7 +13,8 @@ enum region_kind { REGION_OUTSIDE, REGION_INSIDE, REGION_SURFACE, REGION_SPLIT }
 /* A region in which the sign may change. Slopes bound the derivatives along the axes, rounded outwards. */
 struct implicit_region {
     float low[3], high[3];
-    uint32_t program; /* the function, shortened for the region */
+    float middle_low, middle_high; /* bounds of the function in the middle of the region; not finite where it is NaN */
+    uint32_t program;              /* the function, shortened for the region */
 };
 
 struct implicit {

@@ -15,9 +15,9 @@
 
 /* What bounds the work and the memory: nodes, instructions that are evaluated over regions, instructions that are kept
  * in shortened programs. */
-enum { NODES = 1 << 16, EVALUATED = 6000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
+enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
 /* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
-static const double slope_spread = 0.6;
+static const double slope_spread = 0.4;
 
 /* A node while it waits. */
 struct pending {
@@ -77,14 +77,14 @@ static bool is_flat(const struct expr_interval slopes[EXPR_DIRECTIONS]) {
 }
 
 /* The program for the region whose choices have been found: a shorter one where that pays. */
-static bool shorten(struct building *b, uint32_t program, uint32_t *out) {
+static bool shorten(struct building *b, uint32_t program, int lane, uint32_t *out) {
     const struct expr_program *whole = &b->programs[program];
     *out = program;
     if (b->kept > KEPT)
         return true;
     struct expr_stack stack = {.code = b->code, .free = whole->count};
     struct expr_program shorter, stored;
-    if (!expr_shorten(whole, b->choices, 0, &stack, implicit_aligned(b->scratch), &shorter) ||
+    if (!expr_shorten(whole, b->choices, (uint32_t)lane, &stack, implicit_aligned(b->scratch), &shorter) ||
         shorter.count + shorter.count / 16 >= whole->count)
         return true;
     if (!expr_keep(&shorter, b->arena, &stored) ||
@@ -102,7 +102,14 @@ static float below(double x) {
 }
 
 static bool add_region(struct building *b, uint32_t node, const struct expr_interval slopes[EXPR_DIRECTIONS]) {
-    struct implicit_region region = {.program = b->pending[node].program};
+    const struct pending *here = &b->pending[node];
+    struct implicit_region region = {.program = here->program};
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+    for (int k = 0; k < 3; k++)
+        inputs[EXPR_POINT_X + k] = region_middle(vec3_get(here->box.min, k), vec3_get(here->box.max, k));
+    expr_evaluate(&b->programs[here->program], inputs, outputs);
+    region.middle_low = outputs[0] == outputs[0] ? below(outputs[0]) : -INFINITY;
+    region.middle_high = outputs[0] == outputs[0] ? -below(-outputs[0]) : INFINITY;
     for (int k = 0; k < 3; k++) {
         region.low[k] = below(slopes[k].low);
         region.high[k] = -below(-slopes[k].high);
@@ -120,7 +127,8 @@ static bool add_nodes(struct building *b, uint32_t count) {
            reserve((void **)&b->pending, &b->node_capacity, b->node_count, count, sizeof *b->pending);
 }
 
-static bool split(struct building *b, uint32_t node) {
+/* Splits a node; its parts wait. */
+static bool add_parts(struct building *b, uint32_t node) {
     uint32_t first = b->node_count;
     if (!add_nodes(b, 8))
         return false;
@@ -149,40 +157,84 @@ static bool meets_ball(const struct implicit_input *in, const struct box *box) {
     return square <= in->radius * in->radius * (1 + 0x1p-40);
 }
 
-static bool decide(struct building *b, uint32_t node) {
+/* Of one lane of the slopes. */
+static enum region_kind kind_of_lane(const struct expr_lane_range *range, int lane) {
+    if (range->low[lane] >= 0 || range->is_nan >> lane & 1)
+        return REGION_OUTSIDE;
+    return range->high[lane] < 0 && !(range->may_be_nan >> lane & 1) ? REGION_INSIDE : REGION_SURFACE;
+}
+
+static void evaluate_boxes(struct building *b, const struct expr_program *program, const struct box boxes[EXPR_LANES],
+                           bool are_cases, struct expr_lane_range *out) {
+    struct expr_lane_inputs inputs;
+    struct expr_lane_range outputs[EXPR_OUTPUTS];
+    inputs.are_cases = are_cases;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < EXPR_LANES; i++) {
+            inputs.low[EXPR_POINT_X + k][i] = vec3_get(boxes[are_cases ? 0 : i].min, k);
+            inputs.high[EXPR_POINT_X + k][i] = vec3_get(boxes[are_cases ? 0 : i].max, k);
+        }
+    expr_evaluate_slopes_lanes(program, &inputs, &b->directions, outputs, are_cases ? NULL : b->choices,
+                               implicit_aligned(b->rows));
+    *out = outputs[0];
+}
+
+/* Where the function may jump within a region, its sign may be the same on both sides. */
+static enum region_kind kind_of_cases(struct building *b, const struct expr_program *program, const struct box *box) {
+    struct expr_lane_range range;
+    evaluate_boxes(b, program, box, true, &range);
+    enum region_kind kind = kind_of_lane(&range, 0);
+    for (int i = 1; i < EXPR_LANES; i++)
+        kind = kind_of_lane(&range, i) == kind ? kind : REGION_SURFACE;
+    return kind;
+}
+
+/* Decides what a node is, from bounds over its box in one lane. */
+static bool decide(struct building *b, uint32_t node, const struct box *box, const struct expr_lane_range *range,
+                   int lane) {
     struct implicit *solid = b->solid;
     struct pending *here = &b->pending[node];
-    struct box box = wider(solid, &here->box);
-    if (solid->in.is_ball && !meets_ball(&solid->in, &box)) {
-        b->nodes[node] = REGION_OUTSIDE;
-        return true;
+    struct expr_interval slopes[EXPR_DIRECTIONS];
+    enum region_kind kind = kind_of_lane(range, lane);
+    bool is_bounded = true;
+    for (int k = 0; k < 3; k++) {
+        slopes[k] = (struct expr_interval){range->slopes[k].low[lane], range->slopes[k].high[lane], false};
+        is_bounded = is_bounded && is_finite(&slopes[k]);
     }
-    struct expr_interval inputs[EXPR_INPUT_COUNT];
-    struct expr_range range[EXPR_OUTPUTS];
-    for (int k = 0; k < 3; k++)
-        inputs[EXPR_POINT_X + k] = (struct expr_interval){vec3_get(box.min, k), vec3_get(box.max, k), false};
-    const struct expr_program *program = &b->programs[here->program];
-    expr_evaluate_slopes(program, inputs, &b->directions, range, b->choices, implicit_aligned(b->rows));
-    if (range[0].value.low >= 0 || range[0].is_nan) {
-        b->nodes[node] = REGION_OUTSIDE;
+    if (solid->in.is_ball && !meets_ball(&solid->in, box))
+        kind = REGION_OUTSIDE;
+    else if (kind == REGION_SURFACE && !is_bounded)
+        kind = kind_of_cases(b, &b->programs[here->program], box);
+    b->nodes[node] = kind;
+    if (kind == REGION_OUTSIDE)
         return true;
-    }
-    solid->tight = box_join(solid->tight, box);
-    if (range[0].value.high < 0 && !range[0].value.may_be_nan) {
-        b->nodes[node] = REGION_INSIDE;
+    solid->tight = box_join(solid->tight, *box);
+    if (kind == REGION_INSIDE)
         return true;
-    }
     uint32_t before = b->programs[here->program].count;
-    if (!shorten(b, here->program, &here->program))
+    if (!shorten(b, here->program, lane, &here->program))
         return false;
     uint32_t after = b->programs[here->program].count;
-    bool is_simple = is_flat(range[0].slopes) && (after < 32 || after > before - before / 8);
+    bool is_simple = is_flat(slopes) && (after < 32 || after > before - before / 8);
     bool has_room = here->level < LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED;
     if (has_room && (here->level < FIRST_LEVELS || !is_simple)) {
         b->evaluated += 8 * (uint64_t)after;
-        return split(b, node);
+        return add_parts(b, node);
     }
-    return add_region(b, node, range[0].slopes);
+    return add_region(b, node, slopes);
+}
+
+/* Decides the eight parts of a node. */
+static bool decide_parts(struct building *b, uint32_t first) {
+    struct box boxes[EXPR_LANES];
+    struct expr_lane_range range;
+    for (uint32_t k = 0; k < EXPR_LANES; k++)
+        boxes[k] = wider(b->solid, &b->pending[first + k].box);
+    evaluate_boxes(b, &b->programs[b->pending[first].program], boxes, false, &range);
+    for (uint32_t k = 0; k < EXPR_LANES; k++)
+        if (!decide(b, first + k, &boxes[k], &range, (int)k))
+            return false;
+    return true;
 }
 
 /* Copies an array into the arena. */
@@ -199,7 +251,7 @@ static bool build(struct building *b) {
     size_t room = (size_t)program->count + 1;
     b->choices = mem_alloc_zero(room, sizeof *b->choices);
     b->code = mem_alloc_zero(room, sizeof *b->code);
-    b->rows = mem_alloc_zero(expr_slopes_size(program) + 64, 1);
+    b->rows = mem_alloc_zero(expr_lanes_size(program) + 64, 1);
     b->scratch = mem_alloc_zero(expr_shorten_size(program) + 64, 1);
     if (!b->choices || !b->code || !b->rows || !b->scratch || !add_nodes(b, 1) ||
         !reserve((void **)&b->programs, &b->program_capacity, 0, 1, sizeof *b->programs))
@@ -208,8 +260,10 @@ static bool build(struct building *b) {
     b->pending[0] = (struct pending){.box = solid->in.bounds};
     b->node_count = 1;
     solid->tight = box_empty();
-    for (uint32_t n = 0; n < b->node_count; n++)
-        if (!decide(b, n))
+    if (!add_parts(b, 0))
+        return false;
+    for (uint32_t first = 1; first < b->node_count; first += EXPR_LANES)
+        if (!decide_parts(b, first))
             return false;
     solid->tight = box_is_empty(&solid->tight) ? solid->in.bounds : box_meet(solid->tight, solid->in.bounds);
     solid->nodes = in_arena(b->arena, b->nodes, b->node_count, sizeof *b->nodes);

@@ -505,11 +505,9 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, &ignored);
     }
-    case SHAPE_IMPLICIT: {
-        struct crossing ignored;
+    case SHAPE_IMPLICIT:
         scratch->shape_tests++;
-        return implicit_nearest(shape->implicit, ray, &ignored);
-    }
+        return implicit_any(shape->implicit, ray);
     case SHAPE_HEIGHT_FIELD: {
         struct crossing ignored;
         scratch->shape_tests++;
