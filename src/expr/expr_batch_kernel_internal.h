@@ -63,6 +63,11 @@ static inline bool is_common(enum expr_operation operation) {
         const TYPE_##B *bs = (const TYPE_##B *)(const void *)from[1];                                                  \
         const TYPE_##C *cs = (const TYPE_##C *)(const void *)from[2];                                                  \
         const bool is_whole = is_common(member) && width == EXPR_BATCH;                                                \
+        if ((member == EXPR_SIN || member == EXPR_COS) && expr_is_pair(in, end)) {                                     \
+            double *other = rows + (size_t)((++in)->out - constants) * EXPR_BATCH;                                     \
+            run_sincos(from[0], width, member == EXPR_SIN ? to : other, member == EXPR_SIN ? other : to);              \
+            break;                                                                                                     \
+        }                                                                                                              \
         if (is_whole && constant == 0)                                                                                 \
             LOOP(EXPR_BATCH, 0, A, B, C, expression)                                                                   \
         else if (is_whole && !HAS_##C && constant == 1)                                                                \
@@ -134,6 +139,24 @@ LANES(run_power, el_pow_fits(a, b), el_pow_lane(a, b), el_pow(a, b))
 LANES(run_noise, noise_fits(a, b, c), noise_perlin_lane(a, b, c), noise_perlin(a, b, c, 0))
 
 #endif
+
+/* The sine and the cosine of one number. */
+static void run_sincos(const double *from, uint32_t width, double *sines, double *cosines) {
+    double copies[EXPR_BATCH]; /* a result may replace the operand */
+    int64_t is_other = -1;
+    memcpy(copies, from, width * sizeof *from);
+#ifdef __AVX2__
+    is_other = 0;
+    INDEPENDENT
+    for (uint32_t i = 0; i < width; i++)
+        is_other |= el_angle_fits(copies[i]) ? 0 : -1;
+    INDEPENDENT
+    for (uint32_t i = 0; i < width; i++)
+        el_sincos_lane(copies[i], &sines[i], &cosines[i]);
+#endif
+    for (uint32_t i = 0; i < width && is_other; i++)
+        el_sincos(copies[i], &sines[i], &cosines[i]);
+}
 
 typedef void lanes_function(const double *, const double *, const double *, uint32_t, double *);
 static lanes_function *const lanes_functions[EXPR_OPERATION_COUNT] = {

@@ -1,6 +1,6 @@
 /* From the graph to a program. It contains the nodes that the outputs need, in the order of the graph, in which
- * operands come first. A register is free again after the last instruction that reads it (linear scan: Poletto and
- * Sarkar 1999). */
+ * operands come first; but the sine and the cosine of one number follow each other, since evaluators compute both at
+ * once. A register is free again after the last instruction that reads it (linear scan: Poletto and Sarkar 1999). */
 #include "expr/expr_program.h"
 
 #include "base/mem.h"
@@ -11,23 +11,61 @@
 
 /* The compiler's data about each node. */
 struct allocation {
-    uint32_t last;  /* the last node that reads it; its own number if there is none; the number of nodes for outputs */
-    uint16_t value; /* where it stands */
-    bool needed;
+    uint32_t last;    /* the position in the order of the last node that reads it; UINT32_MAX for outputs */
+    uint32_t wave;    /* its sine or cosine, the first of them */
+    uint32_t partner; /* of the first: the other one. EXPR_NONE: none */
+    uint16_t value;   /* where it stands */
+    bool needed, ordered;
 };
 
 static void mark(const struct expr_graph *graph, const uint32_t *outputs, int output_count,
                  struct allocation *allocations) {
+    for (uint32_t n = 0; n < graph->count; n++)
+        allocations[n].wave = allocations[n].partner = EXPR_NONE;
     for (int i = 0; i < output_count; i++)
-        allocations[outputs[i]] = (struct allocation){.last = graph->count, .needed = true};
+        allocations[outputs[i]].needed = true;
     for (uint32_t n = graph->count; n-- > 0;) {
         const struct expr_node *node = &graph->nodes[n];
-        for (int k = 0; allocations[n].needed && k < expr_operand_count(node->operation); k++) {
-            struct allocation *operand = &allocations[node->operands[k]];
-            operand->last = operand->needed && operand->last > n ? operand->last : n;
-            operand->needed = true;
+        for (int k = 0; allocations[n].needed && k < expr_operand_count(node->operation); k++)
+            allocations[node->operands[k]].needed = true;
+    }
+}
+
+static bool is_wave(const struct expr_node *node) {
+    return node->operation == EXPR_SIN || node->operation == EXPR_COS;
+}
+
+/* The needed operations in the order of the program; returns their number. */
+static uint32_t put_in_order(const struct expr_graph *graph, const uint32_t *outputs, int output_count,
+                             struct allocation *allocations, uint32_t *order) {
+    for (uint32_t n = 0; n < graph->count; n++) {
+        uint32_t *wave = is_wave(&graph->nodes[n]) ? &allocations[graph->nodes[n].operands[0]].wave : NULL;
+        if (!wave || !allocations[n].needed)
+            continue;
+        if (*wave != EXPR_NONE)
+            allocations[*wave].partner = n;
+        else
+            *wave = n;
+    }
+    uint32_t count = 0;
+    for (uint32_t n = 0; n < graph->count; n++) {
+        const struct expr_node *node = &graph->nodes[n];
+        if (!allocations[n].needed || allocations[n].ordered || node->operation == EXPR_CONSTANT ||
+            node->operation == EXPR_INPUT)
+            continue;
+        order[count++] = n;
+        uint32_t partner = allocations[n].partner;
+        if (partner != EXPR_NONE) {
+            order[count++] = partner;
+            allocations[partner].ordered = true;
         }
     }
+    for (uint32_t at = 0; at < count; at++)
+        for (int k = 0; k < expr_operand_count(graph->nodes[order[at]].operation); k++)
+            allocations[graph->nodes[order[at]].operands[k]].last = at;
+    for (int i = 0; i < output_count; i++)
+        allocations[outputs[i]].last = UINT32_MAX;
+    return count;
 }
 
 /* The free registers and their number; register numbers start after the constants. */
@@ -85,69 +123,76 @@ static bool assign_inputs(const struct expr_graph *graph, struct allocation *all
     return true;
 }
 
-static bool write_code(const struct expr_graph *graph, struct allocation *allocations, struct registers *registers,
-                       struct expr_instruction *code, struct expr_program *program, struct error *error) {
-    for (uint32_t n = 0; n < graph->count; n++) {
-        const struct expr_node *node = &graph->nodes[n];
+static bool write_code(const struct expr_graph *graph, const uint32_t *order, struct allocation *allocations,
+                       struct registers *registers, struct expr_instruction *code, struct expr_program *program) {
+    for (uint32_t at = 0; at < program->count; at++) {
+        const struct expr_node *node = &graph->nodes[order[at]];
+        struct allocation *result = &allocations[order[at]];
         uint16_t values[3];
         int count = expr_operand_count(node->operation);
-        if (!allocations[n].needed || node->operation == EXPR_CONSTANT || node->operation == EXPR_INPUT)
-            continue;
         for (int k = 0; k < count; k++) {
             struct allocation *operand = &allocations[node->operands[k]];
             values[k] = operand->value;
-            if (operand->last == n && operand->value >= program->constant_count) {
+            if (operand->last == at && operand->value >= program->constant_count) {
                 registers->free[registers->free_count++] = operand->value;
-                operand->last = n + 1; /* once, also if this instruction reads it twice */
+                operand->last = UINT32_MAX; /* once, also if this instruction reads it twice */
             }
         }
-        if (!take(registers, &allocations[n].value))
-            return too_large(error);
+        if (!take(registers, &result->value))
+            return false;
         for (int k = count; k < 3; k++)
-            values[k] = allocations[n].value;
-        code[program->count++] =
-            (struct expr_instruction){(uint16_t)node->operation, allocations[n].value, values[0], values[1], values[2]};
+            values[k] = result->value;
+        code[at] = (struct expr_instruction){(uint16_t)node->operation, result->value, values[0], values[1], values[2]};
     }
     return true;
 }
 
-/* Generates the code of all marked nodes. */
-static bool compile(const struct expr_graph *graph, struct arena *arena, struct allocation *allocations,
-                    struct registers *registers, struct expr_program *program, struct error *error) {
-    uint32_t count = 0;
-    for (uint32_t n = 0; n < graph->count; n++)
-        count += allocations[n].needed;
-    struct expr_instruction *code = arena_alloc_array(arena, (size_t)count + 1, sizeof *code);
+/* The compiler's memory. */
+struct layout {
+    struct allocation *allocations;
+    struct registers *registers;
+    uint32_t *order;
+};
+
+/* Generates the code of the nodes in their order. */
+static bool compile(const struct expr_graph *graph, const struct layout *layout, struct arena *arena,
+                    struct expr_program *program, struct error *error) {
+    struct expr_instruction *code = arena_alloc_array(arena, (size_t)program->count + 1, sizeof *code);
     if (!code)
         return error_no_memory(error, "a function");
     program->code = code;
-    if (!number_constants(graph, allocations, arena, program, error))
+    if (!number_constants(graph, layout->allocations, arena, program, error))
         return false;
-    registers->first = program->constant_count;
-    if (!assign_inputs(graph, allocations, registers, program, error) ||
-        !write_code(graph, allocations, registers, code, program, error))
+    layout->registers->first = program->constant_count;
+    if (!assign_inputs(graph, layout->allocations, layout->registers, program, error))
         return false;
-    program->register_count = registers->count;
+    if (!write_code(graph, layout->order, layout->allocations, layout->registers, code, program))
+        return too_large(error);
+    program->register_count = layout->registers->count;
     return true;
 }
 
 bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int output_count, struct arena *arena,
                   struct expr_program *program, struct error *error) {
-    struct allocation *allocations = mem_alloc_zero((size_t)graph->count + 1, sizeof *allocations);
-    struct registers *registers = mem_alloc_zero(1, sizeof *registers);
+    const struct layout layout = {mem_alloc_zero((size_t)graph->count + 1, sizeof *layout.allocations),
+                                  mem_alloc_zero(1, sizeof *layout.registers),
+                                  mem_alloc_zero((size_t)graph->count + 1, sizeof *layout.order)};
     *program = (struct expr_program){.count = 0};
-    bool ok = allocations && registers;
+    bool ok = layout.allocations && layout.registers && layout.order;
     if (!ok)
         (void)error_no_memory(error, "a function");
-    if (ok)
-        mark(graph, outputs, output_count, allocations);
-    ok = ok && compile(graph, arena, allocations, registers, program, error);
+    if (ok) {
+        mark(graph, outputs, output_count, layout.allocations);
+        program->count = put_in_order(graph, outputs, output_count, layout.allocations, layout.order);
+    }
+    ok = ok && compile(graph, &layout, arena, program, error);
     for (int i = 0; ok && i < output_count; i++)
-        program->outputs[i] = allocations[outputs[i]].value;
+        program->outputs[i] = layout.allocations[outputs[i]].value;
     if (ok)
         program->output_count = output_count;
-    mem_free(allocations);
-    mem_free(registers);
+    mem_free(layout.allocations);
+    mem_free(layout.registers);
+    mem_free(layout.order);
     return ok;
 }
 
@@ -167,6 +212,12 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
         TYPE_##B b = values[in->b].MEMBER_##B;                                                                         \
         TYPE_##C c = values[in->c].MEMBER_##C;                                                                         \
         (void)a, (void)b, (void)c;                                                                                     \
+        if ((member == EXPR_SIN || member == EXPR_COS) && expr_is_pair(in, end)) {                                     \
+            bool is_sine = member == EXPR_SIN;                                                                         \
+            in++;                                                                                                      \
+            el_sincos(values[in->a].f, &values[in[is_sine ? -1 : 0].out].f, &values[in[is_sine ? 0 : -1].out].f);      \
+            break;                                                                                                     \
+        }                                                                                                              \
         values[in->out].MEMBER_##R = (expression);                                                                     \
         break;                                                                                                         \
     }

@@ -30,6 +30,12 @@ struct expr_program {
     uint16_t outputs[EXPR_OUTPUTS]; /* floats */
 };
 
+/* Whether an instruction and the next one are the sine and the cosine of one number, in any order. */
+static inline bool expr_is_pair(const struct expr_instruction *in, const struct expr_instruction *end) {
+    return in + 1 < end && in[1].a == in->a && in->out != in->a &&
+           in[1].operation == (in->operation == EXPR_SIN ? EXPR_COS : EXPR_SIN);
+}
+
 /* Compiles the program that computes these nodes, which are floats and at most EXPR_OUTPUTS. False and an error: no
  * memory, or more than EXPR_VALUES values. */
 bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int output_count, struct arena *arena,

@@ -186,21 +186,26 @@ static inline double negated_if(double x, bool negate) {
     return from_bits(to_bits(x) ^ (negate ? 0x8000000000000000u : 0));
 }
 
-static inline double el_sin_lane(double x) {
+static inline void el_sincos_lane(double x, double *sine, double *cosine) {
     struct turned turned = turn_back(x);
     struct pair r = turned_angle(turned);
     uint64_t quadrant = to_bits(turned.shifted);
     double s = sine_value(r), c = cosine_value(r);
     double value = negated_if(quadrant & 1 ? c : s, quadrant & 2);
-    return fabs(x) < 0x1.0p-27 ? x : value;
+    *sine = fabs(x) < 0x1.0p-27 ? x : value;
+    *cosine = negated_if(quadrant & 1 ? s : c, (quadrant + 1) & 2);
+}
+
+static inline double el_sin_lane(double x) {
+    double sine, cosine;
+    el_sincos_lane(x, &sine, &cosine);
+    return sine;
 }
 
 static inline double el_cos_lane(double x) {
-    struct turned turned = turn_back(x);
-    struct pair r = turned_angle(turned);
-    uint64_t quadrant = to_bits(turned.shifted);
-    double s = sine_value(r), c = cosine_value(r);
-    return negated_if(quadrant & 1 ? s : c, (quadrant + 1) & 2);
+    double sine, cosine;
+    el_sincos_lane(x, &sine, &cosine);
+    return cosine;
 }
 
 /* The tangent, from the sine and the cosine as pairs. */
