@@ -200,7 +200,9 @@ void pixel_trace_print_json(const struct trace_report *report, struct text_write
     text_writer_print(writer, ",\"width\":%u,\"height\":%u,\"x\":%u,\"y\":%u,\"marked\":%s,\"full\":%s", job->width,
                       job->height, pixel_trace->x, pixel_trace->y, pixel_trace->marked ? "true" : "false",
                       pixel_trace->full ? "true" : "false");
-    if (pixel_trace->marked && !pixel_trace->full)
+    if (pixel_trace->marked && !pixel_trace->full && pixel_trace->mark_reason == MARK_THIN)
+        text_writer_print(writer, ",\"thin\":true");
+    else if (pixel_trace->marked && !pixel_trace->full)
         text_writer_print(writer, ",\"differs_from\":[%d,%d],\"by\":%.17g,\"tolerance\":%.17g", pixel_trace->mark_x,
                           pixel_trace->mark_y, pixel_trace->mark_distance, pixel_trace->mark_tolerance);
     text_writer_print(writer, ",\"samples\":[");

@@ -314,6 +314,31 @@ static void print_paths(struct text_state *t) {
     }
 }
 
+/* Why the pixel has N x N samples. */
+static void print_mark(struct text_writer *writer, const struct pixel_trace *pixel_trace) {
+    const char *neighbour = direction(pixel_trace->mark_x, pixel_trace->mark_y);
+    double distance = pixel_trace->mark_distance, tolerance = pixel_trace->mark_tolerance;
+    text_writer_print(writer, "%d x %d samples: ", pixel_trace->samples, pixel_trace->samples);
+    switch (pixel_trace->mark_reason) {
+    case MARK_COLOUR:
+        text_writer_print(writer, "the first one differs from the %s neighbour's by %.6g > %g\n", neighbour, distance,
+                          tolerance);
+        break;
+    case MARK_SURFACE:
+        text_writer_print(writer, "the first one differs from the %s neighbour's, on another surface, by %.6g > %g\n",
+                          neighbour, distance, tolerance);
+        break;
+    case MARK_DETAIL:
+        text_writer_print(writer,
+                          "the first one differs from the mean of the %s and the opposite neighbour's by %.6g > %g\n",
+                          neighbour, distance, tolerance);
+        break;
+    case MARK_THIN:
+        text_writer_print(writer, "a primitive that is narrower than a pixel may be in it\n");
+        break;
+    }
+}
+
 static void print_samples(struct text_state *t) {
     const struct pixel_trace *pixel_trace = t->report->pixel_trace;
     text_writer_print(t->writer, "%s",
@@ -322,10 +347,7 @@ static void print_samples(struct text_state *t) {
         text_writer_print(t->writer, "%d x %d samples, as all pixels have (-full, a lens or motion)\n",
                           pixel_trace->samples, pixel_trace->samples);
     else if (pixel_trace->marked)
-        text_writer_print(t->writer, "%d x %d samples: the first one differs from the %s neighbour's by %.6g > %g\n",
-                          pixel_trace->samples, pixel_trace->samples,
-                          direction(pixel_trace->mark_x, pixel_trace->mark_y), pixel_trace->mark_distance,
-                          pixel_trace->mark_tolerance);
+        print_mark(t->writer, pixel_trace);
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)
         print_sample(t, sample);
     if (pixel_trace->omitted > 0)

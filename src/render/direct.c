@@ -187,6 +187,7 @@ static struct vec3 one_light(struct integrator_state *state, const struct light 
 struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key) {
     const struct world *world = state->job->world;
     struct vec3 sum = vec3_mul(state->job->ambient, bsdf->ambient);
+    uint64_t reached = 0;
     for (uint32_t i = 0; i < world->light_count && !bsdf->dark; i++) {
         const struct light *light = &world->lights[i];
         if (light->lit && !light->lit[hit->primitive]) {
@@ -197,7 +198,12 @@ struct vec3 direct_light(struct integrator_state *state, const struct hit *hit, 
         observe_light_begin(state->observer, i, light);
         struct vec3 own = one_light(state, light, i, hit, bsdf, sampler_light(key, i));
         sum = vec3_add(sum, own);
+        reached |= (uint64_t)(own.x != 0 || own.y != 0 || own.z != 0) << i % 64;
         observe_light_end(state->observer, i, light, own);
+    }
+    if (state->camera_hit) {
+        state->camera_hit->lights = reached;
+        state->camera_hit = NULL;
     }
     struct vec3 photons = {0, 0, 0};
     bool asked = state->caustics && !bsdf->dark;

@@ -9,6 +9,18 @@
 #include "render/render.h"
 #include "render/sampler.h"
 
+/* What a camera ray has met: neighbouring pixels are compared by it. */
+struct camera_hit {
+    double t;           /* infinite: nothing, or a surface that is looked through */
+    uint32_t primitive; /* WORLD_NOTHING: none */
+    uint32_t material;
+    struct vec3 normal; /* unit, towards the eye; 0 without a hit */
+    uint64_t lights;    /* bit i modulo 64: light i reaches the first surface that was shaded */
+};
+static inline struct camera_hit camera_hit_none(void) {
+    return (struct camera_hit){.t = INFINITY, .primitive = WORLD_NOTHING};
+}
+
 /* Owns nothing: all pointers outlive the worker's tiles. */
 struct integrator_state {
     const struct render_job *job;
@@ -19,6 +31,7 @@ struct integrator_state {
     const struct photon_map *caustics;           /* or NULL */
     struct observer *observer;                   /* or NULL */
     struct path_parts *parts;                    /* or NULL; of the current camera ray, zero before */
+    struct camera_hit *camera_hit;               /* or NULL; of a camera ray until its first hit is shaded */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set after a colour that was not finite or too large */
 };

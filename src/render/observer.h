@@ -14,6 +14,10 @@ enum ray_kind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_HOLE };
 /* Why a ray was not followed, or its hit not evaluated. */
 enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
 #define OBSERVER_NO_BLOCKER UINT32_MAX
+/* Why a pixel is marked: the colour of its first sample differs from a neighbour's; it differs by less from that of a
+ * neighbour on another surface; from the mean of two opposite neighbours; a primitive that is narrower than a pixel may
+ * be in it. */
+enum mark_reason { MARK_COLOUR, MARK_SURFACE, MARK_DETAIL, MARK_THIN };
 
 enum observation_kind {
     OBSERVED_SAMPLE_BEGIN,  /* sample.place */
@@ -31,7 +35,7 @@ enum observation_kind {
     OBSERVED_DIRECT,        /* direct: after the lights of a hit */
     OBSERVED_RAY_END,       /* end */
     OBSERVED_PIXEL,         /* pixel: it is final */
-    OBSERVED_MARK           /* mark: the pixel is marked, because it differs from a neighbour */
+    OBSERVED_MARK           /* mark: the pixel is marked */
 };
 
 struct observation {
@@ -82,8 +86,9 @@ struct observation {
             struct vec3 seen, left, in_scattered, brings; /* brings, its radiance: left * seen + in_scattered */
         } end;
         struct observed_mark {
-            int x, y;                   /* the neighbour from the pixel, -1..1 */
-            double distance, tolerance; /* squared, of colours */
+            enum mark_reason reason;
+            int x, y;                   /* the neighbour, or one of the two, from the pixel, -1..1; MARK_THIN: 0 */
+            double distance, tolerance; /* squared, of colours; MARK_THIN: 0 */
         } mark;
         struct observed_pixel {
             struct vec3 colour;
@@ -180,9 +185,9 @@ static inline void observe_ray_end(const struct observer *observer, const struct
         observe(observer, &(struct observation){OBSERVED_RAY_END, .end = *end});
 }
 
-static inline void observe_mark(const struct observer *observer, int x, int y, double distance, double tolerance) {
+static inline void observe_mark(const struct observer *observer, const struct observed_mark *mark) {
     if (observer)
-        observe(observer, &(struct observation){OBSERVED_MARK, .mark = {x, y, distance, tolerance}});
+        observe(observer, &(struct observation){OBSERVED_MARK, .mark = *mark});
 }
 
 static inline void observe_pixel(const struct observer *observer, const struct observed_pixel *pixel) {

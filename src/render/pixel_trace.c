@@ -224,6 +224,7 @@ static void record_direct(struct pixel_trace *pixel_trace, const struct observed
 }
 
 static void record_mark(struct pixel_trace *pixel_trace, const struct observed_mark *mark) {
+    pixel_trace->mark_reason = mark->reason;
     pixel_trace->mark_x = mark->x;
     pixel_trace->mark_y = mark->y;
     pixel_trace->mark_distance = mark->distance;

@@ -94,6 +94,7 @@ struct pixel_trace {
     bool full;   /* every pixel is sampled again */
     bool marked; /* this one was */
     /* By the neighbour at mark_x, mark_y from it (-1..1; both 0: by none): a squared distance above the tolerance. */
+    enum mark_reason mark_reason;
     int mark_x, mark_y;
     double mark_distance, mark_tolerance;
     int samples; /* N of N x N */

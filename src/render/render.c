@@ -364,7 +364,7 @@ bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel
                         .marked = &marked};
     struct render_job own = *job;
     struct render_statistics statistics = {0};
-    struct renderer renderer = {.job = &own, .pool = pool};
+    struct renderer renderer = {.job = &own, .pool = pool, .roams = true};
     own.film = &film;
     own.settings.show_refined = false;
     bool ok = begin_rendering(&renderer, pool_workers(pool), &statistics, error);

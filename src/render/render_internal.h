@@ -16,7 +16,8 @@
 struct batch {
     struct pixel_sample positions[PACKET_RAYS];
     struct vec3 colours[PACKET_RAYS];
-    struct path_parts *parts; /* or NULL; PACKET_RAYS of them */
+    struct path_parts *parts;       /* or NULL; PACKET_RAYS of them */
+    struct camera_hit *camera_hits; /* the same */
     uint32_t count;
     struct ray_packet packet;
     struct packet_answer answers[PACKET_RAYS];
@@ -48,6 +49,7 @@ struct renderer {
     struct camera_frame camera;
     struct medium_stack eye_medium_stack;
     bool timed;               /* something moves while the shutter is open */
+    bool roams;               /* the film is one pixel, which moves over the picture (render_pixels) */
     bool together;            /* camera rays start in one place and at one moment */
     bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */
     enum sampler_kind sampler;

@@ -51,11 +51,20 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
     return vec3_make(colour.x, right.y, right.z);
 }
 
-/* Where the parts of a sample go. */
-static void begin_parts(struct worker *worker, struct path_parts *parts) {
-    worker->state.parts = parts;
-    if (parts)
-        *parts = (struct path_parts){0};
+/* Where the parts of sample i of a batch go, and what its camera ray meets. */
+static void begin_records(struct worker *worker, uint32_t i) {
+    struct batch *batch = &worker->batch;
+    worker->state.parts = batch->parts ? &batch->parts[i] : NULL;
+    worker->state.camera_hit = batch->camera_hits ? &batch->camera_hits[i] : NULL;
+    if (batch->parts)
+        batch->parts[i] = (struct path_parts){0};
+    if (batch->camera_hits)
+        batch->camera_hits[i] = camera_hit_none();
+}
+
+static void end_records(struct worker *worker) {
+    worker->state.parts = NULL;
+    worker->state.camera_hit = NULL;
 }
 
 static void begin_sample(const struct renderer *renderer, struct worker *worker, const struct pixel_sample *position) {
@@ -111,10 +120,10 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
     struct batch *batch = &worker->batch;
     if (!renderer->together || batch->count == 1) {
         for (uint32_t i = 0; i < batch->count; i++) {
-            begin_parts(worker, batch->parts ? &batch->parts[i] : NULL);
+            begin_records(worker, i);
             batch->colours[i] = renderer_sample(renderer, worker, &batch->positions[i]);
         }
-        worker->state.parts = NULL;
+        end_records(worker);
         return;
     }
     struct ray_packet *packet = &batch->packet;
@@ -141,11 +150,11 @@ void renderer_sample_batch(struct renderer *renderer, struct worker *worker) {
         ray.footprint.spread *= share;
         ray.footprint.width *= share;
         begin_sample(renderer, worker, position);
-        begin_parts(worker, batch->parts ? &batch->parts[i] : NULL);
+        begin_records(worker, i);
         batch->colours[i] = integrator_radiance_met(renderer, worker, &ray, met >> i & 1 ? &batch->answers[i] : NULL,
                                                     worker->state.sampler.key);
     }
-    worker->state.parts = NULL;
+    end_records(worker);
 }
 
 /* The first sample has number 0, at the centre or the corner of the pixel. */
@@ -156,17 +165,36 @@ struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64
 
 /* See sampler.h. Below the key of a pixel's strata are: the light's number, its order of the parts on that light; the
  * key of a ray, that on a rough surface; UINT64_MAX and the next below, those of lens and shutter; 2, the jitter on the
- * lens; and from UINT64_MAX - 2 down the lights' multi-jittered sets. */
+ * lens; from UINT64_MAX - 2 down the lights' multi-jittered sets; and 2^62, the pattern in the pixel. */
 
 static const uint64_t order_of_lens = UINT64_MAX, order_of_times = UINT64_MAX - 1, sets_of_lights = UINT64_MAX - 2;
 static const uint64_t jitter_of_times = UINT64_MAX - 1; /* below the key of the sample */
 static const uint64_t jitter_of_lens = 2;
+static const uint64_t pattern_in_pixel = UINT64_C(1) << 62;
 
 /* The part for this sample: the samples of a pixel visit each part once. */
 static uint32_t part_of(const struct sampler *sampler, uint64_t dimension) {
     if (sampler->side <= 1)
         return 0;
     return sample_permute(sampler->cell, sampler->side * sampler->side, random_combine(sampler->pixel_key, dimension));
+}
+
+/* Cell (i, j) has its point in column j and row side - 1 - i of its side x side parts (the canonical arrangement of
+ * Kensler's memo, math/sampling.c). So edges along rows and columns have side^2 steps, not side, and those at other
+ * angles at most the error of the regular grid. The points are symmetric about the centre: the mean of a linear
+ * function is exact. */
+struct sample2 sampler_pixel_rotated(const struct sampler *sampler) {
+    uint32_t n = sampler->side, i = sampler->cell % n, j = sampler->cell / n;
+    uint64_t bits = random_combine(sampler->pixel_key, pattern_in_pixel);
+    struct sample2 at = {((double)i + ((double)j + 0.5) / n) / n, ((double)j + ((double)(n - 1 - i) + 0.5) / n) / n};
+    if (bits & 1)
+        at.x = 1 - at.x;
+    return bits & 2 ? (struct sample2){at.y, at.x} : at;
+}
+
+struct sample2 sampler_pixel_jittered(const struct sampler *sampler) {
+    uint64_t set = random_combine(sampler->pixel_key, pattern_in_pixel);
+    return sample_multi(set, random_combine(set, 0), (struct sample_part){0, 0, 1, sampler->cell, sampler->side});
 }
 
 struct sample2 sampler_lens(const struct sampler *sampler) {

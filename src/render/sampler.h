@@ -122,6 +122,11 @@ static inline struct sample2 sampler_point(const struct sampler *sampler, uint32
     return sobol_point_reversed(sampler->cell, random_combine(sampler->pixel_key, dimension));
 }
 
+/* A point of the pixel for this sample: one of the side x side points of a rotated grid (every row and every column of
+ * side^2 has one; for an odd side one is the centre), mirrored and transposed by pixel. With one sample: the centre. */
+struct sample2 sampler_pixel_rotated(const struct sampler *sampler);
+/* The same of a multi-jittered set: the mean over it is unbiased. */
+struct sample2 sampler_pixel_jittered(const struct sampler *sampler);
 /* A point of the unit square for the lens, and a time from 0 to 1 for the shutter: one of as many cells as the pixel
  * has samples, in an order that depends on the pixel. */
 struct sample2 sampler_lens(const struct sampler *sampler);

@@ -105,6 +105,13 @@ enum overlay { OVERLAYS(LIST_MEMBER) };
     X(FILTER_GAUSSIAN, "gaussian")                                                                                     \
     X(FILTER_MITCHELL, "mitchell")
 enum filter_kind { FILTERS(LIST_MEMBER) };
+/* Adaptive anti-aliasing of Whitted's integrator: which pixels get N x N samples, and where those are
+ * (whitted_pixels.c). GRID: marks by colours alone, the centres of N x N cells. ROTATED: marks by surfaces and thin
+ * primitives too, a rotated grid, jittered where thin primitives are. */
+#define AA_PATTERNS(X)                                                                                                 \
+    X(AA_GRID, "grid")                                                                                                 \
+    X(AA_ROTATED, "rotated")
+enum aa_pattern { AA_PATTERNS(LIST_MEMBER) };
 #define TILE_ORDERS(X)                                                                                                 \
     X(ORDER_SPREAD, "spread")                                                                                          \
     X(ORDER_CENTRE, "centre")                                                                                          \
@@ -128,6 +135,7 @@ struct settings {
     bool deep;                               /* 16 bits a channel in PNG files */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */
     bool full;                               /* -full: every pixel */
+    enum aa_pattern aa_pattern;              /* --aa-pattern */
     int reflect_limit, refract_limit;        /* 0..1000 */
     double side_tolerance, corner_tolerance; /* squared RGB distance, >= 0 */
     bool use_tir;

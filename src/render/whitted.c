@@ -235,12 +235,27 @@ static struct vec3 trace(struct integrator_state *state, const struct ray *ray, 
     return incident_radiance(state, ray, met ? &hit : NULL, path);
 }
 
+static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
+    bool through =
+        world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
+    out->t = through ? INFINITY : hit->t;
+    out->primitive = hit->primitive;
+    out->material = hit->material;
+    out->normal = hit->front ? hit->normal : vec3_negate(hit->normal);
+}
+
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key) {
     struct ray from_eye = *ray;
+    struct hit hit;
     from_eye.media = state->eye_medium_stack;
+    if (integrator_cancelled(state))
+        return vec3_all(0);
+    bool met = world_nearest(state->job->world, &from_eye, state->scratch, &hit);
+    if (met && state->camera_hit)
+        record_hit(state->job->world, &hit, state->camera_hit);
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return clamp_light(state, trace(state, &from_eye, &path), (double)FLT_MAX);
+    return clamp_light(state, incident_radiance(state, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }
 
 struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
@@ -252,6 +267,8 @@ struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_s
         return vec3_all(0);
     if (met)
         world_describe(state->job->world, &from_eye, met->primitive, &met->crossing, &hit);
+    if (met && state->camera_hit)
+        record_hit(state->job->world, &hit, state->camera_hit);
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
     return clamp_light(state, incident_radiance(state, &from_eye, met ? &hit : NULL, &path), (double)FLT_MAX);
 }

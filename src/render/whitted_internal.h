@@ -7,19 +7,25 @@
 #include "render/filter_internal.h"
 #include "render/render.h"
 #include "render/render_internal.h"
+#include "render/thin_map_internal.h"
 
 /* Of one worker. */
 struct whitted_worker {
     uint64_t marked; /* pixels */
     /* The first samples of a tile and its rim. */
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
+    struct camera_hit hits[(FILM_TILE + 2) * (FILM_TILE + 2)]; /* AA_ROTATED */
+    struct camera_hit patch[PACKET_RAYS];
 };
 
-/* Of a run. Owns the photon map and the array of workers. */
+/* Of a run. Owns the photon map, the map of thin primitives and the array of workers. */
 struct whitted {
     double cutoff; /* cutoff_weight: rays of less weight are not followed */
     /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
     bool full;
+    bool blurred;         /* by a lens or motion */
+    bool fine;            /* surfaces, details and thin primitives mark pixels */
+    struct thin_map thin; /* AA_ROTATED */
     struct filter filter;
     struct photon_map caustics;
     struct whitted_worker *workers;

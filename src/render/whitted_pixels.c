@@ -17,6 +17,9 @@ static double largest(struct vec3 c) {
     return c.z > max ? c.z : max;
 }
 
+/* The squared distance of two colours is never larger: with these tolerances nothing is marked. */
+static const double tolerance_of_all = 3;
+
 /* The largest radiance that a ray can meet: the sky, a visible light, an emitting surface, the fog, or a white surface
  * in the light of all lights, each at the distance where it has its nominal colour. Closer to a light with falloff it
  * may be brighter: the bound holds for usual scenes, not for all. */
@@ -60,19 +63,36 @@ static bool send_photons(struct whitted *whitted, struct renderer *renderer, int
     return ok;
 }
 
+/* Pixels are sampled again. */
+static bool samples_again(const struct settings *settings) {
+    return settings->full || settings->side_tolerance < tolerance_of_all ||
+           settings->corner_tolerance < tolerance_of_all;
+}
+
+/* What is blurred is not narrow. */
+static bool draw_thin(struct whitted *whitted, const struct renderer *renderer, struct error *error) {
+    const struct settings *settings = &renderer->job->settings;
+    if (settings->aa_pattern == AA_GRID || settings->samples == 1 || whitted->blurred || !samples_again(settings))
+        return true;
+    return thin_map_build(&whitted->thin, renderer, whitted->filter.radius - 0.5, error);
+}
+
 bool whitted_create(struct whitted *whitted, struct renderer *renderer, int workers,
                     struct render_statistics *statistics, struct error *error) {
     whitted->cutoff = cutoff_weight(renderer->job);
     filter_init(&whitted->filter, renderer->job->settings.filter);
-    whitted->full = renderer->job->settings.full || renderer->timed || renderer->camera.lens.aperture > 0;
+    whitted->blurred = renderer->timed || renderer->camera.lens.aperture > 0;
+    whitted->full = renderer->job->settings.full || whitted->blurred;
+    whitted->fine = renderer->job->settings.aa_pattern != AA_GRID && samples_again(&renderer->job->settings);
     whitted->workers = mem_alloc_zero((size_t)workers, sizeof *whitted->workers);
     if (!whitted->workers)
         return error_no_memory(error, "the workers of a render");
-    return send_photons(whitted, renderer, workers, statistics, error);
+    return draw_thin(whitted, renderer, error) && send_photons(whitted, renderer, workers, statistics, error);
 }
 
 void whitted_destroy(struct whitted *whitted) {
     photon_map_destroy(&whitted->caustics);
+    thin_map_destroy(&whitted->thin);
     mem_free(whitted->workers);
 }
 
@@ -100,8 +120,12 @@ static struct vec3 toned(const struct tone *tone, struct vec3 c) {
     return vec3_make(tone_apply(tone, c.x), tone_apply(tone, c.y), tone_apply(tone, c.z));
 }
 
+static struct vec3 clamped(struct vec3 c) {
+    return vec3_make(clamp01(c.x), clamp01(c.y), clamp01(c.z));
+}
+
 static double squared_distance(struct vec3 a, struct vec3 b) {
-    struct vec3 d = {clamp01(a.x) - clamp01(b.x), clamp01(a.y) - clamp01(b.y), clamp01(a.z) - clamp01(b.z)};
+    struct vec3 d = vec3_sub(clamped(a), clamped(b));
     return vec3_dot(d, d);
 }
 
@@ -109,6 +133,12 @@ bool whitted_refines(const struct renderer *renderer, struct vec3 a, struct vec3
     const struct tone *tone = &renderer->job->settings.tone;
     return squared_distance(toned(tone, a), toned(tone, b)) > renderer->job->settings.side_tolerance;
 }
+
+/* Colours on different surfaces, and a colour between two opposite neighbours, may differ by this share of the
+ * tolerances. */
+static const double fine_share = 1.0 / 16;
+/* Of the angle between two normals at an edge. */
+static const double edge_cosine = 0.8;
 
 /* A part of a tile at work. */
 struct part {
@@ -120,43 +150,167 @@ struct part {
     bool has_first;        /* the first pass is made */
 };
 
-static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
-    return &part->own->first[(size_t)(y - part->area.y0) * (FILM_TILE + 2) + (size_t)(x - part->area.x0)];
+static size_t index_of(const struct part *part, int64_t x, int64_t y) {
+    return (size_t)(y - part->area.y0) * (FILM_TILE + 2) + (size_t)(x - part->area.x0);
 }
 
-static bool is_marked(const struct part *part, int64_t x, int64_t y) {
-    const struct settings *settings = &part->renderer->job->settings;
+static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
+    return &part->own->first[index_of(part, x, y)];
+}
+
+/* Whether two first samples are on different surfaces, on two sides of an edge, or on two sides of a shadow's. */
+static bool surfaces_differ(const struct camera_hit *a, const struct camera_hit *b) {
+    if (a->primitive != b->primitive || a->material != b->material || a->lights != b->lights)
+        return true;
+    return a->primitive != WORLD_NOTHING && vec3_dot(a->normal, b->normal) < edge_cosine;
+}
+
+/* Whether a thin primitive may be in the pixel, in front of what one of the first samples in it or around it has met.
+ */
+static bool has_thin(const struct part *part, int64_t x, int64_t y) {
     const struct rectangle *area = &part->area;
-    struct vec3 own = toned(&settings->tone, *first_at(part, x, y));
-    for (int dy = -1; dy <= 1; dy++) {
-        for (int dx = -1; dx <= 1; dx++) {
-            int64_t nx = x + dx, ny = y + dy;
-            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
-                continue;
-            double tolerance = dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
-            double distance = squared_distance(own, toned(&settings->tone, *first_at(part, nx, ny)));
-            if (distance > tolerance) {
-                observe_mark(part->worker->state.observer, dx, dy, distance, tolerance);
+    double nearness = part->whitted->fine ? (double)thin_map_at(&part->whitted->thin, x, y) : 0;
+    if (!(nearness > 0))
+        return false;
+    bool pair = part->renderer->camera.lens.stereo == STEREO_ANAGLYPH; /* a sample has two rays */
+    for (int64_t ny = y - 1; ny <= y + 1; ny++) {
+        for (int64_t nx = x - 1; nx <= x + 1; nx++) {
+            bool inside = nx >= area->x0 && nx < area->x1 && ny >= area->y0 && ny < area->y1;
+            if (pair || (inside && part->own->hits[index_of(part, nx, ny)].t * nearness >= 1))
                 return true;
-            }
         }
     }
     return false;
 }
 
+/* The reasons to mark a pixel, all from first samples. `mark` is filled where they return true. */
+
+static double tolerance_towards(const struct part *part, int dx, int dy) {
+    const struct settings *settings = &part->renderer->job->settings;
+    return dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
+}
+
+/* Fine differences count beside these tolerances. */
+static bool is_fine(const struct part *part, double tolerance) {
+    return part->whitted->fine && tolerance < tolerance_of_all;
+}
+
+static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
+    const struct tone *tone = &part->renderer->job->settings.tone;
+    const struct rectangle *area = &part->area;
+    const struct camera_hit *hits = part->own->hits;
+    struct vec3 own = toned(tone, *first_at(part, x, y));
+    for (int dy = -1; dy <= 1; dy++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            int64_t nx = x + dx, ny = y + dy;
+            if ((dx == 0 && dy == 0) || nx < area->x0 || nx >= area->x1 || ny < area->y0 || ny >= area->y1)
+                continue;
+            double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
+            double distance = squared_distance(own, toned(tone, *first_at(part, nx, ny)));
+            *mark = (struct observed_mark){MARK_COLOUR, dx, dy, distance, tolerance};
+            if (distance > tolerance)
+                return true;
+            *mark = (struct observed_mark){MARK_SURFACE, dx, dy, distance, fine};
+            if (distance > fine && is_fine(part, tolerance) &&
+                surfaces_differ(&hits[index_of(part, x, y)], &hits[index_of(part, nx, ny)]))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Whether the colour is not between those of two opposite neighbours: details of textures, noise of shadows, edges that
+ * are seen in mirrors; not a gradient. */
+static bool has_detail(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
+    static const int steps[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+    const struct tone *tone = &part->renderer->job->settings.tone;
+    const struct rectangle *area = &part->area;
+    struct vec3 own = toned(tone, *first_at(part, x, y));
+    for (int i = 0; i < 4; i++) {
+        int dx = steps[i][0], dy = steps[i][1];
+        double tolerance = tolerance_towards(part, dx, dy), fine = tolerance * fine_share;
+        if (!is_fine(part, tolerance) || (dx != 0 && (x == area->x0 || x == area->x1 - 1)) ||
+            (dy != 0 && (y == area->y0 || y == area->y1 - 1)))
+            continue;
+        struct vec3 a = clamped(toned(tone, *first_at(part, x - dx, y - dy))),
+                    b = clamped(toned(tone, *first_at(part, x + dx, y + dy)));
+        double distance = squared_distance(own, vec3_scale(vec3_add(a, b), 0.5));
+        *mark = (struct observed_mark){MARK_DETAIL, dx, dy, distance, fine};
+        if (distance > fine)
+            return true;
+    }
+    return false;
+}
+
+static bool is_marked(const struct part *part, int64_t x, int64_t y) {
+    struct observed_mark mark;
+    bool marked = differs_from_neighbour(part, x, y, &mark) || (part->whitted->fine && has_detail(part, x, y, &mark));
+    if (!marked && has_thin(part, x, y)) {
+        mark = (struct observed_mark){.reason = MARK_THIN};
+        marked = true;
+    }
+    if (marked)
+        observe_mark(part->worker->state.observer, &mark);
+    return marked;
+}
+
 /* --- samples of a pixel --- */
 
-/* Whether the first sample is the one in the middle of N x N. */
-static bool first_counts(const struct renderer *renderer) {
+/* The N x N samples of a pixel. Most are on a rotated grid. Where thin lines are, and where a lens or motion blurs,
+ * they are jittered, so that the mean is unbiased; where small primitives are, they are on the grid without rotation,
+ * whose largest gap is the smallest. */
+enum pixel_positions { POSITIONS_GRID, POSITIONS_ROTATED, POSITIONS_JITTERED };
+struct pixel_pattern {
+    const struct whitted *whitted;
+    const struct settings *settings;
+    int64_t x, y;
+    uint64_t pixel; /* its number */
+    enum pixel_positions positions;
+    bool first_counts; /* the first sample is the one in the middle */
+};
+
+static enum pixel_positions positions_of(const struct whitted *whitted, const struct settings *settings, int64_t x,
+                                         int64_t y) {
+    if (settings->aa_pattern == AA_GRID || settings->samples == 1)
+        return POSITIONS_GRID;
+    uint32_t thin = thin_map_flags(&whitted->thin, x, y);
+    if (whitted->blurred || thin & THIN_LINE)
+        return POSITIONS_JITTERED;
+    return thin & THIN_SMALL ? POSITIONS_GRID : POSITIONS_ROTATED;
+}
+
+static struct pixel_pattern pattern_of(const struct whitted *whitted, const struct renderer *renderer, int64_t x,
+                                       int64_t y) {
     const struct settings *settings = &renderer->job->settings;
-    return (settings->samples & 1) && !settings->pixel_corner && renderer->camera.lens.aperture == 0 &&
-           !renderer->timed;
+    enum pixel_positions positions = positions_of(whitted, settings, x, y);
+    bool centred = (settings->samples & 1) && !settings->pixel_corner && !whitted->blurred;
+    return (struct pixel_pattern){.whitted = whitted,
+                                  .settings = settings,
+                                  .x = x,
+                                  .y = y,
+                                  .pixel = (uint64_t)y * renderer->job->width + (uint64_t)x,
+                                  .positions = positions,
+                                  .first_counts = centred && positions != POSITIONS_JITTERED};
+}
+
+static struct sample2 position_of(const struct pixel_pattern *pattern, int k) {
+    int n = pattern->settings->samples;
+    struct sampler sampler = sampler_make(pattern->settings->seed, pattern->pixel, (uint64_t)k + 1, (uint32_t)n);
+    switch (pattern->positions) {
+    case POSITIONS_GRID:
+        break;
+    case POSITIONS_ROTATED:
+        return sampler_pixel_rotated(&sampler);
+    case POSITIONS_JITTERED:
+        return sampler_pixel_jittered(&sampler);
+    }
+    return (struct sample2){(k % n + 0.5) / n, (k / n + 0.5) / n};
 }
 
 /* Sample k of N x N. */
-static struct pixel_sample sample_of_grid(const struct whitted *whitted, int64_t x, int64_t y, int k, int n) {
-    struct filter_sample at = filter_sample(&whitted->filter, (struct sample2){(k % n + 0.5) / n, (k / n + 0.5) / n});
-    return (struct pixel_sample){x, y, at.x, at.y, (uint64_t)(k + 1), at.weight};
+static struct pixel_sample sample_of_pattern(const struct pixel_pattern *pattern, int k) {
+    struct filter_sample at = filter_sample(&pattern->whitted->filter, position_of(pattern, k));
+    return (struct pixel_sample){pattern->x, pattern->y, at.x, at.y, (uint64_t)k + 1, at.weight};
 }
 
 /* Mean of the N x N samples, weighted by the filter; where one of them is the first sample again it is not traced
@@ -164,7 +318,8 @@ static struct pixel_sample sample_of_grid(const struct whitted *whitted, int64_t
 static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, const struct vec3 *first) {
     struct renderer *renderer = part->renderer;
     int n = renderer->job->settings.samples;
-    bool reuse = first_counts(renderer);
+    struct pixel_pattern pattern = pattern_of(part->whitted, renderer, x, y);
+    bool reuse = pattern.first_counts;
     struct batch *batch = &part->worker->batch;
     struct vec3 sum = {0, 0, 0};
     double weights = 0;
@@ -176,7 +331,7 @@ static struct vec3 all_samples(const struct part *part, int64_t x, int64_t y, co
             if (k == centre && !first)
                 batch->positions[batch->count++] = renderer_first_sample(renderer, x, y);
             else if (k != centre)
-                batch->positions[batch->count++] = sample_of_grid(part->whitted, x, y, k, n);
+                batch->positions[batch->count++] = sample_of_pattern(&pattern, k);
         }
         renderer_sample_batch(renderer, part->worker);
         uint32_t next = 0;
@@ -195,14 +350,15 @@ void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, st
     const struct film *film = renderer->job->film;
     int n = renderer->job->settings.samples;
     bool marked = film->marked[(size_t)(y - film->y0) * film->width + (size_t)(x - film->x0)];
-    bool has_first = !whitted->full || renderer->job->settings.keep_first, reuse = first_counts(renderer);
+    struct pixel_pattern pattern = pattern_of(whitted, renderer, x, y);
+    bool has_first = !whitted->full || renderer->job->settings.keep_first, reuse = pattern.first_counts;
     struct pixel_sample position = renderer_first_sample(renderer, x, y);
     if (has_first || reuse)
         (void)renderer_sample(renderer, worker, &position);
     for (int k = 0; marked && k < n * n && !renderer_stopped(renderer, worker); k++) {
         if (reuse && k == n / 2 * n + n / 2)
             continue;
-        position = sample_of_grid(whitted, x, y, k, n);
+        position = sample_of_pattern(&pattern, k);
         (void)renderer_sample(renderer, worker, &position);
     }
 }
@@ -225,11 +381,12 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     store(&film->floats[at * film->record.floats], first ? *first : colour);
     film->marked[at] = marked;
     part->own->marked += marked;
+    struct pixel_pattern pattern = pattern_of(part->whitted, part->renderer, x, y);
     observe_pixel(part->worker->state.observer,
                   &(struct observed_pixel){.colour = colour,
                                            .samples = marked ? part->renderer->job->settings.samples : 0,
                                            .full = full,
-                                           .first_counts = !marked || first_counts(part->renderer)});
+                                           .first_counts = !marked || pattern.first_counts});
 }
 
 /* The first samples of a small square go together. */
@@ -243,9 +400,15 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
         for (int64_t x = x0; x < x0 + PATCH && x < part->area.x1; x++)
             batch->positions[batch->count++] = renderer_first_sample(part->renderer, x, y);
     }
+    batch->camera_hits = part->whitted->fine ? part->own->patch : NULL;
     renderer_sample_batch(part->renderer, part->worker);
-    for (uint32_t i = 0; i < batch->count; i++)
-        *first_at(part, batch->positions[i].x, batch->positions[i].y) = batch->colours[i];
+    batch->camera_hits = NULL;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        size_t at = index_of(part, batch->positions[i].x, batch->positions[i].y);
+        part->own->first[at] = batch->colours[i];
+        if (part->whitted->fine)
+            part->own->hits[at] = part->own->patch[i];
+    }
 }
 
 /* For a viewer: the current first pass, and the pixels to be resampled. */

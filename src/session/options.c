@@ -454,6 +454,7 @@ struct digest options_digest(const struct options *options) {
                     option->offset == offsetof(struct options, settings.time_limit) ||
                     option->offset == offsetof(struct options, settings.clamp) ||
                     option->offset == offsetof(struct options, settings.colour) ||
+                    option->offset == offsetof(struct options, settings.aa_pattern) ||
                     option->offset == offsetof(struct options, settings.filter);
         bool text = option->kind == OPTION_TEXT; /* a dialect counts as a file that is read */
         if (picture && option->size > 0 && !search && !path && !text)
@@ -471,6 +472,8 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->roulette_depth, sizeof settings->roulette_depth, digest);
     if (settings->colour != COLOUR_AUTO)
         digest = digest_bytes(&settings->colour, sizeof settings->colour, digest);
+    if (settings->aa_pattern != AA_GRID)
+        digest = digest_bytes(&settings->aa_pattern, sizeof settings->aa_pattern, digest);
     if (settings->filter != FILTER_BOX)
         digest = digest_bytes(&settings->filter, sizeof settings->filter, digest);
     if (settings->noise > 0 || settings->clamp > 0) {

@@ -143,6 +143,15 @@ struct box curve_bounds(const struct curve *curve) {
     return curve->bounds;
 }
 
+bool curve_piece_tube(const struct curve *curve, uint32_t number, double tube[4][4]) {
+    if (number >= curve->count)
+        return false;
+    memcpy(tube, curve->pieces[number].c, sizeof curve->pieces[number].c);
+    for (int k = 0; k < 4; k++)
+        tube[3][k] = fabs(tube[3][k]) / 2;
+    return true;
+}
+
 void curve_extent(const struct curve *curve, struct vec3 g, double *lo, double *hi) {
     double half = vec3_length(g) / 2;
     *lo = INFINITY, *hi = -INFINITY;

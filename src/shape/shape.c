@@ -9,6 +9,7 @@
 #include "shape/implicit.h"
 #include "shape/lathe.h"
 #include "shape/prism.h"
+#include "shape/shape_part.h"
 #include "shape/sphere.h"
 #include "shape/sweep.h"
 
@@ -707,4 +708,39 @@ uint32_t shape_scratch_need(const struct shape *shape) {
         return MESH_CROSSINGS_GUESS;
     }
     return 0;
+}
+
+bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *out) {
+    out->kind = SHAPE_PART_BOX;
+    switch (shape->kind) {
+    case SHAPE_CURVE:
+        out->kind = SHAPE_PART_TUBE;
+        return curve_piece_tube(shape->curve, number, out->tube);
+    case SHAPE_SWEEP:
+        out->kind = SHAPE_PART_TUBE;
+        return sweep_piece_tube(shape->sweep, number, out->tube);
+    case SHAPE_REVOLVED_QUADRIC:
+        out->box = oriented_box_of_quadric(&shape->revolved_quadric);
+        break;
+    case SHAPE_PLANAR:
+        out->box = oriented_box_of_planar(&shape->planar);
+        break;
+    case SHAPE_SPHERE:
+    case SHAPE_BOX:
+    case SHAPE_ELLIPSOID:
+    case SHAPE_QUADRIC:
+    case SHAPE_TORUS:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_LATHE:
+    case SHAPE_PRISM:
+    case SHAPE_HEIGHT_FIELD:
+    case SHAPE_BLOB:
+    case SHAPE_IMPLICIT:
+    case SHAPE_MESH: {
+        struct box bounds = shape_bounds(shape);
+        out->box = oriented_box_of(&bounds);
+        break;
+    }
+    }
+    return number == 0 && oriented_box_is_finite(&out->box);
 }

@@ -186,6 +186,15 @@ struct box sweep_bounds(const struct sweep_path *sweep) {
     return sweep->bounds;
 }
 
+bool sweep_piece_tube(const struct sweep_path *sweep, uint32_t number, double tube[4][4]) {
+    if (number >= sweep->count)
+        return false;
+    memcpy(tube, sweep->pieces[number].c, sizeof sweep->pieces[number].c);
+    for (int k = 0; k < 4; k++)
+        tube[3][k] = fabs(tube[3][k]);
+    return true;
+}
+
 /* A ball reaches g . centre -+ |g| radius. */
 void sweep_extent(const struct sweep_path *sweep, struct vec3 g, double *lo, double *hi) {
     double length = vec3_length(g);

@@ -7,6 +7,7 @@
 #include "shape/implicit.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
+#include "shape/shape_part.h"
 #include "tests/unit/function_makers.h"
 #include "tests/unit/swept_makers.h"
 
@@ -501,6 +502,66 @@ TEST(every_shape_under_a_random_map_lies_in_its_box_there) {
         }
         shape_makers_destroy(&makers);
         if (outside || crossings < 500)
+            test_fail(__FILE__, __LINE__, "%s: %ld of %ld crossings outside", kind_name(kind), outside, crossings);
+    }
+    geom_scratch_destroy(&scratch);
+}
+
+static bool is_in_part(const struct shape_part *part, struct vec3 point) {
+    struct oriented_box box = shape_part_box(part);
+    struct vec3 rest = vec3_sub(point, box.corner);
+    /* The edges are at right angles, except those of a parallelogram, whose third one is zero. */
+    double uv = vec3_dot(box.edges[0], box.edges[1]), uu = vec3_length_squared(box.edges[0]),
+           vv = vec3_length_squared(box.edges[1]), ww = vec3_length_squared(box.edges[2]);
+    double u = vec3_dot(rest, box.edges[0]), v = vec3_dot(rest, box.edges[1]), det = uu * vv - uv * uv;
+    double a = (u * vv - v * uv) / det, b = (v * uu - u * uv) / det, c = vec3_dot(rest, box.edges[2]) / ww;
+    if (!(ww > 0)) {
+        struct vec3 across = vec3_cross(box.edges[0], box.edges[1]);
+        c = fabs(vec3_dot(rest, across)) > 1e-7 * vec3_length(across) ? 2 : 0.5;
+    }
+    return a > -1e-7 && a < 1 + 1e-7 && b > -1e-7 && b < 1 + 1e-7 && c > -1e-7 && c < 1 + 1e-7;
+}
+
+/* Some part has the point; or, `depth` times split in two, one of the halves. */
+static bool is_in_halves(const struct shape_part *part, const struct affine *map, struct vec3 point, int depth) {
+    struct shape_part halves[2];
+    if (!is_in_part(part, point))
+        return false;
+    if (depth == 0)
+        return true;
+    shape_part_split(part, map, halves);
+    return is_in_halves(&halves[0], map, point, depth - 1) || is_in_halves(&halves[1], map, point, depth - 1);
+}
+
+TEST(every_shape_lies_in_its_parts_and_in_their_halves) {
+    struct geom_scratch scratch;
+    struct affine same = affine_identity();
+    CHECK(geom_scratch_init(&scratch, 4000));
+    for (int kind = 0; kind < SHAPE_KIND_COUNT; kind++) {
+        struct shape_makers makers = {0};
+        struct test_random random = {(uint64_t)(300 + kind)};
+        long outside = 0, crossings = 0;
+        for (int i = 0; i < 60; i++) {
+            struct geometry geometry = make_geometry(&makers, kind, &random).geometry;
+            struct shape_part part;
+            if (!shape_part(&geometry.shape, 0, &part))
+                continue;
+            for (int k = 0; k < 60; k++) {
+                struct vec3 origin = random_vec3(&random, 4);
+                struct ray ray = ray_from(origin, vec3_sub(random_vec3(&random, 0.8), origin));
+                struct crossing_list list = list_of_geometry(&geometry, &ray, &scratch);
+                for (uint32_t c = 0; c < list.count; c++) {
+                    struct vec3 point = ray_at(&ray, scratch.items[c].t);
+                    bool found = false;
+                    for (uint32_t number = 0; !found && shape_part(&geometry.shape, number, &part); number++)
+                        found = is_in_halves(&part, &same, point, 3);
+                    outside += !found;
+                    crossings++;
+                }
+            }
+        }
+        shape_makers_destroy(&makers);
+        if (outside || crossings < 200)
             test_fail(__FILE__, __LINE__, "%s: %ld of %ld crossings outside", kind_name(kind), outside, crossings);
     }
     geom_scratch_destroy(&scratch);

@@ -1,0 +1,347 @@
+/* Each part of a primitive (shape/shape_part.h) is a box with edges in any directions; its corners in the picture have
+ * a convex hull that contains it.
+ * Narrow hulls are drawn into the map; a part that is long and not narrow as a whole, because it comes near the camera
+ * or is bent, is split in two. Pixels take the maximum of 1 / t, so the order of primitives does not matter.
+ *
+ * In a fisheye or a panorama edges are curves: a part is split until they leave their chords by little, and the hull
+ * grows by that. */
+#include "render/thin_map_internal.h"
+
+#include "base/mem.h"
+#include "shape/shape_part.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Pixels. A line at least 1 wide is met by a first sample in every column or row that it passes, a ball at least
+ * sqrt(2) wide by one; hulls are wider than what they contain: of a cylinder by up to sqrt(2), of a ball by sqrt(3). */
+static const double narrow = 1.5, small = 2.5;
+/* Hulls of this width are lines that need samples without a pattern. */
+static const double line = 1.2;
+/* How far a curved edge may leave its chord. */
+static const double max_bend = 0.25;
+enum { SPLITS = 12, CORNERS = 8, CHUNK = 256 };
+
+/* Where the rays of one eye go; `left` and `right` are its part of the picture. */
+struct view {
+    struct camera_frame camera;
+    double shift, left, right; /* pixels */
+    bool planar;
+};
+
+struct thin_drawing {
+    struct thin_map *map;
+    const struct renderer *renderer;
+    struct view views[2];
+    int view_count;
+    double margin;
+    _Atomic bool found;
+};
+
+/* A part in the picture. */
+struct outline {
+    double x[CORNERS], y[CORNERS];
+    double nearness;      /* at least 1 / t */
+    double length, width; /* of the hull, pixels */
+    double bend;          /* how far edges leave their chords, pixels */
+    double far_width;     /* at least so wide even where it is farthest */
+};
+
+enum outline_kind {
+    OUTLINE_NOWHERE, /* not in the picture */
+    OUTLINE_NARROW,
+    OUTLINE_WIDE,    /* nowhere narrow, or not to be measured */
+    OUTLINE_TO_SPLIT /* perhaps narrow in parts */
+};
+
+/* --- the hull of a part --- */
+
+static double turn(const struct outline *o, int a, int b, int c) {
+    return (o->x[b] - o->x[a]) * (o->y[c] - o->y[a]) - (o->y[b] - o->y[a]) * (o->x[c] - o->x[a]);
+}
+
+/* The corners of the convex hull in order (A. Andrew, "Another efficient algorithm for convex hulls in two dimensions",
+ * 1979); returns their number. */
+static int convex_corners(const struct outline *outline, int out[2 * CORNERS]) {
+    int order[CORNERS], count = 0;
+    for (int i = 0; i < CORNERS; i++) {
+        int at = i;
+        for (; at > 0 && (outline->x[order[at - 1]] > outline->x[i] ||
+                          (outline->x[order[at - 1]] == outline->x[i] && outline->y[order[at - 1]] > outline->y[i]));
+             at--)
+            order[at] = order[at - 1];
+        order[at] = i;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        int begin = count;
+        for (int i = 0; i < CORNERS; i++) {
+            int next = order[pass == 0 ? i : CORNERS - 1 - i];
+            while (count >= begin + 2 && turn(outline, out[count - 2], out[count - 1], next) <= 0)
+                count--;
+            out[count++] = next;
+        }
+        count--; /* the first one of the other chain */
+    }
+    return count > 0 ? count : 1;
+}
+
+/* The largest distance of two corners, and the smallest width, which is measured across one of the edges (H. Freeman
+ * and R. Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve", CACM 1975). */
+static void measure(struct outline *outline) {
+    int corners[2 * CORNERS], count = convex_corners(outline, corners);
+    outline->length = 0;
+    outline->width = INFINITY;
+    for (int i = 0; i < count; i++) {
+        int a = corners[i], b = corners[(i + 1) % count];
+        double dx = outline->x[b] - outline->x[a], dy = outline->y[b] - outline->y[a], edge = sqrt(dx * dx + dy * dy);
+        double across = 0;
+        for (int k = 0; k < count; k++) {
+            double x = outline->x[corners[k]] - outline->x[a], y = outline->y[corners[k]] - outline->y[a];
+            outline->length = fmax(outline->length, sqrt(x * x + y * y));
+            across = fmax(across, fabs(dx * y - dy * x));
+        }
+        if (edge > 0)
+            outline->width = fmin(outline->width, across / edge);
+    }
+    if (!(outline->length > 0))
+        outline->width = 0;
+}
+
+/* Whether it is beyond one side of the view. */
+static bool is_outside(const struct view *view, const struct outline *outline, double margin) {
+    double left = INFINITY, right = -INFINITY, top = INFINITY, bottom = -INFINITY, more = margin + outline->bend;
+    for (int i = 0; i < CORNERS; i++) {
+        left = fmin(left, outline->x[i]);
+        right = fmax(right, outline->x[i]);
+        top = fmin(top, outline->y[i]);
+        bottom = fmax(bottom, outline->y[i]);
+    }
+    return right < view->left - more || left > view->right + more || bottom < -more || top > view->camera.height + more;
+}
+
+/* The corners in the picture. */
+static enum outline_kind project(const struct view *view, const struct vec3 corners[CORNERS], double margin,
+                                 struct outline *out) {
+    const struct camera_frame *camera = &view->camera;
+    double near = INFINITY, far = 0;
+    int before = 0;
+    for (int i = 0; i < CORNERS; i++) {
+        struct vec3 from_eye = vec3_sub(corners[i], camera->eye);
+        double depth = view->planar ? vec3_dot(from_eye, camera->forward) : vec3_length(from_eye);
+        bool seen = depth > 0;
+        if (seen)
+            (void)camera_project(camera, corners[i], &out->x[i], &out->y[i]);
+        before += seen && isfinite(out->x[i]) && isfinite(out->y[i]);
+        out->x[i] += view->shift;
+        near = fmin(near, depth);
+        far = fmax(far, depth);
+    }
+    if (before < CORNERS)
+        return view->planar && !(far > 0) ? OUTLINE_NOWHERE : OUTLINE_TO_SPLIT;
+    if (!view->planar)
+        near -= vec3_length(vec3_sub(corners[CORNERS - 1], corners[0]));
+    out->nearness = near > 1e-30 ? 1 / near : 1e30;
+    measure(out);
+    out->far_width = camera->lens.projection == PROJECTION_PERSPECTIVE ? out->width * (near / far) : out->width;
+    out->bend = view->planar ? 0 : out->length * out->length / camera->height;
+    /* Around the eye, or across the seam of a panorama. */
+    if (!view->planar && out->length > camera->height / 4)
+        return OUTLINE_TO_SPLIT;
+    if (is_outside(view, out, margin))
+        return OUTLINE_NOWHERE;
+    if (out->width > narrow && out->length > small)
+        return out->far_width > 2 * narrow ? OUTLINE_WIDE : OUTLINE_TO_SPLIT;
+    return out->bend > max_bend ? OUTLINE_TO_SPLIT : OUTLINE_NARROW;
+}
+
+/* --- drawing --- */
+
+static uint32_t bits_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+/* Positive floats are ordered as their bits; the lowest bits are flags. */
+static void raise(_Atomic uint32_t *at, uint32_t bits) {
+    uint32_t old = atomic_load_explicit(at, memory_order_relaxed), raised;
+    do
+        raised = ((old > bits ? old : bits) & ~THIN_FLAGS) | ((old | bits) & THIN_FLAGS);
+    while (old != raised &&
+           !atomic_compare_exchange_weak_explicit(at, &old, raised, memory_order_relaxed, memory_order_relaxed));
+}
+
+static double limited(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Every pixel whose samples may be in the hull: those that are at most `more` from it in rows and columns. */
+static void draw(struct thin_drawing *drawing, const struct view *view, const struct outline *outline) {
+    const struct thin_map *map = drawing->map;
+    int corners[2 * CORNERS], count = convex_corners(outline, corners);
+    double more = drawing->margin + outline->bend + 0.01, top = INFINITY, bottom = -INFINITY;
+    for (int i = 0; i < count; i++) {
+        top = fmin(top, outline->y[corners[i]]);
+        bottom = fmax(bottom, outline->y[corners[i]]);
+    }
+    double first = fmax(map->y0, floor(top - more)),
+           last = fmin((double)map->y0 + map->height - 1, floor(bottom + more));
+    if (!(first <= last))
+        return;
+    atomic_store_explicit(&drawing->found, true, memory_order_relaxed);
+    uint32_t bits = bits_of((float)(outline->nearness * (1 + 1e-6))) & ~THIN_FLAGS;
+    bits |= outline->length <= small ? THIN_SMALL : outline->width < line ? THIN_LINE : 0;
+    double x_min = fmax(map->x0, view->left), x_max = fmin((double)map->x0 + map->width, view->right) - 1;
+    for (double y = first; y <= last; y++) {
+        double left = INFINITY, right = -INFINITY, above = y - more, below = y + 1 + more;
+        for (int i = 0; i < count; i++) {
+            int a = corners[i], b = corners[(i + 1) % count];
+            double ay = outline->y[a], by = outline->y[b], dy = by - ay, dx = outline->x[b] - outline->x[a];
+            if (fmax(ay, by) < above || fmin(ay, by) > below)
+                continue;
+            double t0 = dy != 0 ? limited((above - ay) / dy, 0, 1) : 0,
+                   t1 = dy != 0 ? limited((below - ay) / dy, 0, 1) : 1;
+            double x0 = outline->x[a] + t0 * dx, x1 = outline->x[a] + t1 * dx;
+            left = fmin(left, fmin(x0, x1));
+            right = fmax(right, fmax(x0, x1));
+        }
+        double end = fmin(x_max, floor(right + more));
+        for (double x = fmax(x_min, floor(left - more)); x <= end; x++)
+            raise(&map->nearness[(size_t)(y - map->y0) * map->width + (size_t)(x - map->x0)], bits);
+    }
+}
+
+/* --- primitives --- */
+
+static void corners_of(const struct oriented_box *box, const struct affine *map, struct vec3 out[CORNERS]) {
+    struct vec3 edges[3];
+    out[0] = affine_point(map, box->corner);
+    for (int k = 0; k < 3; k++)
+        edges[k] = affine_vector(map, box->edges[k]);
+    for (int i = 1; i < CORNERS; i++) {
+        int k = i & 1 ? 0 : i & 2 ? 1 : 2;
+        out[i] = vec3_add(out[i & ~(1 << k)], edges[k]);
+    }
+}
+
+/* Twice as long as wide and thick. */
+static bool is_long(const struct vec3 corners[CORNERS]) {
+    double lengths[3], longest = 0, sum = 0;
+    for (int k = 0; k < 3; k++) {
+        lengths[k] = vec3_length(vec3_sub(corners[1 << k], corners[0]));
+        longest = fmax(longest, lengths[k]);
+        sum += lengths[k];
+    }
+    return longest > 2 * (sum - longest);
+}
+
+static void draw_part(struct thin_drawing *drawing, const struct view *view, const struct affine *map,
+                      const struct shape_part *part, int depth) {
+    struct oriented_box box = shape_part_box(part);
+    struct vec3 corners[CORNERS];
+    struct outline outline;
+    corners_of(&box, map, corners);
+    switch (project(view, corners, drawing->margin, &outline)) {
+    case OUTLINE_NARROW:
+        draw(drawing, view, &outline);
+        return;
+    case OUTLINE_WIDE: /* a tube that is bent has a wide box */
+        if (part->kind == SHAPE_PART_BOX)
+            return;
+        break;
+    case OUTLINE_TO_SPLIT:
+        break;
+    case OUTLINE_NOWHERE:
+        return;
+    }
+    if (depth == SPLITS || !is_long(corners))
+        return;
+    struct shape_part halves[2];
+    shape_part_split(part, map, halves);
+    draw_part(drawing, view, map, &halves[0], depth + 1);
+    draw_part(drawing, view, map, &halves[1], depth + 1);
+}
+
+static bool geometry_part(const struct geometry *geometry, uint32_t number, struct shape_part *out) {
+    if (!geometry->csg)
+        return shape_part(&geometry->shape, number, out);
+    out->kind = SHAPE_PART_BOX;
+    out->box = oriented_box_of(&geometry->csg->bounds);
+    return number == 0 && oriented_box_is_finite(&out->box);
+}
+
+/* Whether it can be in a view at all. */
+static bool is_near(const struct thin_drawing *drawing, const struct view *view, uint32_t primitive) {
+    const struct affine same = affine_identity();
+    struct oriented_box box = oriented_box_of(&drawing->renderer->job->world->boxes[primitive]);
+    struct vec3 corners[CORNERS];
+    struct outline outline;
+    corners_of(&box, &same, corners);
+    return oriented_box_is_finite(&box) && project(view, corners, drawing->margin, &outline) != OUTLINE_NOWHERE;
+}
+
+static void draw_chunk(void *context, uint32_t chunk, int worker) {
+    struct thin_drawing *drawing = context;
+    const struct world *world = drawing->renderer->job->world;
+    uint32_t begin = chunk * CHUNK,
+             end = begin + CHUNK < world->primitive_count ? begin + CHUNK : world->primitive_count;
+    (void)worker;
+    for (uint32_t i = begin; i < end && !pool_cancelled(drawing->renderer->pool); i++) {
+        for (int v = 0; v < drawing->view_count; v++) {
+            struct shape_part part;
+            if (!is_near(drawing, &drawing->views[v], i))
+                continue;
+            struct affine map = world_placement(world, i, 0).forward;
+            for (uint32_t k = 0; geometry_part(primitive_geometry(world, i), k, &part); k++)
+                draw_part(drawing, &drawing->views[v], &map, &part, 0);
+        }
+    }
+}
+
+/* --- the map --- */
+
+/* Both eyes of a pair, displaced, with windows that are shifted so that they see the same at the screen. */
+static void add_view(struct thin_drawing *drawing, int eye) {
+    struct view *view = &drawing->views[drawing->view_count++];
+    const struct lens *lens = &view->camera.lens;
+    view->camera = drawing->renderer->camera;
+    view->planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
+    view->right = view->camera.width;
+    if (eye == 0)
+        return;
+    double offset = 0.5 * eye * lens->eye_distance;
+    view->camera.eye = vec3_add_scaled(view->camera.eye, view->camera.unit_right, offset);
+    view->shift = offset / lens->screen / vec3_length(view->camera.right);
+    if (lens->stereo == STEREO_SIDE && eye > 0) {
+        view->shift += view->camera.width;
+        view->left = view->camera.width;
+        view->right = 2 * view->camera.width;
+    }
+}
+
+bool thin_map_build(struct thin_map *map, const struct renderer *renderer, double margin, struct error *error) {
+    const struct film *film = renderer->job->film;
+    struct thin_drawing drawing = {.map = map, .renderer = renderer, .margin = margin};
+    *map = (struct thin_map){.x0 = film->x0, .y0 = film->y0, .width = film->width, .height = film->height};
+    if (renderer->roams)
+        *map = (struct thin_map){.width = renderer->job->width, .height = renderer->job->height};
+    uint32_t count = renderer->job->world->primitive_count;
+    if (count == 0)
+        return true;
+    map->nearness = mem_alloc_zero((size_t)map->width * map->height, sizeof *map->nearness);
+    if (!map->nearness)
+        return error_no_memory(error, "the map of thin primitives");
+    bool pair = renderer->camera.lens.stereo != STEREO_NONE;
+    for (int eye = pair ? -1 : 0; eye <= (pair ? 1 : 0); eye += 2)
+        add_view(&drawing, eye);
+    bool ok = pool_run(renderer->pool, (count + CHUNK - 1) / CHUNK, draw_chunk, &drawing);
+    if (!ok || !atomic_load(&drawing.found))
+        thin_map_destroy(map);
+    return ok || error_set(error, ERROR_CANCELLED, "stopped while rendering");
+}
+
+void thin_map_destroy(struct thin_map *map) {
+    mem_free(map->nearness);
+    map->nearness = NULL;
+}
