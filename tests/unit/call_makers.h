@@ -131,7 +131,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         text = "{{{0.1, 0.1}, {0.2, 0.1}, {0.1, 0.2}}}";
         break;
     case KIND_CALLBACK:
-        text = "function(t, frame) return {} end";
+        text = "function() return {node = ball, file = 'f.png', width = 4, height = 4, eye = {0, 0, 5}} end";
         break;
     case KIND_FUNCTION:
         text = strcmp(p->name, "density") == 0 ? "function(p) return p.x * p.x end"
@@ -194,6 +194,7 @@ static inline bool is_needed(const struct script_function *function, int index) 
     bool mesh_table = strcmp(p->name, "verts") == 0 || strcmp(p->name, "faces") == 0;
     bool partner = (strcmp(p->name, "normals") == 0 || strcmp(p->name, "uvs") == 0) && p->kind != KIND_FACES;
     bool one_of = strcmp(p->name, "heights") == 0 || strcmp(p->name, "spheres") == 0 || strcmp(p->name, "bounds") == 0;
+    one_of = one_of || (strcmp(function->name, "frames") == 0 && strcmp(p->name, "count") == 0);
     bool area_light_colour = function->result == RESULT_LIGHT && strcmp(p->name, "colour") == 0; /* or an emission */
     return !(p->flags & OPTIONAL) || mesh_table || partner || one_of || area_light_colour;
 }
@@ -227,6 +228,8 @@ static inline bool goes_with_the_others(const struct script_function *function, 
     excludes = excludes || strcmp(name, "image") == 0;
     if (strcmp(function->name, "implicit") == 0 && (strcmp(name, "radius") == 0 || strcmp(name, "centre") == 0))
         return false; /* in place of bounds */
+    if (strcmp(function->name, "frames") == 0 && strcmp(name, "seconds") == 0)
+        return false; /* in place of count */
     return !(excludes && (strstr(function->name, "mesh") || strstr(function->name, "height"))) &&
            !strstr(name, "materials") && strcmp(name, "ior") != 0 && strcmp(name, "refract") != 0 &&
            strcmp(name, "target_to") != 0;
