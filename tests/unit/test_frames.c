@@ -170,7 +170,7 @@ TEST(a_script_without_gr_frames_runs_once_for_each_frame) {
     free(result.out);
     free(result.err);
     for (int k = 1; k <= 6; k++) {
-        char name[16];
+        char name[32];
         (void)snprintf(name, sizeof name, "x.%02d.png", k);
         size_t size;
         char *bytes = test_read_file(test_path(name), &size);
