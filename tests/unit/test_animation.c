@@ -38,9 +38,12 @@ static uint32_t word_at(const uint8_t *bytes) {
 static void add_chunk(FILE *file, const char *kind, const uint8_t *bytes, uint32_t size) {
     uint8_t head[8] = {(uint8_t)(size >> 24), (uint8_t)(size >> 16), (uint8_t)(size >> 8), (uint8_t)size};
     memcpy(head + 4, kind, 4);
-    uLong crc = crc32(crc32(0, head + 4, 4), bytes, size);
+    uLong crc = crc32(0, head + 4, 4);
+    if (size > 0)
+        crc = crc32(crc, bytes, size);
     uint8_t tail[4] = {(uint8_t)(crc >> 24), (uint8_t)(crc >> 16), (uint8_t)(crc >> 8), (uint8_t)crc};
-    CHECK(fwrite(head, 1, 8, file) == 8 && fwrite(bytes, 1, size, file) == size && fwrite(tail, 1, 4, file) == 4);
+    CHECK(fwrite(head, 1, 8, file) == 8 && (size == 0 || fwrite(bytes, 1, size, file) == size) &&
+          fwrite(tail, 1, 4, file) == 4);
 }
 
 /* The data of one frame as a PNG file, read by libpng, at its place on the canvas. */
