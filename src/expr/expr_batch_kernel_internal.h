@@ -47,11 +47,7 @@ static inline bool is_common(enum expr_operation operation) {
            operation == EXPR_SELECT;
 }
 
-#define HAS_F 1
-#define HAS_I 1
-#define HAS_B 1
-#define HAS_N 0
-#define IS_CONSTANT(T, value) (HAS_##T && (value) < constants)
+#define IS_CONSTANT(T, value) (EXPR_HAS_##T && (value) < constants)
 #define RUN(member, name, R, A, B, C, expression)                                                                      \
     case member: {                                                                                                     \
         const uint32_t constant = (uint32_t)IS_CONSTANT(A, in->a) | (uint32_t)IS_CONSTANT(B, in->b) << 1 |             \
@@ -70,11 +66,11 @@ static inline bool is_common(enum expr_operation operation) {
         }                                                                                                              \
         if (is_whole && constant == 0)                                                                                 \
             LOOP(EXPR_BATCH, 0, A, B, C, expression)                                                                   \
-        else if (is_whole && !HAS_##C && constant == 1)                                                                \
+        else if (is_whole && !EXPR_HAS_##C && constant == 1)                                                           \
             LOOP(EXPR_BATCH, 1, A, B, C, expression)                                                                   \
-        else if (is_whole && HAS_##B && constant == 2)                                                                 \
+        else if (is_whole && EXPR_HAS_##B && constant == 2)                                                            \
             LOOP(EXPR_BATCH, 2, A, B, C, expression)                                                                   \
-        else if (is_whole && HAS_##C && constant == 4)                                                                 \
+        else if (is_whole && EXPR_HAS_##C && constant == 4)                                                            \
             LOOP(EXPR_BATCH, 4, A, B, C, expression)                                                                   \
         else {                                                                                                         \
             const double *ra = row_of(from[0], constant & 1, width, spare);                                            \

@@ -174,25 +174,17 @@ static void chain(const struct dual *operands[3], const double by[3], double out
     }
 }
 
-#define TYPE_F double
-#define TYPE_I int64_t
-#define TYPE_B int64_t
-#define TYPE_N int64_t
-#define MEMBER_F f
-#define MEMBER_I i
-#define MEMBER_B i
-#define MEMBER_N i
 #define READ_F(operand) (operand)->value.f
 #define READ_I(operand) 0
 #define READ_B(operand) 0
 #define READ_N(operand) 0
 #define EVALUATE(member, name, R, A, B, C, expression)                                                                 \
     case member: {                                                                                                     \
-        TYPE_##A a = from[0]->value.MEMBER_##A;                                                                        \
-        TYPE_##B b = from[1]->value.MEMBER_##B;                                                                        \
-        TYPE_##C c = from[2]->value.MEMBER_##C;                                                                        \
+        EXPR_C_TYPE_##A a = from[0]->value.EXPR_MEMBER_##A;                                                            \
+        EXPR_C_TYPE_##B b = from[1]->value.EXPR_MEMBER_##B;                                                            \
+        EXPR_C_TYPE_##C c = from[2]->value.EXPR_MEMBER_##C;                                                            \
         (void)a, (void)b, (void)c;                                                                                     \
-        result.value.MEMBER_##R = (expression);                                                                        \
+        result.value.EXPR_MEMBER_##R = (expression);                                                                   \
         if (member == EXPR_SELECT)                                                                                     \
             result = from[0]->value.i ? *from[1] : *from[2];                                                           \
         else if (EXPR_TYPE_##R == EXPR_TYPE_F)                                                                         \

@@ -43,21 +43,13 @@ const char *expr_input_name(enum expr_input input) {
     return words[input];
 }
 
-#define TYPE_F double
-#define TYPE_I int64_t
-#define TYPE_B int64_t
-#define TYPE_N int64_t
-#define MEMBER_F f
-#define MEMBER_I i
-#define MEMBER_B i
-#define MEMBER_N i
 #define APPLY(member, name, R, A, B, C, expression)                                                                    \
     case member: {                                                                                                     \
-        TYPE_##A a = x.MEMBER_##A;                                                                                     \
-        TYPE_##B b = y.MEMBER_##B;                                                                                     \
-        TYPE_##C c = z.MEMBER_##C;                                                                                     \
+        EXPR_C_TYPE_##A a = x.EXPR_MEMBER_##A;                                                                         \
+        EXPR_C_TYPE_##B b = y.EXPR_MEMBER_##B;                                                                         \
+        EXPR_C_TYPE_##C c = z.EXPR_MEMBER_##C;                                                                         \
         (void)a, (void)b, (void)c;                                                                                     \
-        out.MEMBER_##R = (expression);                                                                                 \
+        out.EXPR_MEMBER_##R = (expression);                                                                            \
         break;                                                                                                         \
     }
 

@@ -86,6 +86,20 @@ union expr_value {
     X(EXPR_INTEGER_SELECT, "integer_select", I, B, I, I, a ? b : c)                                                    \
     X(EXPR_TRUTH_SELECT, "truth_select", B, B, B, B, a ? b : c)
 
+/* Of a type: the C type of its values, their member of union expr_value, and whether there is an operand. */
+#define EXPR_C_TYPE_F double
+#define EXPR_C_TYPE_I int64_t
+#define EXPR_C_TYPE_B int64_t
+#define EXPR_C_TYPE_N int64_t
+#define EXPR_MEMBER_F f
+#define EXPR_MEMBER_I i
+#define EXPR_MEMBER_B i
+#define EXPR_MEMBER_N i
+#define EXPR_HAS_F 1
+#define EXPR_HAS_I 1
+#define EXPR_HAS_B 1
+#define EXPR_HAS_N 0
+
 #define EXPR_OPERATION_MEMBER(member, ...) member,
 enum expr_operation {
     EXPR_CONSTANT, /* leaves of the graph; they are no instructions */

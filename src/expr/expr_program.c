@@ -198,19 +198,11 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
 
 /* --- one point --- */
 
-#define TYPE_F double
-#define TYPE_I int64_t
-#define TYPE_B int64_t
-#define TYPE_N int64_t
-#define MEMBER_F f
-#define MEMBER_I i
-#define MEMBER_B i
-#define MEMBER_N i
 #define EVALUATE(member, name, R, A, B, C, expression)                                                                 \
     case member: {                                                                                                     \
-        TYPE_##A a = values[in->a].MEMBER_##A;                                                                         \
-        TYPE_##B b = values[in->b].MEMBER_##B;                                                                         \
-        TYPE_##C c = values[in->c].MEMBER_##C;                                                                         \
+        EXPR_C_TYPE_##A a = values[in->a].EXPR_MEMBER_##A;                                                             \
+        EXPR_C_TYPE_##B b = values[in->b].EXPR_MEMBER_##B;                                                             \
+        EXPR_C_TYPE_##C c = values[in->c].EXPR_MEMBER_##C;                                                             \
         (void)a, (void)b, (void)c;                                                                                     \
         if ((member == EXPR_SIN || member == EXPR_COS) && expr_is_pair(in, end)) {                                     \
             bool is_sine = member == EXPR_SIN;                                                                         \
@@ -218,7 +210,7 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
             el_sincos(values[in->a].f, &values[in[is_sine ? -1 : 0].out].f, &values[in[is_sine ? 0 : -1].out].f);      \
             break;                                                                                                     \
         }                                                                                                              \
-        values[in->out].MEMBER_##R = (expression);                                                                     \
+        values[in->out].EXPR_MEMBER_##R = (expression);                                                                \
         break;                                                                                                         \
     }
 

@@ -8,11 +8,7 @@
 enum { UNWANTED = 0xffff };
 
 /* Whether an operation reads each operand. */
-#define HAS_F 1
-#define HAS_I 1
-#define HAS_B 1
-#define HAS_N 0
-#define READS(member, name, R, A, B, C, expression) [member] = {HAS_##A, HAS_##B, HAS_##C},
+#define READS(member, name, R, A, B, C, expression) [member] = {EXPR_HAS_##A, EXPR_HAS_##B, EXPR_HAS_##C},
 static const uint8_t reads[EXPR_OPERATION_COUNT][3] = {EXPR_OPERATIONS(READS)};
 
 struct renaming {
