@@ -1882,6 +1882,19 @@ function node:spin(axis, degrees) end
 ---@return gr.node
 function node:reset() end
 
+---@class gr.node.pose.fields
+---@field translate? gr.triple translate (a point {x, y, z}; default {0, 0, 0}): Translation, the last step.
+---@field rotate? number[] rotate (a table of 4 numbers {w, x, y, z}; default {1, 0, 0, 0}): Rotation, a quaternion {w, x, y, z} as for node:rotate_quat.
+---@field scale? number|gr.triple scale (a number or a table of 3 numbers; default 1): Scale factor, the first step, one number or three; of 0 nothing is drawn.
+
+---Replaces the transforms of this node by a scale, a rotation and a translation, as gr.keys interpolates them.
+---@param translate gr.triple translate (a point {x, y, z}; default {0, 0, 0}): Translation, the last step.
+---@param rotate? number[] rotate (a table of 4 numbers {w, x, y, z}; default {1, 0, 0, 0}): Rotation, a quaternion {w, x, y, z} as for node:rotate_quat.
+---@param scale? number|gr.triple scale (a number or a table of 3 numbers; default 1): Scale factor, the first step, one number or three; of 0 nothing is drawn.
+---@return gr.node
+---@overload fun(self: gr.node, fields: gr.node.pose.fields): gr.node
+function node:pose(translate, rotate, scale) end
+
 ---Rotates this node about any direction.
 ---@param axis gr.triple axis (a direction {x, y, z}): The axis, of any length except 0.
 ---@param angle number angle (a number, in degrees): Angle, counterclockwise when the axis points to the viewer.
@@ -2073,6 +2086,10 @@ function gr.srgb(colour) end
 ---The light of a colour of the screen, a vector of numbers, by the sRGB function.
 ---@return gr.vector
 function gr.linear(colour) end
+
+---A function of seconds (gr.time) that interpolates keys {seconds, value}; fields: curve = 'linear', 'catmull' or 'bezier', and ease.
+---@return fun(seconds?: number): any
+function gr.keys(keys) end
 
 ---Whether x is a number of a recorded function, whose value is not known yet.
 ---@return boolean

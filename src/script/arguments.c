@@ -847,12 +847,11 @@ static bool read_named(struct script_context *c, const struct script_function *f
     return true;
 }
 
-/* One plain table without an entry 1 holds named fields. Of the methods only node:render accepts it: the others take
- * tuples or handles. */
+/* One plain table without an entry 1 holds named fields. */
 bool arguments_have_names(lua_State *L, const struct script_function *function, int first, int last) {
     if (last != first || !lua_istable(L, first))
         return false;
-    if (function->owner == OWNER_NODE && function->result != RESULT_NOTHING)
+    if (!function_takes_names(function))
         return false;
     int rest;
     bool named = lua_rawgeti(L, first, 1) == LUA_TNIL || function_rest(function, &rest);

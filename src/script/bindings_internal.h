@@ -54,10 +54,11 @@ enum { SET_BUMP = 1, SET_BUMP_COUNT };
 enum { STEP_X = 1, STEP_Y, STEP_Z, STEP_VECTOR, STEP_COUNT };
 enum { ROTATE_AXIS = 1, ROTATE_ANGLE, ROTATE_COUNT };
 enum { QUAT_W = 1, QUAT_X, QUAT_Y, QUAT_Z, QUAT_TABLE, QUAT_COUNT };
+enum { POSE_TRANSLATE = 1, POSE_ROTATE, POSE_SCALE, POSE_COUNT };
 enum { MOVES_TO_NODE = 1, MOVES_TO_COUNT };
 enum { SPIN_AXIS = 1, SPIN_DEGREES, SPIN_DIRECTION, SPIN_COUNT };
 binding gr_add_child, gr_set_material, gr_set_texture, gr_set_bump, gr_scale, gr_rotate, gr_translate;
-binding gr_rotate_axis, gr_rotate_quat, gr_velocity, gr_moves_to, gr_spin, gr_reset;
+binding gr_rotate_axis, gr_rotate_quat, gr_velocity, gr_moves_to, gr_spin, gr_reset, gr_pose;
 
 /* gr_mesh.c */
 enum {

@@ -46,8 +46,7 @@ static bool read_marked(lua_State *L, int index, struct vec3 *out) {
     return ok;
 }
 
-/* Raises an error for a string '#...' that is no colour. */
-static bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
+bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
     index = lua_absindex(L, index);
     if (lua_type(L, index) == LUA_TTABLE)
         return read_marked(L, index, out);

@@ -114,10 +114,6 @@ static void describe_parameter(const struct script_parameter *p, char out[LINE_S
     snprintf(out + used, LINE_SIZE - used, "): %s", p->help);
 }
 
-static bool has_table_form(const struct script_function *function) {
-    return function->owner == OWNER_GR || function->result == RESULT_NOTHING;
-}
-
 /* A form may continue with any number of nodes. */
 static bool takes_more(const struct script_function *function) {
     for (int k = 0; k < function->parameter_count; k++)
@@ -140,7 +136,7 @@ static void write_function(struct document *document, const struct script_functi
         }
         add(document, "%s)\n", takes_more(function) ? ", ..." : "");
     }
-    if (has_table_form(function))
+    if (function_takes_names(function))
         add(document, "%s{%s = ..., ...}\n", title, function->parameters[function->owner == OWNER_NODE].name);
     add(document, "    ");
     add_filled(document, 4, 4, function->help);
@@ -328,7 +324,7 @@ static void annotate_results(struct document *document, const char *results) {
 
 static void annotate_function(struct document *document, const struct script_function *function) {
     const char *form = function->forms[0], *result = annotation_result(function), *separator = "";
-    bool table_form = has_table_form(function), optional;
+    bool table_form = function_takes_names(function), optional;
     int index;
     char names[LINE_SIZE] = "";
     add(document, "---%s\n", function->help);
@@ -388,7 +384,7 @@ const char *script_annotations(struct arena *arena) {
                    "---The number of the frame, from 1; 0 outside of animations.\ngr.frame = 0\n\n");
     for (int k = 0; k < function_count(); k++) {
         const struct script_function *function = function_at(k);
-        if (has_table_form(function))
+        if (function_takes_names(function))
             annotate_fields(&document, function);
         annotate_function(&document, function);
     }

@@ -165,6 +165,34 @@ bool gr_rotate_quat(struct script_context *context, const struct script_value *a
     return step(context, args, NODE_ROTATE, &by, error);
 }
 
+/* In this order in every order of transforms (gr.transform_order). */
+bool gr_pose(struct script_context *context, const struct script_value *args, struct script_result *result,
+             struct error *error) {
+    (void)result;
+    struct node *node = args[SELF].node;
+    const struct script_value *rotate = &args[POSE_ROTATE], *scale = &args[POSE_SCALE];
+    if (rotate->given && rotate->number == 0 && vec3_max_abs(rotate->vector) == 0)
+        return error_set(error, ERROR_SCENE, "the quaternion must not be 0");
+    struct vec3 factors = scale->given ? scale->vector : vec3_all(1);
+    double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
+    bool singular = !isfinite(1 / min);
+    const struct transform steps[NODE_STEPS] = {
+        [NODE_TRANSLATE] = transform_translate(args[POSE_TRANSLATE].vector),
+        [NODE_ROTATE] =
+            rotate->given ? transform_rotate_quaternion(rotate->number, rotate->vector) : transform_identity(),
+        [NODE_SCALE] = transform_scale(singular ? vec3_all(1) : factors),
+    };
+    static const enum node_step forward[] = {NODE_SCALE, NODE_ROTATE, NODE_TRANSLATE};
+    node_reset_transform(node);
+    for (int i = 0; i < NODE_STEPS; i++) {
+        enum node_step kind = forward[context->scene.order == ORDER_OLD ? NODE_STEPS - 1 - i : i];
+        if (!node_transform(&context->scene, node, kind, &steps[kind]))
+            return error_no_memory(error, "a transform");
+    }
+    node->singular = singular;
+    return true;
+}
+
 bool gr_translate(struct script_context *context, const struct script_value *args, struct script_result *result,
                   struct error *error) {
     (void)result;

@@ -90,7 +90,12 @@ enum record_domain { RECORD_POINTS_OF_SPACE, RECORD_DIRECTIONS };
 const struct expr_program *record_function(struct script_context *context, int index, const char *name,
                                            enum record_domain domain, const char **source);
 
+/* keys.c */
+int make_keys(lua_State *L); /* gr.keys */
+
 /* display_colour.c */
+/* Whether a value is a colour of the screen. Raises an error for a string '#...' that is no colour. */
+bool display_colour_at(lua_State *L, int index, struct vec3 *out);
 /* An argument that is a colour of the screen; where textures are accepted it is one. False: it is something else. */
 bool display_colour_read(struct script_context *c, int index, const struct script_parameter *p,
                          struct script_value *value);

@@ -306,6 +306,15 @@ static const struct script_parameter rotate_quat_parameters[] = {
     [QUAT_TABLE] = {"quaternion", KIND_QUATERNION, 0, ANY, NULL, NULL, "The four numbers as a table."},
 };
 
+static const struct script_parameter pose_parameters[] = {
+    SELF_PARAMETER,
+    [POSE_TRANSLATE] = {"translate", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Translation, the last step."},
+    [POSE_ROTATE] = {"rotate", KIND_QUATERNION, OPTIONAL, ANY, NULL, "{1, 0, 0, 0}",
+                     "Rotation, a quaternion {w, x, y, z} as for node:rotate_quat."},
+    [POSE_SCALE] = {"scale", KIND_SIZE, OPTIONAL, ANY, NULL, "1",
+                    "Scale factor, the first step, one number or three; of 0 nothing is drawn."},
+};
+
 #define KD                                                                                                             \
     { "kd", KIND_COLOUR, OR_TEXTURE, ANY, NULL, NULL, "Diffuse and ambient colour." }
 #define KS                                                                                                             \
@@ -910,6 +919,9 @@ static const struct script_function other_rows[] = {
          "axis degrees", "direction degrees"),
     NODE("reset", self_parameters, RESULT_SELF, gr_reset,
          "Forgets the transforms of this node, so that an animation can set new ones in each frame.", ""),
+    NODE("pose", pose_parameters, RESULT_SELF, gr_pose,
+         "Replaces the transforms of this node by a scale, a rotation and a translation, as gr.keys interpolates them.",
+         "translate rotate? scale?"),
     NODE("rotate_axis", rotate_axis_parameters, RESULT_SELF, gr_rotate_axis, "Rotates this node about any direction.",
          "axis angle"),
     NODE("rotate_quat", rotate_quat_parameters, RESULT_SELF, gr_rotate_quat, "Rotates this node by a quaternion.",
@@ -955,6 +967,15 @@ const struct script_function *function_find(enum owner owner, const char *name) 
             return function;
     }
     return NULL;
+}
+
+bool function_takes_names(const struct script_function *function) {
+    bool all_optional = function->parameter_count > 1;
+    if (function->owner == OWNER_GR || function->result == RESULT_NOTHING)
+        return true;
+    for (int k = 1; k < function->parameter_count; k++)
+        all_optional = all_optional && (function->parameters[k].flags & OPTIONAL) != 0;
+    return all_optional;
 }
 
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional) {

@@ -182,6 +182,9 @@ const struct value_function *value_function_at(size_t index);
 
 /* The row of that name, or NULL. */
 const struct script_function *function_find(enum owner owner, const char *name);
+/* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead: only
+ * those whose arguments are all optional, and node:render, have fields. */
+bool function_takes_names(const struct script_function *function);
 /* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
 /* What the script must pass: "a number", "a colour {r, g, b}". */

@@ -587,6 +587,11 @@ static const struct {
     {{"linear", "colour", "The light of a colour of the screen, a vector of numbers, by the sRGB function.",
       "gr.vector"},
      display_colour_to_light},
+    {{"keys", "keys",
+      "A function of seconds (gr.time) that interpolates keys {seconds, value}; fields: curve = 'linear', 'catmull' or "
+      "'bezier', and ease.",
+      "fun(seconds?: number): any"},
+     make_keys},
     {{"is_recorded", "x", "Whether x is a number of a recorded function, whose value is not known yet.", "boolean"},
      is_recorded},
 };
