@@ -166,11 +166,23 @@ static void save_from_window(struct supervisor *supervisor,
     bool ok = take(&supervisor->viewer, &picture, name, &error);
     (void)snprintf(line, sizeof line, ok ? "gray: notice: %s is written" : "%s", ok ? name : error.text);
     output_report(&supervisor->output, ok ? LINE_NOTICE : LINE_ERROR, line);
+    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? name : error.text);
+    viewer_show_notice(&supervisor->viewer, line, !ok);
+}
+
+/* The script's picture, under its name. */
+static void write_from_window(struct supervisor *supervisor) {
+    struct error error;
+    char line[NAME_LIMIT + 64];
+    bool ok = output_write(&supervisor->output, &error);
+    if (!ok)
+        supervisor_note_error(supervisor, &error);
+    (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? supervisor->viewer.name : error.text);
+    viewer_show_notice(&supervisor->viewer, line, !ok);
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
     struct viewer *viewer = &supervisor->viewer;
-    struct error error;
     int nothing = CANCEL_NOTHING;
     while (viewer->open && supervisor->deadline <= 0) {
         switch (viewer_step(viewer, progress_clock())) {
@@ -183,8 +195,7 @@ void supervisor_step_window(struct supervisor *supervisor) {
             send_command(supervisor, &viewer->command);
             break;
         case VIEWER_WRITE_PICTURE:
-            if (!output_write(&supervisor->output, &error))
-                supervisor_note_error(supervisor, &error);
+            write_from_window(supervisor);
             break;
         case VIEWER_SAVE_IMAGE:
             save_from_window(supervisor, viewer_save_image);

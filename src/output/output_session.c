@@ -240,6 +240,7 @@ static void start_picture(struct output_session *output) {
                             progress_wants_estimate(&output->progress) && !request->in_window && !helps);
     (void)wait_for_text(output);
     progress_begin(&output->progress, picture->name, request->width, request->height);
+    output->progress.elsewhere = request->in_window != 0;
     if (!request->in_window)
         display_begin(&output->display, picture->name, &picture->film, &tone);
 }
@@ -409,6 +410,7 @@ static bool leave_to_first_rank(struct output_session *output) {
 
 bool output_write(struct output_session *output, struct error *error) {
     output->current.written = write_picture(output, &output->current, error);
+    progress_end(&output->progress, output->current.written ? PROGRESS_WRITTEN : PROGRESS_GIVEN_UP);
     return output->current.written;
 }
 
@@ -431,7 +433,6 @@ bool output_done(struct output_session *output, const struct picture_report *rep
     report_display(output, display_end(&output->display, &gone), &gone);
     warn_of_clamped(output, report);
     if (output->current.written) {
-        progress_end(&output->progress, PROGRESS_WRITTEN);
         report_statistics(output, report);
         close_picture(&output->current);
         return true;

@@ -157,7 +157,7 @@ static void print_json(const struct progress *progress, const char *event, const
 
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height) {
     progress->name = name;
-    progress->printed = false;
+    progress->printed = progress->elsewhere = false;
     progress->share = 0;
     progress->writing = usual_writing;
     progress->tried = progress->known = false;
@@ -203,7 +203,8 @@ void progress_update(struct progress *progress, uint32_t done, uint32_t count,
                      const struct progress_estimate *progress_estimate) {
     double now = progress_clock();
     bool first = progress->mode == PROGRESS_JSON && !progress->known && progress_estimate_share(progress_estimate) >= 0;
-    if (!progress->name || (now - progress->shown < pause_of(progress, now) && !first) || !text_stderr_is_ready())
+    if (!progress->name || progress->elsewhere || (now - progress->shown < pause_of(progress, now) && !first) ||
+        !text_stderr_is_ready())
         return;
     progress->known = progress->known || first;
     struct state state = state_of(progress, now, done, count, progress_estimate);
@@ -223,7 +224,8 @@ void progress_end(struct progress *progress, enum progress_end how) {
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
         print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", &(struct state){elapsed, -1, -1, 0, 0});
-    bool reported = progress->mode == PROGRESS_BAR || (progress->mode == PROGRESS_LINES && progress->printed);
+    bool reported = (progress->mode == PROGRESS_BAR && !progress->elsewhere) ||
+                    (progress->mode == PROGRESS_LINES && progress->printed);
     if (reported && how == PROGRESS_WRITTEN) {
         char line[4096 + 64];
         (void)snprintf(line, sizeof line, "%s  %u x %u  %.1f s", progress->name, progress->width, progress->height,

@@ -23,6 +23,7 @@ struct progress {
     bool known;          /* the start of tiles was reported */
     double share;        /* the reported share; it never decreases */
     int columns;         /* columns of the bar on the screen; 0: no bar */
+    bool elsewhere;      /* a window shows it; standard error has only the begin and the end of JSON */
 };
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };

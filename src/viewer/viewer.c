@@ -71,6 +71,7 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->display.layout = before->display.layout;
     viewer->display.panel = before->display.panel;
     viewer->display.hides_hud = before->display.hides_hud;
+    viewer->notice = before->notice;
     viewer->overlay.kind = before->open ? before->overlay.kind : viewer->overlay.kind;
     viewer->open = before->open;
 }
@@ -160,6 +161,12 @@ void viewer_show_message(struct viewer *viewer, const char *text) {
     viewer->display.figures_at = 0;
 }
 
+void viewer_show_notice(struct viewer *viewer, const char *text, bool warns) {
+    viewer->notice = (struct viewer_notice){.warns = warns};
+    (void)snprintf(viewer->notice.text, sizeof viewer->notice.text, "%.500s", text);
+    viewer->display.figures_at = 0;
+}
+
 /* Commands. */
 
 void viewer_note_stop(struct viewer *viewer, double seconds) {
@@ -169,7 +176,8 @@ void viewer_note_stop(struct viewer *viewer, double seconds) {
 
 bool viewer_is_idle(const struct viewer *viewer) {
     return viewer->pass.state == PASS_WAITING && viewer->pass.result == RESULT_COMPLETE && !viewer->pass.outdated &&
-           !viewer->edit.click_waits && !viewer->trace.wanted && viewer->edit.pending.count == 0;
+           !viewer->edit.click_waits && !viewer->trace.wanted && viewer->edit.pending.count == 0 &&
+           !viewer_needs_overlay(viewer);
 }
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {

@@ -147,6 +147,13 @@ struct viewer_input {
     double press_x, press_y; /* where */
 };
 
+/* A line that is shown for some seconds: which file was saved, or why not. */
+struct viewer_notice {
+    char text[512];
+    bool warns;
+    double until; /* 0: it is new */
+};
+
 /* Zero value: no window. */
 struct viewer {
     const struct window_driver *driver;
@@ -163,8 +170,9 @@ struct viewer {
     struct preview_reply scene; /* its root, as reported last */
     bool written;               /* the script's picture is written */
     char message[512];          /* an error, or empty */
-    char note[160];             /* for the log, or empty */
-    double built;               /* when the world was built; 0: already reported */
+    struct viewer_notice notice;
+    char note[160]; /* for the log, or empty */
+    double built;   /* when the world was built; 0: already reported */
 
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
@@ -200,6 +208,8 @@ void viewer_keep(struct viewer *viewer);
 bool viewer_skips(const struct viewer *viewer, unsigned number);
 /* Shows the first line of an error until a picture begins. */
 void viewer_show_message(struct viewer *viewer, const char *text);
+/* Shows it for some seconds, also in the title. */
+void viewer_show_notice(struct viewer *viewer, const char *text, bool warns);
 /* A piece of the pixel trace that was requested. */
 void viewer_add_pixel_trace(struct viewer *viewer, const char *text);
 /* A command has been executed; the render process waits for the next one. */

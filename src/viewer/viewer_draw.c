@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double redraw_pause = 0.016, figures_pause = 0.25;
+static const double redraw_pause = 0.016, figures_pause = 0.25, notice_seconds = 5;
 
 bool viewer_resize(struct viewer *viewer, int width, int height, double density) {
     struct window_layout *layout = &viewer->display.layout;
@@ -192,10 +192,20 @@ static void compute_figures(const struct viewer *viewer, struct figures *figures
 
 static void set_title(struct viewer *viewer, const struct figures *figures) {
     char title[1024];
-    (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s  %s  %s  %s%s", viewer->request.file, figures->size,
+    (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s  %s  %s  %s%s%s%.400s", viewer->request.file, figures->size,
                    figures->state, figures->rays, figures->triangles, figures->voxels, figures->frames,
-                   viewer->input.grabbed ? "  (Esc leaves)" : "");
+                   viewer->input.grabbed ? "  (Esc leaves)" : "", viewer->notice.text[0] != '\0' ? "  " : "",
+                   viewer->notice.text);
     viewer->driver->title(viewer->driver->context, viewer->message[0] != '\0' ? viewer->message : title);
+}
+
+static void end_notice(struct viewer_notice *notice, double now) {
+    if (notice->text[0] == '\0')
+        return;
+    if (notice->until <= 0)
+        notice->until = now + notice_seconds;
+    else if (now >= notice->until)
+        notice->text[0] = '\0';
 }
 
 void viewer_show(struct viewer *viewer, double now) {
@@ -205,6 +215,7 @@ void viewer_show(struct viewer *viewer, double now) {
                                                          now - viewer->display.shown_at >= redraw_pause)))
         return;
     bool over = due || viewer->display.hud_dirty;
+    end_notice(&viewer->notice, now);
     if (over) {
         struct figures figures;
         viewer->display.hud_dirty = false; /* a used part of the panel requires another frame */

@@ -154,20 +154,23 @@ static void draw_pixel_trace(struct viewer *viewer, int top) {
     }
 }
 
-/* The error, broken into lines, at the bottom. */
-static void draw_message(struct viewer *viewer) {
-    struct panel *panel = &viewer->display.panel;
-    int scale = panel->canvas.scale, line = panel_line_height(panel);
-    int columns = (panel->canvas.width - 4 * scale) / (CANVAS_CELL * scale), length = (int)strlen(viewer->message);
+/* A text, broken into lines, above the line `bottom` of the canvas. Returns its top. */
+static int draw_lines(struct panel *panel, const char *line, bool warns, int bottom) {
+    int scale = panel->canvas.scale, height = panel_line_height(panel);
+    int columns = (panel->canvas.width - 4 * scale) / (CANVAS_CELL * scale), length = (int)strlen(line);
     if (length == 0 || columns < 8)
-        return;
-    int rows = (length + columns - 1) / columns, top = panel->canvas.height - rows * line - 3 * scale;
-    panel_ground(panel, 0, top, panel->canvas.width, rows * line + 3 * scale);
+        return bottom;
+    int rows = (length + columns - 1) / columns, top = bottom - rows * height - 3 * scale;
+    panel_ground(panel, 0, top, panel->canvas.width, bottom - top);
     for (int i = 0; i < rows; i++) {
         char text[512];
-        (void)snprintf(text, sizeof text, "%.*s", columns, viewer->message + i * columns);
-        panel_warning(panel, 2 * scale, top + 2 * scale + i * line, text);
+        (void)snprintf(text, sizeof text, "%.*s", columns, line + i * columns);
+        if (warns)
+            panel_warning(panel, 2 * scale, top + 2 * scale + i * height, text);
+        else
+            panel_text(panel, 2 * scale, top + 2 * scale + i * height, text);
     }
+    return top;
 }
 
 void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
@@ -190,6 +193,8 @@ void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
             viewer_draw_light_list(viewer, below + viewer->display.panel.canvas.scale);
         draw_pixel_trace(viewer, below + viewer->display.panel.canvas.scale);
     }
-    draw_message(viewer);
+    struct panel *panel = &viewer->display.panel;
+    int bottom = draw_lines(panel, viewer->message, true, panel->canvas.height);
+    (void)draw_lines(panel, viewer->notice.text, viewer->notice.warns, bottom);
     panel_end(&viewer->display.panel);
 }

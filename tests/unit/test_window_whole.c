@@ -93,15 +93,16 @@ static const char scene[] =
     { .kind = WINDOW_KEY, .key = code, .down = true }
 #define AT_THE_BALL .button = WINDOW_LEFT, .x = 320, .y = 240
 
-/* The status of the program. */
-static int viewer_over(const struct deed *deeds, const char *overlay, uint8_t *over) {
+/* The status of the program with these two options. */
+static int viewer_that(const struct deed *deeds, const char *progress, const char *overlay, uint8_t *over) {
     struct person person = {.deeds = deeds, .over = over};
     const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
                                          person_title, person_grab, person_nothing, person_close};
     struct arena arena = {0};
     struct options options;
     struct error error;
-    char *words[] = {"gray", "-gui", "-q", "--progress=none", "--overlay", (char *)(uintptr_t)overlay, "scene.lua"};
+    char *words[] = {"gray",     "-gui", "-q", (char *)(uintptr_t)progress, "--overlay", (char *)(uintptr_t)overlay,
+                     "scene.lua"};
     char before[4096];
     CHECK(getcwd(before, sizeof before) && chdir(test_folder()) == 0);
     test_write_text("scene.lua", scene);
@@ -111,6 +112,10 @@ static int viewer_over(const struct deed *deeds, const char *overlay, uint8_t *o
     arena_destroy(&arena);
     CHECK(chdir(before) == 0);
     return status;
+}
+
+static int viewer_over(const struct deed *deeds, const char *overlay, uint8_t *over) {
+    return viewer_that(deeds, "--progress=none", overlay, over);
 }
 
 static int viewer_with(const struct deed *deeds) {
@@ -217,4 +222,21 @@ TEST(window_outlines_what_is_picked_by_its_silhouette) {
     }
     for (int i = 0; i < 36; i++)
         CHECK(turns[i]);
+}
+
+TEST(window_says_when_a_file_is_saved_and_prints_no_progress_in_the_terminal) {
+    const struct deed deeds[] = {{"out.png is written", KEY('s'), 0},
+                                 {"out-view1.png is written", KEY('v'), 0},
+                                 {"out-view1.lua is written", KEY('c'), 0},
+                                 {"out-changes1.lua is written", KEY(WINDOW_ARROW_UP), 0},
+                                 {NULL, {.kind = WINDOW_KEY, .key = WINDOW_ARROW_UP}, 30},
+                                 {"ready", KEY('x'), 0},
+                                 {NULL, KEY('q'), 30}};
+    size_t size;
+    CHECK(freopen(test_path("said.txt"), "w", stderr) != NULL);
+    CHECK_EQ_INT(viewer_that(deeds, "--progress=bar", "none", NULL), 0);
+    CHECK(fflush(stderr) == 0);
+    char *said = test_read_file(test_path("said.txt"), &size);
+    CHECK_TEXT(said, "");
+    free(said);
 }
