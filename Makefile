@@ -59,10 +59,12 @@ LUA_LIBS := $(if $(LUA_NAME),$(shell $(PKG_CONFIG) --libs $(LUA_NAME)))
 PNG_CFLAGS := $(shell $(PKG_CONFIG) --cflags libpng 2>/dev/null)
 PNG_LIBS := $(shell $(PKG_CONFIG) --libs libpng zlib 2>/dev/null)
 # Optional: without them gray is whole, but reads no JPEG (libjpeg), no glTF (jansson), no fonts (FreeType) and no EXR
-# (OpenEXR, of which only the C library is used).
+# (OpenEXR, of which only the C library is used), and writes no WebP (libwebp).
 JPEG_LIBS := $(shell $(PKG_CONFIG) --libs libjpeg 2>/dev/null)
 JANSSON_LIBS := $(shell $(PKG_CONFIG) --libs jansson 2>/dev/null)
 EXR_LIBS := $(filter -lOpenEXRCore% -L%,$(shell $(PKG_CONFIG) --libs OpenEXR 2>/dev/null))
+WEBP_LIBS := $(shell $(PKG_CONFIG) --libs libwebpmux libwebp 2>/dev/null)
+WEBP_CFLAGS := $(if $(PLAIN),,$(if $(WEBP_LIBS),-DHAVE_WEBP $(shell $(PKG_CONFIG) --cflags libwebpmux libwebp)))
 MPI_NAME := $(firstword $(foreach name,ompi-c mpich,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 MPI_CFLAGS := $(if $(MPI_NAME),$(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(MPI_NAME))))
 MPI_LIBS := $(if $(MPI_NAME),$(shell $(PKG_CONFIG) --libs $(MPI_NAME)))
@@ -82,7 +84,7 @@ endif
 
 override CFLAGS += -std=gnu11 $(WARNINGS) $(EXACT) $(CFLAGS.$(config)) -pthread
 override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -DGRAY_CONFIG='"$(config)"' -DGRAY_PREFIX='"$(PREFIX)"'
-override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) -lm
+override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) $(WEBP_LIBS) -lm
 override LDFLAGS += -pthread
 
 SOURCES := $(sort $(foreach module,$(MODULES),$(wildcard src/$(module)/*.c)))
@@ -134,6 +136,8 @@ $(BUILD)/gray-gui: $(OBJECTS) $(MAIN_OBJECT) $(GUI_OBJECT)
 $(BUILD)/$(GUI_MAIN:.c=.o): override CPPFLAGS += $(SDL_CFLAGS)
 $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
+$(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/test_animation.o: override CPPFLAGS += $(WEBP_CFLAGS)
+$(BUILD)/tests/run: override LDLIBS += $(if $(WEBP_LIBS),-lwebpdemux)
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)

@@ -50,6 +50,7 @@ case $mode in
     want libjansson-dev pkg-config --exists jansson
     want libfreetype-dev pkg-config --exists freetype2
     want libopenexr-dev pkg-config --exists OpenEXR
+    want libwebp-dev pkg-config --exists libwebpmux
     ;;
 esac
 

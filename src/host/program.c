@@ -11,6 +11,7 @@
 #include "formats/model.h"
 #include "host/in_process.h"
 #include "host/supervisor.h"
+#include "image/animation.h"
 #include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "output/merge.h"
@@ -60,11 +61,11 @@ static void print_version(void) {
 #else
     static const char farm[] = "none";
 #endif
-    (void)printf(
-        "gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, windows "
-        "by %s, farms by %s\n",
-        GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
-        exr_library(), window, farm);
+    (void)printf("gray %s\n%s\nlibpng %s\noptional: JPEG pictures by %s, glTF by %s, fonts by %s, EXR pictures by %s, "
+                 "WebP by %s, "
+                 "windows by %s, farms by %s\n",
+                 GRAY_VERSION, LUA_RELEASE, png_get_libpng_ver(NULL), jpeg_library(), gltf_library(), font_library(),
+                 exr_library(), webp_library(), window, farm);
 }
 
 /* Prints text that the script layer makes of its table. */

@@ -1,4 +1,4 @@
-/* Files of animations, from frames of 8 bits per channel: APNG, GIF, Y4M. Frames are requested in their order, so one
+/* Files of animations, from frames of 8 bits per channel: APNG, GIF, WebP, Y4M. Frames are requested in their order, so one
  * or two of them are in memory. */
 #ifndef GRAY_IMAGE_ANIMATION_H
 #define GRAY_IMAGE_ANIMATION_H
@@ -30,6 +30,14 @@ bool gif_write(const struct file_target *target, const struct animation_source *
                struct error *error);
 /* The delay of frame `index`, from 0, in hundredths of a second: 3, 3, 4 for 30 frames per second. */
 uint32_t gif_delay(double rate, uint32_t index);
+
+/* WebP, lossless: a decoder gives the bytes of the frames. Sides up to 16383. Equal frames that follow each other become
+ * one. An error without libwebp. */
+bool webp_write(const struct file_target *target, const struct animation_source *source, struct error *error);
+#define WEBP_MISSING "%.600s: WebP files need libwebp, and this build was made without it"
+bool webp_can_write(void);
+/* "libwebp" or "none". */
+const char *webp_library(void);
 
 /* YUV4MPEG2 with 4:4:4 samples of 8 bits, limited range, matrix of BT.601. */
 bool y4m_write(const struct file_target *target, const struct animation_source *source, struct error *error);

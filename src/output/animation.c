@@ -53,6 +53,8 @@ bool animation_begin(struct animation *animation, const struct picture_request *
         return true;
     if (!check_frame(animation, request, number, error))
         return false;
+    if (animation->format == ANIMATION_WEBP && !webp_can_write())
+        return error_set(error, ERROR_SCENE, WEBP_MISSING, options->output) || error_elsewhere(error);
     const struct file_target target = target_of(animation);
     if (first && !streams && !file_output_check(&target, error))
         return error_elsewhere(error);
@@ -126,6 +128,8 @@ static bool write_file(const struct animation *animation, const struct animation
         return apng_write(&target, source, error);
     case ANIMATION_GIF:
         return gif_write(&target, source, animation->files->options->frame_palettes, error);
+    case ANIMATION_WEBP:
+        return webp_write(&target, source, error);
     case ANIMATION_Y4M:
         return y4m_write(&target, source, error);
     case ANIMATION_MP4:

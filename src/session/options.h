@@ -48,6 +48,7 @@ struct display_choice {
     X(ANIMATION_NONE, "")                                                                                              \
     X(ANIMATION_APNG, ".apng")                                                                                         \
     X(ANIMATION_GIF, ".gif")                                                                                           \
+    X(ANIMATION_WEBP, ".webp")                                                                                         \
     X(ANIMATION_Y4M, ".y4m")                                                                                           \
     X(ANIMATION_MP4, ".mp4")                                                                                           \
     X(ANIMATION_WEBM, ".webm")

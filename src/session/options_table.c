@@ -109,8 +109,8 @@ const struct option option_table[] = {
 
     {OPTION_GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
      "name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; with several "
-     "pictures FILE must contain %d (or %03d, or ####), which counts from 1, or be an animation: .apng, .gif, .y4m, "
-     ".mp4 or .webm"},
+     "pictures FILE must contain %d (or %03d, or ####), which counts from 1, or be an animation: .apng, .gif, .webp, "
+     ".y4m, .mp4 or .webm"},
     {OPTION_GROUP_FILES, "--force", OPTION_FLAG, NULL, NO_RANGE, FIELD(force), NULL,
      "let -o FILE replace a file that is not a picture"},
     {OPTION_GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,

@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#ifdef HAVE_WEBP
+#include <webp/demux.h>
+#endif
 #include <zlib.h>
 
 enum { WIDTH = 37, HEIGHT = 29, FRAMES = 7, PIXELS = WIDTH * HEIGHT };
@@ -267,6 +270,53 @@ TEST(ffmpeg_reads_what_is_written_where_it_is_installed) {
             test_fail(__FILE__, __LINE__, "%s differs by %d levels", names[f], worst);
         free(out);
     }
+}
+
+#ifdef HAVE_WEBP
+static void check_webp(const struct animation_source *source) {
+    static uint8_t wanted[3 * PIXELS];
+    struct error error;
+    WebPAnimDecoderOptions options;
+    WebPAnimInfo info;
+    size_t size = 0;
+    int seen = 0, time = 0;
+    uint8_t *canvas = NULL;
+    CHECK(webp_write(FILE_AT(test_path("x.webp")), source, &error));
+    uint8_t *file = (uint8_t *)test_read_file(test_path("x.webp"), &size);
+    CHECK(WebPAnimDecoderOptionsInit(&options));
+    WebPAnimDecoder *decoder = WebPAnimDecoderNew(&(WebPData){file, size}, &options);
+    CHECK(decoder && WebPAnimDecoderGetInfo(decoder, &info));
+    CHECK_EQ_INT(info.loop_count, source->loops ? 0 : 1);
+    for (uint32_t k = 0; k < FRAMES; k++) {
+        int end = (int)floor(1000 * ((k + 1) / source->rate) + 0.5);
+        if (end > time) { /* equal frames became one, whose end is that of the last of them */
+            CHECK(WebPAnimDecoderGetNext(decoder, &canvas, &time));
+            seen++;
+        }
+        (void)source->frame(NULL, k, wanted, &error);
+        for (int i = 0; canvas && i < PIXELS; i++)
+            CHECK(memcmp(canvas + 4 * i, wanted + 3 * i, 3) == 0);
+    }
+    CHECK_EQ_INT(time, (int)floor(1000 * (FRAMES / source->rate) + 0.5));
+    CHECK_EQ_INT(seen, (int)info.frame_count);
+    WebPAnimDecoderDelete(decoder);
+    free(file);
+}
+#endif
+
+TEST(a_webp_file_has_the_bytes_of_every_frame) {
+#ifdef HAVE_WEBP
+    struct animation_source source = pictures;
+    check_webp(&source);
+    source.frame = noise_frame;
+    source.loops = false;
+    source.rate = 24;
+    check_webp(&source);
+#else
+    struct error error;
+    CHECK(!webp_write(FILE_AT(test_path("x.webp")), &pictures, &error));
+    CHECK(strstr(error.text, "this build was made without it") != NULL);
+#endif
 }
 
 TEST(delays_of_a_gif_file_add_up_to_its_duration) {

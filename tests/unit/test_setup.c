@@ -35,7 +35,7 @@ static void make_machine(void) {
 }
 
 #define NEEDED "lua5.4\\nlibpng\\nzlib\\n"
-#define ALL NEEDED "sdl2\\nlibjpeg\\njansson\\nfreetype2\\nOpenEXR\\n"
+#define ALL NEEDED "sdl2\\nlibjpeg\\njansson\\nfreetype2\\nOpenEXR\\nlibwebpmux\\n"
 
 /* The status; standard error is in the file err. */
 static int set_up(const char *have, const char *environment, const char *option) {
@@ -63,9 +63,9 @@ static void check_file(const char *name, const char *text) {
 TEST(the_set_up_installs_the_optional_libraries_too) {
     make_machine();
     CHECK_EQ_INT(set_up(NEEDED, "uid=0", ""), 0);
-    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\n");
+    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\nlibwebp-dev\n");
     CHECK_EQ_INT(set_up(NEEDED, "uid=7 sudo=yes", ""), 0);
-    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\n");
+    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibjansson-dev\nlibfreetype-dev\nlibopenexr-dev\nlibwebp-dev\n");
     CHECK_EQ_INT(set_up(ALL, "uid=0", ""), 0);
     check_file("err", "");
     check_file("log", NULL);
@@ -74,9 +74,9 @@ TEST(the_set_up_installs_the_optional_libraries_too) {
 TEST(a_library_that_cannot_be_had_is_named_and_left_out) {
     make_machine();
     CHECK_EQ_INT(set_up(NEEDED, "uid=0 refuse='libjansson-dev libopenexr-dev'", ""), 0);
-    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibfreetype-dev\n");
+    check_file("installed", "libsdl2-dev\nlibjpeg-dev\nlibfreetype-dev\nlibwebp-dev\n");
     check_file("err", "installing with apt-get (optional): libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev "
-                      "libopenexr-dev\n"
+                      "libopenexr-dev libwebp-dev\n"
                       "libjansson-dev could not be installed: it is left out\n"
                       "libopenexr-dev could not be installed: it is left out\n");
 }
@@ -98,12 +98,12 @@ TEST(a_user_who_may_not_install_gets_one_line_with_the_command) {
     CHECK_EQ_INT(set_up("lua5.4\\n", "uid=7", ""), 1);
     check_file("err",
                "gray needs packages; to install them: sudo apt-get install -y --no-install-recommends libpng-dev "
-               "zlib1g-dev libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev\n");
+               "zlib1g-dev libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev libwebp-dev\n");
     CHECK_EQ_INT(set_up(ALL "no", "uid=7", ""), 0);
     check_file("err", "");
     CHECK_EQ_INT(set_up(NEEDED, "uid=7", ""), 0);
     check_file("err", "optional packages are missing; to install them: sudo apt-get install -y --no-install-recommends "
-                      "libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev\n");
+                      "libsdl2-dev libjpeg-dev libjansson-dev libfreetype-dev libopenexr-dev libwebp-dev\n");
     check_file("log", NULL);
 }
 
