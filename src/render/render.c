@@ -463,6 +463,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
 
 struct settings settings_default(void) {
     return (struct settings){.samples = 3,
+                             .aa_pattern = AA_ROTATED,
                              .reflect_limit = 2,
                              .refract_limit = 4,
                              .side_tolerance = 0.005,

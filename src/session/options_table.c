@@ -70,9 +70,10 @@ const struct option option_table[] = {
     {OPTION_GROUP_PICTURE, "--filter", OPTION_CHOICE, LIST_BARS(FILTERS), NO_RANGE, FIELD(settings.filter), "box",
      "reconstruction filter of a pixel"},
     {OPTION_GROUP_PICTURE, "--aa-pattern", OPTION_CHOICE, LIST_BARS(AA_PATTERNS), NO_RANGE, FIELD(settings.aa_pattern),
-     "grid",
-     "samples of marked pixels; grid: at the centres of N x N cells, pixels are marked by colours alone; rotated: on a "
-     "rotated grid, and pixels are marked by surfaces and by thin primitives too"},
+     "rotated",
+     "samples of marked pixels; rotated: on a rotated grid, pixels are marked by colours, surfaces and thin "
+     "primitives; "
+     "grid: at the centres of N x N cells, pixels are marked by colours alone"},
     {OPTION_GROUP_PICTURE, "--denoise", OPTION_DENOISE, "=gray|oidn", NO_RANGE, NO_FIELD, NULL,
      "remove noise, with --integrator path; oidn: by the program oidnDenoise of Open Image Denoise, which must be on "
      "PATH"},

@@ -16,9 +16,10 @@ static struct test_picture picture(const char *name) {
     return test_read_picture(path);
 }
 
+/* The claims are of colours at the centres of pixels, in pictures so small that all of a scene is small. */
 static void renders(const char *scene, const char *options) {
     char arguments[400];
-    (void)snprintf(arguments, sizeof arguments, "-q %s scene.lua", options);
+    (void)snprintf(arguments, sizeof arguments, "-q --aa-pattern grid %s scene.lua", options);
     struct test_result result = test_gray_scene(scene, arguments, NULL);
     if (result.status != 0)
         test_fail(__FILE__, __LINE__, "status %d: %s", result.status, result.err);

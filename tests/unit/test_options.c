@@ -62,7 +62,7 @@ TEST(options_have_the_defaults_of_the_manual) {
     CHECK_EQ_INT(o->settings.refract_limit, 4);
     CHECK_NEAR(o->settings.side_tolerance, 0.005, 0);
     CHECK_NEAR(o->settings.corner_tolerance, 0.01, 0);
-    CHECK_EQ_INT(o->settings.aa_pattern, AA_GRID);
+    CHECK_EQ_INT(o->settings.aa_pattern, AA_ROTATED);
     CHECK(!o->settings.use_tir);
     CHECK_NEAR(o->settings.cutoff, 0.0001, 0);
     CHECK_EQ_INT(o->settings.area_samples, 4);
@@ -96,7 +96,7 @@ TEST(every_option_sets_what_it_says) {
     struct parsed *parsed = parse(
         "--integrator whitted -ss 5 -full -side-tolerance .25 -corner-tolerance 1e-3 -reflect-limit 0 -refract-limit "
         "1000 -use-tir "
-        "-al-samples 8 --aa-pattern rotated "
+        "-al-samples 8 --aa-pattern grid "
         "--seed 18446744073709551615 --size 640x480 --crop 1,2,3,4 --accel none -o a.png -write-aa-targets T "
         "-write-pre-aa P --transform-order separate --view target --pixel-sample corner --specular blinn --ambient "
         "plain "
@@ -105,7 +105,7 @@ TEST(every_option_sets_what_it_says) {
     CHECK_EQ_INT(o->settings.samples, 5);
     CHECK(o->settings.full && o->settings.use_tir && o->settings.keep_first);
     CHECK_NEAR(o->settings.side_tolerance, 0.25, 0);
-    CHECK_EQ_INT(o->settings.aa_pattern, AA_ROTATED);
+    CHECK_EQ_INT(o->settings.aa_pattern, AA_GRID);
     CHECK_NEAR(o->settings.corner_tolerance, 1e-3, 0);
     CHECK_EQ_INT(o->settings.reflect_limit, 0);
     CHECK_EQ_INT(o->settings.refract_limit, 1000);

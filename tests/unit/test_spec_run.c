@@ -49,7 +49,8 @@ static void bounds(const uint8_t *a, const uint8_t *b, double *low, double *high
 
 static void check_marks(const char *options, double side, double corner) {
     char arguments[300];
-    (void)snprintf(arguments, sizeof arguments, "-write-pre-aa pre- -write-aa-targets aim- %s scene.lua", options);
+    (void)snprintf(arguments, sizeof arguments,
+                   "--aa-pattern grid -write-pre-aa pre- -write-aa-targets aim- %s scene.lua", options);
     renders(MANY_BALLS, arguments);
     struct test_picture pre = picture("pre-t.png"), aim = picture("aim-t.png"), done = picture("t.png");
     int wrong = 0, sure = 0, touched = 0;
@@ -91,7 +92,8 @@ TEST(samples_of_a_pixel_are_the_centres_of_n_by_n_cells) {
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         for (int full = 0; full < 2; full++) {
             char arguments[100];
-            (void)snprintf(arguments, sizeof arguments, "-ss %d %s scene.lua", cases[k].n, full ? "-full" : "");
+            (void)snprintf(arguments, sizeof arguments, "--aa-pattern grid -ss %d %s scene.lua", cases[k].n,
+                           full ? "-full" : "");
             renders("local r = gr.node('r') r:add_child(gr.nh_box(gr.material({1,1,1},{0,0,0},1), {-99.7, -50, -100}, "
                     "100))\n"
                     "gr.render{node=r, file='t.png', width=20, height=20, eye={0,0,10}, fov=90, ambient={1,1,1}, "
