@@ -7,6 +7,7 @@
 ---@class gr.material
 ---@class gr.light
 ---@class gr.texture
+---@field at fun(self: gr.texture, u: number, v: number): gr.vector, number
 ---@class gr.fog
 ---@class gr.sky
 ---@class gr.vector: number[]

@@ -123,6 +123,7 @@ static void partials(enum expr_operation operation, double a, double b, double c
     case EXPR_CEIL:
     case EXPR_HASH:
     case EXPR_CELL_ID:
+    case EXPR_TEXEL: /* handled by the caller, which has the picture */
     case EXPR_INTEGER_ADD:
     case EXPR_INTEGER_SUBTRACT:
     case EXPR_INTEGER_MULTIPLY:
@@ -174,6 +175,11 @@ static void chain(const struct dual *operands[3], const double by[3], double out
     }
 }
 
+static void texel_partials(const struct dual *from[3], double out[3]) {
+    int64_t operand = from[2]->value.i;
+    image_function_slopes(expr_texel_function(operand), from[0]->value.f, from[1]->value.f, (int)(operand & 3), out);
+}
+
 #define READ_F(operand) (operand)->value.f
 #define READ_I(operand) 0
 #define READ_B(operand) 0
@@ -187,6 +193,8 @@ static void chain(const struct dual *operands[3], const double by[3], double out
         result.value.EXPR_MEMBER_##R = (expression);                                                                   \
         if (member == EXPR_SELECT)                                                                                     \
             result = from[0]->value.i ? *from[1] : *from[2];                                                           \
+        else if (member == EXPR_TEXEL)                                                                                 \
+            texel_partials(from, by);                                                                                  \
         else if (EXPR_TYPE_##R == EXPR_TYPE_F)                                                                         \
             partials(member, READ_##A(from[0]), READ_##B(from[1]), READ_##C(from[2]), result.value.f, by);             \
         break;                                                                                                         \
@@ -322,6 +330,18 @@ static void noise_slopes(const struct expr_interval box[3], struct expr_interval
     }
 }
 
+/* The texels that a lookup in the box may read are within the bounds of its value, whose width is a bound of the
+ * difference of two neighbours. */
+static void texel_slopes(struct expr_interval operand, struct expr_interval value, struct expr_interval out[3]) {
+    const struct image_function *function = expr_texel_function((int64_t)operand.low);
+    double width = value.high - value.low, steps[2] = {image_width(function->image), image_height(function->image)};
+    bool jumps = value.may_be_nan || (function->sampling.filter == IMAGE_NEAREST && width > 0);
+    for (int k = 0; k < 2; k++) {
+        double max = width * steps[k] * fabs(function->scale[k]) * (1 + 4 * DBL_EPSILON);
+        out[k] = jumps ? any_slope : (struct expr_interval){-max, max, false};
+    }
+}
+
 /* Bounds of the slopes with respect to each operand; any_slope if the operation may jump. */
 static void slopes_of(enum expr_operation operation, struct expr_interval a, struct expr_interval b,
                       struct expr_interval c, struct expr_interval value, struct expr_interval out[3]) {
@@ -426,6 +446,9 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
     case EXPR_CELL_ID:
         for (int k = 0; k < 3; k++)
             out[k] = is_single(value) ? zero : any_slope;
+        break;
+    case EXPR_TEXEL:
+        texel_slopes(c, value, out);
         break;
     case EXPR_TO_FLOAT:
         out[0] = one; /* for integers: 0, or unbounded */

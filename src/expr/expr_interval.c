@@ -280,6 +280,15 @@ static struct expr_interval hashed(const struct expr_interval box[3]) {
     return (struct expr_interval){value, value, false};
 }
 
+/* The operand is a constant, exact as a double. */
+static struct expr_interval texel(struct expr_interval u, struct expr_interval v, struct expr_interval operand) {
+    int64_t constant = (int64_t)operand.low;
+    struct image_interval bounds =
+        image_function_bounds(expr_texel_function(constant), (struct image_interval){u.low, u.high, u.may_be_nan},
+                              (struct image_interval){v.low, v.high, v.may_be_nan}, (int)(constant & 3));
+    return (struct expr_interval){bounds.low, bounds.high, bounds.may_be_nan};
+}
+
 /* --- integers --- */
 
 /* Ends that doubles cannot represent exactly, or that wrap around, mean any integer. */
@@ -440,6 +449,8 @@ apply(enum expr_operation operation, struct expr_interval a, struct expr_interva
     case EXPR_CELL_SECOND:
     case EXPR_CELL_ID:
         return cells((struct expr_interval[3]){a, b, c}, operation);
+    case EXPR_TEXEL:
+        return texel(a, b, c);
     case EXPR_INTEGER_ADD:
         return integers(a.low + b.low, a.high + b.high);
     case EXPR_INTEGER_SUBTRACT:

@@ -4,6 +4,7 @@
 #ifndef GRAY_EXPR_EXPR_OPERATIONS_H
 #define GRAY_EXPR_EXPR_OPERATIONS_H
 
+#include "image/image_function.h"
 #include "math/elementary.h"
 #include "math/noise.h"
 
@@ -55,6 +56,7 @@ union expr_value {
     X(EXPR_CELL_NEAREST, "cell_nearest", F, F, F, F, noise_cells(a, b, c).nearest)                                     \
     X(EXPR_CELL_SECOND, "cell_second", F, F, F, F, noise_cells(a, b, c).second)                                        \
     X(EXPR_CELL_ID, "cell_id", F, F, F, F, noise_cells(a, b, c).id)                                                    \
+    X(EXPR_TEXEL, "texel", F, F, F, I, expr_texel(a, b, c))                                                            \
     X(EXPR_INTEGER_ADD, "integer_add", I, I, I, N, (int64_t)((uint64_t)a + (uint64_t)b))                               \
     X(EXPR_INTEGER_SUBTRACT, "integer_subtract", I, I, I, N, (int64_t)((uint64_t)a - (uint64_t)b))                     \
     X(EXPR_INTEGER_MULTIPLY, "integer_multiply", I, I, I, N, (int64_t)((uint64_t)a * (uint64_t)b))                     \
@@ -107,6 +109,20 @@ enum expr_operation {
     EXPR_OPERATIONS(EXPR_OPERATION_MEMBER) EXPR_OPERATION_COUNT
 };
 enum expr_type { EXPR_TYPE_F, EXPR_TYPE_I, EXPR_TYPE_B, EXPR_TYPE_N };
+
+/* The third operand of EXPR_TEXEL is a constant: the address of a struct image_function, which its lowest two bits do
+ * not need, plus the channel. Addresses are below 2^53, so that bounds of integers have them exactly. */
+static inline int64_t expr_texel_operand(const struct image_function *function, int channel) {
+    return (int64_t)((uintptr_t)function | (uintptr_t)channel);
+}
+
+static inline const struct image_function *expr_texel_function(int64_t operand) {
+    return (const struct image_function *)((uintptr_t)operand & ~(uintptr_t)3);
+}
+
+static inline double expr_texel(double u, double v, int64_t operand) {
+    return image_function_value(expr_texel_function(operand), u, v, (int)(operand & 3));
+}
 
 static inline double expr_modulo(double a, double b) {
     double m = el_fmod(a, b);

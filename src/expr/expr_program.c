@@ -269,12 +269,22 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
 
 /* --- listings --- */
 
-static int describe_value(const struct expr_program *program, enum expr_type type, uint16_t value, char *out,
-                          size_t size) {
+/* " wood.png:red": the last part of the name of the picture, and the channel. */
+static int describe_texel(int64_t operand, char *out, size_t size) {
+    static const char *const channels[] = {"red", "green", "blue", "alpha"};
+    const char *name = image_name(expr_texel_function(operand)->image), *slash = strrchr(name, '/');
+    return snprintf(out, size, " %.24s:%s", slash ? slash + 1 : name, channels[operand & 3]);
+}
+
+static int describe_value(const struct expr_program *program, enum expr_operation operation, int k, uint16_t value,
+                          char *out, size_t size) {
+    enum expr_type type = expr_operand_type(operation, k);
     if (value >= program->constant_count)
         return snprintf(out, size, " r%u", (unsigned)(value - program->constant_count));
     if (type == EXPR_TYPE_F)
         return snprintf(out, size, " %.17g", program->constants[value].f);
+    if (type == EXPR_TYPE_I && operation == EXPR_TEXEL)
+        return describe_texel(program->constants[value].i, out, size);
     return snprintf(out, size, " %lld", (long long)program->constants[value].i);
 }
 
@@ -284,7 +294,7 @@ void expr_describe(const struct expr_program *program, uint32_t instruction, cha
     const uint16_t operands[3] = {in->a, in->b, in->c};
     char words[3][40] = {"", "", ""};
     for (int k = 0; k < expr_operand_count(operation); k++)
-        (void)describe_value(program, expr_operand_type(operation, k), operands[k], words[k], sizeof words[k]);
+        (void)describe_value(program, operation, k, operands[k], words[k], sizeof words[k]);
     (void)snprintf(out, size, "r%u = %s%s%s%s", (unsigned)(in->out - program->constant_count),
                    expr_operation_name(operation), words[0], words[1], words[2]);
 }

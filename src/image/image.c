@@ -259,6 +259,7 @@ void image_release(struct image *image) {
     if (!image || atomic_fetch_sub_explicit(&image->owners, 1, memory_order_acq_rel) != 1)
         return;
     image_release(image->decoded);
+    mem_free(image->ranges);
     mem_free(image->colours);
     mem_free(image->block);
     mem_free(image->name);

@@ -67,6 +67,10 @@ struct image_sampling {
 };
 /* Filtered, premultiplied. */
 struct rgba image_lookup(const struct image *image, struct image_point at, struct image_sampling how);
+/* The derivatives by u and v of a lookup without footprint; 0 for IMAGE_NEAREST, and beyond the edges of IMAGE_CLAMP.
+ */
+void image_lookup_slopes(const struct image *image, struct image_point at, struct image_sampling how, struct rgba *by_u,
+                         struct rgba *by_v);
 /* Pictures of any format that this build reads; the first bytes select the format. */
 
 /* Errors name the path. JPEG files have 8 bits per channel, without alpha. */

@@ -32,9 +32,10 @@ struct image {
     size_t block_size;
     char *name;
     struct transfer_function
-        transfer;          /* as its file states it; of the results of image_decode: that which was decoded */
-    char *colours;         /* what image_colours returns, or NULL; owned */
-    struct image *decoded; /* the first result of image_decode, in which it is the next one; owned */
+        transfer;                /* as its file states it; of the results of image_decode: that which was decoded */
+    char *colours;               /* what image_colours returns, or NULL; owned */
+    struct image *decoded;       /* the first result of image_decode, in which it is the next one; owned */
+    struct image_ranges *ranges; /* of image_make_ranges (image_function.h), or NULL; owned */
 };
 
 /* All levels allocated, texels not yet set: fill level 0, then call image_build_levels. NULL without memory or when the

@@ -121,3 +121,36 @@ struct rgba image_lookup(const struct image *image, struct image_point at, struc
     const struct view view = {image, last, how.wrap_u, how.wrap_v};
     return lookup(&view, at, how.filter);
 }
+
+/* The sign with which u is folded; 0 where it is clamped. */
+static double fold_slope(double u, enum image_wrap wrap) {
+    switch (wrap) {
+    case IMAGE_CLAMP:
+        return u >= 0 && u <= 1 ? 1 : 0;
+    case IMAGE_REPEAT:
+        return 1;
+    case IMAGE_MIRROR:
+        return u - 2 * floor(u / 2) > 1 ? -1 : 1;
+    }
+    return 0;
+}
+
+static struct rgba difference(struct rgba a, struct rgba b, double factor) {
+    return image_from_units(
+        (struct rgba){(b.r - a.r) * factor, (b.g - a.g) * factor, (b.b - a.b) * factor, (b.a - a.a) * factor});
+}
+
+void image_lookup_slopes(const struct image *image, struct image_point at, struct image_sampling how, struct rgba *by_u,
+                         struct rgba *by_v) {
+    const struct image_level *l = &image->levels[0];
+    uint32_t x0, x1, y0, y1;
+    *by_u = *by_v = (struct rgba){0, 0, 0, 0};
+    if (how.filter == IMAGE_NEAREST || !isfinite(at.u) || !isfinite(at.v))
+        return;
+    double fx = neighbours(fold(at.u, how.wrap_u), l->width, how.wrap_u, &x0, &x1);
+    double fy = neighbours(fold(at.v, how.wrap_v), l->height, how.wrap_v, &y0, &y1);
+    struct rgba p = image_level_texel(image, 0, x0, y0), q = image_level_texel(image, 0, x1, y0);
+    struct rgba r = image_level_texel(image, 0, x0, y1), s = image_level_texel(image, 0, x1, y1);
+    *by_u = difference(image_mix(p, r, fy), image_mix(q, s, fy), l->width * fold_slope(at.u, how.wrap_u));
+    *by_v = difference(image_mix(p, q, fx), image_mix(r, s, fx), l->height * fold_slope(at.v, how.wrap_v));
+}

@@ -362,7 +362,8 @@ const char *script_annotations(struct arena *arena) {
         "-- The gr functions for editors that understand LuaLS annotations. Written by `gray --annotations` from\n"
         "-- the table in src/script/table.c; a test checks that it is current.\n\n"
         "---@alias gr.triple number[] three numbers: a point, a direction, a colour\n"
-        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n---@class gr.fog\n---@class "
+        "---@class gr.material\n---@class gr.light\n---@class gr.texture\n"
+        "---@field at fun(self: gr.texture, u: number, v: number): gr.vector, number\n---@class gr.fog\n---@class "
         "gr.sky\n");
     add(&document,
         "---@class gr.vector: number[]\n---@field x number\n---@field y number\n---@field z number\n"

@@ -60,6 +60,7 @@ enum kind {
 /* What gr.texture, gr.bump and their like made. */
 struct script_texture {
     const struct texture *texture;
+    struct image_function *function; /* for img:at, made by its first call */
     bool is_bump;
     struct bump bump; /* then, with that texture */
 };

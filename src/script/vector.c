@@ -524,6 +524,89 @@ static int turbulence(lua_State *L) {
     return 1;
 }
 
+/* --- pictures --- */
+
+/* The picture of a texture as a function, with what gr.texture says of the lookup. Its numbers are those of the file,
+ * unless the texture has an encoding of its own. */
+static struct image_function *make_image_function(struct script_context *context, const struct texture_image *image) {
+    struct error error = {0};
+    struct transfer_function transfer = {TRANSFER_UNSTATED, 0};
+    struct image_function *out = arena_alloc(&context->scene.arena, sizeof *out);
+    if (!out)
+        context_raise_no_memory(context);
+    if (image->gamma > 0)
+        transfer = (struct transfer_function){TRANSFER_POWER, image->gamma};
+    else if (image->encoding == ENCODING_SRGB)
+        transfer = (struct transfer_function){TRANSFER_SRGB, 0};
+    struct image *decoded = image_decode(image->image, transfer, &error);
+    if (!decoded || !image_make_ranges(decoded, &error))
+        context_raise_error(context, &error);
+    *out = (struct image_function){.image = decoded,
+                                   .sampling = {image->filter, image->wrap, image->apart ? image->wrap_v : image->wrap},
+                                   .scale = {1, 1},
+                                   .flip_u = image->flip_u,
+                                   .tint = {1, 1, 1}};
+    if (!image->apart)
+        return out;
+    for (int k = 0; k < 2; k++) {
+        out->scale[k] = image->scale[k];
+        out->offset[k] = image->offset[k];
+    }
+    out->tint[0] = image->tint.x;
+    out->tint[1] = image->tint.y;
+    out->tint[2] = image->tint.z;
+    return out;
+}
+
+static const struct image_function *image_function_at(lua_State *L, int index) {
+    struct script_context *context = context_of(L);
+    const struct handle *handle = handle_at(L, index);
+    struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
+    const struct texture_image *image = texture && !texture->is_bump ? texture_as_image(texture->texture) : NULL;
+    context->lua = L;
+    if (!image)
+        luaL_error(L, "img:at(u, v) needs a picture, a result of gr.texture, not %s", value_words(L, index));
+    if (!texture->function)
+        texture->function = make_image_function(context, image);
+    return texture->function;
+}
+
+/* img:at(u, v): the colour, multiplied by alpha, and alpha. */
+static int image_at(lua_State *L) {
+    const struct image_function *function = image_function_at(L, 1);
+    double values[TEXEL_CHANNELS];
+    lua_settop(L, 3);
+    for (int k = 2; k <= 3; k++)
+        if (!is_number(L, k))
+            return luaL_error(L, "img:at needs two numbers u and v, not %s", value_words(L, k));
+    if (!is_symbol(L, 2) && !is_symbol(L, 3)) {
+        for (int k = 0; k < TEXEL_CHANNELS; k++)
+            values[k] = image_function_value(function, lua_tonumber(L, 2), lua_tonumber(L, 3), k);
+        for (int k = 0; k < TEXEL_CHANNELS; k++)
+            lua_pushnumber(L, values[k]);
+    } else {
+        struct recorder *recorder = recorder_of(L);
+        uint32_t u = number_float(recorder, number_at(L, 2)), v = number_float(recorder, number_at(L, 3));
+        for (int k = 0; k < TEXEL_CHANNELS; k++) {
+            uint32_t operand = record_node(L, expr_integer(&recorder->graph, expr_texel_operand(function, k)));
+            uint32_t texel = record_operation(L, EXPR_TEXEL, u, v, operand);
+            push_symbol(L, (struct number){NUMBER_FLOAT, texel, EXPR_NONE});
+        }
+    }
+    lua_insert(L, 4); /* alpha below the colour */
+    push_vector(L);
+    lua_insert(L, 4);
+    return 2;
+}
+
+static int texture_index(lua_State *L) {
+    if (lua_type(L, 2) == LUA_TSTRING && strcmp(lua_tostring(L, 2), "at") == 0) {
+        lua_pushcfunction(L, image_at);
+        return 1;
+    }
+    return luaL_error(L, "a texture has no field '%s'; img:at(u, v) reads a picture", luaL_tolstring(L, 2, NULL));
+}
+
 /* Combines any number of arguments, from the left. */
 static int all_of(lua_State *L, lua_CFunction of_two) {
     luaL_checkany(L, 1);
@@ -620,6 +703,10 @@ void vectors_open(lua_State *L) {
     lua_setfield(L, -2, "__metatable");
     recorder_of(L)->vector_metatable = lua_topointer(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &vector_key);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key(HANDLE_TEXTURE));
+    lua_pushcfunction(L, texture_index);
+    lua_setfield(L, -2, "__index");
+    lua_pop(L, 1);
     lua_getglobal(L, "gr");
     for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
         lua_pushcfunction(L, functions[i].run);

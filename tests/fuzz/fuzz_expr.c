@@ -26,6 +26,22 @@ static void add_node(struct nodes *nodes, uint32_t node) {
         nodes->of_type[type][nodes->count[type]++] = node;
 }
 
+/* A picture that repeats. */
+static const struct image_function *fuzz_picture(void) {
+    static struct image_function function;
+    static const uint8_t texels[3][2][4] = {
+        {{255, 0, 7, 255}, {1, 2, 3, 4}}, {{0, 0, 0, 0}, {9, 99, 199, 128}}, {{255, 255, 255, 255}, {0, 0, 0, 255}}};
+    struct error error = {0};
+    if (!function.image)
+        function = (struct image_function){.image = image_create("fuzz.png", 2, 3, 8, texels, &error),
+                                           .sampling = {IMAGE_BILINEAR, IMAGE_REPEAT, IMAGE_REPEAT},
+                                           .scale = {1, 1},
+                                           .tint = {1, 1, 1}};
+    if (!function.image)
+        exit(0);
+    return &function;
+}
+
 static uint32_t build(struct nodes *nodes, const uint8_t *data, size_t size, bool folded) {
     struct expr_graph *graph = &nodes->graph;
     for (int k = 0; k < EXPR_INPUT_COUNT; k++)
@@ -38,6 +54,10 @@ static uint32_t build(struct nodes *nodes, const uint8_t *data, size_t size, boo
             (enum expr_operation)(EXPR_INPUT + 1 + data[0] % (EXPR_OPERATION_COUNT - EXPR_INPUT - 1));
         uint32_t operands[3] = {EXPR_NONE, EXPR_NONE, EXPR_NONE};
         for (int k = 0; k < expr_operand_count(operation); k++) {
+            if (operation == EXPR_TEXEL && k == 2) {
+                operands[k] = expr_integer(graph, expr_texel_operand(fuzz_picture(), data[3] % TEXEL_CHANNELS));
+                continue;
+            }
             enum expr_type type = expr_operand_type(operation, k);
             operands[k] = nodes->of_type[type][nodes->count[type] - 1 - data[1 + k] % nodes->count[type]];
         }

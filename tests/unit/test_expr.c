@@ -5,6 +5,7 @@
 #include "expr/expr_program.h"
 #include "math/exact.h"
 #include "tests/harness.h"
+#include "tests/unit/picture_function.h"
 
 #include <lauxlib.h>
 #include <lualib.h>
@@ -123,6 +124,7 @@ static const char *in_lua(enum expr_operation operation) {
     case EXPR_CELL_NEAREST:
     case EXPR_CELL_SECOND:
     case EXPR_CELL_ID:
+    case EXPR_TEXEL:
     case EXPR_TRUTH_SELECT:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
@@ -197,6 +199,11 @@ static uint32_t integer_of_halves(struct expr_graph *graph, int operand) {
     return expr_operation(graph, EXPR_INTEGER_ADD, up, low, 0);
 }
 
+/* The operand that is a constant, a picture. */
+static bool is_picture(enum expr_operation operation, int k) {
+    return operation == EXPR_TEXEL && k == 2;
+}
+
 static void example_init(struct example *e, enum expr_operation operation) {
     *e = (struct example){.operation = operation};
     struct error error = {0};
@@ -206,9 +213,10 @@ static void example_init(struct example *e, enum expr_operation operation) {
     for (int k = 0; k < expr_operand_count(operation); k++) {
         enum expr_type type = expr_operand_type(operation, k);
         uint32_t input = expr_input(graph, (enum expr_input)(2 * k));
-        operands[k] = type == EXPR_TYPE_F   ? input
-                      : type == EXPR_TYPE_I ? integer_of_halves(graph, k)
-                                            : expr_operation(graph, EXPR_LESS, expr_float(graph, 0), input, 0);
+        operands[k] = is_picture(operation, k) ? expr_integer(graph, test_picture_operand(2))
+                      : type == EXPR_TYPE_F    ? input
+                      : type == EXPR_TYPE_I    ? integer_of_halves(graph, k)
+                                               : expr_operation(graph, EXPR_LESS, expr_float(graph, 0), input, 0);
     }
     uint32_t result = expr_operation(graph, operation, operands[0], operands[1], operands[2]);
     switch (expr_result_type(operation)) {
@@ -239,6 +247,10 @@ static void example_destroy(struct example *e) {
 }
 
 static void put_operand(const struct example *e, int k, uint64_t key, double *inputs, union expr_value *value) {
+    if (is_picture(e->operation, k)) {
+        value->i = test_picture_operand(2);
+        return;
+    }
     switch (expr_operand_type(e->operation, k)) {
     case EXPR_TYPE_F:
         inputs[2 * k] = value->f = random_float(key);

@@ -6,6 +6,7 @@
 #include "expr/expr_shorten.h"
 #include "math/exact.h"
 #include "tests/harness.h"
+#include "tests/unit/picture_function.h"
 
 #include <string.h>
 
@@ -80,6 +81,10 @@ static void check_containment(uint32_t count) {
             for (int k = 0; k < expr_operand_count(operation); k++)
                 random_operand(expr_operand_type(operation, k), random_combine((uint64_t)o * 3 + (uint64_t)k, i),
                                &boxes[k], &values[k]);
+            if (operation == EXPR_TEXEL) {
+                values[2].i = test_picture_operand((int)i % 4);
+                boxes[2] = (struct expr_interval){(double)values[2].i, (double)values[2].i, false};
+            }
             struct expr_interval bounds = expr_interval_apply(operation, boxes[0], boxes[1], boxes[2]);
             union expr_value result = expr_apply(operation, values[0], values[1], values[2]);
             if (bounds.low <= bounds.high && is_within(expr_result_type(operation), result, bounds))
@@ -129,8 +134,9 @@ static void random_program_init(struct random_program *p, uint64_t seed, int ope
     static const enum expr_operation smooth[] = {EXPR_ADD,  EXPR_SUBTRACT, EXPR_MULTIPLY, EXPR_SIN,  EXPR_COS,
                                                  EXPR_TANH, EXPR_MIN,      EXPR_MAX,      EXPR_ABS,  EXPR_NOISE,
                                                  EXPR_ADD,  EXPR_MIN,      EXPR_MAX,      EXPR_ATAN, EXPR_NEGATE};
-    static const enum expr_operation jumping[] = {EXPR_FLOOR, EXPR_SELECT, EXPR_SELECT,  EXPR_MODULO, EXPR_SQRT,
-                                                  EXPR_LOG,   EXPR_DIVIDE, EXPR_CELL_ID, EXPR_EXP,    EXPR_CEIL};
+    static const enum expr_operation jumping[] = {EXPR_FLOOR, EXPR_SELECT, EXPR_SELECT, EXPR_MODULO,
+                                                  EXPR_SQRT,  EXPR_LOG,    EXPR_DIVIDE, EXPR_CELL_ID,
+                                                  EXPR_EXP,   EXPR_CEIL,   EXPR_TEXEL};
     struct error error = {0};
     uint32_t values[64], count = 0;
     *p = (struct random_program){.graph = {.count = 0}};
@@ -148,6 +154,8 @@ static void random_program_init(struct random_program *p, uint64_t seed, int ope
         if (operation == EXPR_SELECT)
             operands[0] = expr_operation(&p->graph, bits & 1 << 5 ? EXPR_LESS : EXPR_LESS_EQUAL,
                                          values[(bits >> 40) % count], values[(bits >> 48) % count], EXPR_NONE);
+        if (operation == EXPR_TEXEL)
+            operands[2] = expr_integer(&p->graph, test_picture_operand((int)(bits >> 56) % 4));
         uint32_t value = expr_operation(&p->graph, operation, operands[0], operands[1], operands[2]);
         if (operation == EXPR_MULTIPLY || operation == EXPR_EXP)
             value = expr_operation(&p->graph, EXPR_TANH, value, EXPR_NONE, EXPR_NONE);
@@ -382,8 +390,10 @@ TEST(derivatives_of_every_operation_equal_differences) {
         uint32_t operands[3] = {EXPR_NONE, EXPR_NONE, EXPR_NONE}, compared = 0;
         bool is_float = expr_result_type(operation) == EXPR_TYPE_F && operation != EXPR_SELECT;
         for (int k = 0; k < expr_operand_count(operation); k++) {
-            is_float = is_float && expr_operand_type(operation, k) == EXPR_TYPE_F;
-            operands[k] = expr_input(&p.graph, (enum expr_input)k);
+            bool is_picture = operation == EXPR_TEXEL && k == 2;
+            is_float = is_float && (is_picture || expr_operand_type(operation, k) == EXPR_TYPE_F);
+            operands[k] =
+                is_picture ? expr_integer(&p.graph, test_picture_operand(1)) : expr_input(&p.graph, (enum expr_input)k);
         }
         if (!is_float) {
             random_program_destroy(&p);

@@ -277,6 +277,50 @@ TEST(every_input_of_a_material_takes_a_function) {
                 "");
 }
 
+static void copy_picture(void) {
+    size_t size = 0;
+    char *bytes = test_read_file("textures/parquet.png", &size);
+    CHECK(bytes != NULL);
+    test_write_file(test_path("parquet.png"), bytes, size);
+    free(bytes);
+}
+
+TEST(a_picture_in_a_function_is_the_picture_as_a_texture) {
+    copy_picture();
+    check_equal("kd = (function() local img = gr.texture{file = 'parquet.png', filter = 'bilinear'}"
+                " return gr.fn(function(p, s) return (img:at(s.u, s.v)) end, 1) end)()",
+                "kd = gr.texture{file = 'parquet.png', filter = 'bilinear'}", "");
+    check_equal("kd = (function() local img = gr.texture{file = 'parquet.png', filter = 'nearest', tiles = {4, -2},"
+                " offset = {0.25, 0.5}, flip_u = true, wrap = 'mirror'}"
+                " return gr.fn(function(p, s) return (img:at(s.u, s.v)) end, 1) end)()",
+                "kd = gr.texture{file = 'parquet.png', filter = 'nearest', tiles = {4, -2}, offset = {0.25, 0.5},"
+                " flip_u = true, wrap = 'mirror'}",
+                "-j 1 --isa base");
+}
+
+TEST(pictures_in_functions_are_recorded_as_lua_reads_them) {
+    copy_picture();
+    char text[2048];
+    (void)snprintf(
+        text, sizeof text,
+        "local img = gr.texture{file = '%s', encoding = 'srgb'}\n"
+        "local c, a = img:at(0.3, 0.7) assert(#c == 3 and c.r > 0 and c.r < 1 and a == 1)\n"
+        "gr.fn(function(p, s) local c, a = img:at(p.x, p.y * 3) if c.g > 0.1 then return a end return c end)\n"
+        "gr.fn(function(p, s) return img:at(math.floor(p.x), 0.5) * img:at(0.25, p.y) end)\n"
+        "local function refused(words, f, ...) local good, why = pcall(f, ...)\n"
+        "  assert(not good and why:find(words, 1, true), why) end\n"
+        "refused(\"no field 'size'\", function() return img.size end)\n"
+        "refused('two numbers u and v, not nil', img.at, img, 1)\n"
+        "refused('needs a picture, a result of gr.texture, not a number', img.at, 1, 2)\n"
+        "refused('not a texture', img.at, gr.marble_texture(1, 2, 3), 1, 2)\n",
+        test_path("parquet.png"));
+    struct listener listener = {.renders = 0};
+    struct error error = {0};
+    const struct script_options options = {.library_folder = "lua", .no_sandbox = true};
+    if (!listen_to_text(&listener, text, &options, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+}
+
 TEST(pictures_of_functions_have_one_hash_for_threads_and_instruction_sets) {
     static const char fields[] = "kd = function(p, s) return gr.cells(p * 5) * gr.vec(s.u, s.v, gr.noise(p * 3)) end";
     check_equal(fields, fields, "-j 1 --isa base");
