@@ -1,7 +1,10 @@
-/* The batch evaluator, compiled for the instruction set of the file that includes this one. Each instruction is one
- * loop over the points, with a constant length for whole batches. The loops come from the list of operations, and
- * the compiler vectorises them. No result depends on the number of points in a vector. */
+/* The batch evaluator, compiled for the instruction set of the file that includes this one. Each operation is one loop
+ * over the points, which the compiler vectorises; the loops come from the list of operations. Where there are vectors
+ * of at least four points, linked instructions (expr_link_internal.h) keep results in processor registers. No result
+ * depends on the number of points in a vector. */
 #include "expr/expr_batch_internal.h"
+#include "expr/expr_link_internal.h"
+#include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"
 #include "math/noise_lanes.h"
 
@@ -38,13 +41,18 @@ typedef int64_t __attribute__((may_alias)) row_integer;
         }                                                                                                              \
         (void)a0, (void)b0, (void)c0;                                                                                  \
     }
-/* The common operations have loops of constant length, for each operand that may be constant; the others have one loop,
- * and their constants are copied into rows. */
+/* Without links, the common operations have loops of constant length, for each operand that may be constant; the others
+ * have one loop, and their constants are copied into rows. */
 static inline bool is_common(enum expr_operation operation) {
+#ifdef __AVX2__
+    (void)operation;
+    return false; /* they have links */
+#else
     return operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY ||
            operation == EXPR_DIVIDE || operation == EXPR_NEGATE || operation == EXPR_ABS || operation == EXPR_SQRT ||
            operation == EXPR_MIN || operation == EXPR_MAX || operation == EXPR_LESS || operation == EXPR_LESS_EQUAL ||
            operation == EXPR_SELECT;
+#endif
 }
 
 #define IS_CONSTANT(T, value) (EXPR_HAS_##T && (value) < constants)
@@ -169,17 +177,84 @@ static inline const double *operand(const struct expr_program *program, uint16_t
     return &program->constants[value].f;
 }
 
-void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows) {
+/* Runs an instruction, or the two of a sine and a cosine; returns the last one. */
+static inline const struct expr_instruction *
+run_instruction(const struct expr_program *program, const struct expr_instruction *in, uint32_t width, double *rows) {
     double *spare = rows + (size_t)program->register_count * EXPR_BATCH;
     const uint32_t constants = program->constant_count;
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        double *to = rows + (size_t)(in->out - constants) * EXPR_BATCH;
-        switch ((enum expr_operation)in->operation) {
-            EXPR_OPERATIONS(RUN)
-        case EXPR_CONSTANT:
-        case EXPR_INPUT:
-        case EXPR_OPERATION_COUNT:
-            break;
-        }
+    const struct expr_instruction *end = program->code + program->count;
+    double *to = rows + (size_t)(in->out - constants) * EXPR_BATCH;
+    switch ((enum expr_operation)in->operation) {
+        EXPR_OPERATIONS(RUN)
+    case EXPR_CONSTANT:
+    case EXPR_INPUT:
+    case EXPR_OPERATION_COUNT:
+        break;
     }
+    return in;
 }
+
+#ifdef __AVX2__
+
+__attribute__((noinline)) static const struct expr_instruction *
+run_rows(const struct expr_program *program, const struct expr_instruction *in, uint32_t width, double *rows) {
+    return run_instruction(program, in, width, rows);
+}
+
+#ifdef __AVX512F__
+#define TRUTH_OF(mask) _mm512_castsi512_pd(_mm512_movm_epi64(mask))
+#define MASK_OF(truth) _mm512_movepi64_mask(_mm512_castpd_si512(truth))
+#else
+#define TRUTH_OF(mask) (mask)
+#define MASK_OF(truth) (truth)
+#endif
+/* In terms of vectors what EXPR_OPERATIONS says of numbers. */
+#define LINKED_NEGATE(a) -(a)
+#define LINKED_ABS(a) SIZE_OF(a)
+#define LINKED_SQRT(a) ROOT_OF(a)
+#define LINKED_FLOOR(a) FLOOR_OF(a)
+#define LINKED_ADD(a, b) (a) + (b)
+#define LINKED_SUBTRACT(a, b) (a) - (b)
+#define LINKED_MULTIPLY(a, b) (a) * (b)
+#define LINKED_DIVIDE(a, b) (a) / (b)
+#define LINKED_MIN(a, b) MIN_OF(b, a)
+#define LINKED_MAX(a, b) MAX_OF(b, a)
+#define LINKED_LESS(a, b) TRUTH_OF(LESS(a, b))
+#define LINKED_LESS_EQUAL(a, b) TRUTH_OF(LESS_EQUAL(a, b))
+#define LINKED_SELECT(a, b, c) PICK(MASK_OF(a), b, c)
+
+/* Sixteen points; and eight vectors, which AVX2 has registers for. */
+#ifdef __AVX512F__
+#define VECTORS 2
+#define EACH(X, ...) X(0, __VA_ARGS__) X(1, __VA_ARGS__)
+#else
+#define VECTORS 4
+#define EACH(X, ...) X(0, __VA_ARGS__) X(1, __VA_ARGS__) X(2, __VA_ARGS__) X(3, __VA_ARGS__)
+#endif
+#define RUN_LINKED run_few
+#include "expr/expr_linked_kernel_internal.h"
+#define VECTORS 8
+#define EACH(X, ...)                                                                                                   \
+    X(0, __VA_ARGS__)                                                                                                  \
+    X(1, __VA_ARGS__)                                                                                                  \
+    X(2, __VA_ARGS__)                                                                                                  \
+    X(3, __VA_ARGS__) X(4, __VA_ARGS__) X(5, __VA_ARGS__) X(6, __VA_ARGS__) X(7, __VA_ARGS__)
+#define RUN_LINKED run_many
+#include "expr/expr_linked_kernel_internal.h"
+
+void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows) {
+    uint32_t at = 0;
+    for (; at + 8 * WIDTH <= width; at += 8 * WIDTH)
+        run_many(program, rows + at);
+    for (; at < width; at += 16)
+        run_few(program, rows + at);
+}
+
+#else
+
+void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows) {
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++)
+        in = run_instruction(program, in, width, rows);
+}
+
+#endif

@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "expr/expr_batch_internal.h"
+#include "expr/expr_link_internal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -142,9 +143,29 @@ static bool write_code(const struct expr_graph *graph, const uint32_t *order, st
             return false;
         for (int k = count; k < 3; k++)
             values[k] = result->value;
-        code[at] = (struct expr_instruction){(uint16_t)node->operation, result->value, values[0], values[1], values[2]};
+        code[at] =
+            (struct expr_instruction){(uint16_t)node->operation, result->value, values[0], values[1], values[2], 0};
     }
     return true;
+}
+
+void expr_link_program(const struct expr_program *program, struct expr_instruction *code) {
+    bool is_read[EXPR_VALUES] = {false}; /* by a later instruction, or as an output */
+    struct expr_linker linker = {.constant_count = program->constant_count};
+    for (int i = 0; i < program->output_count; i++)
+        is_read[program->outputs[i]] = true;
+    for (uint32_t n = program->count; n-- > 0;) {
+        struct expr_instruction *in = &code[n];
+        const uint16_t operands[3] = {in->a, in->b, in->c};
+        unsigned ended = 0;
+        is_read[in->out] = false;
+        for (int k = 0; k < expr_operand_count((enum expr_operation)in->operation); k++) {
+            ended |= (unsigned)!is_read[operands[k]] << k;
+            is_read[operands[k]] = true;
+        }
+        expr_link(&linker, in, ended);
+    }
+    expr_link_operands(&linker, UINT32_MAX);
 }
 
 /* The compiler's memory. */
@@ -156,8 +177,7 @@ struct layout {
 
 /* Generates the code of the nodes in their order. */
 static bool compile(const struct expr_graph *graph, const struct layout *layout, struct arena *arena,
-                    struct expr_program *program, struct error *error) {
-    struct expr_instruction *code = arena_alloc_array(arena, (size_t)program->count + 1, sizeof *code);
+                    struct expr_program *program, struct expr_instruction *code, struct error *error) {
     if (!code)
         return error_no_memory(error, "a function");
     program->code = code;
@@ -185,11 +205,14 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
         mark(graph, outputs, output_count, layout.allocations);
         program->count = put_in_order(graph, outputs, output_count, layout.allocations, layout.order);
     }
-    ok = ok && compile(graph, &layout, arena, program, error);
+    struct expr_instruction *code = ok ? arena_alloc_array(arena, (size_t)program->count + 1, sizeof *code) : NULL;
+    ok = ok && compile(graph, &layout, arena, program, code, error);
     for (int i = 0; ok && i < output_count; i++)
         program->outputs[i] = layout.allocations[outputs[i]].value;
-    if (ok)
+    if (ok) {
         program->output_count = output_count;
+        expr_link_program(program, code);
+    }
     mem_free(layout.allocations);
     mem_free(layout.registers);
     mem_free(layout.order);
@@ -214,20 +237,75 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
         break;                                                                                                         \
     }
 
+/* Linked instructions: `last` is the result of the one before. Storing costs less than asking whether to. */
+#define SINGLE_R(operand) values[in->operand].f
+#define SINGLE_K(operand) values[in->operand].f
+#define SINGLE_L(operand) last
+#define LINKED_NEGATE(a) -(a)
+#define LINKED_ABS(a) fabs(a)
+#define LINKED_SQRT(a) sqrt(a)
+#define LINKED_FLOOR(a) floor(a)
+#define LINKED_ADD(a, b) (a) + (b)
+#define LINKED_SUBTRACT(a, b) (a) - (b)
+#define LINKED_MULTIPLY(a, b) (a) * (b)
+#define LINKED_DIVIDE(a, b) (a) / (b)
+#define LINKED_MIN(a, b) (b) < (a) ? (b) : (a)
+#define LINKED_MAX(a, b) (a) < (b) ? (b) : (a)
+#define LINKED_LESS(a, b) truth((a) < (b))
+#define LINKED_LESS_EQUAL(a, b) truth((a) <= (b))
+#define LINKED_SELECT(a, b, c) is_true(a) ? (b) : (c)
+#define SINGLE_CASE_1(operation, oa, stored)                                                                           \
+    case EXPR_LINK_1(operation, oa, stored):                                                                           \
+        values[in->out].f = last = LINKED_##operation(SINGLE_##oa(a));                                                 \
+        break;
+#define SINGLE_CASE_2(operation, oa, ob, stored)                                                                       \
+    case EXPR_LINK_2(operation, oa, ob, stored):                                                                       \
+        values[in->out].f = last = LINKED_##operation(SINGLE_##oa(a), SINGLE_##ob(b));                                 \
+        break;
+#define SINGLE_CASE_3(oa, ob, oc, stored)                                                                              \
+    case EXPR_LINK_3(oa, ob, oc, stored):                                                                              \
+        values[in->out].f = last = LINKED_SELECT(SINGLE_##oa(a), SINGLE_##ob(b), SINGLE_##oc(c));                      \
+        break;
+
+static inline double truth(bool x) {
+    union expr_value value = {.i = -(int64_t)x};
+    return value.f;
+}
+
+static inline bool is_true(double x) {
+    union expr_value value = {.f = x};
+    return value.i != 0;
+}
+
+/* Runs an instruction, or the two of a sine and a cosine; returns the last one. */
+static const struct expr_instruction *run_unlinked(const struct expr_instruction *in,
+                                                   const struct expr_instruction *end, union expr_value *values) {
+    switch ((enum expr_operation)in->operation) {
+        EXPR_OPERATIONS(EVALUATE)
+    case EXPR_CONSTANT:
+    case EXPR_INPUT:
+    case EXPR_OPERATION_COUNT:
+        break;
+    }
+    return in;
+}
+
 void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                    double outputs[EXPR_OUTPUTS]) {
     union expr_value values[EXPR_VALUES];
+    double last = 0;
     for (uint32_t i = 0; i < program->constant_count; i++)
         values[i] = program->constants[i];
     for (int i = 0; i < program->input_count; i++)
         values[program->inputs[i].value].f = inputs[program->inputs[i].input];
     for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        switch ((enum expr_operation)in->operation) {
-            EXPR_OPERATIONS(EVALUATE)
-        case EXPR_CONSTANT:
-        case EXPR_INPUT:
-        case EXPR_OPERATION_COUNT:
+        switch (in->link) {
+        case EXPR_UNLINKED:
+            in = run_unlinked(in, end, values);
             break;
+            EXPR_LINK_CASES(SINGLE_CASE_1, SINGLE_CASE_2, SINGLE_CASE_3)
+        default:
+            __builtin_unreachable();
         }
     }
     for (int i = 0; i < program->output_count; i++)
@@ -246,7 +324,7 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          void *rows) {
     static void (*const run[])(const struct expr_program *, uint32_t, double *) = {
         [CPU_ISA_BASE] = expr_run_base, [CPU_ISA_AVX2] = expr_run_avx2, [CPU_ISA_AVX512] = expr_run_avx512};
-    uint32_t width = (count + 7) & ~7U;
+    uint32_t width = (count + 15) & ~15U;
     double *values = rows;
     for (int i = 0; i < program->input_count; i++) {
         double *row = values + (size_t)(program->inputs[i].value - program->constant_count) * EXPR_BATCH;

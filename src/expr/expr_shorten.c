@@ -3,6 +3,8 @@
  * its register. A copy remains only if another instruction needs that operand too, or if it is a constant. */
 #include "expr/expr_shorten.h"
 
+#include "expr/expr_link_internal.h"
+
 #include <string.h>
 
 enum { UNWANTED = 0xffff };
@@ -14,6 +16,7 @@ static const uint8_t reads[EXPR_OPERATION_COUNT][3] = {EXPR_OPERATIONS(READS)};
 struct renaming {
     uint16_t *renamed, *unused; /* of old registers, UNWANTED where none; registers that are free */
     uint32_t unused_count, register_count, first;
+    unsigned is_first; /* the register that was wanted last was not wanted before */
 };
 
 /* The new register or constant of an old value that is read. */
@@ -21,7 +24,8 @@ static inline uint16_t want(struct renaming *r, uint16_t value) {
     if (value < r->first)
         return value;
     uint16_t *to = &r->renamed[value - r->first];
-    if (*to == UNWANTED)
+    r->is_first = *to == UNWANTED;
+    if (r->is_first)
         *to = r->unused_count ? r->unused[--r->unused_count] : (uint16_t)(r->first + r->register_count++);
     return *to;
 }
@@ -46,10 +50,10 @@ static inline uint16_t taken_operand(const struct expr_instruction *in, bool fir
 static struct expr_instruction copy_of(const struct expr_instruction *in, uint16_t from) {
     enum expr_operation operation = (enum expr_operation)in->operation;
     if (operation == EXPR_INTEGER_SELECT)
-        return (struct expr_instruction){EXPR_BIT_AND, in->out, from, from, in->out};
+        return (struct expr_instruction){EXPR_BIT_AND, in->out, from, from, in->out, 0};
     if (operation == EXPR_TRUTH_SELECT)
-        return (struct expr_instruction){EXPR_TRUTH_SELECT, in->out, from, from, from};
-    return (struct expr_instruction){EXPR_COPY, in->out, from, in->out, in->out};
+        return (struct expr_instruction){EXPR_TRUTH_SELECT, in->out, from, from, from, 0};
+    return (struct expr_instruction){EXPR_COPY, in->out, from, in->out, in->out, 0};
 }
 
 void expr_find_needed(const struct expr_program *program, const struct expr_choice *choices, uint64_t lanes,
@@ -111,6 +115,7 @@ bool expr_shorten_decided(const struct expr_program *program, const struct expr_
     for (int i = 0; i < program->output_count; i++)
         shorter.outputs[i] = want(&r, program->outputs[i]);
     struct expr_instruction *end = stack->code + stack->free, *to = end;
+    struct expr_linker linker = {.constant_count = program->constant_count};
     for (uint32_t listed = list_needed(program, decisions, list); listed-- > 0;) {
         const uint32_t n = list[listed];
         struct expr_instruction in = program->code[n];
@@ -133,10 +138,15 @@ bool expr_shorten_decided(const struct expr_program *program, const struct expr_
         const uint8_t *reading = reads[in.operation];
         in.out = result;
         in.a = reading[0] ? want(&r, in.a) : result;
+        unsigned ended = r.is_first;
         in.b = reading[1] ? want(&r, in.b) : result;
+        ended |= r.is_first << 1;
         in.c = reading[2] ? want(&r, in.c) : result;
+        ended |= r.is_first << 2;
         *--to = in;
+        expr_link(&linker, to, ended);
     }
+    expr_link_operands(&linker, UINT32_MAX);
     shorter.code = to;
     shorter.count = (uint32_t)(end - to);
     shorter.input_count = 0;
@@ -187,7 +197,8 @@ bool expr_keep(const struct expr_program *program, struct arena *arena, struct e
     }
     for (uint32_t n = 0; n < program->count; n++) {
         const struct expr_instruction *in = &program->code[n];
-        code[n] = (struct expr_instruction){in->operation, moved[in->out], moved[in->a], moved[in->b], moved[in->c]};
+        code[n] = (struct expr_instruction){in->operation, moved[in->out], moved[in->a],
+                                            moved[in->b],  moved[in->c],   in->link};
     }
     for (int i = 0; i < out->input_count; i++)
         out->inputs[i].value = moved[program->inputs[i].value];

@@ -385,6 +385,106 @@ TEST_LONG(every_operation_gives_the_bits_of_lua_on_a_million_values) {
     check_operations(1000000);
 }
 
+/* --- programs whose instructions read the result of the one before --- */
+
+enum { LINKED_NODES = 400 };
+
+/* Operations on the newest value, on any other, and on constants; the first three nodes are inputs. */
+static void random_linked_graph(struct expr_graph *graph, uint64_t seed, int operations) {
+    static const enum expr_operation choices[] = {
+        EXPR_ADD,    EXPR_SUBTRACT, EXPR_MULTIPLY, EXPR_DIVIDE,   EXPR_MIN,        EXPR_MAX,
+        EXPR_NEGATE, EXPR_ABS,      EXPR_SQRT,     EXPR_FLOOR,    EXPR_SELECT,     EXPR_SELECT,
+        EXPR_SELECT, EXPR_CEIL,     EXPR_ADD,      EXPR_MULTIPLY, EXPR_LESS_EQUAL, EXPR_SIN};
+    uint32_t last = 0;
+    for (int k = 0; k < 3; k++)
+        last = expr_input(graph, (enum expr_input)k);
+    for (uint64_t i = 0; i < (uint64_t)operations && graph->count < LINKED_NODES - 8; i++) {
+        uint64_t bits = random_combine(seed, i);
+        enum expr_operation operation = choices[bits % (sizeof choices / sizeof choices[0])];
+        uint32_t operands[3];
+        for (int k = 0; k < 3; k++) {
+            unsigned kind = (unsigned)(bits >> (8 + 4 * k)) % 8;
+            uint32_t other = (uint32_t)((bits >> (20 + 8 * k)) % graph->count);
+            while (graph->nodes[other].type != EXPR_TYPE_F)
+                other--;
+            operands[k] = kind < 4 ? last : kind < 6 ? other : expr_float(graph, random_float(bits + (uint64_t)k));
+        }
+        bool is_less = operation == EXPR_LESS_EQUAL;
+        if (operation == EXPR_SELECT || is_less)
+            operands[0] = expr_operation(graph, bits >> 50 & 1 ? EXPR_LESS : EXPR_LESS_EQUAL, last, operands[0], 0);
+        last = expr_operation(graph, is_less ? EXPR_SELECT : operation, operands[0], operands[1], operands[2]);
+    }
+}
+
+/* The value of every node at one point. */
+static void apply_all(const struct expr_graph *graph, const double *inputs, union expr_value *values) {
+    for (uint32_t n = 0; n < graph->count; n++) {
+        const struct expr_node *node = &graph->nodes[n];
+        union expr_value operands[3] = {{.i = 0}, {.i = 0}, {.i = 0}};
+        for (int k = 0; k < expr_operand_count(node->operation); k++)
+            operands[k] = values[node->operands[k]];
+        values[n] = expr_apply(node->operation, operands[0], operands[1], operands[2]);
+        if (node->operation == EXPR_CONSTANT)
+            values[n] = node->constant;
+        if (node->operation == EXPR_INPUT)
+            values[n].f = inputs[node->operands[0]];
+    }
+}
+
+static void check_linked_program(uint64_t seed) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    struct expr_graph graph = {.count = 0};
+    struct arena arena = {0};
+    struct error error = {0};
+    struct expr_program program;
+    uint32_t outputs[EXPR_OUTPUTS];
+    int output_count = 1 + (int)(seed % EXPR_OUTPUTS);
+    random_linked_graph(&graph, random_mix(seed), 3 + (int)(seed % 60));
+    for (int i = 0; i < output_count; i++) {
+        outputs[i] = graph.count - 1 - (uint32_t)(random_combine(seed, (uint64_t)i) % (i ? graph.count : 1));
+        while (graph.nodes[outputs[i]].type != EXPR_TYPE_F)
+            outputs[i]--;
+    }
+    CHECK(expr_compile(&graph, outputs, output_count, &arena, &program, &error));
+    void *rows = mem_alloc_aligned(64, expr_batch_size(&program));
+    uint32_t count = 1 + (uint32_t)(seed * 7 % EXPR_BATCH);
+    double in[3][EXPR_BATCH], wanted[EXPR_OUTPUTS][EXPR_BATCH], results[EXPR_OUTPUTS][EXPR_BATCH];
+    for (uint32_t i = 0; i < count; i++) {
+        double point[EXPR_INPUT_COUNT] = {0}, one[EXPR_OUTPUTS];
+        union expr_value values[LINKED_NODES];
+        for (uint64_t k = 0; k < 3; k++)
+            in[k][i] = point[k] = random_float(random_combine(seed, i * 3 + k));
+        apply_all(&graph, point, values);
+        expr_evaluate(&program, point, one);
+        for (int k = 0; k < output_count; k++) {
+            wanted[k][i] = values[outputs[k]].f;
+            if (!same_bits(one[k], wanted[k][i]))
+                test_fail(__FILE__, __LINE__, "program %d: %a, not %a", (int)seed, one[k], wanted[k][i]);
+        }
+    }
+    for (size_t set = 0; set < sizeof sets / sizeof sets[0]; set++) {
+        if (!cpu_select_isa(sets[set]))
+            continue;
+        const double *ins[EXPR_INPUT_COUNT] = {in[0], in[1], in[2]};
+        double *outs[EXPR_OUTPUTS] = {results[0], results[1], results[2], results[3]};
+        expr_evaluate_batch(&program, count, ins, outs, rows);
+        for (int k = 0; k < output_count; k++)
+            for (uint32_t i = 0; i < count; i++)
+                if (!same_bits(results[k][i], wanted[k][i]))
+                    test_fail(__FILE__, __LINE__, "program %d, %s, point %u: %a, not %a", (int)seed, sets[set], i,
+                              results[k][i], wanted[k][i]);
+    }
+    mem_free(rows);
+    arena_destroy(&arena);
+    expr_graph_destroy(&graph);
+}
+
+TEST(programs_of_linked_operations_give_the_bits_of_their_operations_one_by_one) {
+    for (uint64_t seed = 0; seed < 3000; seed++)
+        check_linked_program(seed);
+    CHECK(cpu_select_isa("auto"));
+}
+
 TEST(floor_of_a_float_plus_zero_is_the_float_of_luas_floor) {
     lua_State *L = luaL_newstate();
     luaL_openlibs(L);
