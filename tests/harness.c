@@ -708,16 +708,26 @@ static int by_name(const void *a, const void *b) {
     return order ? order : strcmp(x->name, y->name);
 }
 
-/* The tests of a kind that match a pattern, or all, in order of names; from malloc. */
+static bool has_word(const struct test *test, const char *word) {
+    return strstr(test->name, word) || strstr(test->file, word) || fnmatch(word, test->name, 0) == 0;
+}
+
+/* The tests of a kind that match a pattern, or all, without those that match a pattern after a dash, in order of names;
+ * from malloc. */
 static struct test **choose_tests(enum test_kind kind, const char *const *patterns, int pattern_count, int *count) {
     struct test **chosen = calloc((size_t)test_count + 1, sizeof *chosen);
     *count = 0;
     for (struct test *test = all_tests; test && chosen; test = test->next) {
-        bool wanted = pattern_count == 0;
-        for (int i = 0; i < pattern_count; i++)
-            wanted = wanted || strstr(test->name, patterns[i]) || strstr(test->file, patterns[i]) ||
-                     fnmatch(patterns[i], test->name, 0) == 0;
-        if (wanted && test->kind == kind)
+        bool wanted = false, all = true, left_out = false;
+        for (int i = 0; i < pattern_count; i++) {
+            if (patterns[i][0] == '-') {
+                left_out = left_out || has_word(test, patterns[i] + 1);
+            } else {
+                all = false;
+                wanted = wanted || has_word(test, patterns[i]);
+            }
+        }
+        if ((wanted || all) && !left_out && test->kind == kind)
             chosen[(*count)++] = test;
     }
     if (chosen)

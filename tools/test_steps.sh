@@ -106,13 +106,15 @@ build asan
 if [ $long = no ]; then
     run release
     run asan smoke errors_ script allocation png obj ply stl gltf mtl jpeg font_ gzip mesh_faces test_program test_channel test_options \
-        window_survives_random window_outlines window_shows_and window_stops_b
+        window_survives_random window_outlines window_shows_and window_stops_b \
+        -hostile_no_script -smoke_every_demo_of_the_library -smoke_scenes_of_combined -progress_can_be_a_bar -any_word_of_a_gltf
 else
     build tsan
     run release --long "$@"
     if [ $# -eq 0 ]; then
         build debug
         run debug --long faults_
+        run debug allocation any_
         run asan
         run tsan
         if command -v clang >/dev/null; then # four hours for all targets together
