@@ -421,28 +421,70 @@ static void gives(const char *line, int status, const char *says) {
     free(command);
 }
 
+/* Runs end after `milliseconds`, one after the other, until one is complete. */
+static void kill_and_resume(const int *milliseconds, int kills) {
+    char line[1024], *end = line;
+    for (int k = 0; k < kills; k++)
+        end += snprintf(end, sizeof line - (size_t)(end - line),
+                        "$gray -q -j 1 scene.lua -o x.gif --checkpoint auto --checkpoint-every 0 --resume & p=$!; "
+                        "sleep %d.%03d; kill -9 $p; wait $p; ",
+                        milliseconds[k] / 1000, milliseconds[k] % 1000);
+    (void)snprintf(end, sizeof line - (size_t)(end - line),
+                   "$gray -q scene.lua -o x.gif --resume && cmp x.gif one.gif && ! test -e x.gif.frames && rm x.gif");
+    gives(line, 0, "");
+}
+
 TEST(an_animation_that_was_killed_goes_on_to_the_bytes_of_one_run) {
     gives("$gray -q scene.lua -o one.gif && ! test -e one.gif.frames", 0, "");
-    for (int k = 1; k <= 8; k++) {
-        char line[512];
-        (void)snprintf(line, sizeof line,
-                       "$gray -q -j 1 scene.lua -o x.gif --checkpoint auto --checkpoint-every 0 --resume & p=$!; "
-                       "sleep 0.0%d; kill -9 $p; wait $p; $gray -q scene.lua -o x.gif --resume && cmp x.gif one.gif && "
-                       "! test -e x.gif.frames && rm x.gif",
-                       k);
-        gives(line, 0, "");
+    for (int k = 1; k <= 8; k++)
+        kill_and_resume(&(const int){10 * k}, 1);
+}
+
+TEST_LONG(two_hundred_kills_of_an_animation_leave_the_bytes_of_one_run) {
+    struct test_random random = {20};
+    gives("$gray -q scene.lua -o one.gif", 0, "");
+    for (int k = 0; k < 100; k++) {
+        const int times[2] = {(int)test_uniform(&random, 1, 200), (int)test_uniform(&random, 1, 200)};
+        kill_and_resume(times, 2);
     }
 }
 
 TEST(any_division_of_an_animation_gives_the_bytes_of_one_run) {
-    gives("$gray -q scene.lua -o one.apng; for i in 1 2 3; do $gray -q scene.lua -o a.apng --shard-pictures $i/3 "
-          "|| exit 1; done; $gray merge -q --loop -o a.apng a.apng.frames/*.png && cmp a.apng one.apng",
+    gives("$gray -q scene.lua -o one.apng; for n in 2 3 5 12 13; do for i in $(seq $n); do "
+          "$gray -q scene.lua -o a.apng --shard-pictures $i/$n || exit 1; done; "
+          "$gray merge -q --loop -o a.apng a.apng.frames/*.png && cmp a.apng one.apng || exit 1; "
+          "rm -r a.apng a.apng.frames; done",
           0, "");
-    gives("for i in 1 2; do $gray -q scene.lua -o b.apng --shard $i/2 || exit 1; done; "
-          "$gray merge -q --loop -o b.apng b.apng.frames/*.part && cmp b.apng one.apng",
+    /* Pictures of several tiles. */
+    gives("size='--size 150x110 --frames 1-3'; $gray -q scene.lua -o two.apng $size; for n in 2 3; do "
+          "for i in $(seq $n); do $gray -q scene.lua -o b.apng $size --shard $i/$n || exit 1; done; "
+          "$gray merge -q --loop -o b.apng b.apng.frames/*.part && cmp b.apng two.apng || exit 1; "
+          "rm -r b.apng b.apng.frames; done; "
+          "for i in 1 2; do for k in 1 2; do $gray -q scene.lua -o d.apng $size --shard $i/2 --shard-pictures $k/2 "
+          "|| exit 1; done; done; $gray merge -q --loop -o d.apng d.apng.frames/*.part && cmp d.apng two.apng",
           0, "");
     gives("$gray -q scene.lua -o 'c.##.png'; $gray merge -q --loop -o c.apng c.*.png && cmp c.apng one.apng && "
           "test -e c.12.png",
+          0, "");
+}
+
+TEST(ranks_make_an_animation_with_the_bytes_of_one_run) {
+    if (system("test -x $(dirname ${GRAY_TEST_BINARY:-build/release/gray})/gray-mpi && command -v mpirun >/dev/null"))
+        test_skip("there is no gray-mpi beside the program, or no mpirun");
+    test_write_text(test_path("farm.sh"), "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+                                          "OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp} "
+                                          "mpirun --oversubscribe -n 3 $gray --mpi -q -j 1 \"$@\"\n");
+    gives("export gray; sh farm.sh scene.lua -o x.gif && $gray -q scene.lua -o one.gif && cmp x.gif one.gif && "
+          "! test -e x.gif.frames && sh farm.sh scene.lua -o - --frames 2-11/3 > y && "
+          "$gray -q scene.lua -o - --frames 2-11/3 > z && cmp y z && sh farm.sh scene.lua -o 'p.##.png' && "
+          "$gray merge -q --loop -o p.gif p.*.png && cmp p.gif one.gif",
+          0, "");
+    gives("export gray; sh farm.sh scene.lua -D FAIL=8 -o e.gif", 1, "no (frame 8)");
+    gives("ls e.gif.frames | grep -c png", 0, "7");
+    gives("export gray; sh farm.sh scene.lua -o r.gif --checkpoint auto --checkpoint-every 0 & p=$!; "
+          "for i in $(seq 400); do test -e r.gif.frames/000003.png && break; sleep 0.02; done; "
+          "kill -9 $(pgrep -P $p | tail -n 1); wait $p; "
+          "test -e r.gif || sh farm.sh scene.lua -o r.gif --resume; cmp r.gif one.gif",
           0, "");
 }
 
@@ -461,6 +503,36 @@ TEST(a_full_disk_keeps_the_frames_before_it) {
           "n=\\$(ls disk | wc -l); test \\$n -ge 2 && test \\$n -lt 12 && test -e disk/a.01.png && "
           "for f in \\$(ls disk); do cmp disk/\\$f \\$f || exit 1; done; exit \\$s\"",
           3, "No space left on device");
+}
+
+/* A file takes whole pages of the file system: there is room for just 29. */
+TEST(a_disk_that_is_full_at_frame_30_keeps_29_frames) {
+    if (system("unshare -rm sh -c 'mount -t tmpfs -o size=8k t /mnt' 2>/dev/null") != 0)
+        test_skip("this user may not mount a small file system");
+    gives(
+        "sed -i 's/count = 12/count = 40/' scene.lua && $gray -q scene.lua -o 'a.##.png' && mkdir disk && export gray "
+        "&& size=$(for k in $(seq -w 29); do stat -c %s a.$k.png; done | "
+        "awk '{pages += int(($1 + 4095) / 4096)} END {print 4 * pages}') && "
+        "unshare -rm sh -c \"mount -t tmpfs -o size=${size}k t disk && $gray -q scene.lua -o 'disk/a.##.png'; s=\\$?; "
+        "test \\$(ls disk | wc -l) = 29 && for f in \\$(ls disk); do cmp disk/\\$f \\$f || exit 1; done; exit \\$s\"",
+        3, "a.30.png: cannot be written: No space left on device");
+}
+
+/* The frame after the last one of a loop has the time of the first turn's end. */
+TEST(a_loop_closes_where_its_script_is_periodic) {
+    static const char text[] =
+        "local root, ball = gr.node('r'), gr.torus(gr.material({0.9, 0.4, 0.2}, {0.5, 0.5, 0.5}, 20), 1, 0.3)\n"
+        "root:add_child(gr.node('arm'):add_child(ball))\n"
+        "local k = gr.keys{{0, 0}, {0.1, 1}, {0.2, 0}, curve = 'catmull'}\n"
+        "gr.frames{count = COUNT, fps = 30, loop = LOOPS, draw = function(t)\n"
+        "  ball:reset():rotate('x', 360 * t):rotate('z', -720 * t):translate(0, k(), 0)\n"
+        "  return {node = root, width = 60, height = 44, eye = {0, 0, 6}, view = {0, 0, -1}, fov = 40,\n"
+        "          lights = {gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0})}} end}\n";
+    test_write_text(test_path("loop.lua"), text);
+    gives("$gray -q loop.lua -D COUNT=6 -D LOOPS=true -o 'l.##.png'; $gray -q loop.lua -D COUNT=7 -D LOOPS=false "
+          "-o 'w.##.png'; for k in 1 2 3 4 5 6; do cmp l.0$k.png w.0$k.png || exit 1; done; cmp w.07.png w.01.png && "
+          "! cmp -s w.02.png w.01.png",
+          0, "");
 }
 
 TEST(every_picture_of_an_old_script_is_a_frame) {
