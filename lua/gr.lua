@@ -1699,6 +1699,12 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
+---@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Pattern by which PNG files are rounded to 8 bits.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1773,6 +1779,12 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
+---@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Pattern by which PNG files are rounded to 8 bits.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1959,6 +1971,12 @@ function node:translate(x, y, z) end
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
+---@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Pattern by which PNG files are rounded to 8 bits.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.

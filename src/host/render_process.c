@@ -375,12 +375,19 @@ static bool reserve_memory(struct render_process *process, const struct picture_
 
 static struct picture_request picture_request_of(const struct options *options, const struct render_job *job,
                                                  struct frame frame) {
+    const struct finish *finish = &job->settings.finish;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
                                     .exposure = job->settings.tone.exposure,
                                     .curve = (uint32_t)job->settings.tone.curve,
                                     .srgb = job->settings.tone.srgb,
                                     .deep = job->settings.deep,
+                                    .bloom = finish->bloom,
+                                    .vignette = finish->vignette,
+                                    .gray = finish->gray,
+                                    .edges = finish->edges,
+                                    .fxaa = finish->fxaa,
+                                    .dither = (uint32_t)finish->dither,
                                     .record = render_record(&job->settings),
                                     .layers = job->settings.aov,
                                     .in_window = options->window,
@@ -423,7 +430,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (warning[0] != '\0')
         warn_of_scene(process, warning);
     asked->shown = (struct film_rectangle){asked->x0, asked->y0, asked->x0 + asked->width, asked->y0 + asked->height};
-    add_rim(asked, path_film_parts(asked->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0);
+    uint32_t rim = path_film_parts(asked->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
+    add_rim(asked, rim + finish_rim(&job->settings.finish, asked->full_height));
     if (job->settings.view_is_target)
         asked->camera.view = vec3_sub(job->camera.view, job->camera.eye);
     asked->files = file_read_log_sum(&process->read_log);

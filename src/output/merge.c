@@ -126,6 +126,12 @@ static bool merge_picture(struct output_session *output, const struct part *part
                                       .curve = (uint32_t)first->tone.curve,
                                       .srgb = first->tone.srgb,
                                       .deep = first->deep,
+                                      .bloom = first->finish.bloom,
+                                      .vignette = first->finish.vignette,
+                                      .gray = first->finish.gray,
+                                      .edges = first->finish.edges,
+                                      .fxaa = first->finish.fxaa,
+                                      .dither = (uint32_t)first->finish.dither,
                                       .record = first->record};
     memcpy(request.file, first->name, sizeof request.file);
     bool already = false;

@@ -136,6 +136,7 @@ static void describe_tiles(const struct output_session *output, struct picture *
                                    .shown = request->shown,
                                    .tone = picture_tone(request),
                                    .deep = request->deep != 0,
+                                   .finish = picture_finish(request),
                                    .record = request->record,
                                    .shard = options->shards ? options->shard : 1,
                                    .shards = options->shards ? options->shards : 1};

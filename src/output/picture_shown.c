@@ -1,6 +1,6 @@
-/* The film of a crop that is denoised has a rim that its files do not show (DENOISE_RIM). Denoising happens here, where
- * the picture is written, so that merged parts and resumed pictures are denoised as a whole. The film is shared with
- * the render process, whose numbers are not trusted: denoising is safe for all numbers. */
+/* The film of a crop that is denoised or finished has a rim that its files do not show (DENOISE_RIM, finish_rim). Both
+ * happen here, where the picture is written, so that merged parts and resumed pictures are denoised and finished as a
+ * whole. The film is shared with the render process, whose numbers are not trusted: both are safe for all numbers. */
 #include "output/picture_shown_internal.h"
 
 #include "base/mem.h"
@@ -39,57 +39,119 @@ static bool is_whole(const struct film *film, const struct film_rectangle *part)
            part->y1 - part->y0 == film->height;
 }
 
-/* The film of the part, its arrays in the memory of `out`. */
-static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part,
-                     const void *colours) {
+/* The arrays of the film that the part has beside its pixels: what marks tell (render/film.h), and layers. */
+static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
     size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
-    struct film *shown = &out->picture.film;
-    out->pixels = mem_alloc(width * height * sizeof *out->pixels);
+    size_t floats = film->record.marks ? film->record.floats : 0;
     out->layers = mem_alloc(width * height * count * sizeof *out->layers);
-    if (!out->pixels || !out->layers) {
-        picture_shown_destroy(out);
+    out->floats = mem_alloc(width * height * floats * sizeof *out->floats);
+    out->marked = mem_alloc(width * height * film->record.marks);
+    if (!out->layers || !out->floats || !out->marked)
         return false;
+    if (film->record.marks) {
+        cut(out->floats, film->floats, floats * sizeof *out->floats, film, part);
+        cut(out->marked, film->marked, sizeof *out->marked, film, part);
     }
-    cut(out->pixels, colours, sizeof *out->pixels, film, part);
     for (size_t i = 0; i < count; i++)
         cut(out->layers + i * width * height, film->layers + i * (size_t)film->width * film->height,
             sizeof *out->layers, film, part);
-    *shown = (struct film){.width = (uint32_t)width,
-                           .height = (uint32_t)height,
-                           .x0 = part->x0,
-                           .y0 = part->y0,
-                           .full_width = film->full_width,
-                           .full_height = film->full_height,
-                           .pixels = out->pixels,
-                           .layer_mask = film->layer_mask,
-                           .layers = count > 0 ? out->layers : NULL};
+    out->picture.film = (struct film){.width = (uint32_t)width,
+                                      .height = (uint32_t)height,
+                                      .x0 = part->x0,
+                                      .y0 = part->y0,
+                                      .full_width = film->full_width,
+                                      .full_height = film->full_height,
+                                      .record = {(uint32_t)floats, film->record.marks},
+                                      .floats = out->floats,
+                                      .marked = film->record.marks ? out->marked : NULL,
+                                      .layer_mask = film->layer_mask,
+                                      .layers = count > 0 ? out->layers : NULL};
+    return true;
+}
+
+static struct finish_area area_of(const struct film *film) {
+    return (struct finish_area){film->x0, film->y0, film->width, film->height, film->full_width, film->full_height};
+}
+
+/* The colours of the film, denoised and with what finishing does to light. */
+static bool make_light(const struct picture *picture, enum denoiser denoiser, struct pool *pool, float (*out)[3],
+                       struct error *error) {
+    const struct film *film = &picture->film;
+    const struct finish finish = picture_finish(&picture->request);
+    const struct finish_area area = area_of(film);
+    if (denoiser == DENOISER_NONE)
+        memcpy(out, film->pixels, (size_t)film->width * film->height * sizeof *out);
+    else if (!denoise_film(film, denoiser, pool, out, error))
+        return false;
+    return finish_light(&finish, picture->request.exposure, &area, out, error);
+}
+
+/* The numbers of a PNG file with what finishing does to them. */
+static bool make_display(const struct picture *picture, const float (*light)[3], float (*out)[3], struct error *error) {
+    const struct finish finish = picture_finish(&picture->request);
+    const struct finish_area area = area_of(&picture->film);
+    const struct tone tone = picture_tone(&picture->request);
+    for (size_t i = 0; i < (size_t)area.width * area.height; i++) {
+        for (int c = 0; c < 3; c++) {
+            double value = tone_apply(&tone, (double)light[i][c]);
+            out[i][c] = value >= 1 ? 1 : value > 0 ? (float)value : 0; /* NaN: 0 */
+        }
+    }
+    return finish_display(&finish, &area, out, error);
+}
+
+/* The part of an array of the film, which is given up. NULL: no memory. */
+static void *cut_away(void *whole, const struct film *film, const struct film_rectangle *part) {
+    size_t width = part->x1 - part->x0, height = part->y1 - part->y0;
+    if (is_whole(film, part))
+        return whole;
+    void *out = mem_alloc(width * height * sizeof(struct film_pixel));
+    if (out)
+        cut(out, whole, sizeof(struct film_pixel), film, part);
+    mem_free(whole);
+    return out;
+}
+
+static bool make_shown(struct picture_shown *out, const struct picture *picture, const struct film_rectangle *part,
+                       enum denoiser denoiser, struct pool *pool, struct error *error) {
+    const struct film *film = &picture->film;
+    const struct finish finish = picture_finish(&picture->request);
+    size_t size = (size_t)film->width * film->height * sizeof(struct film_pixel);
+    bool displays = finish_changes_display(&finish), whole = is_whole(film, part);
+    out->pixels = mem_alloc(size);
+    out->display = displays ? mem_alloc(size) : NULL;
+    if (!out->pixels || (displays && !out->display))
+        return error_no_memory(error, "a picture that is finished");
+    float(*light)[3] = (float(*)[3])(void *)out->pixels;
+    if (!make_light(picture, denoiser, pool, light, error) ||
+        (displays && !make_display(picture, (const float(*)[3])light, out->display, error)))
+        return false;
+    out->pixels = cut_away(out->pixels, film, part);
+    out->display = displays ? cut_away(out->display, film, part) : NULL;
+    if (!out->pixels || (displays && !out->display) || (!whole && !cut_film(out, film, part)))
+        return error_no_memory(error, "a picture that is finished");
+    out->picture.film.pixels = out->pixels;
+    out->picture.display = (const float(*)[3])out->display;
     return true;
 }
 
 bool picture_shown_make(struct picture_shown *out, const struct picture *picture, enum denoiser denoiser,
                         struct pool *pool, struct error *error) {
     const struct film *film = &picture->film;
+    const struct finish finish = picture_finish(&picture->request);
     struct film_rectangle part = picture->request.shown;
     if (part.x1 == 0)
         part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};
-    bool denoises = denoiser != DENOISER_NONE && path_film_parts(film->record) & PATH_PART_FEATURES;
+    if (!(path_film_parts(film->record) & PATH_PART_FEATURES))
+        denoiser = DENOISER_NONE;
     *out = (struct picture_shown){.picture = *picture};
-    if (!denoises && is_whole(film, &part))
+    bool changes = denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
+    if (!changes && is_whole(film, &part))
         return true;
-    float(*denoised)[3] = NULL;
-    if (denoises) {
-        denoised = mem_alloc((size_t)film->width * film->height * sizeof *denoised);
-        if (!denoised)
-            return error_no_memory(error, "a picture that is denoised");
-        if (!denoise_film(film, denoiser, pool, denoised, error)) {
-            mem_free(denoised);
-            return false;
-        }
+    if (!make_shown(out, picture, &part, denoiser, pool, error)) {
+        picture_shown_destroy(out);
+        return false;
     }
-    bool ok = cut_film(out, film, &part, denoised ? (const void *)denoised : (const void *)film->pixels);
-    mem_free(denoised);
-    if (!ok)
-        return error_no_memory(error, "a picture that is denoised");
     struct picture_request *request = &out->picture.request;
     request->x0 = part.x0;
     request->y0 = part.y0;
@@ -100,7 +162,13 @@ bool picture_shown_make(struct picture_shown *out, const struct picture *picture
 
 void picture_shown_destroy(struct picture_shown *shown) {
     mem_free(shown->pixels);
+    mem_free(shown->display);
+    mem_free(shown->floats);
+    mem_free(shown->marked);
     mem_free(shown->layers);
     shown->pixels = NULL;
+    shown->display = NULL;
+    shown->floats = NULL;
+    shown->marked = NULL;
     shown->layers = NULL;
 }

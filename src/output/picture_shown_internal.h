@@ -1,4 +1,4 @@
-/* What the files of a picture show of its film: the requested part, denoised if the film has features. */
+/* What the files of a picture show of its film: the requested part, denoised if the film has features, and finished. */
 #ifndef GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 #define GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 
@@ -8,11 +8,14 @@
 
 #include <stdbool.h>
 
-/* A picture whose film borrows from the one that it is made of, and owns `pixels` and `layers`. */
+/* A picture whose film borrows from the one that it is made of, and owns the arrays; each may be NULL. */
 struct picture_shown {
     struct picture picture;
-    struct film_pixel *pixels; /* or NULL */
-    float (*layers)[3];        /* or NULL */
+    struct film_pixel *pixels;
+    float (*display)[3];
+    float *floats;
+    uint8_t *marked;
+    float (*layers)[3];
 };
 
 /* denoiser: DENOISER_NONE shows the film as it is, and so does a film without features. Errors: no memory; with

@@ -15,19 +15,49 @@ struct tone picture_tone(const struct picture_request *request) {
     return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
 }
 
+struct finish picture_finish(const struct picture_request *request) {
+    return (struct finish){.bloom = request->bloom,
+                           .vignette = request->vignette,
+                           .gray = request->gray != 0,
+                           .edges = request->edges != 0,
+                           .fxaa = request->fxaa != 0,
+                           .dither = (enum dither)request->dither};
+}
+
 struct rows {
     const struct film *film;
     enum film_view view;
     const struct tone *tone;
+    const float (*display)[3]; /* or NULL */
+    enum dither dither;
 };
 
 static void row(void *context, uint32_t y, uint8_t *line) {
     const struct rows *rows = context;
-    film_row_toned(rows->film, rows->view, rows->tone, y, line);
+    const struct film *film = rows->film;
+    bool final = rows->view == FILM_FINAL;
+    if (!final || (!rows->display && rows->dither == DITHER_NONE)) {
+        film_row_toned(film, rows->view, rows->tone, y, line);
+        return;
+    }
+    for (uint32_t x = 0; x < film->width; x++) {
+        size_t at = (size_t)y * film->width + x;
+        for (uint32_t c = 0; c < 3; c++) {
+            double value =
+                rows->display ? (double)rows->display[at][c] : tone_apply(rows->tone, (double)film->pixels[at].rgb[c]);
+            line[3 * x + c] = dither_byte(rows->dither, film->x0 + x, film->y0 + y, value);
+        }
+    }
 }
 
 static void row_16(void *context, uint32_t y, uint16_t *line) {
     const struct rows *rows = context;
+    if (rows->view == FILM_FINAL && rows->display) {
+        const float *display = rows->display[(size_t)y * rows->film->width];
+        for (size_t i = 0; i < (size_t)3 * rows->film->width; i++)
+            line[i] = tone_word((double)display[i]);
+        return;
+    }
     film_row_16(rows->film, rows->view, rows->tone, y, line);
 }
 
@@ -80,7 +110,7 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
                         struct pool *pool, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
-    struct rows rows = {&picture->film, view, &tone};
+    struct rows rows = {&picture->film, view, &tone, picture->display, picture_finish(request).dither};
     switch (picture_format(target->path)) {
     case PICTURE_PFM:
         return pfm_write(target, request->width, request->height, row_linear, &rows, error);
@@ -174,8 +204,10 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
     if (ok) {
         struct tone tone = picture_tone(&shown.picture.request);
         const struct film *film = &shown.picture.film;
+        struct rows rows = {film, FILM_FINAL, &tone, shown.picture.display,
+                            picture_finish(&shown.picture.request).dither};
         for (uint32_t y = 0; y < film->height; y++)
-            film_row_toned(film, FILM_FINAL, &tone, y, rgb + (size_t)3 * film->width * y);
+            row(&rows, y, rgb + (size_t)3 * film->width * y);
         picture_shown_destroy(&shown);
     }
     pool_destroy(pool);

@@ -20,11 +20,14 @@ struct picture {
     struct tile_picture tiles; /* the key of its tiles in a tile file */
     struct share memory;
     struct film film;
+    const float (*display)[3]; /* or NULL: of a part that is shown, its finished numbers for PNG files; borrowed */
 };
 
 struct tone picture_tone(const struct picture_request *request);
+struct finish picture_finish(const struct picture_request *request);
 /* One file. The extension of the target selects the format; every extension but .pfm, .hdr and .exr means PNG. The tone
- * is for PNG alone: the others contain light. pool: or NULL, for this thread alone. */
+ * is for PNG alone: the others contain light. Views other than FILM_FINAL are not finished. pool: or NULL, for this
+ * thread alone. */
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
                         struct pool *pool, struct error *error);
 /* All files of the picture under that name, denoised if its film has features and the options do not forbid it: itself,

@@ -4,6 +4,7 @@
 #define GRAY_RENDER_SETTINGS_H
 
 #include "base/list.h"
+#include "image/finish.h"
 #include "image/tone.h"
 #include "light/light_sampler.h"
 #include "material/material.h"
@@ -133,6 +134,7 @@ struct settings {
     struct camera_motion motion;
     struct tone tone;                        /* of the picture file; the film stays linear */
     bool deep;                               /* 16 bits a channel in PNG files */
+    struct finish finish;                    /* of the picture file too */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */
     bool full;                               /* -full: every pixel */
     enum aa_pattern aa_pattern;              /* --aa-pattern */

@@ -20,6 +20,7 @@ enum {
     FORMAT = 1,
     FORMAT_RECORD = 2,
     FORMAT_SHOWN = 3,
+    FORMAT_FINISHED = 4,
     RECORD_DONE = 1,
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
@@ -29,9 +30,11 @@ enum {
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
     DONE_FIXED = 4 + KEY_SIZE + 16,
     PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
-    RECORD_FIELDS = 8, /* behind PICTURE_FIXED in FORMAT_RECORD and FORMAT_SHOWN */
-    SHOWN_FIELDS = 16, /* behind them in FORMAT_SHOWN */
-    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS,
+    RECORD_FIELDS = 8,  /* behind PICTURE_FIXED from FORMAT_RECORD on */
+    SHOWN_FIELDS = 16,  /* behind them from FORMAT_SHOWN on */
+    FINISH_FIELDS = 32, /* behind them in FORMAT_FINISHED */
+    PAYLOAD_LIMIT =
+        4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS + FINISH_FIELDS,
     DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */
 };
 
@@ -51,6 +54,8 @@ static bool rectangles_equal(struct film_rectangle a, struct film_rectangle b) {
 }
 
 static uint32_t format_of(const struct tile_picture *picture) {
+    if (picture && !finish_is_plain(&picture->finish))
+        return FORMAT_FINISHED;
     if (picture && !rectangles_equal(shown_of(picture), whole_of(picture)))
         return FORMAT_SHOWN;
     return !picture || film_record_equal(picture->record, format_1) ? FORMAT : FORMAT_RECORD;
@@ -75,6 +80,12 @@ static void put_u32(struct byte_writer *output, uint32_t value) {
 static void put_u64(struct byte_writer *output, uint64_t value) {
     put_u32(output, (uint32_t)value);
     put_u32(output, (uint32_t)(value >> 32));
+}
+
+static void put_double(struct byte_writer *output, double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put_u64(output, bits);
 }
 
 static void put_digest(struct byte_writer *output, struct digest digest) {
@@ -109,6 +120,13 @@ static uint64_t get_u64(struct byte_reader *input) {
     return low | (uint64_t)get_u32(input) << 32;
 }
 
+static double get_double(struct byte_reader *input) {
+    uint64_t bits = get_u64(input);
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
 static struct digest get_digest(struct byte_reader *input) {
     uint64_t a = get_u64(input);
     return (struct digest){a, get_u64(input)};
@@ -126,6 +144,22 @@ static struct tile_key get_key(struct byte_reader *input) {
 static struct film_record get_film_record(struct byte_reader *input) {
     uint32_t floats = get_u32(input);
     return (struct film_record){floats, get_u32(input)};
+}
+
+static bool is_share(double x) {
+    return x >= 0 && x <= 1;
+}
+
+/* False: it is not valid. */
+static bool get_finish(struct byte_reader *input, struct finish *out) {
+    out->bloom = get_double(input);
+    out->vignette = get_double(input);
+    uint32_t gray = get_u32(input), edges = get_u32(input), fxaa = get_u32(input), dither = get_u32(input);
+    out->gray = gray != 0;
+    out->edges = edges != 0;
+    out->fxaa = fxaa != 0;
+    out->dither = (enum dither)dither;
+    return is_share(out->bloom) && is_share(out->vignette) && dither <= DITHER_BLUE;
 }
 
 static struct film_rectangle get_rectangle(struct byte_reader *input) {
@@ -166,8 +200,7 @@ static bool write_done(struct text_writer *writer, const struct tile_done *done,
 
 static bool write_picture(struct text_writer *writer, const struct tile_picture *picture, struct error *error) {
     struct byte_writer output = {writer->buffer + RECORD_HEAD};
-    uint64_t exposure;
-    memcpy(&exposure, &picture->tone.exposure, sizeof exposure);
+    uint32_t format = format_of(picture);
     put_u32(&output, picture->number);
     put_key(&output, &picture->key);
     put_u32(&output, picture->full_width);
@@ -176,22 +209,31 @@ static bool write_picture(struct text_writer *writer, const struct tile_picture 
     put_u32(&output, picture->y0);
     put_u32(&output, picture->width);
     put_u32(&output, picture->height);
-    put_u64(&output, exposure);
+    put_double(&output, picture->tone.exposure);
     put_u32(&output, (uint32_t)picture->tone.curve);
     put_u32(&output, picture->tone.srgb);
     put_u32(&output, picture->deep);
     put_u32(&output, picture->shard);
     put_u32(&output, picture->shards);
     put_u32(&output, picture->whole);
-    if (format_of(picture) != FORMAT) {
+    if (format >= FORMAT_RECORD) {
         put_u32(&output, picture->record.floats);
         put_u32(&output, picture->record.marks);
     }
-    if (format_of(picture) == FORMAT_SHOWN) {
-        put_u32(&output, picture->shown.x0);
-        put_u32(&output, picture->shown.y0);
-        put_u32(&output, picture->shown.x1);
-        put_u32(&output, picture->shown.y1);
+    if (format >= FORMAT_SHOWN) {
+        struct film_rectangle shown = shown_of(picture);
+        put_u32(&output, shown.x0);
+        put_u32(&output, shown.y0);
+        put_u32(&output, shown.x1);
+        put_u32(&output, shown.y1);
+    }
+    if (format >= FORMAT_FINISHED) {
+        put_double(&output, picture->finish.bloom);
+        put_double(&output, picture->finish.vignette);
+        put_u32(&output, picture->finish.gray);
+        put_u32(&output, picture->finish.edges);
+        put_u32(&output, picture->finish.fxaa);
+        put_u32(&output, (uint32_t)picture->finish.dither);
     }
     put(&output, picture->name, strlen(picture->name));
     return write_record(writer, RECORD_PICTURE, (size_t)(output.at - writer->buffer) - RECORD_HEAD, error);
@@ -326,8 +368,10 @@ static bool is_part(const struct film_rectangle *part, const struct tile_picture
 static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
                          struct error *error) {
     struct byte_reader input = {record->payload};
-    bool stated = reader->file->format != FORMAT, cut = reader->file->format == FORMAT_SHOWN;
-    if (record->size < (size_t)PICTURE_FIXED + (stated ? RECORD_FIELDS : 0) + (cut ? SHOWN_FIELDS : 0))
+    uint32_t format = reader->file->format;
+    bool stated = format >= FORMAT_RECORD, cut = format >= FORMAT_SHOWN, finished = format >= FORMAT_FINISHED;
+    if (record->size < (size_t)PICTURE_FIXED + (stated ? RECORD_FIELDS : 0) + (cut ? SHOWN_FIELDS : 0) +
+                           (finished ? FINISH_FIELDS : 0))
         return wrong(reader, error, "the description of the picture is too short");
     out->number = get_u32(&input);
     out->key = get_key(&input);
@@ -337,8 +381,7 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->y0 = get_u32(&input);
     out->width = get_u32(&input);
     out->height = get_u32(&input);
-    uint64_t exposure = get_u64(&input);
-    memcpy(&out->tone.exposure, &exposure, sizeof exposure);
+    out->tone.exposure = get_double(&input);
     uint32_t curve = get_u32(&input), srgb = get_u32(&input), deep = get_u32(&input);
     out->tone.curve = (enum tone_curve)curve;
     out->tone.srgb = srgb != 0;
@@ -348,14 +391,15 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->whole = get_u32(&input) != 0;
     out->record = stated ? get_film_record(&input) : format_1;
     out->shown = cut ? get_rectangle(&input) : whole_of(out);
+    bool finish_fits = !finished || get_finish(&input, &out->finish);
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
                 out->y0 < out->full_height && out->width <= out->full_width - out->x0 &&
                 out->height <= out->full_height - out->y0 && film_record_valid(out->record) &&
                 is_part(&out->shown, out) && film_size(out->width, out->height, out->record, &bytes, &size_error);
-    if (!fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 || out->shard == 0 ||
-        out->shard > out->shards)
+    if (!fits || !finish_fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 ||
+        out->shard == 0 || out->shard > out->shards)
         return wrong(reader, error, "the description of the picture is invalid");
     return get_name(&input, record->payload + record->size, out->name) ||
            wrong(reader, error, "the picture has an invalid name");
@@ -452,7 +496,7 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
         return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
     input.at += sizeof magic;
     out->format = get_u32(&input);
-    if (out->format < FORMAT || out->format > FORMAT_SHOWN || get_u32(&input) != FILM_TILE)
+    if (out->format < FORMAT || out->format > FORMAT_FINISHED || get_u32(&input) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;
@@ -532,5 +576,7 @@ const char *tile_picture_difference(const struct tile_picture *have, const struc
     if (have->tone.exposure != want->tone.exposure || have->tone.curve != want->tone.curve ||
         have->tone.srgb != want->tone.srgb || have->deep != want->deep)
         return "its tone settings differ";
+    if (!finish_equal(&have->finish, &want->finish))
+        return "it is finished differently";
     return NULL;
 }

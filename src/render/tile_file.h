@@ -27,6 +27,7 @@ struct tile_picture {
     struct film_rectangle shown; /* the part of it that is written; zero: all */
     struct tone tone;
     bool deep;
+    struct finish finish;
     struct film_record record;
     uint32_t shard, shards; /* 1 of 1: all tiles; both from 1 */
     bool whole;             /* all tiles of the shard are there */

@@ -65,6 +65,18 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->tone.srgb = args[RENDER_SRGB].boolean;
     if (args[RENDER_DEEP].given)
         settings->deep = args[RENDER_DEEP].boolean;
+    if (args[RENDER_BLOOM].given)
+        settings->finish.bloom = args[RENDER_BLOOM].number;
+    if (args[RENDER_VIGNETTE].given)
+        settings->finish.vignette = args[RENDER_VIGNETTE].number;
+    if (args[RENDER_GRAY].given)
+        settings->finish.gray = args[RENDER_GRAY].boolean;
+    if (args[RENDER_EDGES].given)
+        settings->finish.edges = args[RENDER_EDGES].boolean;
+    if (args[RENDER_FXAA].given)
+        settings->finish.fxaa = args[RENDER_FXAA].boolean;
+    if (args[RENDER_DITHER].given)
+        settings->finish.dither = (enum dither)args[RENDER_DITHER].choice;
     if (args[RENDER_CAUSTICS].given)
         settings->caustics = (struct caustics){(int)args[RENDER_CAUSTICS].number, args[RENDER_CAUSTICS].vector.x};
     if (args[RENDER_CUTOFF].given)

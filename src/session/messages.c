@@ -39,6 +39,10 @@ static bool frame_is_valid(const struct frame *frame) {
                                   frame->rate >= FRAME_RATE_MIN && frame->rate <= FRAME_RATE_MAX);
 }
 
+static bool is_share(double x) {
+    return x >= 0 && x <= 1;
+}
+
 bool message_is_valid(const struct message *message) {
     size_t before_text = offsetof(struct message_line, text);
     const struct picture_request *request = &message->body.request;
@@ -54,6 +58,7 @@ bool message_is_valid(const struct message *message) {
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && shown_is_valid(request) &&
                request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FILMIC &&
+               is_share(request->bloom) && is_share(request->vignette) && request->dither <= DITHER_BLUE &&
                frame_is_valid(&request->frame) && film_record_valid(request->record) &&
                request->overlay <= OVERLAY_OF_GRID && (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
                (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;

@@ -107,6 +107,9 @@ struct picture_request {
     double exposure;                  /* of its file, as in struct tone */
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
+    double bloom, vignette;           /* as in struct finish */
+    uint32_t gray, edges, fxaa;       /* the same, not 0: true */
+    uint32_t dither;                  /* an enum dither */
     struct film_record record;        /* of its film */
     uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t in_window;               /* not 0: in a window */

@@ -438,6 +438,14 @@ static struct digest digest_option(const struct option *option, const struct opt
     return digest_bytes((const char *)options + option->offset, option->size, digest);
 }
 
+static struct digest digest_finish(const struct finish *finish, struct digest digest) {
+    const double shares[] = {finish->bloom, finish->vignette};
+    const uint32_t numbers[] = {finish->gray, finish->edges, finish->fxaa, (uint32_t)finish->dither};
+    if (finish_is_plain(finish))
+        return digest;
+    return digest_bytes(numbers, sizeof numbers, digest_bytes(shares, sizeof shares, digest));
+}
+
 struct digest options_digest(const struct options *options) {
     struct digest digest = {0};
     for (int i = 0; i < option_count; i++) {
@@ -480,6 +488,7 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->noise, sizeof settings->noise, digest);
         digest = digest_bytes(&settings->clamp, sizeof settings->clamp, digest);
     }
+    digest = digest_finish(&settings->finish, digest);
     const struct frame_options *frames = &options->script.frames;
     if (frames->selection.step > 0 || frames->rate > 0 || frames->loops || frames->turntable > 0) {
         const uint32_t numbers[] = {frames->selection.first, frames->selection.last, frames->selection.step,

@@ -20,6 +20,7 @@
 const char *const option_group_titles[OPTION_GROUP_COUNT] = {
     [OPTION_GROUP_PICTURE] = "Anti-aliasing and rays",
     [OPTION_GROUP_SHADING] = "Size, acceleration and colour",
+    [OPTION_GROUP_FINISH] = "Finishing",
     [OPTION_GROUP_FILES] = "Files",
     [OPTION_GROUP_FRAMES] = "Animation",
     [OPTION_GROUP_COMPATIBILITY] = "Scenes written for other programs",
@@ -107,6 +108,19 @@ const struct option option_table[] = {
      "linear with --integrator path"},
     {OPTION_GROUP_SHADING, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
      "16 bits per channel in PNG files"},
+
+    {OPTION_GROUP_FINISH, "--bloom", OPTION_NUMBER, "X", 0, 1, FIELD(settings.finish.bloom), "0",
+     "spread X of the light above white around it"},
+    {OPTION_GROUP_FINISH, "--vignette", OPTION_NUMBER, "X", 0, 1, FIELD(settings.finish.vignette), "0",
+     "darken the corners; 1: to a quarter of their light"},
+    {OPTION_GROUP_FINISH, "--gray", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.finish.gray), NULL,
+     "a gray picture: its luminance"},
+    {OPTION_GROUP_FINISH, "--edges", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.finish.edges), NULL,
+     "a picture of the edges of the picture, white on black (Sobel); PNG files only"},
+    {OPTION_GROUP_FINISH, "--fxaa", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.finish.fxaa), NULL,
+     "smooth the edges of the finished picture (FXAA); PNG files only"},
+    {OPTION_GROUP_FINISH, "--dither", OPTION_CHOICE, LIST_BARS(DITHERS), NO_RANGE, FIELD(settings.finish.dither),
+     "none", "round to 8 bits by a pattern, without bands: ordered, or blue noise; PNG files of 8 bits only"},
 
     {OPTION_GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
      "name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; with several "
@@ -256,7 +270,8 @@ _Static_assert(offsetof(struct options, shards) == offsetof(struct options, shar
 _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_kind) == sizeof(int) &&
                    sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
                    sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int) &&
-                   sizeof(enum overlay) == sizeof(int) && sizeof(enum integrator_kind) == sizeof(int),
+                   sizeof(enum overlay) == sizeof(int) && sizeof(enum dither) == sizeof(int) &&
+                   sizeof(enum integrator_kind) == sizeof(int),
                "choices are stored as int");
 
 /* --help */

@@ -562,6 +562,8 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         uint32_t width = (uint32_t)test_uniform(&random, 1, 140), height = (uint32_t)test_uniform(&random, 1, 90);
         struct film film = some_film(x0, y0, width, height, &random), back = film;
         struct tile_picture picture = picture_of(&film);
+        if (round % 2)
+            picture.finish = (struct finish){0.25, 0.75, round % 4 == 1, round % 4 == 3, true, DITHER_BLUE};
         struct tile_done done = {1, picture.key, {5, 6}, "first.png"};
         struct tile_file file;
         struct error error;
