@@ -281,6 +281,9 @@ static bool value_error(const struct option *option, const char *text, struct er
         return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown,
                          option->names, option->low, option->high, text);
     case OPTION_NUMBER:
+        if (option->high < HUGE_VAL)
+            return error_set(error, ERROR_USAGE, "%.*s needs a number from %g to %g, not '%s'", shown, option->names,
+                             option->low, option->high, text);
         return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->names,
                          option->low, text);
     case OPTION_BYTES:

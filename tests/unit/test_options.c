@@ -75,6 +75,7 @@ TEST(options_have_the_defaults_of_the_manual) {
     CHECK_EQ_INT(o->threads, 0);
     CHECK_EQ_INT(o->progress, PROGRESS_AUTO);
     CHECK_EQ_INT(o->statistics, STATISTICS_NONE);
+    CHECK(finish_is_plain(&o->settings.finish));
     CHECK(!o->output && !o->targets_prefix && !o->first_pass_prefix);
     forget(parsed);
 }
@@ -256,8 +257,8 @@ TEST(options_that_contradict_each_other_are_refused) {
 
 TEST(numbers_of_paths_that_mean_nothing_are_refused) {
     refused("--spp 0 s.lua", "--spp needs a whole number from 1 to 16777216, not '0'");
-    refused("--noise 0 s.lua", "--noise needs a number of at least 1e-06, not '0'");
-    refused("--noise nan s.lua", "--noise needs a number of at least 1e-06, not 'nan'");
+    refused("--noise 0 s.lua", "--noise needs a number from 1e-06 to 10, not '0'");
+    refused("--noise nan s.lua", "--noise needs a number from 1e-06 to 10, not 'nan'");
     refused("--max-depth -1 s.lua", "--max-depth needs a whole number from 0 to 1000000, not '-1'");
     refused("--clamp -1 s.lua", "--clamp needs a number of at least 0, not '-1'");
 }
