@@ -7,7 +7,7 @@ local check = require 'check'
 
 local M = {}
 
-local sqrt, acos, cos, sin, rad = math.sqrt, math.acos, math.cos, math.sin, math.rad
+local sqrt, abs, acos, cos, sin, rad = math.sqrt, math.abs, math.acos, math.cos, math.sin, math.rad
 
 --- Unit vector; the zero vector becomes +y.
 ---@param x number
@@ -220,16 +220,33 @@ local function angles_of(verts, face, angles)
     end
 end
 
+-- The unit normal of a face; nil if it has no area: Newell's sums are then no larger than the rounding of their terms,
+-- and their direction means nothing.
+local function direction_of(verts, face)
+    local x, y, z = M.face_normal(verts, face)
+    local length, p, terms = sqrt(x * x + y * y + z * z), verts[face[#face] + 1], 0
+    for i = 1, #face do
+        local q = verts[face[i] + 1]
+        local ax, ay, az = abs(p[1]) + abs(q[1]), abs(p[2]) + abs(q[2]), abs(p[3]) + abs(q[3])
+        terms = terms + abs(p[2] - q[2]) * az + abs(p[3] - q[3]) * ax + abs(p[1] - q[1]) * ay
+        p = q
+    end
+    if length <= 1e-14 * terms then return nil end
+    return x / length, y / length, z / length
+end
+
 -- Without a crease: sums at the vertices, face after face.
 local function smooth_everywhere(verts, faces)
     local sx, sy, sz, angles, normals = {}, {}, {}, {}, {}
     for k = 1, #verts do sx[k], sy[k], sz[k] = 0, 0, 0 end
     for _, face in ipairs(faces) do
-        local x, y, z = M.unit(M.face_normal(verts, face))
-        angles_of(verts, face, angles)
-        for i = 1, #face do
-            local at, w = face[i] + 1, angles[i]
-            sx[at], sy[at], sz[at] = sx[at] + x * w, sy[at] + y * w, sz[at] + z * w
+        local x, y, z = direction_of(verts, face)
+        if x then
+            angles_of(verts, face, angles)
+            for i = 1, #face do
+                local at, w = face[i] + 1, angles[i]
+                sx[at], sy[at], sz[at] = sx[at] + x * w, sy[at] + y * w, sz[at] + z * w
+            end
         end
     end
     for k = 1, #verts do normals[k] = { M.unit(sx[k], sy[k], sz[k]) } end
@@ -237,7 +254,8 @@ local function smooth_everywhere(verts, faces)
 end
 
 --- Vertex normals: the sum of the normals of the faces at a vertex, weighted by their angle there.
---- Faces that meet at more than the crease angle keep separate normals.
+--- Faces that meet at more than the crease angle keep separate normals. Faces without area have no influence, and the
+--- normals of their corners are those of all faces there.
 ---@param verts number[][]
 ---@param faces integer[][]
 ---@param crease number?  degrees; default: smooth everywhere
@@ -246,9 +264,9 @@ function M.smooth(verts, faces, crease)
     if not crease then return smooth_everywhere(verts, faces) end
     local flat, around, angles, normals = {}, {}, {}, {}
     for k, face in ipairs(faces) do
-        local n = { M.unit(M.face_normal(verts, face)) }
-        flat[k] = n
-        angles_of(verts, face, angles)
+        local n = { direction_of(verts, face) }
+        flat[k] = n[1] and n
+        if n[1] then angles_of(verts, face, angles) end
         for i = 1, #face do
             local here = face[i]
             local list = around[here]
@@ -256,7 +274,7 @@ function M.smooth(verts, faces, crease)
                 list = {}
                 around[here] = list
             end
-            list[#list + 1] = { n, angles[i] }
+            if n[1] then list[#list + 1] = { n, angles[i] } end
         end
     end
     local limit, face_normals = cos(rad(crease)), {}
@@ -266,7 +284,7 @@ function M.smooth(verts, faces, crease)
             local x, y, z = 0, 0, 0
             for _, item in ipairs(around[index]) do
                 local n, w = item[1], item[2]
-                if n[1] * own[1] + n[2] * own[2] + n[3] * own[3] >= limit then
+                if not own or n[1] * own[1] + n[2] * own[2] + n[3] * own[3] >= limit then
                     x, y, z = x + n[1] * w, y + n[2] * w, z + n[3] * w
                 end
             end

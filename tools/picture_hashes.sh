@@ -70,7 +70,7 @@ for scene in $scenes; do
     render "$base.first" "$scene" --size 96x72 -al-samples 1 $options -full -ss 1 --deep -o "$folder/$base.first-%02d.png"
 done
 
-(cd "$folder" && ls | while read -r file; do
+(cd "$folder" && ls | grep -v '^hashes$' | while read -r file; do
     case $file in
     # Times that scripts print differ from run to run.
     *.txt) sed -E -e "s#$folder#DIR#g" -e 's/[0-9]+\.[0-9]+ s( of processor time)?$/TIME/' "$file" | sha256sum | sed "s#-\$#$file#" ;;

@@ -122,7 +122,7 @@ struct smoothing {
     const struct mesh_input *input;
     double unit; /* power of two that scales lengths to about 1 */
     uint32_t *same, *face_of, *set, *start;
-    struct vec3 *normals; /* of faces, unit or zero */
+    struct vec3 *normals; /* of faces: unit, or zero if the face has no area */
     uint64_t *uses;       /* edges: (other vertex) << 32 | corner it starts at */
 };
 
@@ -153,17 +153,23 @@ static uint32_t previous_corner(const struct smoothing *s, uint32_t corner) {
     return corner > s->input->face_start[f] ? corner - 1 : s->input->face_start[f + 1] - 1;
 }
 
+/* Coordinates are about 1, so a face that is not higher than this is as flat as their rounding. */
+static const double no_height = 0x1p-46;
+
 /* The sum over a fan from the first corner: twice the area vector, for any polygon. */
 static void face_normals(struct smoothing *s) {
     const struct mesh_input *input = s->input;
     for (uint32_t f = 0; f < input->face_count; f++) {
         uint32_t first = input->face_start[f], end = input->face_start[f + 1];
         struct vec3 base = position(s, first), sum = {0};
-        for (uint32_t c = first; c < end; c++)
+        double length = 0;
+        for (uint32_t c = first; c < end; c++) {
             s->face_of[c] = f;
+            length = fmax(length, vec3_max_abs(vec3_sub(position(s, c), base)));
+        }
         for (uint32_t c = first + 1; c + 1 < end; c++)
             sum = vec3_add(sum, vec3_cross(vec3_sub(position(s, c), base), vec3_sub(position(s, c + 1), base)));
-        s->normals[f] = vec3_normalize(sum);
+        s->normals[f] = vec3_max_abs(sum) > no_height * length ? vec3_normalize(sum) : vec3_all(0);
     }
 }
 

@@ -169,6 +169,36 @@ claims.claim('meshes of wheels are closed, with the volume of their outline', fu
     claims.build(scene)
 end)
 
+claims.claim('faces without area do not bend the normals of a wheel', function()
+    -- between root circle and bore, quads have two corners at one point
+    for _, bore in ipairs { 0.3, 0.5 } do
+        local g = gear.new { teeth = 18, module = 0.1 }
+        local verts, normals, faces, face_normals = gear.mesh(g, { width = 0.4, bore = bore })
+        local without_area = 0
+        for k, face in ipairs(faces) do
+            local x, y, z = meshes.face_normal(verts, face)
+            local length = math.sqrt(x * x + y * y + z * z)
+            if length < 1e-14 then
+                without_area = without_area + 1
+            else
+                for i = 1, #face do
+                    local n = normals[face_normals[k][i] + 1]
+                    local cosine = (n[1] * x + n[2] * y + n[3] * z) / length
+                    assert(cosine > math.cos(math.rad(18)), 'a normal is turned from its face') -- half the crease angle
+                end
+            end
+        end
+        assert(without_area > 0, 'the wheel has such faces')
+    end
+end)
+
+claims.claim('faces without area do not count where a mesh is smooth everywhere', function()
+    local verts = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 0, 1 }, { 0, 0, 1 }, { 0.1, 0.1, 0.1 }, { 0.3, 0.3, 0.3 } }
+    local mesh = meshes.smooth(verts, { { 3, 2, 1, 0 }, { 0, 4, 5 } })
+    near(mesh[2][1][2], 1, 0, 'y of the normal at the corner')
+    near(mesh[2][1][1], 0, 0, 'x of the normal at the corner')
+end)
+
 claims.claim('wrong arguments are named', function()
     claims.fails('gear.new: 10 teeth are too few for a pressure angle of 20 degrees: it takes 17, or a shift of 0.415', gear.new, { teeth = 10 })
     claims.fails('gear.new: teeth must be a whole number from 4 to 10000, not nothing', gear.new, {})

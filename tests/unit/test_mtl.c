@@ -341,6 +341,20 @@ TEST(smooth_normals_are_the_same_bits_at_any_power_of_two) {
     maker_free(&m);
 }
 
+TEST(faces_without_area_have_no_vote_in_smooth_normals) {
+    /* The second face shares an edge with the first, and its third corner is beside the first one by a rounding. */
+    struct maker m = {0};
+    uint32_t a = maker_vertex(&m, 0.3, 0.2, 0.1), b = maker_vertex(&m, 0.9, 0.2, 0.1),
+             c = maker_vertex(&m, 0.3, 0.2, -2), beside = maker_vertex(&m, 0.3, nextafter(0.2, 1), 0.1);
+    maker_triangle(&m, a, b, c);
+    maker_triangle(&m, b, a, beside);
+    struct mesh *mesh = smoothed(&m, 180, false, false);
+    struct surface s = surface_at(mesh, 0, 0, 0);
+    CHECK_NEAR(vec3_dot(vec3_normalize(s.shading_normal), vec3_normalize(s.normal)), 1, 1e-15);
+    mesh_release(mesh);
+    maker_free(&m);
+}
+
 TEST(smooth_fan_of_a_hundred_thousand_faces_takes_a_moment) {
     struct maker m = {0};
     uint32_t tip = maker_vertex(&m, 0, 1, 0), first = 0, last = 0;
