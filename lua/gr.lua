@@ -741,6 +741,9 @@ function gr.sweep(material, points, radii, spline) end
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field heights? number[][] heights (a table of tables of numbers; optional): Rows of heights, all of one length; x varies within a row, z from row to row.
 ---@field image? string|gr.texture image (the name of a picture file or a texture; optional): A picture instead of heights: black is 0, white is 1, the upper edge is z = 0.
+---@field f? function|gr.texture f (a function; optional): A function of the point {x, 0, z}: its height, or what is added to heights or image.
+---@field columns? integer columns (a whole number, 2 to 32768; default 257): Points along x at which f is evaluated, without heights and image.
+---@field rows? integer rows (a whole number, 2 to 32768; default columns): Points along z.
 ---@field floor? number floor (a number; default a tenth of the height range below the lowest point): Height of the floor of the solid.
 ---@field open? boolean open (true or false; default false): Whether it has no walls and no floor.
 ---@field smooth? boolean smooth (true or false; default false): Whether normals are interpolated.
@@ -822,6 +825,19 @@ function gr.curve(material, points, widths, spline) end
 ---@overload fun(name: string, points: gr.triple[], patches?: integer[][]): gr.node
 ---@overload fun(fields: gr.patch.fields): gr.node
 function gr.patch(material, points, patches) end
+
+---@class gr.node.displace.fields
+---@field f? function|gr.texture f (a function; optional): A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}.
+---@field edge? number edge (a number, > 0; default level): Length of edges above which they are halved, before vertices move.
+---@field level? integer level (a whole number, 0 to 12; default 0): How often every edge is halved, in place of edge.
+---@field smooth? number smooth (a number, 0 to 180, in degrees; default 60): Crease angle of the displaced mesh, as in gr.mesh; 0: all faces are flat.
+
+---Divides meshes, patches and height fields finely and moves their vertices by a function.
+---@param f function|gr.texture f (a function; optional): A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}.
+---@param edge number edge (a number, > 0; default level): Length of edges above which they are halved, before vertices move.
+---@return gr.node
+---@overload fun(self: gr.node, fields: gr.node.displace.fields): gr.node
+function node:displace(f, edge) end
 
 ---@class gr.fn.fields
 ---@field f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.

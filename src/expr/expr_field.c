@@ -6,6 +6,7 @@
 #include "expr/expr_interval.h"
 
 #include <math.h>
+#include <string.h>
 
 bool expr_field_reads_only(const struct expr_program *program, unsigned inputs, const char *words,
                            struct error *error) {
@@ -16,6 +17,51 @@ bool expr_field_reads_only(const struct expr_program *program, unsigned inputs, 
                              expr_input_name((enum expr_input)input), words);
     }
     return true;
+}
+
+bool expr_field_reads(const struct expr_program *program, enum expr_input input) {
+    for (int k = 0; k < program->input_count; k++)
+        if (program->inputs[k].input == (unsigned)input)
+            return true;
+    return false;
+}
+
+static bool is_finite_at(const double p[EXPR_INPUT_COUNT], double value, struct error *error) {
+    if (isfinite(value))
+        return true;
+    return error_set(error, ERROR_SCENE, "at p = {%.6g, %.6g, %.6g} the function is %s", p[EXPR_POINT_X],
+                     p[EXPR_POINT_Y], p[EXPR_POINT_Z], isnan(value) ? "not a number (NaN)" : "infinite");
+}
+
+bool expr_field_evaluate(const struct expr_program *program, const struct expr_points *points, double *values,
+                         struct error *error) {
+    double inputs[EXPR_INPUT_COUNT][EXPR_BATCH], outputs[EXPR_OUTPUTS][EXPR_BATCH], point[EXPR_BATCH][EXPR_INPUT_COUNT];
+    const double *from[EXPR_INPUT_COUNT];
+    double *to[EXPR_OUTPUTS];
+    void *rows = mem_alloc_aligned(64, expr_batch_size(program));
+    bool ok = rows || error_no_memory(error, "a function");
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+        from[k] = inputs[k];
+    for (int k = 0; k < EXPR_OUTPUTS; k++)
+        to[k] = outputs[k];
+    for (size_t first = 0; ok && first < points->count; first += EXPR_BATCH) {
+        size_t left = points->count - first;
+        uint32_t count = left < EXPR_BATCH ? (uint32_t)left : EXPR_BATCH;
+        for (uint32_t i = 0; i < count; i++) {
+            memset(point[i], 0, sizeof point[i]);
+            points->inputs(points->context, first + i, point[i]);
+            for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+                inputs[k][i] = point[i][k];
+        }
+        expr_evaluate_batch(program, count, from, to, rows);
+        for (uint32_t i = 0; ok && i < count; i++)
+            for (int k = 0; ok && k < program->output_count; k++) {
+                *values++ = outputs[k][i];
+                ok = is_finite_at(point[i], outputs[k][i], error);
+            }
+    }
+    mem_free(rows);
+    return ok;
 }
 
 static double amount(double x) {

@@ -16,7 +16,10 @@
 void mesh_tables_destroy(struct mesh_tables *tables) {
     mem_free(tables->vertices);
     mem_free(tables->normals);
+    mem_free(tables->uvs);
     mem_free(tables->colours);
+    mem_free(tables->face_start);
+    mem_free(tables->face_material);
     mem_free(tables->vertex_index);
     mem_free(tables->normal_index);
     mem_free(tables->uv_index);

@@ -7,9 +7,9 @@
 /* Tables that replace those of a mesh_input; it points into them afterwards. Owner: the caller, mesh_tables_destroy,
  * once the input is not used any more. Zero value: none. */
 struct mesh_tables {
-    double (*vertices)[3], (*normals)[3];
+    double (*vertices)[3], (*normals)[3], (*uvs)[2];
     float (*colours)[3];
-    uint32_t *vertex_index, *normal_index, *uv_index;
+    uint32_t *face_start, *vertex_index, *normal_index, *uv_index, *face_material;
 };
 void mesh_tables_destroy(struct mesh_tables *tables);
 

@@ -79,6 +79,12 @@ enum {
     MESH_FACE_MATERIALS,
     MESH_COUNT
 };
+struct height_field_input;
+/* gr_displace.c: the heights of a grid, or 0 where it has none, plus those of a function; in the arena of the call. NULL
+ * with an error. */
+const double *gr_function_heights(struct script_context *context, const struct height_field_input *grid,
+                                  const struct expr_program *program, struct error *error);
+
 binding gr_mesh, gr_bounds, gr_faces; /* the last two: args[SELF] is the node */
 
 /* gr_mesh.c */

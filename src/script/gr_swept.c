@@ -224,18 +224,56 @@ static bool heights_of_image(struct script_context *context, const struct script
     return true;
 }
 
-enum { FIELD_HEIGHTS = SHAPE_FIRST, FIELD_IMAGE, FIELD_FLOOR, FIELD_OPEN, FIELD_SMOOTH };
+enum {
+    FIELD_HEIGHTS = SHAPE_FIRST,
+    FIELD_IMAGE,
+    FIELD_F,
+    FIELD_COLUMNS,
+    FIELD_ROWS,
+    FIELD_FLOOR,
+    FIELD_OPEN,
+    FIELD_SMOOTH
+};
+enum { FUNCTION_SIDE = 257 };
 static const struct script_parameter field_parameters[] = {
     SHAPE("height field"),
     [FIELD_HEIGHTS] = {"heights", KIND_ROWS, OPTIONAL, ANY, NULL, NULL,
                        "Rows of heights, all of one length; x varies within a row, z from row to row."},
     [FIELD_IMAGE] = {"image", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                      "A picture instead of heights: black is 0, white is 1, the upper edge is z = 0."},
+    [FIELD_F] = {"f", KIND_FUNCTION, OPTIONAL, ANY, NULL, NULL,
+                 "A function of the point {x, 0, z}: its height, or what is added to heights or image."},
+    [FIELD_COLUMNS] = {"columns", KIND_WHOLE, OPTIONAL, IN_RANGE(2, 32768), NULL, "257",
+                       "Points along x at which f is evaluated, without heights and image."},
+    [FIELD_ROWS] = {"rows", KIND_WHOLE, OPTIONAL, IN_RANGE(2, 32768), NULL, "columns", "Points along z."},
     [FIELD_FLOOR] = {"floor", KIND_NUMBER, OPTIONAL, ANY, NULL, "a tenth of the height range below the lowest point",
                      "Height of the floor of the solid."},
     [FIELD_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether it has no walls and no floor."},
     [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether normals are interpolated."},
 };
+
+/* Heights from rows, from an image, from a function alone or added to them. */
+static bool heights_of_field(struct script_context *context, const struct script_value *args,
+                             struct height_field_input *in, struct error *error) {
+    const struct script_value *rows = &args[FIELD_HEIGHTS], *image = &args[FIELD_IMAGE], *f = &args[FIELD_F];
+    const struct script_value *columns = &args[FIELD_COLUMNS];
+    bool has_table = rows->given || image->given;
+    if (!has_table && !f->given)
+        return error_set(error, ERROR_SCENE, "heights is missing (or image, the name of a file, or f, a function)");
+    if ((columns->given || args[FIELD_ROWS].given) && (has_table || !f->given))
+        return error_set(error, ERROR_SCENE, "columns and rows go with f, without heights and image");
+    if (rows->given && !heights_of_rows(rows, in, error))
+        return false;
+    if (image->given && !heights_of_image(context, image, in, error))
+        return false;
+    if (!has_table) {
+        in->columns = columns->given ? (uint32_t)columns->number : FUNCTION_SIDE;
+        in->rows = args[FIELD_ROWS].given ? (uint32_t)args[FIELD_ROWS].number : in->columns;
+    }
+    if (f->given)
+        in->heights = gr_function_heights(context, in, f->program, error);
+    return in->heights != NULL;
+}
 
 static bool gr_height_field(struct script_context *context, const struct script_value *args,
                             struct script_result *result, struct error *error) {
@@ -243,9 +281,7 @@ static bool gr_height_field(struct script_context *context, const struct script_
     struct height_field_input in = {.open = args[FIELD_OPEN].boolean, .smooth = args[FIELD_SMOOTH].boolean};
     if (rows->given && image->given)
         return error_set(error, ERROR_SCENE, "heights and image exclude each other");
-    if (!rows->given && !image->given)
-        return error_set(error, ERROR_SCENE, "heights is missing (or image, the name of a file)");
-    if (!(rows->given ? heights_of_rows(rows, &in, error) : heights_of_image(context, image, &in, error)))
+    if (!heights_of_field(context, args, &in, error))
         return false;
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < (size_t)in.columns * in.rows; i++) {

@@ -946,9 +946,9 @@ static const struct function_rows node_functions = {node_rows, COUNT(node_rows)}
 static const struct function_rows material_functions = {material_rows, COUNT(material_rows)};
 static const struct function_rows other_functions = {other_rows, COUNT(other_rows)};
 /* In the order of the manual. */
-static const struct function_rows *const parts[] = {&node_functions,    &shape_functions,    &swept_functions,
-                                                    &texture_functions, &material_functions, &layered_functions,
-                                                    &light_functions,   &other_functions,    &frame_functions};
+static const struct function_rows *const parts[] = {
+    &node_functions,     &shape_functions,   &swept_functions, &displace_functions, &texture_functions,
+    &material_functions, &layered_functions, &light_functions, &other_functions,    &frame_functions};
 
 int function_count(void) {
     int count = 0;

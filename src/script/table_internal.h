@@ -165,8 +165,8 @@ struct function_rows {
     const struct script_function *rows;
     int count;
 };
-extern const struct function_rows shape_functions, swept_functions, texture_functions, layered_functions,
-    light_functions, frame_functions;
+extern const struct function_rows shape_functions, swept_functions, displace_functions, texture_functions,
+    layered_functions, light_functions, frame_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */

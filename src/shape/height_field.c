@@ -10,7 +10,7 @@
 #include "geometry/crossing.h"
 #include "shape/span_internal.h"
 
-enum { FLOOR, WALL_X0, WALL_X1, WALL_Z0, WALL_Z1, GROUND, MAX_LEVELS = 18 };
+enum { FLOOR, WALL_X0, WALL_X1, WALL_Z0, WALL_Z1, GROUND, MAX_LEVELS = 18, MAX_SIDE = 32768 };
 
 struct range {
     double lo, hi;
@@ -73,9 +73,9 @@ static bool build_levels(struct height_field *f, struct arena *arena) {
 
 const struct height_field *height_field_build(struct arena *arena, const struct height_field_input *in,
                                               struct error *error) {
-    if (in->columns < 2 || in->rows < 2 || in->columns > 32768 || in->rows > 32768) {
-        error_set(error, ERROR_SCENE, "a height field has 2 to 32768 columns and rows, not %u by %u", in->columns,
-                  in->rows);
+    if (in->columns < 2 || in->rows < 2 || in->columns > MAX_SIDE || in->rows > MAX_SIDE) {
+        error_set(error, ERROR_SCENE, "a height field has 2 to %d columns and rows, not %u by %u", MAX_SIDE,
+                  in->columns, in->rows);
         return NULL;
     }
     size_t count = (size_t)in->columns * in->rows;
@@ -115,6 +115,36 @@ const struct height_field *height_field_build(struct arena *arena, const struct 
         f->floor = f->lo;
     f->size = fmax(1, fmax(fabs(f->floor), fmax(fabs(f->lo), fabs(f->hi))));
     return f;
+}
+
+/* At a point of the finer grid. The last column and row belong to the cells before them. */
+static double refined_height(const struct height_field *f, uint32_t n, uint32_t i, uint32_t j) {
+    uint32_t column = i / n < f->columns ? i / n : f->columns - 1, row = j / n < f->rows ? j / n : f->rows - 1;
+    double x = (double)(i - column * n) / n, z = (double)(j - row * n) / n;
+    double h00 = height(f, column, row), h11 = height(f, column + 1, row + 1);
+    double h = z > x ? height(f, column, row + 1) : height(f, column + 1, row);
+    double along = z > x ? x : z, to_corner = z > x ? z : x;
+    return h00 * (1 - to_corner) + h * (to_corner - along) + h11 * along;
+}
+
+bool height_field_refine(const struct height_field *f, uint32_t n, struct arena *arena, struct height_field_input *out,
+                         struct error *error) {
+    uint64_t columns = (uint64_t)f->columns * n + 1, rows = (uint64_t)f->rows * n + 1;
+    if (columns > MAX_SIDE || rows > MAX_SIDE)
+        return error_set(error, ERROR_SCENE, "a height field has at most %d columns and rows, not %llu by %llu",
+                         MAX_SIDE, (unsigned long long)columns, (unsigned long long)rows);
+    double *heights = arena_alloc_array(arena, (size_t)(columns * rows), sizeof *heights);
+    if (!heights)
+        return error_no_memory(error, "a height field");
+    *out = (struct height_field_input){heights, (uint32_t)columns, (uint32_t)rows, f->open, f->floor, f->smooth};
+    for (uint32_t j = 0; j < rows; j++)
+        for (uint32_t i = 0; i < columns; i++)
+            heights[(size_t)j * columns + i] = refined_height(f, n, i, j);
+    return true;
+}
+
+double height_field_step(const struct height_field *f) {
+    return vec3_length(vec3_make(1.0 / f->columns, 0, 1.0 / f->rows));
 }
 
 struct box height_field_bounds(const struct height_field *f) {

@@ -321,6 +321,66 @@ TEST(pictures_in_functions_are_recorded_as_lua_reads_them) {
         test_fail(__FILE__, __LINE__, "%s", error.text);
 }
 
+#define CUBE_MESH                                                                                                      \
+    "gr.mesh{verts = {{0,0,0},{1,0,0},{1,1,0},{0,1,0},{0,0,1},{1,0,1},{1,1,1},{0,1,1}},"                               \
+    " faces = {{0,3,2,1},{4,5,6,7},{0,1,5,4},{2,3,7,6},{1,2,6,5},{0,4,7,3}}}"
+
+TEST(displaced_nodes_are_errors_where_they_cannot_be) {
+    const char *f =
+        "local f = function(p) return 0.1 * gr.noise(p) end local function mesh() return " CUBE_MESH " end ";
+    static const char *const cases[][2] = {
+        {"mesh():displace(f, 0.1)", NULL},
+        {"gr.difference{mesh():displace{f = f, level = 3}, gr.sphere('s')}", NULL},
+        {"gr.node('g'):add_child(mesh()):add_child(mesh()):displace{f = f, level = 1, smooth = 0}", NULL},
+        {"local m = mesh() gr.node('g'):add_child(gr.node('h'):add_child(m)):add_child(m):displace{f = f, level = 1} assert(#select(2, m:faces()) == 48)",
+         NULL},
+        {"gr.height_field{heights = {{0, 0}, {1, 0}}}:displace(f, 0.1)", NULL},
+        {"gr.height_field{f = function(p, s) return p.x * s.v end, columns = 5, rows = 3}", NULL},
+        {"gr.height_field{f = f, heights = {{0, 0}, {1, 0}}}", NULL},
+        {"mesh():displace{f = f}", "edge is missing, the largest length of edges (or level)"},
+        {"mesh():displace{edge = 1}", "f is missing, a function of a vertex"},
+        {"mesh():displace{f = f, edge = 1, level = 2}", "edge and level exclude each other"},
+        {"gr.sphere('x'):displace(f, 1)", "sphere 'x' has no vertices"},
+        {"gr.node('x'):displace(f, 1)", "there is no shape that could be displaced"},
+        {"gr.height_field{f = f, columns = 30000}", "30000 columns and 30000 rows are more than 10000000 triangles"},
+        {"gr.height_field{heights = {{0, 0}, {1, 0}}, rows = 3}", "columns and rows go with f"},
+        {"gr.height_field{f = function(p) return p end}", "the height of a height field is a number, not a vector"},
+        {"gr.height_field{f = function(p) return 1 / p.x end}", "at p = {0, 0, 0} the function is infinite"},
+        {"gr.height_field{heights = {{0, 0}, {1, 0}}}:displace(function(p) return -p.x end, 0.1)", "the floor of the"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        check_corner(f, &(struct corner){cases[i][0], cases[i][1]}, NULL);
+}
+
+static const char solids[] =
+    "local function wave(p) return 0.04 * math.sin(20 * p.x) * math.sin(15 * p.z) end\n"
+    "%s\ngr.render{node = n, file = 'a.png', width = 60, height = 60, eye = {2, 3, 4},"
+    " target = {0.5, 0, 0.5}, up = {0, 1, 0}, fov = 40, lights = {gr.light({3, 5, 1}, {1, 1, 1})}}\n";
+
+static void solid_picture(const char *node, char **bytes, size_t *size) {
+    char text[2048];
+    (void)snprintf(text, sizeof text, solids, node);
+    struct test_result result = test_gray_scene(text, "-q scene.lua", NULL);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s: %s", node, result.err);
+    free(result.out);
+    free(result.err);
+    *bytes = test_read_file(test_path("a.png"), size);
+}
+
+TEST(a_height_field_of_a_function_is_that_of_its_table) {
+    char *bytes[2];
+    size_t sizes[2] = {0, 0};
+    solid_picture("local n = gr.height_field{f = wave, columns = 33, rows = 17, smooth = true}", &bytes[0], &sizes[0]);
+    solid_picture("local rows = {} for j = 0, 16 do rows[j + 1] = {} for i = 0, 32 do"
+                  " rows[j + 1][i + 1] = wave{x = i / 32, z = j / 16} end end"
+                  " local n = gr.height_field{heights = rows, smooth = true}",
+                  &bytes[1], &sizes[1]);
+    CHECK(bytes[0] && bytes[1] && sizes[0] == sizes[1] && memcmp(bytes[0], bytes[1], sizes[0]) == 0);
+    free(bytes[0]);
+    free(bytes[1]);
+}
+
 TEST(pictures_of_functions_have_one_hash_for_threads_and_instruction_sets) {
     static const char fields[] = "kd = function(p, s) return gr.cells(p * 5) * gr.vec(s.u, s.v, gr.noise(p * 3)) end";
     check_equal(fields, fields, "-j 1 --isa base");
