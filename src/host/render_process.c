@@ -38,6 +38,7 @@ struct render_process {
     struct assets assets;
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
+    uint64_t played;                 /* those of them that are frames in a window: nothing is written */
     struct mem_account memory;       /* of the pictures of this script: worlds, indexes of meshes, photons, films */
     struct mem_account *account;     /* the same if there is a limit, or NULL */
     uint64_t reserved;               /* its part for the current picture */
@@ -47,6 +48,8 @@ struct render_process {
     bool building;                   /* the world */
     bool animates;                   /* the script has called gr.frames */
     bool skips;                      /* this run of the script is a frame that is not rendered */
+    bool passed_over;                /* the last picture is before the one in the window */
+    bool rewinds;                    /* the script runs again, for an earlier frame */
     uint64_t runs_before;            /* of the pool, before that */
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
@@ -495,6 +498,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
         return error_set(error, ERROR_CANCELLED, "interrupted");
     if (!need_pool(process, error) || !begin_picture(&work, &already, error))
         return false;
+    process->passed_over = already;
     if (already)
         return true;
     if (atomic_load(&control->progress_estimate.begun) == PROGRESS_ESTIMATE_WANTED)
@@ -522,8 +526,10 @@ static void grant_memory(struct render_process *process, const struct mem_accoun
 static bool render_one(struct render_process *process, const struct render_request *request, struct error *error) {
     struct mem_account *script = mem_charge(NULL);
     grant_memory(process, script);
-    bool ok =
-        options_allow_picture(process->options, ++process->pictures, error) && render_job_run(process, request, error);
+    process->pictures++;
+    process->played += process->options->window && request->frame.number > 0;
+    bool ok = options_allow_picture(process->options, process->pictures - process->played, error) &&
+              render_job_run(process, request, error);
     (void)mem_charge(process->account);
     mem_unreserve(process->reserved);
     process->reserved = 0;
@@ -608,6 +614,24 @@ static void begin_frame(void *context) {
         process->services->frame(process->services->context);
 }
 
+/* The frame that the window wants, of those that can be rendered. */
+static uint32_t next_frame(void *context, const struct frame *frame) {
+    const struct render_process *process = context;
+    const struct frame_selection *selection = &process->options->script.frames.selection;
+    uint32_t wanted = atomic_load(&process->services->control->next_frame);
+    if (process->passed_over || (wanted == FRAMES_OVER && frame->number > 0))
+        return 0;
+    if (wanted == 0 || wanted == FRAMES_OVER)
+        return selection->step > 0 ? selection->first : 1;
+    return wanted < frame->count ? wanted : frame->count;
+}
+
+static void note_rewind(void *context) {
+    struct render_process *process = context;
+    process->rewinds = true;
+    begin_frame(process);
+}
+
 /* Exit status of one run of a script; frame: what it renders outside of gr.frames, or number 0. */
 static int run_once(struct render_process *process, const char *path, const struct frame *frame) {
     /* Without the sandbox, in a separate process, standard output is a copy of standard error here. */
@@ -623,6 +647,8 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .frame_limit = options_picture_limit(process->options),
                                .animates = note_animation,
                                .frame_begins = begin_frame,
+                               .next_frame = process->options->window ? next_frame : NULL,
+                               .rewinds = note_rewind,
                                .output_is_error =
                                    options_output_is_stream(process->options) && (sandboxed || in_process)};
     struct arena arena = {0};
@@ -630,6 +656,7 @@ static int run_once(struct render_process *process, const char *path, const stru
     const char *traceback = NULL;
     begin_memory(process);
     uint64_t before = process->pictures;
+    process->rewinds = process->passed_over = false;
     bool ok = script_run(path, &process->options->script, &host, &arena, &traceback, &error);
     int status = ok ? process->status : (int)error.kind;
     if (!ok && error.kind != ERROR_CANCELLED)
@@ -656,20 +683,28 @@ static int run_script(struct render_process *process, const char *path) {
     process->status = 0;
     process->warned_count = 0;
     process->animates = false;
+    if (repeats && process->options->window) {
+        frame.number = 0;
+        frame.number = next_frame(process, &frame);
+    }
     process->skips = repeats && !frame_is_selected(selection, frame.number);
+    uint64_t before = process->pictures;
     int status = run_once(process, path, &frame);
+    while (status == 0 && process->rewinds)
+        status = run_once(process, path, &frame);
     process->skips = false;
-    while (repeats && status == 0 && !process->animates && frame.number < selection->last) {
-        if (!frame_is_selected(selection, ++frame.number))
-            continue;
+    while (repeats && status == 0 && !process->animates && (process->pictures > before || !process->options->window) &&
+           (frame.number = process->options->window ? next_frame(process, &frame) : frame_after(selection, &frame)) >
+               0) {
         begin_frame(process);
+        before = process->pictures;
         status = run_once(process, path, &frame);
     }
     return status;
 }
 
 static void run_scripts(struct render_process *process, int first) {
-    process->pictures = 0;
+    process->pictures = process->played = 0;
     for (int i = first; i < process->options->script_count; i++) {
         int status = run_script(process, process->options->scripts[i]);
         process->services->script_ended(process->services->context, i, status);

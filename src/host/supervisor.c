@@ -187,6 +187,7 @@ static void run_and_watch(struct supervisor *supervisor) {
             break;
         supervisor->watch.any = false;
         viewer_keep(&supervisor->viewer);
+        atomic_store(&supervisor->control->next_frame, viewer_next_frame(&supervisor->viewer));
         output_restart(&supervisor->output);
         supervisor->restarts = supervisor->waits = supervisor->stop = false;
         supervisor->deadline = 0;
@@ -252,6 +253,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     supervisor->control = mem_share(sizeof *supervisor->control);
     supervisor->viewer.control = supervisor->control;
     supervisor->viewer.logs_notes = options->verbose;
+    supervisor->viewer.frames = options->script.frames.selection;
     output_init(&supervisor->output, options, supervisor->control);
     supervisor->output.wait_for_text = supervisor_wait_for_reader;
     supervisor->output.wait_context = supervisor;

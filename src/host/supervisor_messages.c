@@ -98,8 +98,9 @@ static void answer_begin(struct supervisor *supervisor, const struct message *me
     if (answer_retry(supervisor, &message->body.request))
         return;
     struct error error = {0};
-    bool already =
-        viewer_skips(&supervisor->viewer, output->pictures + 1) || is_settled(supervisor, output->pictures + 1);
+    unsigned number = output_number_of(output, &message->body.request);
+    bool already = viewer_skips(&supervisor->viewer, number) || is_settled(supervisor, number);
+    supervisor->script.frames = message->body.request.in_window ? 0 : supervisor->script.frames;
     bool ok = output_begin(output, &message->body.request, &already, &error);
     bool film = ok && !already && !message->body.request.check;
     if (ok && already)
@@ -153,6 +154,7 @@ void supervisor_restart(struct supervisor *supervisor) {
     supervisor->deadline = progress_clock() + patience_again;
     atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     viewer_keep(&supervisor->viewer);
+    atomic_store(&supervisor->control->next_frame, viewer_next_frame(&supervisor->viewer));
     if (supervisor->viewer.pass.state == PASS_WAITING)
         end_picture(supervisor, true);
 }
@@ -184,6 +186,8 @@ static void write_from_window(struct supervisor *supervisor) {
 void supervisor_step_window(struct supervisor *supervisor) {
     struct viewer *viewer = &supervisor->viewer;
     int nothing = CANCEL_NOTHING;
+    if (viewer->player.seeking) /* it may have changed */
+        atomic_store(&supervisor->control->next_frame, viewer_next_frame(viewer));
     while (viewer->open && supervisor->deadline <= 0) {
         switch (viewer_step(viewer, progress_clock())) {
         case VIEWER_NOTHING:
@@ -210,7 +214,9 @@ void supervisor_step_window(struct supervisor *supervisor) {
             output_report(&supervisor->output, LINE_DETAIL, viewer->note);
             viewer->note[0] = '\0';
             break;
+        case VIEWER_NEXT_FRAME:
         case VIEWER_NEXT_PICTURE:
+            atomic_store(&supervisor->control->next_frame, viewer_next_frame(viewer));
             end_picture(supervisor, false);
             return;
         case VIEWER_QUIT:

@@ -196,10 +196,20 @@ static bool join_farm(struct output_session *output, bool *already, struct error
     return ok;
 }
 
+static bool is_played(const struct picture_request *request) {
+    return request->in_window && request->frame.number > 0;
+}
+
+unsigned output_number_of(const struct output_session *output, const struct picture_request *request) {
+    return output->plays && is_played(request) ? output->pictures : output->pictures + 1;
+}
+
 /* Limits of the run. *already: another process has this picture (--shard-pictures). */
-static bool count_picture(struct output_session *output, bool *already, struct error *error) {
+static bool count_picture(struct output_session *output, const struct picture_request *request, bool *already,
+                          struct error *error) {
     const struct options *options = output->options;
-    output->pictures++;
+    output->pictures = output_number_of(output, request);
+    output->plays = is_played(request);
     if (!options_allow_picture(options, output->pictures, error))
         return false;
     if (output->files.quota.written == output->files.quota.limit)
@@ -240,7 +250,8 @@ static void start_picture(struct output_session *output) {
     progress_estimate_reset(&output->control->progress_estimate,
                             progress_wants_estimate(&output->progress) && !request->in_window && !helps);
     (void)wait_for_text(output);
-    progress_begin(&output->progress, picture->name, request->width, request->height);
+    if (!output->plays)
+        progress_begin(&output->progress, picture->name, request->width, request->height);
     output->progress.elsewhere = request->in_window != 0;
     if (!request->in_window)
         display_begin(&output->display, picture->name, &picture->film, &tone);
@@ -250,7 +261,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
                   struct error *error) {
     struct picture *picture = &output->current;
     char written[NAME_LIMIT];
-    if (!count_picture(output, already, error))
+    if (!count_picture(output, request, already, error))
         return false;
     if (*already)
         return true;
@@ -264,12 +275,12 @@ bool output_begin(struct output_session *output, const struct picture_request *r
         return false;
     picture->request = *request;
     picture->request.deep = request->deep && output->options->animation == ANIMATION_NONE;
-    picture->written = false;
+    picture->written = output->plays;
     if (request->check) {
         picture->open = check_only(output, picture, error);
         return picture->open;
     }
-    if (!check_files(output, picture, error))
+    if (!output->plays && !check_files(output, picture, error))
         return false;
     describe_tiles(output, picture);
     if (!prepare_film(output, written, already, error))
@@ -430,6 +441,10 @@ bool output_done(struct output_session *output, const struct picture_report *rep
     struct error gone;
     if (leave_to_first_rank(output))
         return true;
+    if (output->plays) {
+        close_picture(&output->current);
+        return true;
+    }
     progress_hide(&output->progress);
     report_display(output, display_end(&output->display, &gone), &gone);
     warn_of_clamped(output, report);
@@ -536,6 +551,7 @@ bool output_write_held(struct output_session *output, struct error *error) {
 void output_restart(struct output_session *output) {
     close_picture(&output->held);
     output->pictures = 0;
+    output->plays = false;
     animation_restart(&output->animation);
     output->files.quota.written = 0;
     output->several_under_one_name = false;

@@ -32,7 +32,11 @@ struct output_session {
     struct picture current;       /* being made */
     struct picture held;          /* finished under -o without %d: written when no second picture came */
     bool several_under_one_name;
+    bool plays; /* the last picture was a frame in a window */
 };
+
+/* The number of the picture, from 1. All frames that a window plays of an animation have one: they are not written. */
+unsigned output_number_of(const struct output_session *output, const struct picture_request *request);
 
 void output_init(struct output_session *output, const struct options *options, struct control *control);
 /* Names the picture and makes its film; false when it cannot be written for a reason that is known before rendering.

@@ -48,4 +48,14 @@ static inline bool frame_is_selected(const struct frame_selection *selection, ui
            (number - selection->first) % selection->step == 0;
 }
 
+/* The selected frame that follows; 0: none. */
+static inline uint32_t frame_after(const struct frame_selection *selection, const struct frame *frame) {
+    uint32_t last = selection->step > 0 && selection->last < frame->count ? selection->last : frame->count;
+    for (uint32_t number = frame->number + 1; number <= last; number++) {
+        if (frame_is_selected(selection, number))
+            return number;
+    }
+    return 0;
+}
+
 #endif

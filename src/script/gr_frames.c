@@ -136,7 +136,7 @@ static void push_fields(lua_State *L) {
     }
 }
 
-static void draw_frame(lua_State *L, int draw, const struct frame *frame) {
+static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool renders) {
     struct script_context *context = context_of(L);
     int top = lua_gettop(L);
     if (context->host->frame_begins)
@@ -153,7 +153,7 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame) {
     context->subject = NULL;
     if (!lua_istable(L, -1))
         context_raise(context, "draw returned %s, not the table of fields for gr.render", value_words(L, -1));
-    if (frame_is_selected(&context->options->frames.selection, frame->number)) {
+    if (renders) {
         push_fields(L);
         dispatch_push(L, function_find(OWNER_GR, "render"));
         lua_insert(L, -2);
@@ -162,10 +162,36 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame) {
     lua_settop(L, top);
 }
 
+static void draw_selected(lua_State *L, int draw, const struct frame_plan *plan) {
+    const struct frame_selection *selection = &context_of(L)->options->frames.selection;
+    struct frame frame = plan->frame;
+    uint32_t last = selection->step > 0 ? selection->last : frame.count;
+    for (frame.number = 1; frame.number <= last; frame.number++) {
+        bool renders = frame_is_selected(selection, frame.number);
+        if (!plan->pure || renders)
+            draw_frame(L, draw, &frame, renders);
+    }
+}
+
+/* Frames in the order that a window wants. Its wish may change while the frames before are drawn. */
+static void draw_wanted(lua_State *L, int draw, const struct frame_plan *plan) {
+    struct script_context *context = context_of(L);
+    const struct script_host *host = context->host;
+    struct frame frame = plan->frame;
+    for (uint32_t wanted; (wanted = host->next_frame(host->context, &frame)) > 0;) {
+        if (!plan->pure && wanted <= frame.number) {
+            host->rewinds(host->context);
+            context->ended = true;
+            context_raise_fatal(L);
+        }
+        frame.number = plan->pure ? wanted : frame.number + 1;
+        draw_frame(L, draw, &frame, frame.number == wanted);
+    }
+}
+
 int frames_run(lua_State *L, const struct script_result *result) {
     struct script_context *context = context_of(L);
     const struct frame_plan *plan = result->pointer;
-    const struct frame_selection *selection = &context->options->frames.selection;
     if (lua_istable(L, 1)) {
         lua_pushliteral(L, "draw");
         (void)lua_rawget(L, 1);
@@ -180,12 +206,10 @@ int frames_run(lua_State *L, const struct script_result *result) {
     lua_setfield(L, -2, "__close");
     lua_setmetatable(L, -2);
     lua_toclose(L, -1);
-    struct frame frame = plan->frame;
-    uint32_t last = selection->step > 0 ? selection->last : frame.count;
-    for (frame.number = 1; frame.number <= last; frame.number++) {
-        if (!plan->pure || frame_is_selected(selection, frame.number))
-            draw_frame(L, draw, &frame);
-    }
+    if (context->host->next_frame)
+        draw_wanted(L, draw, plan);
+    else
+        draw_selected(L, draw, plan);
     return 0;
 }
 

@@ -215,13 +215,12 @@ static bool render_turntable(struct script_context *context, const struct render
     if (options->selection.step > 0 && options->selection.last > count)
         return error_set(error, ERROR_SCENE, "--frames asks for frame %u, but the last one is %u",
                          options->selection.last, count);
-    for (uint32_t number = 1; number <= count; number++) {
-        if (!frame_is_selected(&options->selection, number))
-            continue;
-        request.frame =
-            (struct frame){number, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true};
-        turn_camera(&request, first, middle, 360.0 * (number - 1) / count);
-        if (!context->host->render(context->host->context, &request, error))
+    const struct script_host *host = context->host;
+    request.frame = (struct frame){0, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true};
+    while ((request.frame.number = host->next_frame ? host->next_frame(host->context, &request.frame)
+                                                    : frame_after(&options->selection, &request.frame)) > 0) {
+        turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
+        if (!host->render(host->context, &request, error))
             return false;
     }
     return true;

@@ -14,6 +14,8 @@ enum handout { HANDOUT_NONE, HANDOUT_OPEN, HANDOUT_CLOSED };
 
 enum cancel { CANCEL_NOTHING, CANCEL_ALL /* cancel the picture, end the script */, CANCEL_PASS /* of a window */ };
 
+enum { FRAMES_OVER = INT32_MAX };
+
 struct control {
     _Atomic int cancel;                         /* an enum cancel, set by the supervisor */
     _Atomic uint32_t tiles_done;                /* of the picture being made */
@@ -21,6 +23,7 @@ struct control {
     _Atomic uint32_t handout;                   /* an enum handout */
     _Atomic int drain;                          /* not 0: finish the started tiles, begin no others */
     struct progress_estimate progress_estimate; /* the progress of the picture, if requested */
+    _Atomic uint32_t next_frame; /* that the window wants of an animation; 0: the first one, or FRAMES_OVER */
     _Atomic uint32_t build_step;                /* of building the world, from 1; 0: it is built */
     _Atomic uint32_t build_done;                /* thousandths of that step */
     _Atomic uint32_t lost; /* not 0: the render process could not write all of its standard output */

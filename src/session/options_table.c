@@ -229,7 +229,8 @@ const struct option option_table[] = {
 
     {OPTION_GROUP_REPORTS, "-gui", OPTION_FLAG, NULL, NO_RANGE, FIELD(window), NULL,
      "show the picture in a window during rendering and fly through the scene: R renders, S saves the view, V saves "
-     "the camera, Space flies (W A S D Q E and the mouse, Esc stops), N is the next picture, Q quits"},
+     "the camera, Space flies (W A S D Q E and the mouse, Esc stops), N is the next picture, Q quits; animations are "
+     "played: K plays and pauses, H and J go to the frame before and after, O loops"},
     {OPTION_GROUP_REPORTS, "--watch", OPTION_FLAG, NULL, NO_RANGE, FIELD(watch), NULL,
      "run the scripts again when one of them, or a file that they read, changes; Ctrl-C ends"},
     {OPTION_GROUP_REPORTS, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "print errors only"},

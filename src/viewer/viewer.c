@@ -65,12 +65,14 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->control = before->control;
     viewer->number = before->number;
     viewer->logs_notes = before->logs_notes;
+    viewer->frames = before->frames;
     viewer->display.image = before->display.image;
     viewer->display.light = before->display.light;
     viewer->display.drawn = before->display.drawn;
     viewer->display.layout = before->display.layout;
     viewer->display.panel = before->display.panel;
     viewer->display.hides_hud = before->display.hides_hud;
+    viewer->display.dirty = before->display.dirty;
     viewer->notice = before->notice;
     viewer->overlay.kind = before->open ? before->overlay.kind : viewer->overlay.kind;
     viewer->open = before->open;
@@ -93,7 +95,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     const struct picture_request *request = picture->request;
     struct film whole = pass_film(request, picture->block, 1);
     const struct box unknown = box_empty();
-    bool kept = viewer->keep && viewer->open;
+    bool kept = (viewer->keep && viewer->open) || viewer_player_continues(viewer, request);
     if (viewer->open && (viewer->request.width != request->width || viewer->request.height != request->height))
         close_window(viewer);
     viewer_destroy_overlay(viewer);
@@ -116,6 +118,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
         keep_work(viewer, &before);
     else
         forget_work(&before);
+    viewer_player_begin(viewer, &before);
     if (!viewer->open && !open_window(viewer, error))
         return false;
     memset(viewer->display.drawn, 0, viewer->display.tiles);
@@ -188,12 +191,16 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     /* Tiles that were done before a pass was stopped may be denoised now. */
     if (path_film_parts(viewer->pass.film.record) != 0)
         memset(viewer->display.drawn, 0, viewer->display.tiles);
+    viewer->pass.report = *report;
+    if (viewer_plays(viewer)) {
+        viewer_player_end_pass(viewer, now);
+        return;
+    }
     viewer_draw_tiles(viewer);
     /* Passes that take no time do not help to choose divide. */
     double took = now - viewer->pass.began, divide = viewer->pass.view.divide * sqrt(took / pass_goal);
     if (viewer->pass.view.plain && viewer->pass.view.divide == viewer->pass.divide && known)
         viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
-    viewer->pass.report = *report;
 }
 
 void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
@@ -349,8 +356,8 @@ static enum viewer_action step_running(struct viewer *viewer) {
         viewer->pass.state = PASS_STOPPING;
         return VIEWER_STOP_PASS;
     }
-    bool wanted = viewer->pass.outdated || (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits ||
-                  viewer->trace.wanted || viewer->edit.pending.count > 0 ||
+    bool wanted = viewer->pass.outdated || viewer->player.wanted > 0 || (!coarse && viewer_needs_overlay(viewer)) ||
+                  viewer->edit.click_waits || viewer->trace.wanted || viewer->edit.pending.count > 0 ||
                   is_different(viewer->pass.view.exposure, viewer->request.exposure);
     if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)
         return VIEWER_NOTHING;
@@ -373,7 +380,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
         viewer_handle_event(viewer, &event);
-    if (viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING)
+    if ((viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING) && !viewer_plays(viewer))
         viewer_draw_tiles(viewer);
     viewer_show(viewer, now);
     enum viewer_action action = viewer->action;
@@ -393,5 +400,13 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     }
     if (viewer->pass.state == PASS_WAITING && viewer->next && viewer->written)
         return VIEWER_NEXT_PICTURE;
+    switch (viewer_player_decide(viewer, now)) {
+    case PLAYER_GOES:
+        return VIEWER_NEXT_FRAME;
+    case PLAYER_WAITS:
+        return VIEWER_NOTHING;
+    case PLAYER_REFINES:
+        break;
+    }
     return viewer->pass.state == PASS_WAITING ? next_command(viewer, now) : step_running(viewer);
 }

@@ -2,7 +2,7 @@
  * render process renders one pass after the other (coarse ones first, and while the camera moves), replies after each,
  * and waits for the next command. The supervisor does not wait: it draws the window from the film in its current state.
  * viewer.c decides, viewer_input.c reads keys and mouse, viewer_edit.c and viewer_lights.c change the scene,
- * viewer_draw.c, viewer_hud.c and viewer_panel.c draw. */
+ * viewer_player.c plays animations, viewer_draw.c, viewer_hud.c and viewer_panel.c draw. */
 #ifndef GRAY_VIEWER_VIEWER_H
 #define GRAY_VIEWER_VIEWER_H
 
@@ -31,6 +31,7 @@ enum viewer_action {
     VIEWER_SAVE_CAMERA,   /* the camera must be saved */
     VIEWER_SAVE_EDITS,    /* the edits must be saved */
     VIEWER_LOG_NOTE,      /* viewer->note is a line for the log */
+    VIEWER_NEXT_FRAME,    /* the same, and the animation goes to viewer_next_frame */
     VIEWER_NEXT_PICTURE,  /* this picture is finished: the script continues */
     VIEWER_QUIT,          /* the window was closed, or Q */
 };
@@ -147,6 +148,23 @@ struct viewer_input {
     double press_x, press_y; /* where */
 };
 
+/* The frames of an animation (viewer_player.c). Zero value: the picture is not one of an animation. */
+struct viewer_player {
+    uint32_t first, step, count; /* the frames that can be shown: first, first + step ... */
+    bool playing, loops;
+    uint32_t wanted;     /* the frame to go to, or 0 */
+    bool seeking;        /* it was requested, and has not begun */
+    bool shown;          /* playing: this frame is on the screen */
+    double asked;        /* when it was requested; 0: that is not to be measured */
+    bool restarts_clock; /* the next frame is due at once */
+    bool forgives_delay; /* no frame is left out because the next one comes late */
+    double origin;       /* when the frame with the index origin_index was due */
+    uint32_t origin_index;
+    double late, shown_at, began; /* seconds after its time, when it was shown, when playing began */
+    double rate;                  /* frames per second, of the last ones */
+    uint32_t played, left_out;    /* since playing began */
+};
+
 /* A line that is shown for some seconds: which file was saved, or why not. */
 struct viewer_notice {
     char text[512];
@@ -160,6 +178,7 @@ struct viewer {
     const struct control *control; /* or NULL; set by the caller, not owned */
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
+    struct frame_selection frames; /* of animations; set by the caller */
     bool open;
     bool keep; /* the scripts run again: camera and edits are kept, earlier pictures are skipped */
 
@@ -183,6 +202,7 @@ struct viewer {
     struct viewer_overlay overlay;
     struct viewer_display display;
     struct viewer_input input;
+    struct viewer_player player;
 
     double stepped;                 /* time of the last call of viewer_step */
     struct preview_command command; /* for VIEWER_SEND_COMMAND */
@@ -206,6 +226,9 @@ void viewer_detach(struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
+/* For control.next_frame: the frame that is wanted or shown, FRAMES_OVER when the script is to go on after the
+ * animation, or 0. */
+uint32_t viewer_next_frame(const struct viewer *viewer);
 /* Shows the first line of an error until a picture begins. */
 void viewer_show_message(struct viewer *viewer, const char *text);
 /* Shows it for some seconds, also in the title. */

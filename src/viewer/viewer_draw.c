@@ -153,7 +153,11 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
     uint32_t done = viewer->block ? film_tiles_in(&viewer->pass.film, FILM_TILE_DONE) : 0;
     uint32_t count = viewer->block ? film_tile_count(&viewer->pass.film) : 0;
     figures->share = count > 0 ? (double)done / count : viewer->pass.result == RESULT_COMPLETE ? 1 : 0;
-    if (viewer->pass.halted && viewer->block) {
+    if (viewer_plays(viewer)) {
+        (void)snprintf(figures->state, sizeof figures->state, "playing");
+    } else if (viewer->player.seeking) {
+        (void)snprintf(figures->state, sizeof figures->state, "going to frame %u", viewer->player.wanted);
+    } else if (viewer->pass.halted && viewer->block) {
         (void)snprintf(figures->state, sizeof figures->state,
                        viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%", 100 * figures->share);
     } else if (step > 0) {
@@ -188,14 +192,22 @@ static void compute_figures(const struct viewer *viewer, struct figures *figures
     format_count(figures->voxels, sizeof figures->voxels, voxels, voxels > 1 ? "voxels" : "voxel");
     (void)snprintf(figures->frames, sizeof figures->frames, seconds > 0 ? "%.*f frames/s" : "- frames/s",
                    seconds > 0.1 ? 2 : 0, seconds > 0 ? 1 / seconds : 0);
+    const struct frame *frame = &viewer->request.frame;
+    if (frame->number == 0)
+        return;
+    int digits = snprintf(NULL, 0, "%u", frame->count);
+    (void)snprintf(figures->frame, sizeof figures->frame, "frame %*u/%u %7.2f s", digits, frame->number, frame->count,
+                   frame_time(frame));
+    if (viewer_plays(viewer))
+        (void)snprintf(figures->frames, sizeof figures->frames, "%.1f frames/s", viewer->player.rate);
 }
 
 static void set_title(struct viewer *viewer, const struct figures *figures) {
     char title[1024];
-    (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s  %s  %s  %s%s%s%.400s", viewer->request.file, figures->size,
-                   figures->state, figures->rays, figures->triangles, figures->voxels, figures->frames,
-                   viewer->input.grabbed ? "  (Esc leaves)" : "", viewer->notice.text[0] != '\0' ? "  " : "",
-                   viewer->notice.text);
+    (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s%s%s  %s  %s  %s%s%s%.400s", viewer->request.file,
+                   figures->size, figures->state, figures->frame, figures->frame[0] != '\0' ? "  " : "", figures->rays,
+                   figures->triangles, figures->voxels, figures->frames, viewer->input.grabbed ? "  (Esc leaves)" : "",
+                   viewer->notice.text[0] != '\0' ? "  " : "", viewer->notice.text);
     viewer->driver->title(viewer->driver->context, viewer->message[0] != '\0' ? viewer->message : title);
 }
 
@@ -211,8 +223,9 @@ static void end_notice(struct viewer_notice *notice, double now) {
 void viewer_show(struct viewer *viewer, double now) {
     const struct window_driver *driver = viewer->driver;
     bool due = now - viewer->display.figures_at >= figures_pause;
-    if (!viewer->display.panel.canvas.rgba || (!due && !((viewer->display.dirty || viewer->display.hud_dirty) &&
-                                                         now - viewer->display.shown_at >= redraw_pause)))
+    if (!viewer->display.panel.canvas.rgba || viewer_awaits_frame(viewer, now) ||
+        (!due &&
+         !((viewer->display.dirty || viewer->display.hud_dirty) && now - viewer->display.shown_at >= redraw_pause)))
         return;
     bool over = due || viewer->display.hud_dirty;
     end_notice(&viewer->notice, now);

@@ -73,6 +73,32 @@ static void draw_menu(struct viewer *viewer) {
     viewer->lights.listed = viewer->lights.listed != used[MENU_LIGHTS];
 }
 
+/* The animation: a row at the bottom. Its parts come first, since they are there between two frames, too, when others
+ * are not: their numbers stay. Returns its top. */
+static int draw_timeline(struct viewer *viewer, const struct figures *figures) {
+    struct panel *panel = &viewer->display.panel;
+    struct viewer_player *player = &viewer->player;
+    int scale = panel->canvas.scale, height = 15 * scale, top = panel->canvas.height - height, x = 2 * scale;
+    if (player->count == 0)
+        return panel->canvas.height;
+    const char *const words[] = {player->playing ? "Pause" : "Play ", "Loop"};
+    bool used[] = {false, false};
+    panel_ground(panel, 0, top, panel->canvas.width, height);
+    x = panel_button_row(panel, top + 2 * scale, words, 2, player->loops ? 2 : 0, used);
+    if (used[0])
+        viewer_play(viewer, !player->playing);
+    if (used[1])
+        viewer_player_loop(viewer);
+    int words_width = (int)(strlen(figures->frame) + 2) * CANVAS_CELL * scale;
+    int width = panel->canvas.width - x - words_width - 4 * scale;
+    double index = viewer_frame_index(viewer);
+    const struct panel_slider slider = {x + 2 * scale, top + 4 * scale, width, 0, player->count - 1.0, gray};
+    if (width > 8 * CANVAS_CELL * scale && player->count > 1 && panel_slider(panel, &slider, &index))
+        viewer_go_to_frame(viewer, viewer_frame_number(viewer, index));
+    panel_text(panel, panel->canvas.width - words_width + CANVAS_CELL * scale, top + 4 * scale, figures->frame);
+    return top;
+}
+
 /* Undoing, adding, exposure: a second row. */
 #define WORK(X)                                                                                                        \
     X(WORK_UNDO, "Undo")                                                                                               \
@@ -175,7 +201,9 @@ static int draw_lines(struct panel *panel, const char *line, bool warns, int bot
 
 void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
     struct camera_frame frame;
-    panel_begin(&viewer->display.panel);
+    struct panel *panel = &viewer->display.panel;
+    panel_begin(panel);
+    int bottom = panel->canvas.height;
     if (!viewer->display.hides_hud) {
         bool room = viewer->display.panel.canvas.height >= 24 * panel_line_height(&viewer->display.panel);
         int top = (room && viewer->block ? 30 : 15) * viewer->display.panel.canvas.scale;
@@ -183,6 +211,7 @@ void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
             draw_selection(viewer, &frame);
             viewer_draw_lights(viewer, &frame);
         }
+        bottom = draw_timeline(viewer, figures);
         draw_menu(viewer);
         if (room && viewer->block)
             draw_work(viewer);
@@ -193,8 +222,7 @@ void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
             viewer_draw_light_list(viewer, below + viewer->display.panel.canvas.scale);
         draw_pixel_trace(viewer, below + viewer->display.panel.canvas.scale);
     }
-    struct panel *panel = &viewer->display.panel;
-    int bottom = draw_lines(panel, viewer->message, true, panel->canvas.height);
+    bottom = draw_lines(panel, viewer->message, true, bottom);
     (void)draw_lines(panel, viewer->notice.text, viewer->notice.warns, bottom);
     panel_end(&viewer->display.panel);
 }

@@ -12,6 +12,8 @@ void viewer_halt(struct viewer *viewer, bool on) {
     on = on && viewer->block && !viewer_is_idle(viewer);
     if (on == viewer->pass.halted)
         return;
+    if (on)
+        viewer_play(viewer, false);
     viewer->pass.halted = on;
     viewer->pass.halted_at = on && viewer->pass.state != PASS_WAITING ? viewer->stepped : 0;
     if (on && viewer->pass.state == PASS_WAITING) /* between two passes */
@@ -86,6 +88,26 @@ static void handle_view_key(struct viewer *viewer, int key, bool control) {
             return;
     }
     viewer_change_view(viewer);
+}
+
+/* True: it was one of those of an animation. */
+static bool handle_player_key(struct viewer *viewer, int key) {
+    switch (key) {
+    case 'k':
+        viewer_play(viewer, !viewer->player.playing);
+        return true;
+    case 'j':
+        viewer_step_frames(viewer, 1);
+        return true;
+    case 'h':
+        viewer_step_frames(viewer, -1);
+        return true;
+    case 'o':
+        viewer_player_loop(viewer);
+        return true;
+    default:
+        return false;
+    }
 }
 
 /* True: it was one of those that need no scene. */
@@ -197,7 +219,8 @@ static void handle_key(struct viewer *viewer, const struct window_event *event) 
     /* Without a scene the camera does not move. */
     if (viewer->block && handle_held_key(viewer, event->key, event->down))
         return;
-    if (!event->down || handle_plain_key(viewer, event->key) || !viewer->block || handle_edit_key(viewer, event))
+    if (!event->down || handle_plain_key(viewer, event->key) || handle_player_key(viewer, event->key) ||
+        !viewer->block || handle_edit_key(viewer, event))
         return;
     switch (event->key) {
     case 'r':

@@ -81,9 +81,31 @@ void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_reques
 bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour);
 void viewer_destroy_overlay(struct viewer *viewer);
 
+/* viewer_player.c */
+enum player_decision {
+    PLAYER_REFINES, /* passes of this frame, as of any picture */
+    PLAYER_WAITS,   /* the frame is finished, and not due yet */
+    PLAYER_GOES,    /* to another frame */
+};
+void viewer_player_begin(struct viewer *viewer, const struct viewer *before);
+/* Whether the picture is another frame of the animation in the window. */
+bool viewer_player_continues(const struct viewer *before, const struct picture_request *request);
+enum player_decision viewer_player_decide(struct viewer *viewer, double now);
+void viewer_player_end_pass(struct viewer *viewer, double now); /* chooses pass.divide for the next frame */
+bool viewer_plays(const struct viewer *viewer);
+/* The next frame is not there yet: what is on the screen stays. */
+bool viewer_awaits_frame(const struct viewer *viewer, double now);
+void viewer_play(struct viewer *viewer, bool on);
+void viewer_player_loop(struct viewer *viewer);                  /* on, or off again */
+void viewer_step_frames(struct viewer *viewer, int by);          /* pauses */
+void viewer_go_to_frame(struct viewer *viewer, uint32_t number); /* pauses */
+/* The frame that is shown or wanted: its place among those that can be shown, from 0. */
+uint32_t viewer_frame_index(const struct viewer *viewer);
+uint32_t viewer_frame_number(const struct viewer *viewer, double index);
+
 /* viewer_draw.c */
 struct figures {
-    char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48];
+    char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48], frame[64];
     double share; /* of the work */
 };
 void viewer_draw_tiles(struct viewer *viewer);               /* film to canvas */

@@ -304,6 +304,56 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     end(&t);
 }
 
+/* A window that plays 60 frames at 30 frames per second, with a simulated script that takes 8 ms for each one, and
+ * passes that would take 0.8 s with a sample for each pixel. */
+TEST(window_plays_frames_when_they_are_due_by_passes_as_coarse_as_necessary) {
+    struct table t;
+    struct error error;
+    double shown = 0;
+    uint32_t number = 1, divide = 0;
+    begin(&t);
+    t.request.frame = (struct frame){1, 60, 30, true};
+    for (int frame = 0; frame < 150; frame++) {
+        t.request.frame.number = number;
+        CHECK(
+            viewer_begin(&t.viewer, &t.driver, &(struct viewer_picture){&t.request, t.block, "x.png"}, t.now, &error));
+        t.now += 0.008;
+        print_news(&t, &(struct preview_reply){.kind = REPLY_BUILT, .world_from_root = affine_identity()});
+        CHECK_EQ_INT(viewer_step(&t.viewer, t.now), VIEWER_SEND_COMMAND);
+        CHECK(t.viewer.command.kind == COMMAND_PASS && t.viewer.pass.view.plain);
+        divide = t.viewer.pass.view.divide;
+        finish_pass(&t, 0.8 / (divide * divide), false);
+        enum viewer_action action;
+        while ((action = viewer_step(&t.viewer, t.now)) == VIEWER_NOTHING)
+            t.now += 0.001;
+        CHECK_EQ_INT(action, VIEWER_NEXT_FRAME);
+        CHECK_EQ_INT(viewer_next_frame(&t.viewer), number % 60 + 1);
+        CHECK(frame < 20 || fabs(t.now - shown - 1 / 30.0) < 0.0021);
+        shown = t.now;
+        number = viewer_next_frame(&t.viewer);
+        viewer_detach(&t.viewer);
+        CHECK(viewer_step(&t.viewer, t.now) == VIEWER_NOTHING && viewer_plays(&t.viewer));
+    }
+    CHECK_EQ_INT(divide, 7); /* 0.8 s / 49 fit into the rest of 33 ms */
+    CHECK(t.viewer.player.left_out == 0 && fabs(t.viewer.player.rate - 30) < 0.5);
+    /* A window that is too slow for its script leaves frames out. */
+    for (int frame = 0; frame < 30; frame++) {
+        t.request.frame.number = number;
+        CHECK(
+            viewer_begin(&t.viewer, &t.driver, &(struct viewer_picture){&t.request, t.block, "x.png"}, t.now, &error));
+        t.now += 0.1;
+        print_news(&t, &(struct preview_reply){.kind = REPLY_BUILT, .world_from_root = affine_identity()});
+        CHECK_EQ_INT(viewer_step(&t.viewer, t.now), VIEWER_SEND_COMMAND);
+        finish_pass(&t, 0.001, false);
+        while (viewer_step(&t.viewer, t.now) == VIEWER_NOTHING)
+            t.now += 0.001;
+        number = viewer_next_frame(&t.viewer);
+        viewer_detach(&t.viewer);
+    }
+    CHECK(t.viewer.player.left_out > 50 && t.viewer.player.left_out < 80);
+    end(&t);
+}
+
 TEST(window_keys_fly_only_while_the_mouse_turns_the_camera) {
     struct table t;
     begin(&t);

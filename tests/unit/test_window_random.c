@@ -37,7 +37,7 @@ static const char scene_head[] =
     "r:add_child(gr.mesh('tetra', {{0, 2, 0}, {1, 3, 0}, {-1, 3, 0}, {0, 2.5, 1}}, {{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, "
     "{0, 2, 3}}))\n";
 
-/* One of several scenes: valid ones with one and two pictures, and two kinds of invalid ones. */
+/* One of several scenes: valid ones with one and two pictures and an animation, and two kinds of invalid ones. */
 static void write_scene(struct crowd *crowd) {
     static const char *const tails[] = {
         ("gr.render(r, 'out.png', 160, 120, {0, 1, 7}, {0, -0.1, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2}, {gr.light({4, 5, "
@@ -45,11 +45,14 @@ static void write_scene(struct crowd *crowd) {
          "0})})\n"),
         ("for i = 1, 2 do gr.render(r, 'out' .. i .. '.png', 120 * i, 90, {0, 1, 7}, {0, 0, -1}, {0, 1, 0}, 50, {0.2, "
          "0.2, 0.2}, {gr.light({4, 5, 6}, {0.6, 0.6, 0.6}, {1, 0, 0})}) end\n"),
+        ("gr.frames{count = 7, loop = true, draw = function(t) g:translate(0.1, 0, 0) return {node = r, file = "
+         "'out.png', "
+         "width = 90, height = 60, eye = {0, 1, 7}} end}\n"),
         "gr.no_such_thing()\n",
         "gr.render(r, \n",
     };
     char text[4096];
-    (void)snprintf(text, sizeof text, "%s%s", scene_head, tails[crowd->polls == 0 ? below(crowd, 2) : below(crowd, 4)]);
+    (void)snprintf(text, sizeof text, "%s%s", scene_head, tails[crowd->polls == 0 ? below(crowd, 3) : below(crowd, 5)]);
     test_write_text("new.lua", text);
     CHECK(rename("new.lua", "scene.lua") == 0);
 }
@@ -113,7 +116,11 @@ static struct window_event random_key(struct crowd *crowd) {
                                WINDOW_TAB,
                                ',',
                                '.',
-                               'i'};
+                               'i',
+                               'h',
+                               'j',
+                               'k',
+                               'o'};
     static const int rare[] = {'s', 'v', 'c', 'n', 'p'};
     int count = (int)(sizeof keys / sizeof *keys), key = keys[below(crowd, count)];
     if (below(crowd, 60) == 0)

@@ -26,6 +26,7 @@ struct person {
     const struct deed *deeds;
     int at, waited;
     bool open, size_sent;
+    const char *other_scene; /* that scene.lua is from the deed WINDOW_LEAVE on */
     char title[1024];
     uint8_t *over; /* the last overlay, of the whole window */
 };
@@ -57,6 +58,10 @@ static bool person_poll(void *context, struct window_event *event) {
     }
     if ((deed->title && !says(person->title, deed->title)) || person->waited++ < deed->pause)
         return false;
+    if (deed->event.kind == WINDOW_LEAVE) {
+        test_write_text("new.lua", person->other_scene);
+        CHECK(rename("new.lua", "scene.lua") == 0);
+    }
     person->at++;
     person->waited = 0;
     person->title[0] = '\0';
@@ -93,19 +98,27 @@ static const char scene[] =
     { .kind = WINDOW_KEY, .key = code, .down = true }
 #define AT_THE_BALL .button = WINDOW_LEFT, .x = 320, .y = 240
 
-/* The status of the program with these two options. */
-static int viewer_that(const struct deed *deeds, const char *progress, const char *overlay, uint8_t *over) {
-    struct person person = {.deeds = deeds, .over = over};
+/* The status of the program with these options. */
+struct setting {
+    const char *scene, *option; /* NULL: the scene above; --progress=none */
+    const char *overlay;        /* NULL: none */
+    const char *other_scene;    /* for the deed WINDOW_LEAVE */
+};
+
+static int viewer_that(const struct deed *deeds, const struct setting *setting, uint8_t *over) {
+    struct person person = {.deeds = deeds, .over = over, .other_scene = setting->other_scene};
     const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
                                          person_title, person_grab, person_nothing, person_close};
     struct arena arena = {0};
     struct options options;
     struct error error;
-    char *words[] = {"gray",     "-gui", "-q", (char *)(uintptr_t)progress, "--overlay", (char *)(uintptr_t)overlay,
+    const char *option = setting->option ? setting->option : "--progress=none";
+    const char *overlay = setting->overlay ? setting->overlay : "none";
+    char *words[] = {"gray",     "-gui", "-q", (char *)(uintptr_t)option, "--overlay", (char *)(uintptr_t)overlay,
                      "scene.lua"};
     char before[4096];
     CHECK(getcwd(before, sizeof before) && chdir(test_folder()) == 0);
-    test_write_text("scene.lua", scene);
+    test_write_text("scene.lua", setting->scene ? setting->scene : scene);
     CHECK(options_parse(&options, 7, words, &arena, &error));
     int status = supervisor_run(&options, &(struct program_parts){.window = &driver});
     CHECK(!person.open);
@@ -115,7 +128,7 @@ static int viewer_that(const struct deed *deeds, const char *progress, const cha
 }
 
 static int viewer_over(const struct deed *deeds, const char *overlay, uint8_t *over) {
-    return viewer_that(deeds, "--progress=none", overlay, over);
+    return viewer_that(deeds, &(struct setting){.overlay = overlay}, over);
 }
 
 static int viewer_with(const struct deed *deeds) {
@@ -234,9 +247,65 @@ TEST(window_says_when_a_file_is_saved_and_prints_no_progress_in_the_terminal) {
                                  {NULL, KEY('q'), 30}};
     size_t size;
     CHECK(freopen(test_path("said.txt"), "w", stderr) != NULL);
-    CHECK_EQ_INT(viewer_that(deeds, "--progress=bar", "none", NULL), 0);
+    CHECK_EQ_INT(viewer_that(deeds, &(struct setting){.option = "--progress=bar"}, NULL), 0);
     CHECK(fflush(stderr) == 0);
     char *said = test_read_file(test_path("said.txt"), &size);
     CHECK_TEXT(said, "");
     free(said);
+}
+
+/* Frames that depend on those before. */
+#define ANIMATION(colour, file)                                                                                        \
+    "local r = gr.node('root')\n"                                                                                      \
+    "local ball = gr.geometry('ball', gr.sphere(gr.material({" colour ", 0.2, 0.1}, {0.4, 0.4, 0.4}, 20)))\n"          \
+    "r:add_child(ball)\n"                                                                                              \
+    "gr.frames{count = 5, draw = function(t, frame)\n"                                                                 \
+    "  ball:translate(0.3, 0, 0)\n"                                                                                    \
+    "  return {node = r, file = '" file ".####.png', width = 64, height = 48, eye = {0, 0, 6}, view = {0, 0, -1}}\n"   \
+    "end}\n"
+
+/* Whether a frame that the window saved has the bytes of the same frame without it. */
+static bool saved_frame(const char *file, int number, int view) {
+    char saved[40], arguments[100];
+    (void)snprintf(arguments, sizeof arguments, "-q --progress=none scene.lua --frames %d-%d -o w%d.png", number,
+                   number, number);
+    (void)snprintf(saved, sizeof saved, "%s.%04d-view%d.png", file, number, view);
+    struct test_result result = test_gray(NULL, arguments);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
+    (void)snprintf(arguments, sizeof arguments, "w%d.png", number);
+    return same_files(saved, arguments);
+}
+
+TEST(window_plays_an_animation_to_its_end_and_goes_back_to_frames_before) {
+    const struct deed deeds[] = {
+        {"ready  frame 5/5", KEY('s'), 0}, {NULL, KEY('h'), 0},    {"ready  frame 4/5", KEY('h'), 0},
+        {"ready  frame 3/5", KEY('s'), 0}, {NULL, KEY('j'), 0},    {"ready  frame 4/5", KEY('k'), 0},
+        {"ready  frame 5/5", KEY('o'), 0}, {NULL, KEY('k'), 0}, /* in a loop */
+        {"playing", KEY('k'), 150},        {"ready", KEY('o'), 0}, {NULL, KEY('k'), 0},
+        {"ready  frame 5/5", KEY('s'), 0}, {NULL, KEY('q'), 0}};
+    const struct setting setting = {.scene = ANIMATION("0.8", "f")};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    CHECK(access(test_path("f.0005.png"), F_OK) != 0 && access(test_path("f.####.png"), F_OK) != 0);
+    CHECK(saved_frame("f", 5, 1) && saved_frame("f", 3, 1) && saved_frame("f", 5, 2));
+}
+
+TEST(window_with_a_changed_script_stays_at_the_frame_that_it_shows) {
+    const struct deed deeds[] = {{"ready  frame 5/5", KEY('h'), 0},
+                                 {"ready  frame 4/5", {.kind = WINDOW_LEAVE}, 0},
+                                 {"g.####.png  64x48  ready  frame 4/5", KEY('s'), 0},
+                                 {NULL, KEY('q'), 0}};
+    const struct setting setting = {
+        .scene = ANIMATION("0.8", "f"), .option = "--watch", .other_scene = ANIMATION("0.3", "g")};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    CHECK(saved_frame("g", 4, 1));
+}
+
+TEST(window_goes_on_after_an_animation_and_plays_turntables_and_scripts_of_one_frame) {
+    const struct deed turns[] = {
+        {"playing", KEY('k'), 0}, {"ready", KEY('j'), 0}, {"ready", KEY('n'), 0}, {"none", KEY('q'), 0}};
+    const struct deed frames[] = {{"ready  frame 3/3", KEY('h'), 0}, {"ready  frame 2/3", KEY('q'), 0}};
+    CHECK_EQ_INT(viewer_that(turns, &(struct setting){.option = "--turntable=4"}, NULL), 0);
+    CHECK_EQ_INT(viewer_that(frames, &(struct setting){.option = "--frames=3"}, NULL), 0);
 }

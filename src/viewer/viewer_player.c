@@ -1,0 +1,251 @@
+/* Playing an animation. Each frame is a picture of the script: when its pass is finished, it is shown at the time when
+ * it is due, and the next frame is requested at once, so that the script and the build of the next world use the time
+ * in which it is visible. The frame rate is held by the number of samples: what remains of the time of a frame beside
+ * script and building decides how coarse its pass is. Frames are left out only where the coarsest pass is too slow.
+ * Frames have numbers (of the animation) and indices (of the selected ones among them, from 0). */
+#include "viewer/viewer_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PLAYED_DIVIDE_LIMIT = 32 };
+/* Seconds: what a pass takes at least, the pause between two looks at the clock, and a delay after which the time
+ * starts again, since the machine did other work. */
+static const double pass_min = 0.004, clock_step = 0.004, delay_max = 1;
+/* Seconds that a frame stays on the screen as it is while the next one is made. */
+static const double patience = 0.5;
+
+static uint32_t index_of(const struct viewer_player *player, uint32_t number) {
+    return number > player->first ? (number - player->first) / player->step : 0;
+}
+
+static uint32_t number_of(const struct viewer_player *player, uint32_t index) {
+    return player->first + index * player->step;
+}
+
+static double period_of(const struct viewer *viewer) {
+    return viewer->player.step / viewer->request.frame.rate;
+}
+
+bool viewer_plays(const struct viewer *viewer) {
+    return viewer->player.count > 0 && viewer->player.playing;
+}
+
+/* The selected frames of this animation; count is at least 1. */
+static void select_frames(struct viewer_player *player, const struct frame_selection *selection,
+                          const struct frame *frame) {
+    bool all = selection->step == 0 || selection->first > frame->count;
+    uint32_t last = all || selection->last > frame->count ? frame->count : selection->last;
+    player->first = all ? 1 : selection->first;
+    player->step = all ? 1 : selection->step;
+    player->count = (last - player->first) / player->step + 1;
+}
+
+void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
+    const struct frame *frame = &viewer->request.frame;
+    struct viewer_player *player = &viewer->player;
+    bool continues = viewer_player_continues(before, &viewer->request);
+    if (frame->number == 0) {
+        *player = (struct viewer_player){0};
+        return;
+    }
+    *player = before->player;
+    if (!continues)
+        *player = (struct viewer_player){.loops = frame->loops, .restarts_clock = true};
+    select_frames(player, &viewer->frames, frame);
+    player->playing = player->count > 1 && (player->playing || !continues);
+    uint32_t last = number_of(player, player->count - 1);
+    player->wanted = player->wanted > last ? last : player->wanted;
+    if (player->wanted == frame->number)
+        player->wanted = 0;
+    player->seeking = player->shown = false;
+    viewer->written = true; /* nothing is written of an animation */
+    if (!continues)
+        return;
+    viewer->input = before->input;
+    viewer->pass.divide = before->pass.divide;
+    viewer->pass.from_coarse = false;
+    viewer->lights.listed = before->lights.listed;
+    memcpy(viewer->fly_camera.down, before->fly_camera.down, sizeof viewer->fly_camera.down);
+}
+
+bool viewer_player_continues(const struct viewer *before, const struct picture_request *request) {
+    return before->open && before->player.count > 0 && request->frame.number > 0 &&
+           (before->player.seeking || before->keep);
+}
+
+uint32_t viewer_next_frame(const struct viewer *viewer) {
+    if (viewer->player.wanted > 0)
+        return viewer->player.wanted;
+    return viewer->next ? FRAMES_OVER : viewer->request.frame.number;
+}
+
+/* Commands of the user. */
+
+static void note_played(struct viewer *viewer) {
+    const struct viewer_player *player = &viewer->player;
+    double seconds = viewer->stepped - player->began;
+    if (player->played < 2 || !(seconds > 0))
+        return;
+    (void)snprintf(viewer->note, sizeof viewer->note,
+                   "%.60s: played %u frames in %.1f s, left out %u, one sample for %u x %u pixels",
+                   viewer->request.file, player->played, seconds, player->left_out, viewer->pass.view.divide,
+                   viewer->pass.view.divide);
+}
+
+void viewer_play(struct viewer *viewer, bool on) {
+    struct viewer_player *player = &viewer->player;
+    on = on && player->count > 1;
+    if (on == player->playing)
+        return;
+    if (!on)
+        note_played(viewer);
+    player->playing = on;
+    player->restarts_clock = true;
+    player->played = player->left_out = 0;
+    viewer->display.hud_dirty = true;
+    viewer->display.figures_at = 0;
+    if (on)
+        viewer_halt(viewer, false);
+    else if (viewer->block && viewer->pass.result == RESULT_COARSE)
+        viewer_draw_tiles(viewer); /* a frame that waited for its time */
+    /* Playing on from the end begins at the first frame. */
+    if (on && !player->loops && index_of(player, viewer->request.frame.number) + 1 == player->count)
+        player->wanted = player->first;
+}
+
+void viewer_go_to_frame(struct viewer *viewer, uint32_t number) {
+    struct viewer_player *player = &viewer->player;
+    viewer_play(viewer, false);
+    player->wanted = number;
+    player->shown_at = viewer->stepped;
+    if (!player->seeking && number == viewer->request.frame.number)
+        player->wanted = 0;
+    else
+        viewer_halt(viewer, false);
+    viewer->display.hud_dirty = true;
+}
+
+void viewer_step_frames(struct viewer *viewer, int by) {
+    const struct viewer_player *player = &viewer->player;
+    if (player->count == 0)
+        return;
+    uint32_t now = player->wanted > 0 ? player->wanted : viewer->request.frame.number;
+    int64_t index = (int64_t)index_of(player, now) + by, count = player->count;
+    if (player->loops)
+        index = (index + count) % count;
+    index = index < 0 ? 0 : index >= count ? count - 1 : index;
+    viewer_go_to_frame(viewer, number_of(player, (uint32_t)index));
+}
+
+void viewer_player_loop(struct viewer *viewer) {
+    viewer->player.loops = !viewer->player.loops;
+    viewer->display.hud_dirty = true;
+}
+
+uint32_t viewer_frame_index(const struct viewer *viewer) {
+    const struct viewer_player *player = &viewer->player;
+    return index_of(player, player->wanted > 0 && !player->playing ? player->wanted : viewer->request.frame.number);
+}
+
+uint32_t viewer_frame_number(const struct viewer *viewer, double index) {
+    const struct viewer_player *player = &viewer->player;
+    double last = player->count - 1;
+    return number_of(player, (uint32_t)(index < 0 ? 0 : index > last ? last : floor(index + 0.5)));
+}
+
+/* Time. */
+
+void viewer_player_end_pass(struct viewer *viewer, double now) {
+    struct viewer_player *player = &viewer->player;
+    uint32_t divide = viewer->pass.divide;
+    double took = now - viewer->pass.began, whole = now - player->asked;
+    if (player->asked <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != divide)
+        return;
+    double beside = fmax(0, whole - took), left = fmax(pass_min, period_of(viewer) - beside - clock_step);
+    double needed = divide * sqrt(took / left);
+    needed = fmin(needed, 1.5 * divide); /* one slow pass may be the fault of another program */
+    if (needed > divide)
+        divide = needed < PLAYED_DIVIDE_LIMIT ? (uint32_t)ceil(needed) : PLAYED_DIVIDE_LIMIT;
+    else if (ceil(1.1 * needed) < divide) /* a margin, so that it does not change to and fro */
+        divide = (uint32_t)fmax(1, ceil(1.1 * needed));
+    viewer->pass.divide = divide;
+    player->asked = 0;
+}
+
+/* Shows the finished frame if it is due. */
+static bool show_frame(struct viewer *viewer, double now) {
+    struct viewer_player *player = &viewer->player;
+    uint32_t index = index_of(player, viewer->request.frame.number);
+    double due = player->origin + ((double)index - player->origin_index) * period_of(viewer);
+    if (player->restarts_clock || (player->forgives_delay && now > due) || now - due > delay_max ||
+        due - now > 2 * period_of(viewer)) {
+        player->restarts_clock = false;
+        player->origin = due = now;
+        player->origin_index = index;
+    }
+    if (now < due)
+        return false;
+    player->forgives_delay = false;
+    if (player->played == 0)
+        player->began = now;
+    else if (now > player->shown_at)
+        player->rate +=
+            (1 / (now - player->shown_at) - player->rate) * (player->played < 8 ? 1.0 / player->played : 0.1);
+    player->played++;
+    player->late = now - due;
+    player->shown = true;
+    player->shown_at = now;
+    viewer_draw_tiles(viewer);
+    viewer->display.hud_dirty = true;
+    viewer->display.shown_at = 0;
+    viewer_show(viewer, now);
+    return true;
+}
+
+/* The frame after this one: the next that can be shown in time. */
+static uint32_t frame_after_this(struct viewer *viewer) {
+    struct viewer_player *player = &viewer->player;
+    uint32_t index = index_of(player, viewer->request.frame.number) + 1;
+    uint32_t skips = (uint32_t)(player->late / period_of(viewer));
+    if (index + skips < player->count) {
+        player->left_out += skips;
+        return number_of(player, index + skips);
+    }
+    if (!player->loops && index >= player->count)
+        return 0;
+    if (index < player->count) /* the last one is not left out */
+        return number_of(player, player->count - 1);
+    /* The script may have to run again. */
+    player->origin += ((double)index - player->origin_index) * period_of(viewer);
+    player->origin_index = 0;
+    player->forgives_delay = true;
+    return player->first;
+}
+
+enum player_decision viewer_player_decide(struct viewer *viewer, double now) {
+    struct viewer_player *player = &viewer->player;
+    bool waits = viewer->pass.state == PASS_WAITING && viewer->edit.pending.count == 0 && !viewer->edit.click_waits &&
+                 !viewer->trace.wanted;
+    if (player->count == 0 || !waits || viewer->pass.result == RESULT_NONE || viewer->pass.halted)
+        return PLAYER_REFINES;
+    if (player->wanted == 0 && player->playing) {
+        if (!player->shown && !show_frame(viewer, now))
+            return PLAYER_WAITS;
+        player->wanted = frame_after_this(viewer);
+        if (player->wanted == 0)
+            viewer_play(viewer, false);
+    }
+    if (player->wanted == 0)
+        return PLAYER_REFINES;
+    player->seeking = true;
+    player->asked = now;
+    return PLAYER_GOES;
+}
+
+bool viewer_awaits_frame(const struct viewer *viewer, double now) {
+    const struct viewer_player *player = &viewer->player;
+    bool next = player->seeking || (player->playing && !player->shown);
+    return next && now - player->shown_at < patience;
+}
