@@ -321,6 +321,23 @@ bool triangle_index_any(const struct triangle_index *index, const struct triangl
     return search[cpu_isa()](index, set, ray, cost);
 }
 
+bool triangle_index_nearest_but(const struct triangle_index *index, const struct triangle_set *set,
+                                const struct ray *ray, struct triangle_run run, struct triangle_hit *hit,
+                                struct triangle_cost *cost) {
+    static bool (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
+                                  struct triangle_run, struct triangle_hit *, struct triangle_cost *) =
+        OF_EVERY_ISA(triangle_nearest_but);
+    return search[cpu_isa()](index, set, ray, run, hit, cost);
+}
+
+bool triangle_index_any_but(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                            struct triangle_run run, uint32_t *triangle, struct triangle_cost *cost) {
+    static bool (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,
+                                  struct triangle_run, uint32_t *, struct triangle_cost *) =
+        OF_EVERY_ISA(triangle_any_but);
+    return search[cpu_isa()](index, set, ray, run, triangle, cost);
+}
+
 void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         triangle_visit *visit, void *context, struct triangle_cost *cost) {
     static void (*const search[])(const struct triangle_index *, const struct triangle_set *, const struct ray *,

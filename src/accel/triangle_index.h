@@ -39,6 +39,17 @@ bool triangle_index_nearest(const struct triangle_index *index, const struct tri
                             struct triangle_hit *hit, struct triangle_cost *cost);
 bool triangle_index_any(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
                         struct triangle_cost *cost);
+/* Triangles from number `first` on. */
+struct triangle_run {
+    uint32_t first, count;
+};
+/* The same for a ray that is known to hit no triangle of a run, such as that of its origin: they need no decision in
+ * double precision. *triangle: one that the ray hits. */
+bool triangle_index_nearest_but(const struct triangle_index *index, const struct triangle_set *set,
+                                const struct ray *ray, struct triangle_run run, struct triangle_hit *hit,
+                                struct triangle_cost *cost);
+bool triangle_index_any_but(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                            struct triangle_run run, uint32_t *triangle, struct triangle_cost *cost);
 /* Every triangle the whole line meets, in any order, perhaps one several times with the same bits. */
 typedef void triangle_visit(void *context, const struct triangle_hit *hit);
 void triangle_index_all(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,

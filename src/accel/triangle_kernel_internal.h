@@ -139,6 +139,8 @@ struct search {
     triangle_visit *visit;
     void *context;
     struct triangle_cost *cost;
+    struct triangle_run run;    /* left out, by the searches without a run of triangles */
+    uint32_t occluder;          /* that ended an "any" search of them */
     struct sheared_ray sheared; /* if it is ready */
     /* The nearest certain hit so far, with bounds of its local t; NULL: none. */
     const struct triangle_block *pending;
@@ -255,6 +257,7 @@ static inline bool decide(struct search *s, const struct triangle_block *block, 
     if (!is_nearer(s, &h))
         return false;
     s->found = true;
+    s->occluder = h.triangle;
     if (s->kind == TRIANGLE_ANY)
         return true;
     s->best = h.t;
@@ -352,8 +355,24 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
     } while (lanes);
 }
 
+/* The lanes of a block whose triangles the search leaves out. */
+static inline unsigned left_out(const struct search *s, const struct triangle_block *b) {
+    unsigned lanes = 0;
+#if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
+    __m256i number = _mm256_sub_epi32(_mm256_load_si256((const __m256i *)(const void *)b->ids),
+                                      _mm256_set1_epi32((int)s->run.first));
+    __m256i last = _mm256_set1_epi32((int)(s->run.count - 1)),
+            inside = _mm256_cmpeq_epi32(_mm256_min_epu32(number, last), number);
+    lanes = (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(inside));
+#else
+    for (unsigned i = 0; i < WIDTH; i++)
+        lanes |= (unsigned)(b->ids[i] - s->run.first < s->run.count) << i;
+#endif
+    return lanes;
+}
+
 static inline __attribute__((always_inline)) bool try_block(struct search *s, uint32_t number, const float from_t,
-                                                            const enum triangle_search kind) {
+                                                            const enum triangle_search kind, const bool leaves_out) {
     const struct triangle_block *b = s->index->blocks + number;
     simd8 ox = simd8_all(s->origin[0]), oy = simd8_all(s->origin[1]), oz = simd8_all(s->origin[2]);
     if (kind == TRIANGLE_NEAREST)
@@ -403,8 +422,10 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
     simd8 a = simd8_add(smaller, e), c = simd8_multiply_add(e, simd8_all(3), rest);
     simd8 f = simd8_add(t, slack);
     simd8 g = simd8_sub(simd8_multiply_add(det, simd8_all(s->limit - from_t), slack), t);
-    const unsigned all = (1 << WIDTH) - 1, missed = simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
-    unsigned doubtful = all;
+    const unsigned all = (1 << WIDTH) - 1;
+    unsigned missed = simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g))), doubtful = all;
+    if (leaves_out)
+        missed |= left_out(s, b);
     if (__builtin_expect(missed == all, 1))
         return false;
     if (kind != TRIANGLE_ALL) {
@@ -413,8 +434,11 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
         f = simd8_sub(t, slack);
         g = simd8_sub(simd8_multiply_sub(det, simd8_all(s->certain - from_t), slack), t);
         doubtful = missed | simd8_negative(simd8_min(simd8_min(a, c), simd8_min(f, g)));
-        if (doubtful != all && kind == TRIANGLE_ANY)
+        if (doubtful != all && kind == TRIANGLE_ANY) {
+            if (leaves_out)
+                s->occluder = b->ids[__builtin_ctz(doubtful ^ all)];
             return true;
+        }
         if (doubtful != all) { /* |T - t det| <= slack */
             unsigned certain = doubtful ^ all;
             simd8 r = simd8_div(simd8_all(1), det);
@@ -434,8 +458,9 @@ static inline __attribute__((always_inline)) bool try_block(struct search *s, ui
 }
 
 /* One hierarchy. True when an "any" search is over. */
-static inline __attribute__((always_inline)) bool
-descend(struct search *s, uint32_t reference, const enum triangle_search kind, const bool far_away, const bool many) {
+static inline __attribute__((always_inline)) bool descend(struct search *s, uint32_t reference,
+                                                          const enum triangle_search kind, const bool far_away,
+                                                          const bool many, const bool leaves_out) {
     struct node_stack stack;
     size_t top = 0;
     bool found = false;
@@ -482,7 +507,7 @@ descend(struct search *s, uint32_t reference, const enum triangle_search kind, c
         } else {
             tried++;
             float enter = kind == TRIANGLE_NEAREST && stack.enter[top] > 0 ? stack.enter[top] : 0;
-            if (try_block(s, reference & ~REF_LEAF, enter, kind)) {
+            if (try_block(s, reference & ~REF_LEAF, enter, kind, leaves_out)) {
                 found = true;
                 break;
             }
@@ -503,11 +528,11 @@ done:
 }
 
 static inline __attribute__((always_inline)) bool fly_camera_voxels(struct search *s, const enum triangle_search kind,
-                                                                    const bool many) {
+                                                                    const bool many, const bool leaves_out) {
     const struct triangle_index *index = s->index;
     if (!index->voxels)
         return false;
-    if (index->big && descend(s, index->big, kind, true, many))
+    if (index->big && descend(s, index->big, kind, true, many, leaves_out))
         return true;
     simd4 origin = simd4_load(s->origin), reciprocal = s->reciprocal, cell = simd4_load(index->cell),
           position = simd4_mul(simd4_add(origin, simd4_load(index->half_single)), simd4_load(index->inverse_cell));
@@ -529,7 +554,7 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
             if (reference == REF_OUTSIDE)
                 return false;
             s->cost->voxels++;
-            if (descend(s, reference, kind, true, many))
+            if (descend(s, reference, kind, true, many, leaves_out))
                 return true;
         }
         if (s->limit <= simd4_first(leave))
@@ -541,20 +566,22 @@ static inline __attribute__((always_inline)) bool fly_camera_voxels(struct searc
 }
 
 /* Rays that have been moved to the frame. */
-static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind) {
+static inline __attribute__((always_inline)) bool traversal(struct search *s, const enum triangle_search kind,
+                                                            const bool leaves_out) {
     const bool many = kind == TRIANGLE_NEAREST && s->set->count > MANY_TRIANGLES;
     if (s->index->only == REF_EMPTY)
-        return fly_camera_voxels(s, kind, many);
-    return s->far_away ? descend(s, s->index->only, kind, true, many) : descend(s, s->index->only, kind, false, many);
+        return fly_camera_voxels(s, kind, many, leaves_out);
+    return s->far_away ? descend(s, s->index->only, kind, true, many, leaves_out)
+                       : descend(s, s->index->only, kind, false, many, leaves_out);
 }
 
 /* Separate from the kernel of the others, which needs its registers. */
 static __attribute__((noinline)) bool fly_camera_nearest_apart(struct search *s) {
-    return traversal(s, TRIANGLE_NEAREST);
+    return traversal(s, TRIANGLE_NEAREST, false);
 }
 
 static __attribute__((noinline)) bool fly_camera_any_apart(struct search *s) {
-    return traversal(s, TRIANGLE_ANY);
+    return traversal(s, TRIANGLE_ANY, false);
 }
 
 static inline double power_of_two(uint64_t exponent_bits) {
@@ -667,9 +694,9 @@ bool KERNEL(nearest)(const struct triangle_index *index, const struct triangle_s
     if (s.moved)
         fly_camera_nearest_apart(&s);
     else if (set->count > MANY_TRIANGLES)
-        descend(&s, index->only, TRIANGLE_NEAREST, false, true);
+        descend(&s, index->only, TRIANGLE_NEAREST, false, true, false);
     else
-        descend(&s, index->only, TRIANGLE_NEAREST, false, false);
+        descend(&s, index->only, TRIANGLE_NEAREST, false, false, false);
     return decide_last(&s);
 }
 
@@ -684,7 +711,67 @@ bool KERNEL(any)(const struct triangle_index *index, const struct triangle_set *
     enum ray_start start_case = search_begin(&s);
     if (start_case != RAY_INSIDE)
         return start_case == RAY_UNUSABLE && triangle_brute_any(set, ray, cost);
-    return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false);
+    return s.moved ? fly_camera_any_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, false);
+}
+
+/* The same without a run of triangles. */
+static __attribute__((noinline)) bool fly_camera_nearest_but_apart(struct search *s) {
+    return traversal(s, TRIANGLE_NEAREST, true);
+}
+
+static __attribute__((noinline)) bool fly_camera_any_but_apart(struct search *s) {
+    return traversal(s, TRIANGLE_ANY, true);
+}
+
+/* An empty run begins where no triangle is. */
+static inline struct triangle_run run_to_leave_out(struct triangle_run run) {
+    return run.count > 0 ? run : (struct triangle_run){UINT32_MAX, 1};
+}
+
+bool KERNEL(nearest_but)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                         struct triangle_run run, struct triangle_hit *hit, struct triangle_cost *cost) {
+    struct search s;
+    s.cost = cost;
+    s.index = index;
+    s.set = set;
+    s.ray = ray;
+    s.kind = TRIANGLE_NEAREST;
+    s.hit = hit;
+    s.run = run_to_leave_out(run);
+    enum ray_start start_case = search_begin(&s);
+    if (start_case != RAY_INSIDE)
+        return start_case == RAY_UNUSABLE && triangle_brute_nearest(set, ray, hit, cost);
+    if (s.moved)
+        fly_camera_nearest_but_apart(&s);
+    else if (set->count > MANY_TRIANGLES)
+        descend(&s, index->only, TRIANGLE_NEAREST, false, true, true);
+    else
+        descend(&s, index->only, TRIANGLE_NEAREST, false, false, true);
+    return decide_last(&s);
+}
+
+bool KERNEL(any_but)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
+                     struct triangle_run run, uint32_t *triangle, struct triangle_cost *cost) {
+    struct search s;
+    s.cost = cost;
+    s.index = index;
+    s.set = set;
+    s.ray = ray;
+    s.kind = TRIANGLE_ANY;
+    s.run = run_to_leave_out(run);
+    enum ray_start start_case = search_begin(&s);
+    if (start_case == RAY_UNUSABLE) {
+        struct triangle_hit hit;
+        bool found = triangle_brute_nearest(set, ray, &hit, cost);
+        *triangle = hit.triangle;
+        return found;
+    }
+    if (start_case == RAY_MISSES)
+        return false;
+    if (!(s.moved ? fly_camera_any_but_apart(&s) : descend(&s, index->only, TRIANGLE_ANY, false, false, true)))
+        return false;
+    *triangle = s.occluder;
+    return true;
 }
 
 void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *set, const struct ray *ray,
@@ -705,5 +792,5 @@ void KERNEL(all)(const struct triangle_index *index, const struct triangle_set *
         triangle_brute_all(set, &line, visit, context, cost);
     if (start_case != RAY_INSIDE)
         return;
-    traversal(&s, TRIANGLE_ALL);
+    traversal(&s, TRIANGLE_ALL, false);
 }

@@ -11,6 +11,12 @@ enum triangle_search { TRIANGLE_NEAREST, TRIANGLE_ANY, TRIANGLE_ALL };
                                    const struct ray *ray, struct triangle_hit *hit, struct triangle_cost *cost);       \
     bool triangle_any_##suffix(const struct triangle_index *index, const struct triangle_set *set,                     \
                                const struct ray *ray, struct triangle_cost *cost);                                     \
+    bool triangle_nearest_but_##suffix(const struct triangle_index *index, const struct triangle_set *set,             \
+                                       const struct ray *ray, struct triangle_run run, struct triangle_hit *hit,       \
+                                       struct triangle_cost *cost);                                                    \
+    bool triangle_any_but_##suffix(const struct triangle_index *index, const struct triangle_set *set,                 \
+                                   const struct ray *ray, struct triangle_run run, uint32_t *triangle,                 \
+                                   struct triangle_cost *cost);                                                        \
     void triangle_all_##suffix(const struct triangle_index *index, const struct triangle_set *set,                     \
                                const struct ray *ray, triangle_visit *visit, void *context,                            \
                                struct triangle_cost *cost);

@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 /* The position of the whole primitive: anywhere; behind the tangent plane of the hit (convex shapes); in it (planar
- * shapes). */
-enum hit_convexity { CONVEXITY_NONE, CONVEXITY_BEHIND, CONVEXITY_PLANAR };
+ * shapes); anywhere, but the triangle that was hit is in it (meshes). */
+enum hit_convexity { CONVEXITY_NONE, CONVEXITY_BEHIND, CONVEXITY_PLANAR, CONVEXITY_FACETS };
 
 /* A surface point in the object space of the shape, filled by shape_describe. */
 struct surface {
@@ -68,25 +68,31 @@ struct hit {
     double time;
 };
 
-/* For ray->skip_primitive: a ray that leaves the surface in `direction` from the side `side` (the sign of the distance
- * of its origin along normal_geometric) does not hit its primitive again if no part of it is on that side. Directions
+/* What a ray is known not to hit, as ray->skip_primitive and ray->skip_part have it. */
+struct hit_skip {
+    uint32_t primitive, part;
+};
+/* A ray that leaves the surface in `direction` from the side `side` (the sign of the distance of its origin along
+ * normal_geometric) does not hit its primitive, or its triangle, again if no part of it is on that side. Directions
  * within 2^-20 of the surface are tested, because of rounding. */
-static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double side, struct vec3 direction) {
+static inline struct hit_skip hit_skip_from(const struct hit *hit, double side, struct vec3 direction) {
     double rise = vec3_dot(direction, hit->normal_geometric), min = 0x1p-20 * vec3_max_abs(direction);
-    bool apart = hit->convexity == CONVEXITY_BEHIND
-                     ? side >= 0 && rise > min
-                     : hit->convexity == CONVEXITY_PLANAR && (side < 0 ? -rise : rise) > min;
-    return apart ? hit->primitive + 1 : 0;
+    bool away = (side < 0 ? -rise : rise) > min;
+    if (!away || hit->convexity == CONVEXITY_NONE || (hit->convexity == CONVEXITY_BEHIND && side < 0))
+        return (struct hit_skip){0, 0};
+    return (struct hit_skip){hit->primitive + 1, hit->convexity == CONVEXITY_FACETS ? hit->part + 1 : 0};
 }
-/* The same for a ray that starts on the side to which it points. */
-static inline uint32_t hit_skip_primitive(const struct hit *hit, struct vec3 direction) {
-    return hit_skip_primitive_from(hit, vec3_dot(direction, hit->normal_geometric), direction);
+/* The same for whole primitives. */
+static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double side, struct vec3 direction) {
+    struct hit_skip skip = hit_skip_from(hit, side, direction);
+    return skip.part ? 0 : skip.primitive;
 }
 
 /* The ray that continues from the hit of `from` in a direction, with the hit's offset from the surface. */
 static inline struct ray hit_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
                                  const struct medium_stack *media) {
     double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
+    struct hit_skip skip = hit_skip_from(hit, side, direction);
     return (struct ray){.origin = vec3_add_scaled(hit->point, hit->normal_geometric, side),
                         .direction = direction,
                         .t_min = 0,
@@ -94,7 +100,8 @@ static inline struct ray hit_ray(const struct hit *hit, const struct ray *from, 
                         .time = from->time,
                         .footprint = {hit->footprint, from->footprint.spread},
                         .media = media,
-                        .skip_primitive = hit_skip_primitive(hit, direction)};
+                        .skip_primitive = skip.primitive,
+                        .skip_part = skip.part};
 }
 
 #endif

@@ -165,7 +165,7 @@ static void fill_report(const struct picture_work *work, const struct film *film
     report->triangles = world->triangles;
     report->mesh_bytes = world->mesh_memory;
     report->primitive_bytes = world_primitive_memory(world);
-    report->search_bytes = scene_accel_memory(&world->accel);
+    report->search_bytes = scene_accel_memory(&world->accel) + mesh_group_memory(&world->group);
     report->image_bytes = 0;
     for (const struct asset_image *entry = work->process->assets.images; entry; entry = entry->next)
         report->image_bytes += image_memory(entry->image);

@@ -6,6 +6,7 @@
 #include "math/affine.h"
 #include "math/vec3.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct medium_stack; /* of the solids the ray is inside of; material/medium.h */
@@ -22,8 +23,13 @@ struct ray {
     struct footprint footprint;
     const struct medium_stack *media;
     uint32_t skip_primitive; /* 1 + the number of a primitive that the ray is known not to hit; 0: none */
+    uint32_t skip_part;      /* 0: it hits no part of that primitive; else 1 + the triangle that it does not hit */
 };
 
+/* Whether the ray is known not to hit any part of a primitive. */
+static inline bool ray_skips(const struct ray *ray, uint32_t primitive) {
+    return primitive + 1 == ray->skip_primitive && ray->skip_part == 0;
+}
 static inline struct vec3 ray_at(const struct ray *ray, double t) {
     return vec3_add_scaled(ray->origin, ray->direction, t);
 }

@@ -204,6 +204,29 @@ bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind ac
                                       : triangle_brute_any(&mesh->set, ray, cost);
 }
 
+bool mesh_nearest_but(const struct mesh *mesh, const struct ray *ray, uint32_t triangle, enum accel_kind accel,
+                      struct geom_scratch *scratch, struct crossing *out) {
+    const struct triangle_index *index = search_structure_for(mesh, accel).index;
+    if (!index)
+        return mesh_nearest(mesh, ray, accel, scratch, out);
+    struct triangle_run run = {triangle, 1};
+    if (!triangle_index_nearest_but(index, &mesh->set, ray, run, &out->on_mesh, count_search(scratch, 1)))
+        return false;
+    out->leaf = 0;
+    out->flip = false;
+    return true;
+}
+
+bool mesh_any_but(const struct mesh *mesh, const struct ray *ray, uint32_t triangle, enum accel_kind accel,
+                  struct geom_scratch *scratch) {
+    const struct triangle_index *index = search_structure_for(mesh, accel).index;
+    uint32_t ignored;
+    if (!index)
+        return mesh_any(mesh, ray, accel, scratch);
+    return triangle_index_any_but(index, &mesh->set, ray, (struct triangle_run){triangle, 1}, &ignored,
+                                  count_search(scratch, 1));
+}
+
 uint64_t mesh_nearest_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active,
                              enum accel_kind accel, struct geom_scratch *scratch, struct packet_hits *out) {
     const struct triangle_index *index = search_structure_for(mesh, accel).index;
@@ -320,6 +343,11 @@ static void describe_uv(const struct mesh *mesh, uint32_t triangle, struct vec3 
         return;
     out->dpdu = vec3_scale(vec3_sub(vec3_scale(e1, dv2), vec3_scale(e2, dv1)), 1 / area);
     out->dpdv = vec3_scale(vec3_sub(vec3_scale(e2, du1), vec3_scale(e1, du2)), 1 / area);
+}
+
+bool mesh_is_plain(const struct mesh *mesh, uint32_t triangle) {
+    return !mesh->colours && (!mesh->normals || mesh->normal_corners[triangle][0] == MESH_NONE) &&
+           (!mesh->uvs || mesh->uv_corners[triangle][0] == MESH_NONE);
 }
 
 void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing,

@@ -98,8 +98,15 @@ uint64_t mesh_nearest_packet(const struct mesh *mesh, const struct ray_packet *r
 uint64_t mesh_any_packet(const struct mesh *mesh, const struct ray_packet *rays, uint64_t active, enum accel_kind accel,
                          struct geom_scratch *scratch);
 bool mesh_any(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch);
+/* The same for a ray that is known not to hit this triangle, where it starts. */
+bool mesh_nearest_but(const struct mesh *mesh, const struct ray *ray, uint32_t triangle, enum accel_kind accel,
+                      struct geom_scratch *scratch, struct crossing *out);
+bool mesh_any_but(const struct mesh *mesh, const struct ray *ray, uint32_t triangle, enum accel_kind accel,
+                  struct geom_scratch *scratch);
 bool mesh_crossings(const struct mesh *mesh, const struct ray *ray, enum accel_kind accel, struct geom_scratch *scratch,
                     struct crossing_list *out);
+/* The triangle has no vertex normals, uv and vertex colours. */
+bool mesh_is_plain(const struct mesh *mesh, uint32_t triangle);
 void mesh_describe(const struct mesh *mesh, const struct ray *ray, const struct crossing *crossing,
                    struct surface *out);
 

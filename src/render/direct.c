@@ -19,11 +19,13 @@ static double side_of(const struct hit *hit, struct vec3 from) {
 
 static bool is_free(struct integrator_state *state, const struct hit *hit, struct vec3 from, struct vec3 direction,
                     double t_max) {
+    struct hit_skip skip = hit_skip_from(hit, side_of(hit, from), direction);
     struct ray shadow = {.origin = from,
                          .direction = direction,
                          .t_max = t_max,
                          .time = hit->time,
-                         .skip_primitive = hit_skip_primitive_from(hit, side_of(hit, from), direction)};
+                         .skip_primitive = skip.primitive,
+                         .skip_part = skip.part};
     state->shadow_rays++;
     bool free = !world_any(state->job->world, &shadow, state->scratch);
     uint32_t blocker = world_blocker(state->scratch);

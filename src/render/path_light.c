@@ -61,8 +61,10 @@ static struct ray shadow_ray(const struct path_vertex *vertex, const struct worl
     shadow.t_max = light_target_end(&sample->target);
     /* A classic area light is shaded from its centre, which may be on the other side of the surface than this point. */
     double side = vec3_dot(sample->direction, hit->normal_geometric);
-    shadow.skip_primitive =
-        sample->skip_primitive ? sample->skip_primitive : hit_skip_primitive_from(hit, side, shadow.direction);
+    struct hit_skip skip = sample->skip_primitive ? (struct hit_skip){sample->skip_primitive, 0}
+                                                  : hit_skip_from(hit, side, shadow.direction);
+    shadow.skip_primitive = skip.primitive;
+    shadow.skip_part = skip.part;
     return shadow;
 }
 

@@ -287,6 +287,8 @@ enum hit_convexity shape_convexity(const struct shape *shape) {
         return revolved_quadric_is_convex(&shape->revolved_quadric) ? CONVEXITY_BEHIND : CONVEXITY_NONE;
     case SHAPE_PLANAR:
         return CONVEXITY_PLANAR;
+    case SHAPE_MESH:
+        return CONVEXITY_FACETS;
     case SHAPE_QUADRIC:
     case SHAPE_TORUS:
     case SHAPE_SUPERELLIPSOID:
@@ -297,7 +299,6 @@ enum hit_convexity shape_convexity(const struct shape *shape) {
     case SHAPE_BLOB:
     case SHAPE_IMPLICIT:
     case SHAPE_CURVE:
-    case SHAPE_MESH:
         break;
     }
     return CONVEXITY_NONE;

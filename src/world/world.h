@@ -10,6 +10,7 @@
 #include "material/medium.h"
 #include "math/motion.h"
 #include "scene/node.h"
+#include "world/mesh_group.h"
 #include "world/scene_accel.h"
 
 /* The map from a moving node to the world: after its own motion a fixed transform, then the next moving ancestor. */
@@ -86,6 +87,7 @@ struct world {
     uint32_t light_count;
     struct sky sky;
     struct scene_accel accel;
+    struct mesh_group group;    /* single rays search it and its `rest` in place of accel.tree */
     enum accel_kind mesh_accel; /* of the meshes: as requested */
     uint32_t scratch_need;
     uint64_t triangles; /* instances counted */

@@ -82,7 +82,10 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!make_materials(&flattening) || !world_primitive_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);
-    return scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error);
+    if (!scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
+        return false;
+    return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||
+           mesh_group_build(&world->group, world, arena, pool, error);
 }
 
 bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
@@ -107,6 +110,7 @@ void world_destroy(struct world *world) {
     world->moving = NULL;
     world->links = NULL;
     scene_accel_destroy(&world->accel);
+    mesh_group_destroy(&world->group);
 }
 
 size_t world_primitive_memory(const struct world *world) {

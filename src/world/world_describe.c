@@ -1,7 +1,7 @@
 /* The complete description of the crossing that a search has found. */
 #include "math/frame.h"
 #include "shape/sphere.h"
-#include "world/world.h"
+#include "world/world_internal.h"
 
 #include <string.h>
 
@@ -125,8 +125,67 @@ static double pattern_scale(const struct transform *map, const struct csg_leaf *
     return fmax(vec3_length(a), vec3_length(b));
 }
 
+/* --- plain triangles of the group --- */
+
+/* The material of a face of a mesh. */
+static uint32_t material_of_slot(const struct prototype *prototype, uint32_t slot) {
+    return prototype->material + (slot < prototype->slot_count ? slot : 0);
+}
+
+struct group_facet world_facet(const struct world *world, uint32_t primitive, uint32_t triangle) {
+    const struct prototype *prototype = primitive_prototype(world, primitive);
+    const struct mesh *mesh = geometry_mesh(&prototype->geometry);
+    const struct ray no_direction = {.t_max = INFINITY}; /* becomes the normal of a triangle without area */
+    struct surface surface;
+    mesh_describe(mesh, &no_direction, &(struct crossing){.part = triangle}, &surface);
+    uint32_t material = material_of_slot(prototype, surface.material_slot);
+    if (!mesh_is_plain(mesh, triangle) || vec3_max_abs(surface.normal) == 0 || world->material_has_image[material] ||
+        world->material_has_tangents[material])
+        return (struct group_facet){.plain = false};
+    return (struct group_facet){.normal = surface.normal,
+                                .unit_normal = vec3_normalize(as_it_is(surface.normal)),
+                                .error = surface.error,
+                                .material = material,
+                                .plain = true};
+}
+
+/* The same as for any other surface, with less to compute. */
+static void describe_facet(const struct world *world, const struct ray *ray, uint32_t index,
+                           const struct crossing *crossing, uint32_t number, struct hit *hit) {
+    const struct group_facet *facet = &world->group.facets[number];
+    const double(*v)[3] = world->group.set.vertices + (size_t)3 * number;
+    const struct vec3 zero = {0, 0, 0}, a = {v[0][0], v[0][1], v[0][2]}, b = {v[1][0], v[1][1], v[1][2]},
+                      c = {v[2][0], v[2][1], v[2][2]};
+    double weight = 1 - crossing->u - crossing->v, length = vec3_length(ray->direction);
+    struct vec3 point = vec3_add_scaled(vec3_add_scaled(vec3_scale(a, weight), b, crossing->u), c, crossing->v);
+    hit->t = crossing->t;
+    hit->point = vec3_add(point, zero);
+    hit->view = vec3_scale(ray->direction, -1 / length);
+    hit->normal_geometric = hit->normal = facet->unit_normal;
+    hit->pattern_point = point;
+    hit->pattern_normal = facet->normal;
+    hit->has_uv = hit->has_colour = false;
+    hit->colour = hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
+    hit->u = hit->v = hit->curvature = hit->pattern_scale = 0;
+    hit->offset = 16 * facet->error + (vec3_max_abs(point) + vec3_max_abs(hit->point)) * 0x1p-42;
+    hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
+    hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
+    hit->primitive = index;
+    hit->leaf = 0;
+    hit->part = crossing->part;
+    hit->material = facet->material;
+    hit->convexity = CONVEXITY_FACETS;
+    hit->time = ray->time;
+}
+
 void world_describe(const struct world *world, const struct ray *ray, uint32_t index, const struct crossing *crossing,
                     struct hit *hit) {
+    const struct mesh_group *group = &world->group;
+    if (group->index && mesh_group_run(group, index).count > 0 &&
+        group->facets[group->first[index] + crossing->part].plain) {
+        describe_facet(world, ray, index, crossing, group->first[index] + crossing->part, hit);
+        return;
+    }
     const struct prototype *prototype = primitive_prototype(world, index);
     struct transform world_from_object;
     struct ray ray_object;

@@ -27,15 +27,25 @@ void world_scratch_destroy(struct world_scratch *scratch) {
 static bool nearest_of_mesh(const struct world *world, uint32_t index, const struct ray *ray_object,
                             struct geom_scratch *geom, struct crossing *out) {
     const struct prototype *prototype = primitive_prototype(world, index);
-    bool found = mesh_nearest(prototype->geometry.shape.mesh, ray_object, world->mesh_accel, geom, out);
+    const struct mesh *mesh = prototype->geometry.shape.mesh;
+    if (ray_object->skip_part > 0 && index + 1 == ray_object->skip_primitive && prototype->cull == CULL_NONE)
+        return mesh_nearest_but(mesh, ray_object, ray_object->skip_part - 1, world->mesh_accel, geom, out);
+    bool found = mesh_nearest(mesh, ray_object, world->mesh_accel, geom, out);
     if (prototype->cull == CULL_NONE)
         return found;
     struct ray rest = *ray_object;
     while (found && out->enter == (prototype->cull == CULL_FRONT)) {
         rest.t_min = out->t;
-        found = mesh_nearest(prototype->geometry.shape.mesh, &rest, world->mesh_accel, geom, out);
+        found = mesh_nearest(mesh, &rest, world->mesh_accel, geom, out);
     }
     return found;
+}
+
+static bool any_of_mesh(const struct mesh *mesh, uint32_t index, const struct ray *ray_object, enum accel_kind accel,
+                        struct geom_scratch *geom) {
+    if (ray_object->skip_part > 0 && index + 1 == ray_object->skip_primitive)
+        return mesh_any_but(mesh, ray_object, ray_object->skip_part - 1, accel, geom);
+    return mesh_any(mesh, ray_object, accel, geom);
 }
 
 /* Repeats a query of one primitive with more scratch until it fits; meshes need none. */
@@ -77,7 +87,7 @@ static bool any_with_holes(const struct world *world, uint32_t index, const stru
 
 bool world_ask_any(const struct world *world, uint32_t index, const struct ray *ray, struct world_scratch *scratch) {
     const struct prototype *prototype = primitive_prototype(world, index);
-    if (index + 1 == ray->skip_primitive)
+    if (ray_skips(ray, index))
         return false;
     if (prototype->holes)
         return any_with_holes(world, index, ray, scratch);
@@ -87,7 +97,7 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
         struct crossing ignored;
         bool found = mesh && prototype->cull != CULL_NONE
                          ? nearest_of_mesh(world, index, &ray_object, &scratch->geom, &ignored)
-                     : mesh ? mesh_any(mesh, &ray_object, world->mesh_accel, &scratch->geom)
+                     : mesh ? any_of_mesh(mesh, index, &ray_object, world->mesh_accel, &scratch->geom)
                             : geometry_any(&prototype->geometry, &ray_object, &scratch->geom);
         if (!scratch->geom.overflow)
             return found;
@@ -118,16 +128,9 @@ struct search {
     struct crossing *best, *next;
 };
 
-static void try_nearest(struct search *s, uint32_t index) {
-    if (index + 1 == s->ray->skip_primitive)
-        return;
-    bool as_it_is = s->world->primitives[index].linear == LINEAR_NONE;
-    struct ray ray_object;
+/* Keeps the crossing in the slot `next`, unless the best one is nearer. */
+static void keep_nearest(struct search *s, uint32_t index) {
     struct crossing *crossing = s->next;
-    if (!as_it_is)
-        ray_object = primitive_ray(s->world, index, &s->limited);
-    if (!world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, crossing))
-        return;
     if (s->found && !(crossing->t < s->best->t || (crossing->t == s->best->t && index < s->primitive)))
         return;
     s->next = s->best;
@@ -136,6 +139,17 @@ static void try_nearest(struct search *s, uint32_t index) {
     s->found = true;
     double just_behind = crossing->t + fabs(crossing->t) * 0x1p-52;
     s->limited.t_max = just_behind < s->ray->t_max ? just_behind : s->ray->t_max;
+}
+
+static void try_nearest(struct search *s, uint32_t index) {
+    if (ray_skips(s->ray, index))
+        return;
+    bool as_it_is = s->world->primitives[index].linear == LINEAR_NONE;
+    struct ray ray_object;
+    if (!as_it_is)
+        ray_object = primitive_ray(s->world, index, &s->limited);
+    if (world_ask_nearest(s->world, index, as_it_is ? &s->limited : &ray_object, s->scratch, s->next))
+        keep_nearest(s, index);
 }
 
 /* Tests one primitive. True: the search is over. */
@@ -209,10 +223,40 @@ FOR_EACH_MODE void search_grid(struct search *s, enum search_mode mode) {
     s->scratch->geom.cost.voxels += traversal.voxels;
 }
 
+/* The members of the group, all at once. True: an occluder. */
+FOR_EACH_MODE bool search_group(struct search *s, enum search_mode mode) {
+    const struct mesh_group *group = &s->world->group;
+    struct geom_scratch *geom = &s->scratch->geom;
+    struct triangle_run skipped = mesh_group_skipped(group, s->ray);
+    uint32_t triangle;
+    geom->shape_tests++;
+    if (mode == SEARCH_ANY) {
+        if (!triangle_index_any_but(group->index, &group->set, s->ray, skipped, &triangle, &geom->cost))
+            return false;
+        s->primitive = group->primitive[triangle];
+        return s->found = true;
+    }
+    struct crossing *crossing = s->next;
+    if (triangle_index_nearest_but(group->index, &group->set, &s->limited, skipped, &crossing->on_mesh, &geom->cost)) {
+        uint32_t index = group->primitive[crossing->part];
+        crossing->part -= group->first[index];
+        crossing->leaf = 0;
+        crossing->flip = false;
+        keep_nearest(s, index);
+    }
+    return false;
+}
+
 FOR_EACH_MODE void search_tree(struct search *s, enum search_mode mode) {
     struct box_tree_traversal traversal;
     uint32_t index, tested = s->primitive;
-    box_tree_traversal_begin(&traversal, &s->world->accel.tree, s->ray);
+    const struct box_tree *tree = &s->world->accel.tree;
+    if (s->world->group.index) {
+        tree = &s->world->group.rest;
+        if (search_group(s, mode) || tree->item_count == 0)
+            return;
+    }
+    box_tree_traversal_begin(&traversal, tree, s->ray);
     while (mode == SEARCH_NEAREST ? box_tree_traversal_next(&traversal, search_end(s, mode), &index)
                                   : box_tree_traversal_any(&traversal, search_end(s, mode), &index)) {
         if ((mode == SEARCH_NEAREST || index != tested) && try_primitive(s, index, mode))
@@ -303,9 +347,13 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     s.scratch = scratch;
     s.found = false;
     s.primitive = *blocker;
-    s.probe = box_probe_make(ray);
     scratch->any_rays++;
-    if (!(*blocker < world->primitive_count && try_boxed(&s, *blocker, SEARCH_ANY)))
+    /* A group is searched in about the time of one member. */
+    bool in_group =
+        world->group.index && (*blocker >= world->primitive_count || mesh_group_run(&world->group, *blocker).count > 0);
+    if (!in_group)
+        s.probe = box_probe_make(ray);
+    if (in_group || !(*blocker < world->primitive_count && try_boxed(&s, *blocker, SEARCH_ANY)))
         search_accel(&s, SEARCH_ANY);
     *blocker = s.found ? s.primitive : WORLD_NOTHING;
     return s.found;

@@ -262,7 +262,9 @@ TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
                                  .direction = direction,
                                  .t_max = i % 2 ? INFINITY : 3};
             struct ray passing = onward;
-            passing.skip_primitive = hit_skip_primitive(&hit, direction);
+            struct hit_skip skip = hit_skip_from(&hit, side, direction);
+            passing.skip_primitive = skip.primitive;
+            passing.skip_part = skip.part;
             if (!passing.skip_primitive)
                 continue;
             reported++;
@@ -271,11 +273,12 @@ TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
             bool met = world_nearest_crossing(&s.world, &onward, &scratch, &a, &x);
             met_others += met;
             CHECK_EQ_INT(world_nearest_crossing(&s.world, &passing, &scratch, &b, &y), met);
-            CHECK(!met || (a == b && x.t == y.t && a != hit.primitive));
+            CHECK(!met || (a == b && x.t == y.t && (a != hit.primitive || (skip.part && x.part != hit.part))));
             CHECK_EQ_INT(world_any(&s.world, &passing, &scratch), met);
             struct vec3 edge = vec3_scale(hit.normal_geometric, 1e-3);
-            struct occluder_candidates occluder_candidates = world_occluder_candidates(
-                &s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge, passing.skip_primitive);
+            struct occluder_candidates occluder_candidates =
+                world_occluder_candidates(&s.world, onward.origin, vec3_add(onward.origin, direction), edge, edge,
+                                          skip.part ? 0 : skip.primitive);
             struct vec3 target = vec3_add(onward.origin, direction);
             struct ray segment = {.origin = onward.origin, .direction = vec3_sub(target, onward.origin), .t_max = 1};
             CHECK_EQ_INT(world_visible(&s.world, &occluder_candidates,
@@ -287,6 +290,107 @@ TEST(the_primitive_that_a_ray_skips_would_not_have_been_met) {
         shape_makers_destroy(&makers);
     }
     CHECK(reported > 10000 && met_others > 2000);
+}
+
+enum { SMALL_MESHES = 9 };
+
+/* Up to twelve triangles; some meshes have vertex normals. */
+static struct mesh *small_mesh(struct test_random *random, bool smooth) {
+    enum { LIMIT = 12 };
+    double vertices[3 * LIMIT][3], normals[1][3] = {{0.6, 0, 0.8}};
+    uint32_t starts[LIMIT + 1], corners[3 * LIMIT], normal_of[3 * LIMIT] = {0};
+    uint32_t count = 1 + (uint32_t)test_uniform(random, 0, LIMIT - 1);
+    double middle[3];
+    for (int k = 0; k < 3; k++)
+        middle[k] = test_uniform(random, -3, 3);
+    for (uint32_t i = 0; i < 3 * count; i++) {
+        for (int k = 0; k < 3; k++)
+            vertices[i][k] = middle[k] + test_uniform(random, -3, 3);
+        corners[i] = i;
+        starts[i / 3] = i / 3 * 3;
+    }
+    starts[count] = 3 * count;
+    struct mesh_input input = {.name = "small",
+                               .vertex_count = 3 * count,
+                               .face_count = count,
+                               .vertices = (const double(*)[3])vertices,
+                               .face_start = starts,
+                               .vertex_index = corners,
+                               .normal_count = smooth ? 1 : 0,
+                               .normals = smooth ? (const double(*)[3])normals : NULL,
+                               .normal_index = smooth ? normal_of : NULL};
+    struct error error;
+    return mesh_create(&input, &error);
+}
+
+/* What shading reads. */
+static bool same_hit(const struct hit *a, const struct hit *b) {
+    return a->t == b->t && a->primitive == b->primitive && a->part == b->part && a->front == b->front &&
+           a->material == b->material && a->offset == b->offset && a->footprint == b->footprint &&
+           a->convexity == b->convexity && a->has_uv == b->has_uv && a->has_colour == b->has_colour &&
+           a->pattern_scale == b->pattern_scale && memcmp(&a->point, &b->point, sizeof a->point) == 0 &&
+           memcmp(&a->view, &b->view, sizeof a->view) == 0 && memcmp(&a->normal, &b->normal, sizeof a->normal) == 0 &&
+           memcmp(&a->normal_geometric, &b->normal_geometric, sizeof a->normal) == 0 &&
+           memcmp(&a->pattern_point, &b->pattern_point, sizeof a->point) == 0 &&
+           memcmp(&a->pattern_normal, &b->pattern_normal, sizeof a->normal) == 0;
+}
+
+/* A ray, and one that leaves its hit and skips what it cannot hit. */
+static void compare_group(const struct world *world, const struct world *single, struct world_scratch *scratch,
+                          struct ray ray, struct test_random *random, int *hits) {
+    for (int bounce = 0; bounce < 3; bounce++) {
+        struct hit a, b;
+        bool met = world_nearest(single, &ray, scratch, &a);
+        CHECK_EQ_INT(world_nearest(world, &ray, scratch, &b), met);
+        CHECK_EQ_INT(world_any(world, &ray, scratch), met);
+        CHECK_EQ_INT(world_blocker(scratch) != WORLD_NOTHING, met);
+        if (!met)
+            return;
+        CHECK(same_hit(&a, &b));
+        ++*hits;
+        ray = hit_ray(&a, &ray, random_ray(random, 1).direction, NULL);
+    }
+}
+
+TEST(small_meshes_that_are_searched_together_have_the_hits_of_each) {
+    struct test_random random = {5};
+    int hits = 0;
+    for (int w = 0; w < 30; w++) {
+        struct stage s;
+        struct mesh *meshes[SMALL_MESHES];
+        stage_begin(&s, 1);
+        const struct material *material = stage_phong(&s, vec3_all(0.5), vec3_all(0), 0);
+        struct node *root = scene_node(&s.scene, NODE_GROUP, "root", &s.error);
+        for (int i = 0; i < SMALL_MESHES; i++) {
+            struct node *node = scene_node(&s.scene, NODE_GEOMETRY, "mesh", &s.error);
+            meshes[i] = i > 0 && i == w % SMALL_MESHES ? mesh_share(meshes[i - 1]) : small_mesh(&random, i % 3 == 1);
+            node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = meshes[i]};
+            node->material = material;
+            CHECK(node_add_child(&s.scene, root, node, &s.error));
+        }
+        if (w % 2)
+            stage_move(&s, stage_sphere(&s, root, material), 1, 0.5, -1);
+        CHECK(stage_build(&s, root, ACCEL_AUTO));
+        CHECK(s.world.group.index != NULL);
+        struct world single = s.world;
+        single.group.index = NULL;
+        struct world_scratch scratch;
+        CHECK(world_scratch_init(&scratch, &s.world));
+        for (int i = 0; i < 2000; i++) {
+            struct ray ray = random_ray(&random, i % 10 == 9 ? 1e4 : 1.5);
+            if (i % 10 == 9)
+                ray.direction = vec3_sub(ray.direction, ray.origin);
+            ray.footprint = (struct footprint){0.01, 0.001};
+            if (i % 7 == 6)
+                ray.t_min = 0.5;
+            compare_group(&s.world, &single, &scratch, ray, &random, &hits);
+        }
+        world_scratch_destroy(&scratch);
+        stage_end(&s);
+        for (int i = 0; i < SMALL_MESHES; i++)
+            mesh_release(meshes[i]);
+    }
+    CHECK(hits > 20000);
 }
 
 /* Camera rays of a few pixels, rays along an axis, and rays in all directions, which must be traced one by one. */
