@@ -1715,6 +1715,9 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Steps of light of style toon, beside shadow.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
 ---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
 ---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
@@ -1795,6 +1798,9 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Steps of light of style toon, beside shadow.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
 ---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
 ---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
@@ -1987,6 +1993,9 @@ function node:translate(x, y, z) end
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Steps of light of style toon, beside shadow.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
 ---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
 ---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.

@@ -179,16 +179,6 @@ void aov_colour(enum aov aov, const struct aov_scale *scale, const float value[3
 
 /* Render layers, tile by tile after the picture is done. */
 
-/* Through the middle of the lens, when the shutter opens. */
-static bool middle_ray(const struct renderer *renderer, const struct pixel_sample *position, struct ray *out) {
-    double x = (double)position->x + position->dx, y = (double)position->y + position->dy;
-    if (camera_is_plain(&renderer->camera)) {
-        *out = camera_ray(&renderer->camera, x, y);
-        return true;
-    }
-    return camera_ray_through(&renderer->camera, x, y, (struct sample2){0.5, 0.5}, 0, out);
-}
-
 static uint64_t work_of(const struct worker *worker) {
     const struct geom_scratch *done = &worker->scratch.geom;
     return done->cost.hierarchy_steps + done->cost.voxels + done->cost.triangle_tests + done->box_tests +
@@ -243,7 +233,7 @@ void renderer_layer_item(void *context, uint32_t item, int index) {
             float values[AOV_COUNT][3] = {{0}};
             struct pixel_sample position = renderer_first_sample(renderer, x, y);
             struct ray ray;
-            if (middle_ray(renderer, &position, &ray))
+            if (renderer_middle_ray(renderer, (double)position.x + position.dx, (double)position.y + position.dy, &ray))
                 aov_surface(renderer->job->world, &ray, mask, &worker->scratch, values);
             if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
                 measure_pixel(renderer, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);

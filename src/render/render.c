@@ -230,6 +230,8 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
     if (!integrator_traits(s->integrator).has_light_parts && s->aov & AOV_PATH && s->aov != AOV_ALL)
         return error_set(error, ERROR_USAGE, "--aov %s is a layer of --integrator path only",
                          aov_name(path_layer(s->aov)));
+    if (integrator_traits(s->integrator).progressive && (s->style != STYLE_NONE || settings_line_width(s) > 0))
+        return error_set(error, ERROR_SCENE, "styles and lines are for the integrator 'whitted', not for 'path'");
     *area = (struct render_area){0, 0, job->width, job->height};
     if (!s->cropped)
         return true;
@@ -469,6 +471,8 @@ struct settings settings_default(void) {
                              .side_tolerance = 0.005,
                              .corner_tolerance = 0.01,
                              .area_samples = 4,
+                             .line_width = -1,
+                             .toon_steps = 3,
                              .max_depth = DEPTH_DEFAULT,
                              .roulette_depth = ROULETTE_DEPTH_DEFAULT,
                              .specular = SPECULAR_PHONG,

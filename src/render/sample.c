@@ -18,6 +18,14 @@ bool renderer_prepare_at(const struct render_job *job, double ray_time, struct c
     return camera_prepare(&camera, settings, (struct picture_size){job->width, job->height}, out, warning, error);
 }
 
+bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out) {
+    if (camera_is_plain(&renderer->camera)) {
+        *out = camera_ray(&renderer->camera, x, y);
+        return true;
+    }
+    return camera_ray_through(&renderer->camera, x, y, (struct sample2){0.5, 0.5}, 0, out);
+}
+
 static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *worker, struct ray *ray, double share,
                                   uint64_t key) {
     ray->footprint.spread *= share;

@@ -113,6 +113,15 @@ enum filter_kind { FILTERS(LIST_MEMBER) };
     X(AA_GRID, "grid")                                                                                                 \
     X(AA_ROTATED, "rotated")
 enum aa_pattern { AA_PATTERNS(LIST_MEMBER) };
+/* How surfaces show light (render/style_internal.h); of Whitted's integrator. */
+#define STYLES(X)                                                                                                      \
+    X(STYLE_NONE, "none")                                                                                              \
+    X(STYLE_INK, "ink")                                                                                                \
+    X(STYLE_TOON, "toon")                                                                                              \
+    X(STYLE_GOOCH, "gooch")
+enum style { STYLES(LIST_MEMBER) };
+#define LINE_WIDTH_DEFAULT 2.0 /* with a style */
+enum { LINE_WIDTH_MAX = 32, TOON_STEPS_MAX = 64 };
 #define TILE_ORDERS(X)                                                                                                 \
     X(ORDER_SPREAD, "spread")                                                                                          \
     X(ORDER_CENTRE, "centre")                                                                                          \
@@ -141,6 +150,9 @@ struct settings {
     int reflect_limit, refract_limit;        /* 0..1000 */
     double side_tolerance, corner_tolerance; /* squared RGB distance, >= 0 */
     bool use_tir;
+    enum style style;
+    double line_width;  /* of lines at edges, pixels, 0..LINE_WIDTH_MAX; negative: that of the style */
+    int toon_steps;     /* 1..TOON_STEPS_MAX */
     int area_samples;   /* -al-samples: N x N shadow rays; 1..64 */
     int path_samples;   /* --spp: samples of a pixel; 0: not set, PATH_SAMPLES_DEFAULT */
     int max_depth;      /* scattering events of a path, 0..DEPTH_MAX: 0 emission, 1 direct light */
@@ -179,6 +191,11 @@ struct camera {
         up;     /* view: direction, or point with view_is_target; nothing needs to be unit or at right angles */
     double fov; /* full vertical angle, degrees, in (0, 180) */
 };
+
+static inline double settings_line_width(const struct settings *settings) {
+    double of_style = settings->style == STYLE_NONE ? 0 : LINE_WIDTH_DEFAULT;
+    return settings->line_width < 0 ? of_style : settings->line_width;
+}
 
 static inline bool settings_linear(const struct settings *settings) {
     return settings->colour == COLOUR_LINEAR ||

@@ -4,7 +4,7 @@
 
 #include "material/medium.h"
 #include "math/range.h"
-#include "render/direct_internal.h"
+#include "render/style_internal.h"
 
 /* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
 static const double light_limit = 1e200;
@@ -140,7 +140,7 @@ static struct vec3 follow_rough(struct integrator_state *state, const struct sur
 
 static struct vec3 shade(struct integrator_state *state, const struct surface_point *at, const struct path *path) {
     observe_surface(state->observer, at->bsdf);
-    struct vec3 colour = direct_light(state, at->hit, at->bsdf, path->key);
+    struct vec3 colour = style_light(state, at->hit, at->bsdf, path->key);
     colour = vec3_add(colour, at->bsdf->emission);
     struct bsdf_branch branches[BSDF_LOBES];
     const struct bsdf_draw smooth = {.facet = at->bsdf->side};
@@ -235,6 +235,11 @@ static struct vec3 trace(struct integrator_state *state, const struct ray *ray, 
     return incident_radiance(state, ray, met ? &hit : NULL, path);
 }
 
+/* A drawing of lines alone. */
+static bool is_blank(const struct integrator_state *state) {
+    return state->job->settings.style == STYLE_INK;
+}
+
 static void record_hit(const struct world *world, const struct hit *hit, struct camera_hit *out) {
     bool through =
         world->material_medium[hit->material] != MEDIUM_NONE || primitive_prototype(world, hit->primitive)->holes;
@@ -249,6 +254,8 @@ struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state
     struct ray from_eye = *ray;
     struct hit hit;
     from_eye.media = state->eye_medium_stack;
+    if (is_blank(state))
+        return vec3_all(1);
     if (integrator_cancelled(state))
         return vec3_all(0);
     bool met = world_nearest(state->job->world, &from_eye, state->scratch, &hit);
@@ -263,6 +270,8 @@ struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_s
     struct ray from_eye = *ray;
     struct hit hit;
     from_eye.media = state->eye_medium_stack;
+    if (is_blank(state))
+        return vec3_all(1);
     if (integrator_cancelled(state))
         return vec3_all(0);
     if (met)

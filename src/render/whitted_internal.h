@@ -7,6 +7,7 @@
 #include "render/filter_internal.h"
 #include "render/render.h"
 #include "render/render_internal.h"
+#include "render/style_internal.h"
 #include "render/thin_map_internal.h"
 
 /* Of one worker. */
@@ -16,9 +17,10 @@ struct whitted_worker {
     struct vec3 first[(FILM_TILE + 2) * (FILM_TILE + 2)];
     struct camera_hit hits[(FILM_TILE + 2) * (FILM_TILE + 2)]; /* AA_ROTATED */
     struct camera_hit patch[PACKET_RAYS];
+    struct contour contour;
 };
 
-/* Of a run. Owns the photon map, the map of thin primitives and the array of workers. */
+/* Of a run. Owns the photon map, the map of thin primitives and the array of workers with their contours. */
 struct whitted {
     double cutoff; /* cutoff_weight: rays of less weight are not followed */
     /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
@@ -29,6 +31,7 @@ struct whitted {
     struct filter filter;
     struct photon_map caustics;
     struct whitted_worker *workers;
+    int worker_count;
 };
 
 /* See render/integrator_internal.h. `whitted` is zero. */

@@ -87,12 +87,20 @@ bool whitted_create(struct whitted *whitted, struct renderer *renderer, int work
     whitted->workers = mem_alloc_zero((size_t)workers, sizeof *whitted->workers);
     if (!whitted->workers)
         return error_no_memory(error, "the workers of a render");
+    whitted->worker_count = workers;
+    double line_width = settings_line_width(&renderer->job->settings);
+    for (int i = 0; i < workers && line_width > 0; i++) {
+        if (!contour_init(&whitted->workers[i].contour, line_width))
+            return error_no_memory(error, "the workers of a render");
+    }
     return draw_thin(whitted, renderer, error) && send_photons(whitted, renderer, workers, statistics, error);
 }
 
 void whitted_destroy(struct whitted *whitted) {
     photon_map_destroy(&whitted->caustics);
     thin_map_destroy(&whitted->thin);
+    for (int i = 0; i < whitted->worker_count; i++)
+        contour_destroy(&whitted->workers[i].contour);
     mem_free(whitted->workers);
 }
 
@@ -377,8 +385,14 @@ static void finish_pixel(const struct part *part, int64_t x, int64_t y) {
     const struct vec3 *first = part->has_first ? first_at(part, x, y) : NULL;
     bool full = part->whitted->full, marked = full || is_marked(part, x, y);
     struct vec3 colour = marked ? all_samples(part, x, y, first) : *first;
+    double line = contour_coverage(&part->own->contour, x, y);
+    struct vec3 first_colour = first ? *first : colour;
+    if (line > 0) {
+        colour = vec3_scale(colour, 1 - line);
+        first_colour = vec3_scale(first_colour, 1 - line);
+    }
     store(film->pixels[at].rgb, colour);
-    store(&film->floats[at * film->record.floats], first ? *first : colour);
+    store(&film->floats[at * film->record.floats], first_colour);
     film->marked[at] = marked;
     part->own->marked += marked;
     struct pixel_pattern pattern = pattern_of(part->whitted, part->renderer, x, y);
@@ -449,6 +463,8 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
     }
     if (settings->show_refined && part.has_first)
         show_refined(&part, tile);
+    if (!contour_find(&part.own->contour, renderer, worker, tile))
+        return false;
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
             if (renderer_stopped(renderer, worker))

@@ -65,6 +65,12 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->tone.srgb = args[RENDER_SRGB].boolean;
     if (args[RENDER_DEEP].given)
         settings->deep = args[RENDER_DEEP].boolean;
+    if (args[RENDER_STYLE].given)
+        settings->style = (enum style)args[RENDER_STYLE].choice;
+    if (args[RENDER_LINE_WIDTH].given)
+        settings->line_width = args[RENDER_LINE_WIDTH].number;
+    if (args[RENDER_TOON_STEPS].given)
+        settings->toon_steps = (int)args[RENDER_TOON_STEPS].number;
     if (args[RENDER_BLOOM].given)
         settings->finish.bloom = args[RENDER_BLOOM].number;
     if (args[RENDER_VIGNETTE].given)

@@ -641,6 +641,7 @@ static const struct script_parameter fog_field_parameters[] = {
                            "A function f(p, s) of the point and s.time; it returns a number of at least 0."},
 };
 
+_Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
 static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
@@ -715,6 +716,12 @@ static const struct script_parameter render_parameters[] = {
                        "Whether colours are linear light or the numbers of files; auto: linear with integrator path."},
     [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep",
                      "Whether PNG files have 16 bits per channel."},
+    [RENDER_STYLE] = {"style", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STYLES), NULL, "--style",
+                      "Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted."},
+    [RENDER_LINE_WIDTH] = {"line_width", KIND_NUMBER, OPTIONAL, IN_RANGE(0, LINE_WIDTH_MAX), "pixels", "--line-width",
+                           "Width of lines where objects, normals and depths change."},
+    [RENDER_TOON_STEPS] = {"toon_steps", KIND_WHOLE, OPTIONAL, IN_RANGE(1, TOON_STEPS_MAX), NULL, "--toon-steps",
+                           "Steps of light of style toon, beside shadow."},
     [RENDER_BLOOM] = {"bloom", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--bloom",
                       "Share of the light above white that spreads around it."},
     [RENDER_VIGNETTE] = {"vignette", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--vignette",

@@ -143,7 +143,7 @@ struct script_result {
     const struct mesh *mesh; /* RESULT_FACES, in its place */
 };
 
-enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 64 };
+enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 96 };
 
 /* `run` is the C function of a row, which cannot raise. args[i] belongs to parameters[i]. */
 struct script_function {

@@ -492,6 +492,10 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes(&settings->clamp, sizeof settings->clamp, digest);
     }
     digest = digest_finish(&settings->finish, digest);
+    if (settings->style != STYLE_NONE || settings_line_width(settings) > 0) {
+        const double numbers[] = {(double)settings->style, settings_line_width(settings), settings->toon_steps};
+        digest = digest_bytes(numbers, sizeof numbers, digest);
+    }
     const struct frame_options *frames = &options->script.frames;
     if (frames->selection.step > 0 || frames->rate > 0 || frames->loops || frames->turntable > 0) {
         const uint32_t numbers[] = {frames->selection.first, frames->selection.last, frames->selection.step,

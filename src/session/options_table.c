@@ -20,7 +20,7 @@
 const char *const option_group_titles[OPTION_GROUP_COUNT] = {
     [OPTION_GROUP_PICTURE] = "Anti-aliasing and rays",
     [OPTION_GROUP_SHADING] = "Size, acceleration and colour",
-    [OPTION_GROUP_FINISH] = "Finishing",
+    [OPTION_GROUP_FINISH] = "Styles and finishing",
     [OPTION_GROUP_FILES] = "Files",
     [OPTION_GROUP_FRAMES] = "Animation",
     [OPTION_GROUP_COMPATIBILITY] = "Scenes written for other programs",
@@ -109,6 +109,13 @@ const struct option option_table[] = {
     {OPTION_GROUP_SHADING, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
      "16 bits per channel in PNG files"},
 
+    {OPTION_GROUP_FINISH, "--style", OPTION_CHOICE, LIST_BARS(STYLES), NO_RANGE, FIELD(settings.style), "none",
+     "pictures that look drawn, with lines at edges, with --integrator whitted; ink: lines on white paper; toon: light "
+     "in steps; gooch: from cool to warm colours"},
+    {OPTION_GROUP_FINISH, "--line-width", OPTION_NUMBER, "PIXELS", 0, LINE_WIDTH_MAX, FIELD(settings.line_width),
+     "2 with a style, else 0", "width of the lines where objects, normals and depths change"},
+    {OPTION_GROUP_FINISH, "--toon-steps", OPTION_INTEGER, "N", 1, TOON_STEPS_MAX, FIELD(settings.toon_steps), "3",
+     "steps of light of --style toon, beside shadow"},
     {OPTION_GROUP_FINISH, "--bloom", OPTION_NUMBER, "X", 0, 1, FIELD(settings.finish.bloom), "0",
      "spread X of the light above white around it"},
     {OPTION_GROUP_FINISH, "--vignette", OPTION_NUMBER, "X", 0, 1, FIELD(settings.finish.vignette), "0",
@@ -272,7 +279,7 @@ _Static_assert(sizeof(enum specular_kind) == sizeof(int) && sizeof(enum accel_ki
                    sizeof(enum script_order) == sizeof(int) && sizeof(enum tone_curve) == sizeof(int) &&
                    sizeof(enum progress_mode) == sizeof(int) && sizeof(enum order) == sizeof(int) &&
                    sizeof(enum overlay) == sizeof(int) && sizeof(enum dither) == sizeof(int) &&
-                   sizeof(enum integrator_kind) == sizeof(int),
+                   sizeof(enum style) == sizeof(int) && sizeof(enum integrator_kind) == sizeof(int),
                "choices are stored as int");
 
 /* --help */
