@@ -251,7 +251,8 @@ static void start_picture(struct output_session *output) {
                             progress_wants_estimate(&output->progress) && !request->in_window && !helps);
     (void)wait_for_text(output);
     if (!output->plays)
-        progress_begin(&output->progress, picture->name, request->width, request->height);
+        progress_begin(&output->progress, picture->name, request->width, request->height,
+                       picture_denoised_pixels(output->options, picture));
     output->progress.elsewhere = request->in_window != 0;
     if (!request->in_window)
         display_begin(&output->display, picture->name, &picture->film, &tone);
@@ -486,11 +487,8 @@ void output_show_progress(struct output_session *output) {
         progress_hide(&output->progress);
     report_display(output, display_step(&output->display, progress_clock(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
-    if (output->current.open && !output->current.request.in_window && progress_wants_packing_time(&output->progress)) {
-        uint32_t pixels;
-        double seconds = picture_packing_time(&output->current, &pixels);
-        progress_note_packing_time(&output->progress, seconds, pixels);
-    }
+    if (output->current.open && !output->current.request.in_window && progress_wants_writing_time(&output->progress))
+        progress_note_writing_time(&output->progress, picture_writing_time(output->options, &output->current));
 }
 
 void output_report(struct output_session *output, enum line_kind kind, const char *text) {

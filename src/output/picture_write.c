@@ -1,14 +1,19 @@
 /* Writes a film as files. Rows are tone-mapped while they are packed, so that there is no second picture in memory. */
 #include "output/picture_write.h"
 
+#include "base/clock.h"
+#include "base/mem.h"
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
+#include "render/denoise.h"
 #include "render/path_film.h"
 
+#include <math.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 struct tone picture_tone(const struct picture_request *request) {
@@ -86,7 +91,8 @@ static void packing_sample_row(void *context, uint32_t y, uint8_t *line) {
     }
 }
 
-double picture_packing_time(const struct picture *picture, uint32_t *pixels) {
+/* Seconds of one core for a pixel; negative: no tile is finished. */
+static double packing_time(const struct picture *picture) {
     const struct picture_request *request = &picture->request;
     const struct film *film = &picture->film;
     struct packing_sample packing_sample = {film, picture_tone(request), {0}, 0};
@@ -102,8 +108,36 @@ double picture_packing_time(const struct picture *picture, uint32_t *pixels) {
     struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample,
                                 false};
     double seconds = packing_sample.count > 0 ? png_write_trial(&source) : -1;
-    *pixels = source.width * source.height;
-    return request->deep ? 2 * seconds : seconds;
+    return (request->deep ? 2 : 1) * seconds / fmax(source.width * source.height, 1);
+}
+
+static void even_row(void *context, uint32_t y, struct denoise_pixel *row) {
+    const struct denoise_source *source = context;
+    (void)y;
+    memset(row, 0, source->width * sizeof *row);
+}
+
+/* Seconds of one core for denoising a pixel, which do not depend on what a picture shows; 0: no memory. */
+static double denoising_time(void) {
+    enum { SIDE = 96 };
+    static const uint32_t pixels = SIDE * SIDE;
+    struct denoise_source source = {.width = SIDE, .height = SIDE, .row = even_row};
+    char warning[256];
+    struct error error;
+    struct pool *pool = pool_create(1, warning);
+    float(*out)[3] = mem_alloc(pixels * sizeof *out);
+    double begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    source.context = &source;
+    bool ok = pool && out && denoise(&source, pool, out, &error);
+    double seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begun;
+    mem_free(out);
+    pool_destroy(pool);
+    return ok ? seconds / pixels : 0;
+}
+
+double picture_writing_time(const struct options *options, const struct picture *picture) {
+    double packing = packing_time(picture), denoised = picture_denoised_pixels(options, picture);
+    return packing < 0 || denoised == 0 ? packing : packing + denoised * denoising_time();
 }
 
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
@@ -161,6 +195,14 @@ static enum denoiser denoiser_of(const struct options *options, const struct pic
     if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES))
         return DENOISER_NONE;
     return options->settings.denoise == DENOISER_OIDN ? DENOISER_OIDN : DENOISER_GRAY;
+}
+
+double picture_denoised_pixels(const struct options *options, const struct picture *picture) {
+    const struct film *film = &picture->film;
+    const struct picture_request *request = &picture->request;
+    if (options->shards || denoiser_of(options, picture) != DENOISER_GRAY)
+        return 0;
+    return (double)film->width * film->height / ((double)request->width * request->height);
 }
 
 static bool write_shown(const struct picture_files *files, const struct picture *picture, const char *name,

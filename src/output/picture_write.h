@@ -37,8 +37,10 @@ bool picture_write_files(const struct picture_files *files, const struct picture
 /* The rows of its main file as bytes, 3 * width * height, as a PNG file of 8 bits per channel would hold them. */
 bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
                          struct error *error);
-/* Seconds of one core for packing some finished tiles; *pixels: how many pixels these have. Negative: it could not be
- * measured. */
-double picture_packing_time(const struct picture *picture, uint32_t *pixels);
+/* How many pixels gray denoises for each pixel of the file: 0, or 1 and more with the rim of a part. */
+double picture_denoised_pixels(const struct options *options, const struct picture *picture);
+/* Seconds of one core for a pixel of the file: packing some finished tiles is measured, and denoising a small picture.
+ * Negative: it could not be measured. */
+double picture_writing_time(const struct options *options, const struct picture *picture);
 
 #endif

@@ -18,6 +18,8 @@ enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 /* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on finished
  * tiles: it depends on the picture. */
 static const double usual_writing = 5e-8;
+/* The same for denoising a pixel of its film. */
+static const double usual_denoising = 8e-6;
 
 double progress_clock(void) {
     return clock_seconds(CLOCK_MONOTONIC);
@@ -70,7 +72,7 @@ static struct state state_of(struct progress *progress, double now, uint32_t don
                  : state.share > 0 ? state.elapsed / state.share - state.elapsed
                                    : -1;
     if (asked && state.share > 0 && state.left >= 0) {
-        /* The file is written by all threads, after the last tile. */
+        /* The picture is denoised and written by all threads, after the last tile. */
         double pixels = (double)progress->width * progress->height;
         double last = progress->writing * progress_estimate_pace(progress_estimate) * pixels / progress->threads;
         double whole = state.elapsed + state.left;
@@ -155,11 +157,11 @@ static void print_json(const struct progress *progress, const char *event, const
     (void)fflush(stderr);
 }
 
-void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height) {
+void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised) {
     progress->name = name;
     progress->printed = progress->elsewhere = false;
     progress->share = 0;
-    progress->writing = usual_writing;
+    progress->writing = usual_writing + usual_denoising * denoised;
     progress->tried = progress->known = false;
     progress->width = width;
     progress->height = height;
@@ -168,14 +170,14 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
         print_json(progress, "begin", &(struct state){0, -1, -1, 0, 0});
 }
 
-bool progress_wants_packing_time(const struct progress *progress) {
+bool progress_wants_writing_time(const struct progress *progress) {
     return progress->mode != PROGRESS_NONE && !progress->tried && progress->share > 0.25;
 }
 
-void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels) {
+void progress_note_writing_time(struct progress *progress, double seconds) {
     progress->tried = true;
-    if (seconds > 0 && pixels > 0)
-        progress->writing = seconds / pixels;
+    if (seconds > 0)
+        progress->writing = seconds;
 }
 
 bool progress_wants_estimate(const struct progress *progress) {

@@ -18,7 +18,7 @@ struct progress {
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last reported */
     bool printed;        /* a line was printed */
-    double writing;      /* seconds of one core for a pixel of the file */
+    double writing;      /* seconds of one core for denoising and writing a pixel of the file */
     bool tried;          /* that was measured; else it is a guess */
     bool known;          /* the start of tiles was reported */
     double share;        /* the reported share; it never decreases */
@@ -32,15 +32,15 @@ double progress_clock(void);           /* seconds of a monotonic clock */
 double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
-/* `name` must stay until progress_end. */
-void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height);
+/* `name` must stay until progress_end. denoised: pixels that are denoised for each pixel of the file; 0: none. */
+void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised);
 /* count 0: the scene is still being built. Reports at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
                      const struct progress_estimate *progress_estimate);
 /* Whether to measure the time for writing the file now: enough tiles are finished, and an estimate is shown. */
-bool progress_wants_packing_time(const struct progress *progress);
-/* The processor seconds for this many pixels; negative: it could not be measured. */
-void progress_note_packing_time(struct progress *progress, double seconds, uint32_t pixels);
+bool progress_wants_writing_time(const struct progress *progress);
+/* The processor seconds for a pixel; negative: it could not be measured. */
+void progress_note_writing_time(struct progress *progress, double seconds);
 /* Whether an estimate is shown. */
 bool progress_wants_estimate(const struct progress *progress);
 /* Erases the bar, so that a line can be printed; the next update draws it again. */

@@ -1,24 +1,14 @@
-/* The cost pre-pass, if a time estimate is requested: SIDE x SIDE rays through each tile before the first
- * one, about 1 % of the work, and from then on the time estimate (render/time_estimate.h) a hundred times a second,
- * reported by the next free worker. Uses processor time, so that other programs have no influence. */
+/* The cost pre-pass, if a time estimate is requested: PROBE_SIDE x PROBE_SIDE rays through each tile before the first
+ * one (eight times as many with --noise), about 1 % of the work, and from then on the time estimate
+ * (render/time_estimate.h) a hundred times a second, reported by the next free worker. Uses processor time, so that
+ * other programs have no influence. */
 #include "base/clock.h"
 #include "render/integrator_internal.h"
 
 #include <string.h>
 
-enum { SIDE = 4, RAYS = SIDE * SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
 /* Nanoseconds between two forecasts. */
 static const uint64_t pause = 10000000;
-
-/* The number of lattice neighbours between which the picture changes so much that pixels will be resampled. */
-static uint32_t count_edges(const struct renderer *renderer, const struct vec3 *colours) {
-    uint32_t edges = 0;
-    for (uint32_t i = 0; i < RAYS; i++) {
-        edges += i % SIDE + 1 < SIDE && integrator_refines(renderer, colours[i], colours[i + 1]);
-        edges += i / SIDE + 1 < SIDE && integrator_refines(renderer, colours[i], colours[i + SIDE]);
-    }
-    return edges;
-}
 
 /* Includes tiles that other ranks of a farm will render. */
 static void probe_tile(void *context, uint32_t tile, int index) {
@@ -26,22 +16,22 @@ static void probe_tile(void *context, uint32_t tile, int index) {
     struct worker *worker = &renderer->workers[index];
     const struct film *film = renderer->job->film;
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    struct vec3 colours[RAYS];
+    struct vec3 colours[PROBE_RAYS];
     uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
     if (state == FILM_TILE_DONE || state == FILM_TILE_ELSEWHERE)
         return;
     uint64_t begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
-    for (uint32_t i = 0; i < RAYS; i++) {
-        struct pixel_sample position =
-            renderer_first_sample(renderer, r.x0 + (r.x1 - r.x0) * (2 * (i % SIDE) + 1) / (2 * SIDE),
-                                  r.y0 + (r.y1 - r.y0) * (2 * (i / SIDE) + 1) / (2 * SIDE));
+    for (int i = 0; i < PROBE_RAYS; i++) {
+        struct pixel pixel = integrator_probe_pixel(&r, i);
+        struct pixel_sample position = renderer_first_sample(renderer, pixel.x, pixel.y);
         if (renderer_stopped(renderer, worker) || renderer_is_done(renderer))
             return;
         colours[i] = renderer_sample(renderer, worker, &position);
     }
+    double resampling = integrator_resampling(renderer, worker, &r, colours);
     uint64_t took = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun;
     time_estimate_probe(&renderer->time_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0), 1 + (double)took,
-                        (double)count_edges(renderer, colours) / PAIRS);
+                        resampling);
 }
 
 /* These rays are not part of the picture's statistics. */
@@ -68,7 +58,7 @@ bool renderer_cost_prepass(struct renderer *renderer) {
     if (!pool_run(renderer->pool, film_tile_count(film), probe_tile, renderer))
         return false;
     forget_counts(renderer);
-    time_estimate_begin_tiles(&renderer->time_estimate);
+    time_estimate_begin_tiles(&renderer->time_estimate, renderer->job->settings.noise > 0);
     renderer->estimated = true;
     atomic_store(&progress_estimate->begun, renderer->job->handout ? begun : clock_nanoseconds(CLOCK_MONOTONIC));
     progress_estimate_report(progress_estimate, 0, 1, 0);

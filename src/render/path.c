@@ -218,6 +218,26 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
     return sample_part(tracer, renderer, worker, part, renderer->pass.begin, renderer->pass.end);
 }
 
+/* The noise of a sample from few samples of few pixels; it falls with the square root of their number. */
+double path_tracer_resampling(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
+                              const struct film_rectangle *tile) {
+    enum { SAMPLES = 8 };
+    double sum = 0;
+    if (!(tracer->noise > 0))
+        return 0;
+    for (int i = 0; i < PROBE_RAYS; i++) {
+        struct pixel at = integrator_probe_pixel(tile, i);
+        struct path_pixel pixel = {0};
+        for (uint32_t number = 0; number < SAMPLES && !renderer_stopped(renderer, worker); number++) {
+            struct pixel_sample position = sample_position(tracer, renderer, at.x, at.y, number);
+            path_pixel_add(&pixel, renderer_sample(renderer, worker, &position), position.weight);
+        }
+        sum += path_pixel_noise_of_samples(&pixel);
+    }
+    double needed = SAMPLES * sum / PROBE_RAYS / (tracer->noise * tracer->noise);
+    return fmin(fmax(needed, 16), tracer->samples);
+}
+
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,
                         int64_t y) {
     const struct film *film = renderer->job->film;

@@ -178,12 +178,19 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
     return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
 }
 
-double path_pixel_noise(const struct path_pixel *pixel) {
+static double relative_variance(struct vec3 mean, struct vec3 variance) {
     const double dark = 0.01; /* the square of a value that counts as black */
-    struct vec3 mean = path_pixel_mean(pixel), variance = path_pixel_variance_of_halves(pixel);
     return (variance.x / (mean.x * mean.x + dark) + variance.y / (mean.y * mean.y + dark) +
             variance.z / (mean.z * mean.z + dark)) /
            3;
+}
+
+double path_pixel_noise(const struct path_pixel *pixel) {
+    return relative_variance(path_pixel_mean(pixel), path_pixel_variance_of_halves(pixel));
+}
+
+double path_pixel_noise_of_samples(const struct path_pixel *pixel) {
+    return relative_variance(path_pixel_mean(pixel), path_pixel_variance_of_samples(pixel));
 }
 
 /* --- noise --- */

@@ -55,6 +55,8 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
  * from the halves. The noise of a tile is the square root of the mean over its pixels: an estimate of its relative
  * error. */
 double path_pixel_noise(const struct path_pixel *pixel);
+/* The same with Var from the samples: smoother, for time estimates. */
+double path_pixel_noise_of_samples(const struct path_pixel *pixel);
 
 /* --noise looks at a tile after 16, 24, 32, 48, 64 ... samples: the first of these numbers above `samples`. */
 uint32_t path_next_check(uint32_t samples);

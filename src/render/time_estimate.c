@@ -1,10 +1,10 @@
-/* A linear model of a tile's cost with six terms: its pixels; the time of its rays; that time by the share of edges,
- * which is what will be sampled again; the mean of the last two over the tile and its eight neighbours, since few rays
- * give little information; edges alone. Terms are scaled to a mean of 1 over the picture. Coefficients are those of
- * least squares (a tile counts less the more it is expected to cost, as its deviation grows with it), regularised
- * towards the initial values by the weight of RIDGE tiles, so that the first few tiles do not decide, and not negative:
- * a term that would be is left out. A tile that is done changes sums only, so a time estimate costs the same however
- * many tiles there are. */
+/* A linear model of a tile's cost with six terms: its pixels; the time of its rays; that time by the resampling,
+ * which is the share of edges or the number of samples; the mean of the last two over the tile and its eight
+ * neighbours, since few rays give little information; resampling alone. Terms are scaled to a mean of 1 over the
+ * picture. Coefficients are those of least squares (a tile counts less the more it is expected to cost, as its
+ * deviation grows with it), regularised towards the initial values by the weight of RIDGE tiles, so that the first few
+ * tiles do not decide, and not negative: a term that would be is left out. A tile that is done changes sums only, so a
+ * time estimate costs the same however many tiles there are. */
 #include "render/time_estimate.h"
 
 #include "base/mem.h"
@@ -12,11 +12,17 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { PIXELS, TIME, EDGE_TIME, TIME_PRIOR, EDGE_TIME_PRIOR, EDGES };
+enum { PIXELS, TIME, RESAMPLING_TIME, TIME_PRIOR, RESAMPLING_TIME_PRIOR, RESAMPLING };
 enum { RIDGE = 10 };
 
-static const double believed[TIME_ESTIMATE_TERMS] = {
-    [PIXELS] = 0.1, [TIME] = 0.4, [EDGE_TIME] = 0.1, [TIME_PRIOR] = 0.3, [EDGE_TIME_PRIOR] = 0.1};
+/* Of edges, and of numbers of samples. */
+static const double believed[2][TIME_ESTIMATE_TERMS] = {
+    {[PIXELS] = 0.1, [TIME] = 0.4, [RESAMPLING_TIME] = 0.1, [TIME_PRIOR] = 0.3, [RESAMPLING_TIME_PRIOR] = 0.1},
+    {[PIXELS] = 0.1, [RESAMPLING_TIME] = 0.4, [RESAMPLING_TIME_PRIOR] = 0.5}};
+
+static const double *beliefs(const struct time_estimate *time_estimate) {
+    return believed[time_estimate->proportional];
+}
 
 static double get(const _Atomic double *value) {
     return atomic_load_explicit(value, memory_order_relaxed);
@@ -48,32 +54,34 @@ void time_estimate_destroy(struct time_estimate *time_estimate) {
 
 /* --- what the rays saw --- */
 
-void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost, double edges) {
+void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost,
+                         double resampling) {
     float *terms = time_estimate->terms[tile];
     terms[PIXELS] = (float)pixels;
     terms[TIME] = (float)cost;
-    terms[EDGE_TIME] = (float)(cost * edges);
-    terms[EDGES] = (float)(pixels * edges);
+    terms[RESAMPLING_TIME] = (float)(cost * resampling);
+    terms[RESAMPLING] = (float)(pixels * resampling);
 }
 
 static void neighbouring_terms(struct time_estimate *time_estimate, uint32_t tile) {
     uint32_t x = tile % time_estimate->across, y = tile / time_estimate->across,
              rows = time_estimate->count / time_estimate->across;
-    double time = 0, edge_time = 0, tiles = 0;
+    double time = 0, resampling_time = 0, tiles = 0;
     for (uint32_t v = y > 0 ? y - 1 : 0; v <= y + 1 && v < rows; v++) {
         for (uint32_t u = x > 0 ? x - 1 : 0; u <= x + 1 && u < time_estimate->across; u++) {
             const float *other = time_estimate->terms[v * time_estimate->across + u];
             time += (double)other[TIME];
-            edge_time += (double)other[EDGE_TIME];
+            resampling_time += (double)other[RESAMPLING_TIME];
             tiles += other[PIXELS] > 0;
         }
     }
     time_estimate->terms[tile][TIME_PRIOR] = (float)(time / tiles);
-    time_estimate->terms[tile][EDGE_TIME_PRIOR] = (float)(edge_time / tiles);
+    time_estimate->terms[tile][RESAMPLING_TIME_PRIOR] = (float)(resampling_time / tiles);
 }
 
-void time_estimate_begin_tiles(struct time_estimate *time_estimate) {
+void time_estimate_begin_tiles(struct time_estimate *time_estimate, bool proportional) {
     double wanted = 0;
+    time_estimate->proportional = proportional;
     for (uint32_t tile = 0; tile < time_estimate->count; tile++) {
         float *terms = time_estimate->terms[tile];
         if (!(terms[PIXELS] > 0))
@@ -111,7 +119,7 @@ void time_estimate_done(struct time_estimate *time_estimate, int worker, double 
     double terms[TIME_ESTIMATE_TERMS], expected = 0, share = get(&sums->share);
     for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
         terms[i] = share * (double)of_tile[i];
-        expected += terms[i] * believed[i];
+        expected += terms[i] * beliefs(time_estimate)[i];
     }
     double weight = 1 / fmax(expected, 0.1);
     atomic_store_explicit(&sums->tile, TIME_ESTIMATE_NO_TILE, memory_order_relaxed);
@@ -177,7 +185,7 @@ static void solve(double matrix[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS], const
     }
 }
 
-static void fit(const struct totals *totals, double out[TIME_ESTIMATE_TERMS]) {
+static void fit(const double *believes, const struct totals *totals, double out[TIME_ESTIMATE_TERMS]) {
     double matrix[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS], right[TIME_ESTIMATE_TERMS];
     bool takes_part[TIME_ESTIMATE_TERMS];
     double scale = totals->weight > 0 ? totals->cost / totals->weight : 1;
@@ -185,7 +193,7 @@ static void fit(const struct totals *totals, double out[TIME_ESTIMATE_TERMS]) {
         takes_part[i] = true;
         for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
             matrix[i][k] = totals->products[i][k] + (i == k ? RIDGE : 0);
-        right[i] = totals->costs[i] + RIDGE * scale * believed[i];
+        right[i] = totals->costs[i] + RIDGE * scale * believes[i];
     }
     for (int left = TIME_ESTIMATE_TERMS; left > 0; left--) {
         int lowest = 0;
@@ -197,7 +205,7 @@ static void fit(const struct totals *totals, double out[TIME_ESTIMATE_TERMS]) {
         takes_part[lowest] = false;
     }
     for (int i = 0; i < TIME_ESTIMATE_TERMS; i++)
-        out[i] = scale * believed[i];
+        out[i] = scale * believes[i];
 }
 
 static double combined(const double terms[TIME_ESTIMATE_TERMS], const double factors[TIME_ESTIMATE_TERMS]) {
@@ -232,7 +240,7 @@ static void add_finished(const struct time_estimate *time_estimate, const struct
 struct time_estimate_work time_estimate_work(const struct time_estimate *time_estimate, const struct film *film) {
     struct totals totals = add_up(time_estimate);
     double factors[TIME_ESTIMATE_TERMS], done[TIME_ESTIMATE_TERMS] = {0};
-    fit(&totals, factors);
+    fit(beliefs(time_estimate), &totals, factors);
     if (film)
         add_finished(time_estimate, film, done);
     for (int i = 0; i < TIME_ESTIMATE_TERMS && !film; i++)

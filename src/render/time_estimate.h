@@ -28,6 +28,7 @@ struct time_estimate_sums {
 struct time_estimate {
     uint32_t count, across;
     int workers;
+    bool proportional;
     float (*terms)[TIME_ESTIMATE_TERMS]; /* of each tile; all 0: not looked at, not to be made */
     double all[TIME_ESTIMATE_TERMS];     /* their sums */
     struct time_estimate_sums *sums;     /* of each worker */
@@ -37,11 +38,13 @@ struct time_estimate {
 bool time_estimate_create(struct time_estimate *time_estimate, uint32_t count, uint32_t across, int workers);
 void time_estimate_destroy(struct time_estimate *time_estimate);
 
-/* pixels > 0; cost: of the rays; edges: between how many of neighbouring rays the picture changes, 0..1. Tiles may be
- * looked at by several threads at once, each tile once. */
-void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost, double edges);
-/* After the last look, before the first tile. */
-void time_estimate_begin_tiles(struct time_estimate *time_estimate);
+/* pixels > 0; cost: of the rays; resampling: between how many of neighbouring rays the picture changes, 0..1, or how
+ * many samples pixels will have. Tiles may be looked at by several threads at once, each tile once. */
+void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost,
+                         double resampling);
+/* After the last look, before the first tile. proportional: resampling is the number of samples, so a tile is expected
+ * to cost that times the cost of its rays. */
+void time_estimate_begin_tiles(struct time_estimate *time_estimate, bool proportional);
 
 /* The worker begins a tile, or that share of it; is so far with its first or second pass; has done it. */
 void time_estimate_begin(struct time_estimate *time_estimate, int worker, uint32_t tile, double share);

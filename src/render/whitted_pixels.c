@@ -137,9 +137,19 @@ static double squared_distance(struct vec3 a, struct vec3 b) {
     return vec3_dot(d, d);
 }
 
-bool whitted_refines(const struct renderer *renderer, struct vec3 a, struct vec3 b) {
+static bool refines(const struct renderer *renderer, struct vec3 a, struct vec3 b) {
     const struct tone *tone = &renderer->job->settings.tone;
     return squared_distance(toned(tone, a), toned(tone, b)) > renderer->job->settings.side_tolerance;
+}
+
+double whitted_resampling(const struct renderer *renderer, const struct vec3 *colours) {
+    enum { SIDE = PROBE_SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
+    uint32_t edges = 0;
+    for (int i = 0; i < PROBE_RAYS; i++) {
+        edges += i % SIDE + 1 < SIDE && refines(renderer, colours[i], colours[i + 1]);
+        edges += i / SIDE + 1 < SIDE && refines(renderer, colours[i], colours[i + SIDE]);
+    }
+    return (double)edges / PAIRS;
 }
 
 /* Colours on different surfaces, and a colour between two opposite neighbours, may differ by this share of the

@@ -643,7 +643,7 @@ TEST(hostile_the_bar_of_a_picture_cannot_imitate_a_line_of_the_program) {
             int kept = dup(2), file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
             (void)dup2(file, 2);
             progress_init(&progress, PROGRESS_BAR, false, 1);
-            progress_begin(&progress, names[i] + from, 10, 10);
+            progress_begin(&progress, names[i] + from, 10, 10, 0);
             for (uint32_t count = 0; count <= 10; count += 10) {
                 progress.shown = -1;
                 progress_update(&progress, 5, count, &progress_estimate);

@@ -159,7 +159,7 @@ static void sample_halves(struct time_estimate *time_estimate, double reported, 
     for (uint32_t tile = 0; tile < 200; tile++)
         time_estimate_probe(time_estimate, tile, 1024,
                             (reported * cost_of(tile) + (1 - reported) * 500) * 0.01 * scatter(tile, width), 0.1);
-    time_estimate_begin_tiles(time_estimate);
+    time_estimate_begin_tiles(time_estimate, false);
 }
 
 /* The largest relative error of the time left, from `from` tiles on until `until`. */
@@ -226,7 +226,7 @@ TEST(time_estimate_learns_what_edges_cost) {
         time_estimate_probe(&time_estimate, tile, 1024, 10, edges);
         left += 1 + 20 * edges;
     }
-    time_estimate_begin_tiles(&time_estimate);
+    time_estimate_begin_tiles(&time_estimate, false);
     for (uint32_t tile = 0; tile < 390; tile++) { /* in rows of 20 */
         double cost = 1 + 20 * (tile % 7 == 0 ? 0.8 : 0.05);
         time_estimate_begin(&time_estimate, 0, tile, 1);
@@ -235,6 +235,30 @@ TEST(time_estimate_learns_what_edges_cost) {
         done += cost;
         struct time_estimate_work work = time_estimate_work(&time_estimate, NULL);
         CHECK(tile < 130 || fabs(done * work.left / work.done - left) < 0.05 * left);
+    }
+    time_estimate_destroy(&time_estimate);
+}
+
+/* With --noise: rays of equal cost, but the tiles of a corner need up to 64 times as many samples. They come last, and
+ * what a few samples say of each is wrong by up to half. */
+TEST(tiles_that_need_more_samples_are_expected_to_cost_more) {
+    struct time_estimate time_estimate;
+    double left = 0, done = 0;
+    CHECK(time_estimate_create(&time_estimate, 400, 20, 1));
+    for (uint32_t tile = 0; tile < 400; tile++) {
+        double samples = tile % 20 + tile / 20 > 28 ? 1024 : 16;
+        time_estimate_probe(&time_estimate, tile, 1024, 10, samples * scatter(tile, 0.5));
+        left += samples;
+    }
+    time_estimate_begin_tiles(&time_estimate, true);
+    for (uint32_t tile = 0; tile < 360; tile++) {
+        double samples = tile % 20 + tile / 20 > 28 ? 1024 : 16;
+        time_estimate_begin(&time_estimate, 0, tile, 1);
+        time_estimate_done(&time_estimate, 0, samples, 0);
+        left -= samples;
+        done += samples;
+        struct time_estimate_work work = time_estimate_work(&time_estimate, NULL);
+        CHECK(done < left / 2 || fabs(done * work.left / work.done - left) < 0.2 * left);
     }
     time_estimate_destroy(&time_estimate);
 }
@@ -250,7 +274,7 @@ TEST(time_estimate_counts_unfinished_tiles_and_those_of_others) {
     CHECK(time_estimate_create(&time_estimate, 4, 4, 1));
     for (uint32_t tile = 0; tile < 4; tile++)
         time_estimate_probe(&time_estimate, tile, 1024, 10, 0);
-    time_estimate_begin_tiles(&time_estimate);
+    time_estimate_begin_tiles(&time_estimate, false);
     for (int quarter = 0; quarter < 4; quarter++) {
         time_estimate_begin(&time_estimate, 0, 0, 0.25);
         time_estimate_done(&time_estimate, 0, 25, 10);
