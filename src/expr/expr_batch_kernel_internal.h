@@ -140,7 +140,24 @@ LANES(run_tan, el_angle_fits(a), el_tan_lane(a), el_tan(a))
 LANES(run_exp, el_exp_fits(a), el_exp_lane(a), el_exp(a))
 LANES(run_log, el_log_fits(a), el_log_lane(a), el_log(a))
 LANES(run_power, el_pow_fits(a, b), el_pow_lane(a, b), el_pow(a, b))
-LANES(run_noise, noise_fits(a, b, c), noise_perlin_lane(a, b, c), noise_perlin(a, b, c, 0))
+LANES(run_noise_lanes, noise_fits(a, b, c), noise_perlin_lane(a, b, c), noise_perlin(a, b, c, 0))
+
+static void run_noise(const double *as, const double *bs, const double *cs, uint32_t width, double *out) {
+#ifdef __AVX512BW__
+    int64_t is_other = 0;
+    INDEPENDENT
+    for (uint32_t i = 0; i < width; i++)
+        is_other |= noise_fits(as[i], bs[i], cs[i]) ? 0 : -1;
+    const struct noise_table table = noise_table_make();
+    for (uint32_t at = 0; at < width && !is_other; at += 32) {
+        const double *const operands[3] = {as + at, bs + at, cs + at};
+        noise_perlin_block(&table, operands, width - at < 32 ? (int)(width - at) / 8 : 4, out + at);
+    }
+    if (!is_other)
+        return;
+#endif
+    run_noise_lanes(as, bs, cs, width, out);
+}
 
 #endif
 

@@ -39,7 +39,7 @@ static const double pi = 0x1.921fb54442d18p+1;
 /* clang-format on */
 #define BYTE(n) n,
 #define WIDE(n) n,
-static const uint8_t permutation[256] = {PERMUTATION(BYTE)};
+const uint8_t noise_permutation_bytes[257] = {PERMUTATION(BYTE) 151};
 const uint64_t noise_permutation[256] = {PERMUTATION(WIDE)};
 
 /* The cell modulo 256 and the place in it. */
@@ -58,7 +58,7 @@ static inline double cell_of(double x, unsigned *cell) {
 }
 
 static inline unsigned hash(unsigned i) {
-    return permutation[i & 255];
+    return noise_permutation_bytes[i & 255];
 }
 
 /* The 12 edge directions of a cube, four of them twice, in the order of the published program. */
@@ -73,6 +73,8 @@ static const double gradients[16][3] = {
 #define WORD(n)                                                                                                        \
     COORDINATE(n, 0x50ff, 0x40aa) << 52 | COORDINATE(n, 0xff0f, 0xaa0c) << 40 | COORDINATE(n, 0xaff0, 0x8cc0) << 28,
 const uint64_t noise_gradient_words[256] = {PERMUTATION(WORD)};
+const uint64_t noise_directions[16] = {WORD(0) WORD(1) WORD(2) WORD(3) WORD(4) WORD(5) WORD(6) WORD(7) WORD(8) WORD(9)
+                                           WORD(10) WORD(11) WORD(12) WORD(13) WORD(14) WORD(15)};
 
 /* The gradient times the offset. Products with 1 and 0 are exact, so this equals the reference's selection of signed
  * summands without its unpredictable branches. */

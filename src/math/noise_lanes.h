@@ -11,6 +11,10 @@
 /* The published permutation; and of each of its numbers the gradient: 12 bits for each coordinate from the top, which
  * are the upper bits of the coordinate as a double. */
 extern const uint64_t noise_permutation[256], noise_gradient_words[256];
+/* The permutation as bytes; the first follows the last. */
+extern const uint8_t noise_permutation_bytes[257];
+/* The 16 gradients themselves, in the form of the words. */
+extern const uint64_t noise_directions[16];
 
 static inline double noise_fade(double t) {
     return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
@@ -49,5 +53,103 @@ static inline double noise_perlin_lane(double x, double y, double z) {
         noise_mix(u, noise_ramp_lane(ab + 1, x, y - 1, z - 1), noise_ramp_lane(bb + 1, x - 1, y - 1, z - 1));
     return noise_mix(w, noise_mix(v, near_low, near_high), noise_mix(v, far_low, far_high));
 }
+
+#ifdef __AVX512BW__
+#include <immintrin.h>
+
+/* The permutation as 256 words, each with the next number in its upper byte: one lookup gives both neighbours. */
+struct noise_table {
+    __m512i words[8];
+};
+
+static inline struct noise_table noise_table_make(void) {
+    struct noise_table table;
+    for (int i = 0; i < 8; i++) {
+        const uint8_t *from = noise_permutation_bytes + 32 * i;
+        __m512i these = _mm512_cvtepu8_epi16(_mm256_loadu_si256((const __m256i *)(const void *)from));
+        __m512i next = _mm512_cvtepu8_epi16(_mm256_loadu_si256((const __m256i *)(const void *)(from + 1)));
+        table.words[i] = _mm512_or_si512(these, _mm512_slli_epi16(next, 8));
+    }
+    return table;
+}
+
+/* The words at 32 indices, of which the lower 8 bits count. */
+static inline __m512i noise_neighbours(const struct noise_table *table, __m512i at) {
+    const __m512i *words = table->words;
+    __mmask32 bit_6 = _mm512_test_epi16_mask(at, _mm512_set1_epi16(64));
+    __mmask32 bit_7 = _mm512_test_epi16_mask(at, _mm512_set1_epi16(128));
+    __m512i low = _mm512_mask_blend_epi16(bit_6, _mm512_permutex2var_epi16(words[0], at, words[1]),
+                                          _mm512_permutex2var_epi16(words[2], at, words[3]));
+    __m512i high = _mm512_mask_blend_epi16(bit_6, _mm512_permutex2var_epi16(words[4], at, words[5]),
+                                           _mm512_permutex2var_epi16(words[6], at, words[7]));
+    return _mm512_mask_blend_epi16(bit_7, low, high);
+}
+
+/* Eight ramps; bits 0 to 3 of each index count. */
+static inline __m512d noise_ramps(__m512i at, __m512d x, __m512d y, __m512d z) {
+    const __m512i upper = _mm512_set1_epi64((long long)((uint64_t)0xfff << 52));
+    __m512i word =
+        _mm512_permutex2var_epi64(_mm512_loadu_si512(noise_directions), at, _mm512_loadu_si512(noise_directions + 8));
+    __m512d gx = _mm512_castsi512_pd(_mm512_and_si512(word, upper));
+    __m512d gy = _mm512_castsi512_pd(_mm512_and_si512(_mm512_slli_epi64(word, 12), upper));
+    __m512d gz = _mm512_castsi512_pd(_mm512_and_si512(_mm512_slli_epi64(word, 24), upper));
+    return gx * x + gy * y + gz * z;
+}
+
+static inline __m512d noise_fades(__m512d t) {
+    const __m512d six = _mm512_set1_pd(6.0), fifteen = _mm512_set1_pd(15.0), ten = _mm512_set1_pd(10.0);
+    return t * t * t * (t * (t * six - fifteen) + ten);
+}
+
+static inline __m512d noise_mixes(__m512d weight, __m512d a, __m512d b) {
+    return a + weight * (b - a);
+}
+
+/* Of eight points, their place in the cell; returns the lower 16 bits of the cell. */
+static inline __m128i noise_cell(const double *from, __m512d *place) {
+    const __m512d to_integer = _mm512_set1_pd(0x1.8p52);
+    __m512d x = _mm512_loadu_pd(from), sum = _mm512_floor_pd(x) + to_integer;
+    *place = x - (sum - to_integer);
+    return _mm512_cvtepi64_epi16(_mm512_castpd_si512(sum));
+}
+
+/* The bits of noise_perlin_lane at 8 * count points, count from 1 to 4; out may be one of the operands. The hashes of
+ * 32 points are looked up at once, in processor registers. */
+static inline void noise_perlin_block(const struct noise_table *table, const double *const operands[3], int count,
+                                      double *out) {
+    const __m512i byte = _mm512_set1_epi16(255);
+    _Alignas(64) uint16_t cells[3][32] = {{0}}, corners[4][32];
+    __m512d places[3][4];
+    for (int k = 0; k < 3; k++)
+        for (int g = 0; g < count; g++)
+            _mm_store_si128((__m128i *)(void *)(cells[k] + 8 * g), noise_cell(operands[k] + 8 * g, &places[k][g]));
+    __m512i j = _mm512_load_si512(cells[1]), k = _mm512_load_si512(cells[2]);
+    __m512i first = noise_neighbours(table, _mm512_load_si512(cells[0]));
+    __m512i a = noise_neighbours(table, _mm512_add_epi16(_mm512_and_si512(first, byte), j));
+    __m512i b = noise_neighbours(table, _mm512_add_epi16(_mm512_srli_epi16(first, 8), j));
+    __m512i aa = _mm512_add_epi16(_mm512_and_si512(a, byte), k), ab = _mm512_add_epi16(_mm512_srli_epi16(a, 8), k);
+    __m512i ba = _mm512_add_epi16(_mm512_and_si512(b, byte), k), bb = _mm512_add_epi16(_mm512_srli_epi16(b, 8), k);
+    _mm512_store_si512(corners[0], noise_neighbours(table, aa));
+    _mm512_store_si512(corners[1], noise_neighbours(table, ba));
+    _mm512_store_si512(corners[2], noise_neighbours(table, ab));
+    _mm512_store_si512(corners[3], noise_neighbours(table, bb));
+    for (int g = 0; g < count; g++) {
+        const __m512d one = _mm512_set1_pd(1.0);
+        __m512d x = places[0][g], y = places[1][g], z = places[2][g], x1 = x - one, y1 = y - one, z1 = z - one;
+        __m512d u = noise_fades(x), v = noise_fades(y), w = noise_fades(z);
+        __m512i low[4], high[4];
+        for (int c = 0; c < 4; c++) {
+            low[c] = _mm512_cvtepu16_epi64(_mm_load_si128((const __m128i *)(const void *)(corners[c] + 8 * g)));
+            high[c] = _mm512_srli_epi64(low[c], 8);
+        }
+        __m512d near_low = noise_mixes(u, noise_ramps(low[0], x, y, z), noise_ramps(low[1], x1, y, z));
+        __m512d near_high = noise_mixes(u, noise_ramps(low[2], x, y1, z), noise_ramps(low[3], x1, y1, z));
+        __m512d far_low = noise_mixes(u, noise_ramps(high[0], x, y, z1), noise_ramps(high[1], x1, y, z1));
+        __m512d far_high = noise_mixes(u, noise_ramps(high[2], x, y1, z1), noise_ramps(high[3], x1, y1, z1));
+        _mm512_storeu_pd(out + 8 * g,
+                         noise_mixes(w, noise_mixes(v, near_low, near_high), noise_mixes(v, far_low, far_high)));
+    }
+}
+#endif
 
 #endif

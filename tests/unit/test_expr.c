@@ -395,7 +395,7 @@ static void random_linked_graph(struct expr_graph *graph, uint64_t seed, int ope
         EXPR_ADD,    EXPR_SUBTRACT, EXPR_MULTIPLY, EXPR_DIVIDE,   EXPR_MIN,        EXPR_MAX,
         EXPR_NEGATE, EXPR_ABS,      EXPR_SQRT,     EXPR_FLOOR,    EXPR_SELECT,     EXPR_SELECT,
         EXPR_SELECT, EXPR_CEIL,     EXPR_ADD,      EXPR_MULTIPLY, EXPR_LESS_EQUAL, EXPR_SIN};
-    uint32_t last = 0;
+    uint32_t last = 0, condition = EXPR_NONE;
     for (int k = 0; k < 3; k++)
         last = expr_input(graph, (enum expr_input)k);
     for (uint64_t i = 0; i < (uint64_t)operations && graph->count < LINKED_NODES - 8; i++) {
@@ -409,10 +409,13 @@ static void random_linked_graph(struct expr_graph *graph, uint64_t seed, int ope
                 other--;
             operands[k] = kind < 4 ? last : kind < 6 ? other : expr_float(graph, random_float(bits + (uint64_t)k));
         }
-        bool is_less = operation == EXPR_LESS_EQUAL;
-        if (operation == EXPR_SELECT || is_less)
-            operands[0] = expr_operation(graph, bits >> 50 & 1 ? EXPR_LESS : EXPR_LESS_EQUAL, last, operands[0], 0);
-        last = expr_operation(graph, is_less ? EXPR_SELECT : operation, operands[0], operands[1], operands[2]);
+        if (operation == EXPR_LESS_EQUAL || condition == EXPR_NONE) /* for this selection or for one after it */
+            condition = expr_operation(graph, bits >> 50 & 1 ? EXPR_LESS : EXPR_LESS_EQUAL, last, operands[0], 0);
+        if (operation == EXPR_LESS_EQUAL)
+            continue;
+        if (operation == EXPR_SELECT)
+            operands[0] = condition;
+        last = expr_operation(graph, operation, operands[0], operands[1], operands[2]);
     }
 }
 
@@ -483,6 +486,48 @@ TEST(programs_of_linked_operations_give_the_bits_of_their_operations_one_by_one)
     for (uint64_t seed = 0; seed < 3000; seed++)
         check_linked_program(seed);
     CHECK(cpu_select_isa("auto"));
+}
+
+TEST(noise_in_batches_has_the_bits_of_noise_at_points) {
+    static const char *const sets[] = {"base", "avx2", "avx512"};
+    static const double sizes[] = {1, 10, 300, 1e6, 0x1p30, 0x1p30};
+    struct expr_graph graph = {.count = 0};
+    struct arena arena = {0};
+    struct error error = {0};
+    struct expr_program program;
+    uint32_t p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = expr_input(&graph, (enum expr_input)k);
+    uint32_t noise = expr_operation(&graph, EXPR_NOISE, p[0], p[1], p[2]);
+    CHECK(expr_compile(&graph, &noise, 1, &arena, &program, &error));
+    void *rows = mem_alloc_aligned(64, expr_batch_size(&program));
+    for (uint64_t seed = 0; seed < 3000; seed++) {
+        uint32_t count = 1 + (uint32_t)(seed % EXPR_BATCH);
+        double in[3][EXPR_BATCH], results[EXPR_BATCH], size = sizes[seed % 6];
+        for (uint32_t i = 0; i < count; i++)
+            for (uint64_t k = 0; k < 3; k++) {
+                uint64_t bits = random_combine(seed, i * 3 + k);
+                double x = (2 * random_unit(bits) - 1) * size;
+                in[k][i] = bits >> 8 & 7 ? x : floor(x) + 0.0;
+            }
+        for (size_t set = 0; set < sizeof sets / sizeof sets[0]; set++) {
+            if (!cpu_select_isa(sets[set]))
+                continue;
+            const double *ins[EXPR_INPUT_COUNT] = {in[0], in[1], in[2]};
+            double *outs[EXPR_OUTPUTS] = {results, NULL, NULL, NULL};
+            expr_evaluate_batch(&program, count, ins, outs, rows);
+            for (uint32_t i = 0; i < count; i++) {
+                double wanted = noise_perlin(in[0][i], in[1][i], in[2][i], 0);
+                if (!same_bits(results[i], wanted))
+                    test_fail(__FILE__, __LINE__, "%s: noise(%a, %a, %a) is %a, not %a", sets[set], in[0][i], in[1][i],
+                              in[2][i], results[i], wanted);
+            }
+        }
+    }
+    CHECK(cpu_select_isa("auto"));
+    mem_free(rows);
+    arena_destroy(&arena);
+    expr_graph_destroy(&graph);
 }
 
 TEST(floor_of_a_float_plus_zero_is_the_float_of_luas_floor) {
