@@ -545,8 +545,10 @@ static bool is_always_nan(enum expr_operation operation, const struct expr_roote
         return first || from[0]->range.value.high < 0;
     if (operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY || operation == EXPR_DIVIDE)
         return first || second;
-    if (operation == EXPR_SELECT)
-        return second && from[2]->range.is_nan;
+    if (operation == EXPR_SELECT) {
+        const struct expr_interval condition = from[0]->range.value;
+        return (second || condition.high == 0) && (from[2]->range.is_nan || condition.low == 1);
+    }
     return first && (operation == EXPR_NEGATE || operation == EXPR_ABS || operation == EXPR_MIN ||
                      operation == EXPR_MAX || operation == EXPR_SIN || operation == EXPR_COS);
 }
