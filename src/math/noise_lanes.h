@@ -105,11 +105,11 @@ static inline __m512d noise_mixes(__m512d weight, __m512d a, __m512d b) {
     return a + weight * (b - a);
 }
 
-/* Of eight points, their place in the cell; returns the lower 16 bits of the cell. */
-static inline __m128i noise_cell(const double *from, __m512d *place) {
+/* Of eight points, their offsets in the cell; returns the lower 16 bits of the cell. */
+static inline __m128i noise_cell(const double *from, __m512d *offset) {
     const __m512d to_integer = _mm512_set1_pd(0x1.8p52);
     __m512d x = _mm512_loadu_pd(from), sum = _mm512_floor_pd(x) + to_integer;
-    *place = x - (sum - to_integer);
+    *offset = x - (sum - to_integer);
     return _mm512_cvtepi64_epi16(_mm512_castpd_si512(sum));
 }
 
@@ -119,10 +119,10 @@ static inline void noise_perlin_block(const struct noise_table *table, const dou
                                       double *out) {
     const __m512i byte = _mm512_set1_epi16(255);
     _Alignas(64) uint16_t cells[3][32] = {{0}}, corners[4][32];
-    __m512d places[3][4];
+    __m512d offsets[3][4];
     for (int k = 0; k < 3; k++)
         for (int g = 0; g < count; g++)
-            _mm_store_si128((__m128i *)(void *)(cells[k] + 8 * g), noise_cell(operands[k] + 8 * g, &places[k][g]));
+            _mm_store_si128((__m128i *)(void *)(cells[k] + 8 * g), noise_cell(operands[k] + 8 * g, &offsets[k][g]));
     __m512i j = _mm512_load_si512(cells[1]), k = _mm512_load_si512(cells[2]);
     __m512i first = noise_neighbours(table, _mm512_load_si512(cells[0]));
     __m512i a = noise_neighbours(table, _mm512_add_epi16(_mm512_and_si512(first, byte), j));
@@ -135,7 +135,7 @@ static inline void noise_perlin_block(const struct noise_table *table, const dou
     _mm512_store_si512(corners[3], noise_neighbours(table, bb));
     for (int g = 0; g < count; g++) {
         const __m512d one = _mm512_set1_pd(1.0);
-        __m512d x = places[0][g], y = places[1][g], z = places[2][g], x1 = x - one, y1 = y - one, z1 = z - one;
+        __m512d x = offsets[0][g], y = offsets[1][g], z = offsets[2][g], x1 = x - one, y1 = y - one, z1 = z - one;
         __m512d u = noise_fades(x), v = noise_fades(y), w = noise_fades(z);
         __m512i low[4], high[4];
         for (int c = 0; c < 4; c++) {
