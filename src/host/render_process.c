@@ -128,11 +128,10 @@ static bool need_pool(struct render_process *process, struct error *error) {
     return true;
 }
 
-/* A script may render hundreds of frames of one scene; each warning about it is printed once. */
-static void warn_of_scene(void *context, const char *text) {
-    struct render_process *process = context;
+/* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
+static void warn_once(struct render_process *process, const char *key, const char *text) {
     static const char word[] = "warning: ";
-    uint64_t hash = hash_bytes(text, strlen(text), 0);
+    uint64_t hash = hash_bytes(key, strlen(key), 0);
     for (int i = 0; i < process->warned_count; i++) {
         if (process->warned[i] == hash)
             return;
@@ -143,6 +142,25 @@ static void warn_of_scene(void *context, const char *text) {
     char line[2048];
     (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);
     report_scene(process, LINE_WARNING, line);
+}
+
+static void warn_of_scene(void *context, const char *text) {
+    warn_once(context, text, text);
+}
+
+/* After a picture: the functions that gave NaN at a hit. */
+static void warn_of_nan(struct render_process *process, const struct world *world) {
+    char line[1024];
+    for (uint32_t i = 0; i < world->texture_count; i++) {
+        const struct texture *texture = &world->textures[i];
+        const struct texture_nan *nan = texture->kind == TEXTURE_FUNCTION ? texture->recorded.nan : NULL;
+        if (!nan || !nan->found)
+            continue;
+        (void)snprintf(line, sizeof line,
+                       "the function of %.400s is not a number (NaN) at p = {%.6g, %.6g, %.6g}; it counts as 0 there",
+                       texture->recorded.source, nan->point[0], nan->point[1], nan->point[2]);
+        warn_once(process, texture->recorded.source, line);
+    }
 }
 
 static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t count) {
@@ -331,6 +349,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     report->rays.render_seconds = progress_clock() - built;
     report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
     fill_report(work, job->film, report);
+    if (ok && job->world)
+        warn_of_nan(process, job->world);
     world_destroy(&work->world);
     if (ok && !is_asked(process->options) && !process->options->check)
         report_samples(work);

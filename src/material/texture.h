@@ -18,6 +18,7 @@
 #include "image/image.h"
 #include "math/vec3.h"
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -152,6 +153,13 @@ union texture_ref {
 };
 #define TEXTURE_NONE UINT32_MAX
 
+/* Where a recorded function gave NaN: the least such point, so that it does not depend on the order of threads. */
+struct texture_nan {
+    atomic_flag lock;
+    bool found;
+    double point[3];
+};
+
 struct texture {
     enum texture_kind kind;
     bool shared;       /* several inputs of a material read it: evaluated once per hit */
@@ -191,6 +199,7 @@ struct texture {
         struct {
             const struct expr_program *program; /* one output or three; of the script's arena */
             const char *source;                 /* "scene.lua:12", or "" */
+            struct texture_nan *nan;            /* of a world, where all workers report; NULL: nowhere */
             enum texture_mapping mapping;       /* of u and v */
             int points;                         /* of a footprint at most: a power of two up to FUNCTION_POINTS */
             struct vec3 average, largest;       /* of some points: estimates */

@@ -184,8 +184,28 @@ static void spread(const struct region *region, int input, const struct points *
         out[i] = fold(region, input, out[i]);
 }
 
-static double not_nan(double x) {
-    return x == x ? x : 0;
+static bool is_before(const double a[3], const double b[3]) {
+    for (int k = 0; k < 3; k++)
+        if (a[k] != b[k])
+            return a[k] < b[k];
+    return false;
+}
+
+/* NaN counts as 0 and is reported with the pattern point of the hit. */
+static double not_nan(const struct texture *texture, const struct region *region, double x) {
+    struct texture_nan *nan = texture->recorded.nan;
+    const double *point = &region->inputs[EXPR_POINT_X];
+    if (x == x)
+        return x;
+    if (!nan)
+        return 0;
+    while (atomic_flag_test_and_set_explicit(&nan->lock, memory_order_acquire))
+        continue;
+    if (!nan->found || is_before(point, nan->point))
+        memcpy(nan->point, point, sizeof nan->point);
+    nan->found = true;
+    atomic_flag_clear_explicit(&nan->lock, memory_order_release);
+    return 0;
 }
 
 static void evaluate_each(const struct expr_program *program, const double *const from[EXPR_INPUT_COUNT], int count,
@@ -201,7 +221,8 @@ static void evaluate_each(const struct expr_program *program, const double *cons
 }
 
 /* The outputs at the points, NaN as 0, summed. */
-static void sum_points(const struct expr_program *program, const struct region *region, int count, double sums[3]) {
+static void sum_points(const struct texture *texture, const struct region *region, int count, double sums[3]) {
+    const struct expr_program *program = texture->recorded.program;
     double inputs[EXPR_INPUT_COUNT][FUNCTION_POINTS], values[EXPR_OUTPUTS][FUNCTION_POINTS];
     const double *from[EXPR_INPUT_COUNT];
     double *to[EXPR_OUTPUTS];
@@ -222,7 +243,7 @@ static void sum_points(const struct expr_program *program, const struct region *
     }
     for (int k = 0; k < program->output_count; k++)
         for (int i = 0; i < count; i++)
-            sums[k] += not_nan(values[k][i]);
+            sums[k] += not_nan(texture, region, values[k][i]);
 }
 
 struct vec3 texture_function_colour(const struct texture *texture, const struct hit *hit) {
@@ -240,12 +261,12 @@ struct vec3 texture_function_colour(const struct texture *texture, const struct 
         inputs_at(hit, at, region.inputs);
     }
     if (count > 1) {
-        sum_points(program, &region, count, sums);
+        sum_points(texture, &region, count, sums);
     } else {
         double outputs[EXPR_OUTPUTS];
         expr_evaluate(program, region.inputs, outputs);
         for (int k = 0; k < program->output_count; k++)
-            sums[k] = not_nan(outputs[k]);
+            sums[k] = not_nan(texture, &region, outputs[k]);
     }
     if (program->output_count == 1)
         return vec3_all(sums[0] / count);

@@ -23,6 +23,8 @@ static bool displace_mesh(const struct displacing *d, struct node *node, struct 
     struct mesh_input input;
     struct mesh_tables own = {0};
     struct mesh *mesh = NULL;
+    const struct box bounds = mesh_bounds(node->shape.mesh);
+    record_use(d->context, d->by.program, &bounds);
     if (mesh_input_displace(node->shape.mesh, &d->by, &input, &own, error)) {
         input.name = node->name;
         if (mesh_input_smooth(&input, &own, d->smooth, error))
@@ -62,6 +64,8 @@ const double *gr_function_heights(struct script_context *context, const struct h
                         grid->rows, DISPLACED_TRIANGLES);
         return NULL;
     }
+    const struct box square = {{0, 0, 0}, {1, 0, 1}};
+    record_use(context, program, &square);
     double *heights = arena_alloc_array(&context->call, count, sizeof *heights);
     if (!heights) {
         (void)error_no_memory(error, "a height field");

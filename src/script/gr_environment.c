@@ -206,6 +206,10 @@ bool gr_fog_field(struct script_context *context, const struct script_value *arg
                                        .corner = args[FOG_CORNER].vector,
                                        .size = args[FOG_SIZE].vector};
     struct fog fog = {.kind = FOG_FIELD, .field = fog_field_build(&context->scene.arena, &in, error)};
+    const struct box bounds = {in.corner, vec3_add(in.corner, in.size)};
+    record_use(context, in.density, &bounds);
+    if (in.colour)
+        record_use(context, in.colour, &bounds);
     if (!fog.field || !give_fog(context, &fog, args, result, error))
         return false;
     if (colour->program)

@@ -283,7 +283,8 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         fog->display = false;
         request.fog = fog;
     }
-    if (!apply_lens(args, &request.settings.lens, &request.camera, error) ||
+    if (!record_check(context, request.root, error) ||
+        !apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &context->frame, context->frame_shutter, &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))
         return false;

@@ -140,6 +140,12 @@ static const struct script_parameter implicit_parameters[] = {
     [IMPLICIT_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether there are no caps on the bounds."},
 };
 
+static void use_in_bounds(struct script_context *context, const struct expr_program *program,
+                          const struct shape *shape) {
+    const struct box bounds = shape_bounds(shape);
+    record_use(context, program, &bounds);
+}
+
 static bool gr_implicit(struct script_context *context, const struct script_value *args, struct script_result *result,
                         struct error *error) {
     const struct script_value *bounds = &args[IMPLICIT_BOUNDS], *radius = &args[IMPLICIT_RADIUS];
@@ -161,6 +167,8 @@ static bool gr_implicit(struct script_context *context, const struct script_valu
         in.bounds = (struct box){vec3_make(bounds->points[0][0], bounds->points[0][1], bounds->points[0][2]),
                                  vec3_make(bounds->points[1][0], bounds->points[1][1], bounds->points[1][2])};
     struct shape shape = {.kind = SHAPE_IMPLICIT, .implicit = implicit_build(&context->scene.arena, &in, error)};
+    if (shape.implicit)
+        use_in_bounds(context, in.program, &shape);
     return shape.implicit && give_node(context, args, "implicit", &shape, result, error);
 }
 

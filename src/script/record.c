@@ -270,13 +270,32 @@ static void describe_outputs(const double *values, int count, char *out, size_t 
 struct comparison {
     const struct expr_program *program;
     enum record_domain domain;
+    const struct box *bounds; /* of p; NULL: any */
     double sum[3], largest[3];
 };
+
+static double corner(const struct vec3 *p, int k) {
+    return k == 0 ? p->x : k == 1 ? p->y : p->z;
+}
+
+/* The point within bounds: whole and half numbers, zeros of both signs and equal coordinates where they fit. */
+static void put_in_bounds(uint32_t i, const struct box *bounds, double out[3]) {
+    for (int k = 0; k < 3; k++) {
+        double low = corner(&bounds->min, k), high = corner(&bounds->max, k);
+        double x = low + random_unit(random_combine(random_combine(19, i), (uint64_t)k)) * (high - low);
+        double fitting = i % 5 == 4 ? floor(2 * x + 0.5) / 2 : i % 29 == 28 ? (i % 2 ? 0.0 : -0.0) : x;
+        if (i % 31 == 30 && k > 0)
+            fitting = out[k - 1];
+        out[k] = fitting >= low && fitting <= high ? fitting : x < low ? low : x > high ? high : x;
+    }
+}
 
 static void compare_point(lua_State *L, int function, uint32_t i, struct comparison *comparison) {
     double inputs[EXPR_INPUT_COUNT], recorded[EXPR_OUTPUTS], called[3];
     int top = lua_gettop(L), count = 0, outputs = comparison->program->output_count;
     test_point(i, comparison->domain, inputs);
+    if (comparison->bounds)
+        put_in_bounds(i, comparison->bounds, &inputs[EXPR_POINT_X]);
     for (int k = 0; k < EXPR_INPUT_COUNT; k++)
         lua_pushnumber(L, inputs[k]);
     if (!call_function(L, function, top + 1) || !is_result(L, &count))
@@ -375,6 +394,15 @@ static int record_protected(lua_State *L) {
     return 0;
 }
 
+void record_compare_in_bounds(lua_State *L, const struct recorded_function *function) {
+    struct comparison comparison = {
+        .program = function->program, .domain = function->domain, .bounds = &function->bounds};
+    int index = lua_gettop(L);
+    luaL_checkstack(L, 2 * EXPR_INPUT_COUNT + 20, "a function");
+    for (uint32_t i = 0; i < RECORD_POINTS; i++)
+        compare_point(L, index, i, &comparison);
+}
+
 static bool reads_coordinates(const struct expr_program *program) {
     for (int k = 0; k < program->input_count; k++)
         if (program->inputs[k].input == EXPR_U || program->inputs[k].input == EXPR_V)
@@ -410,6 +438,7 @@ static void record(struct script_context *context, int index, const char *name, 
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
         lua_error(L); /* a fatal error, which the context has recorded */
+    record_remember(context, index, recording->program, recording->domain);
 }
 
 const struct expr_program *record_function(struct script_context *context, int index, const char *name,

@@ -9,6 +9,7 @@
 #define GRAY_SCRIPT_RECORD_INTERNAL_H
 
 #include "expr/expr_program.h"
+#include "math/box.h"
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
 
@@ -35,6 +36,19 @@ struct decision {
     struct path_result if_true; /* while the answer is false: the result of the paths with true */
 };
 
+/* The first argument of a function: a point, or a unit direction. */
+enum record_domain { RECORD_POINTS_OF_SPACE, RECORD_DIRECTIONS };
+
+/* A function that was recorded: for comparisons in the bounds of what it is put on. */
+struct recorded_function {
+    const struct expr_program *program;
+    int reference; /* the function, in the registry */
+    enum record_domain domain;
+    struct box bounds; /* where it is used; empty: nowhere that is known */
+    bool is_compared;  /* in these bounds */
+    struct recorded_function *next;
+};
+
 /* The recorder of a script. Owner: the context. recorder_destroy also frees the data of a recording that did not
  * finish. */
 struct recorder {
@@ -49,6 +63,7 @@ struct recorder {
     bool gave_up;               /* at a limit; `error` names it and the line */
     char error[RECORD_ERROR];
     const void *symbol_metatable, *vector_metatable;
+    struct recorded_function *functions; /* the newest first */
 };
 
 /* symbol.c: symbols, and the functions of math and type that know them. */
@@ -84,14 +99,20 @@ void recorder_destroy(struct recorder *recorder);
 /* The texture of the Lua function at an absolute index, kept by the scene. Raises every error, with the name of the
  * argument in front. */
 const struct script_texture *record_texture(struct script_context *context, int index, const char *name);
-/* The first argument of a function: a point, or a unit direction. */
-enum record_domain { RECORD_POINTS_OF_SPACE, RECORD_DIRECTIONS };
 /* The program of such a function, or of gr.fn of one; NULL of anything else. source: "scene.lua:12". */
 const struct expr_program *record_function(struct script_context *context, int index, const char *name,
                                            enum record_domain domain, const char **source);
 
 /* keys.c */
 int make_keys(lua_State *L); /* gr.keys */
+
+/* Compares a function with its recording at points within its bounds. Raises the error. Expects the function on top. */
+void record_compare_in_bounds(lua_State *L, const struct recorded_function *function);
+
+/* record_bounds.c */
+/* Remembers the function at an absolute index. Raises an error: no memory. */
+void record_remember(struct script_context *context, int index, const struct expr_program *program,
+                     enum record_domain domain);
 
 /* display_colour.c */
 /* Whether a value is a colour of the screen. Raises an error for a string '#...' that is no colour. */

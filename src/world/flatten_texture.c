@@ -102,6 +102,19 @@ static void fill_bumps(const struct numbering *bumps, const struct numbering *te
     }
 }
 
+/* For each function a place for reports of the workers. */
+static bool add_reports(struct arena *arena, struct texture *table, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (table[i].kind != TEXTURE_FUNCTION)
+            continue;
+        table[i].recorded.nan = arena_alloc(arena, sizeof *table[i].recorded.nan);
+        if (!table[i].recorded.nan)
+            return false;
+        atomic_flag_clear(&table[i].recorded.nan->lock);
+    }
+    return true;
+}
+
 static bool number_all(const struct world *world, struct numbering *textures, struct numbering *bumps) {
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct material *material = world->authored.materials[i];
@@ -264,9 +277,10 @@ bool flatten_textures(struct flattening *f) {
         world->texture_count = textures.count;
         world->bump_count = bumps.count;
         refer(world, &textures, &bumps);
-        if (f->linear_colours)
+        ok = add_reports(arena, texture_table, textures.count);
+        if (ok && f->linear_colours)
             ok = decode_colours(f, texture_table);
-        else if (f->encodes && f->warn)
+        else if (ok && f->encodes && f->warn)
             ok = warn_of_encoding(f, texture_table);
     }
     mem_free(textures.entries);

@@ -68,6 +68,60 @@ TEST(an_error_on_a_path_counts_only_where_a_point_gets) {
     fails("fn(function(p) return 7 & p.x end)", "has no integer representation");
 }
 
+/* Of a picture of the shape; what differs beyond +-100 is seen only there. */
+static void picture_says(const char *shape, const char *material, const char *words) {
+    char text[1024];
+    (void)snprintf(text, sizeof text,
+                   "local n = 0 local m = gr.material{kd = %s}\ngr.render{node = %s, file = 'a.png', width = 4,"
+                   " height = 4, eye = {0, 0, 9}, view = {0, 0, -1}}",
+                   material, shape);
+    check_corner("", &(struct corner){text, words}, NULL);
+}
+
+TEST(functions_are_compared_in_the_bounds_of_what_they_are_put_on) {
+    static const char random[] = "function(p) if p.x > 1000 then return math.random() end return 0.5 end";
+    static const char unseen[] = "function(p) if math.floor(p.y) == 2000 then return 1 end return 0.5 end";
+    static const char fails[] = "function(p) if p.z > 1000 then error('far') end return 0.5 end";
+    static const char far_ball[] = "gr.sphere{centre = {2000, 2000, 2000}, radius = 3, material = m}";
+    picture_says("gr.sphere{material = m}", random, NULL);
+    picture_says("gr.sphere{material = m}", unseen, NULL);
+    picture_says("gr.sphere{material = m}", fails, NULL);
+    picture_says(far_ball, random, "gr.render: the function of line 1 cannot be recorded: at p = {");
+    picture_says(far_ball, unseen, "x == 0 is not seen");
+    picture_says(far_ball, fails, "scene.lua:1: far");
+    picture_says("gr.difference{gr.sphere{centre = {2000, 0, 0}}, gr.cube('c')}:set_material(m)", random, "at p = {");
+    picture_says("gr.sphere{centre = {2000, 0, 0}, material = gr.material{kd = gr.mix_texture(m and"
+                 " function(p) if p.x > 1000 then return math.random() end return 0 end, 1)}}",
+                 "{1, 1, 1}", "at p = {");
+    picture_says("gr.implicit{f = function(p) if p.x > 1000 then return math.random() - 2 end return p.x end,"
+                 " bounds = {{1999, 0, 0}, {2001, 1, 1}}}",
+                 "{1, 1, 1}", "at p = {");
+}
+
+TEST(a_nan_at_a_hit_is_reported_once_with_the_point) {
+    static const char scene[] =
+        "local ball = gr.sphere('ball'):set_material(gr.material{kd = function(p) return math.sqrt(p.x - 0.5) end})\n"
+        "for i = 1, 2 do gr.render{node = ball, file = 'a.png', width = 40, height = 40, eye = {0, 0, 5 + i},"
+        " view = {0, 0, -1}, up = {0, 1, 0}, fov = 25} end\n";
+    char *first = NULL;
+    for (int run = 0; run < 2; run++) {
+        struct test_result result = test_gray_scene(scene, run ? "-j 1 --isa base scene.lua" : "-j 3 scene.lua", NULL);
+        char *line = strstr(result.err, "warning: the function of scene.lua:1 is not a number (NaN) at p = {-");
+        if (!line || !strstr(line, "; it counts as 0 there") || strstr(strstr(line, "there"), "(NaN)"))
+            test_fail(__FILE__, __LINE__, "%s", result.err);
+        if (!line)
+            return;
+        line[strcspn(line, "\n")] = '\0';
+        if (run == 1)
+            CHECK_TEXT(line, first);
+        free(first);
+        first = strdup(line);
+        free(result.out);
+        free(result.err);
+    }
+    free(first);
+}
+
 TEST(vectors_are_numbers_by_three) {
     runs("local v = vec(1, 2, 3) assert(v.x == 1 and v[2] == 2 and v.b == 3 and v == vec{1, 2, 3} and #v == 3)"
          " assert(tostring(-v * 2) == '{-2, -4, -6}' and v:dot(v) == 14 and vec(3, 4, 0):length() == 5)"
@@ -140,7 +194,8 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
 }
 
-/* A function of random statements: locals, branches, loops, tables, closures. */
+/* A function of random statements: locals, branches, loops, tables, closures. What is rounded is limited before:
+ * integers beyond 64 bits are a limit of recordings (docs/functions.md). */
 static const char generator[] =
     "local function pick(...) return (select(math.random(select('#', ...)), ...)) end\n"
     "local function generate()\n"
@@ -154,7 +209,7 @@ static const char generator[] =
     "    local a, b = value(depth - 1), value(depth - 1)\n"
     "    return pick('(' .. a .. ' + ' .. b .. ')', '(' .. a .. ' - ' .. b .. ')', '(' .. a .. ' * ' .. b .. ')',\n"
     "      '(' .. a .. ' / ' .. b .. ')', '(' .. a .. ' % ' .. b .. ')', '(' .. a .. ' // ' .. b .. ')',\n"
-    "      '(- ' .. a .. ')', 'math.floor(' .. a .. ')', 'math.min(' .. a .. ', ' .. b .. ')',\n"
+    "      '(- ' .. a .. ')', 'whole(' .. a .. ')', 'math.min(' .. a .. ', ' .. b .. ')',\n"
     "      'math.max(' .. a .. ', ' .. b .. ')', 'math.abs(' .. a .. ')', 'math.sin(' .. a .. ')',\n"
     "      'gr.where(' .. a .. ', ' .. b .. ', ' .. value(0) .. ')', 'gr.noise(' .. a .. ', ' .. b .. ', 1)',\n"
     "      'gr.step(' .. a .. ', ' .. b .. ')', 'twice(' .. a .. ')', 'list[' .. math.random(3) .. '](' .. a .. ')')\n"
@@ -193,7 +248,8 @@ static const char generator[] =
     "  end\n"
     "  for _ = 1, math.random(3, 8) do statement(2) end\n"
     "  local result = pick(value(2), '{' .. value(1) .. ', ' .. value(1) .. ', ' .. value(0) .. '}')\n"
-    "  return 'local function twice(x) return x * 2 end local list = {twice, math.cos, function(x) return x - 1 "
+    "  return 'local function whole(x) return math.floor(gr.min(1e9, gr.max(-1e9, x))) end '\n"
+    "    .. 'local function twice(x) return x * 2 end local list = {twice, math.cos, function(x) return x - 1 "
     "end}\\n'\n"
     "    .. 'return function(p, s)\\n' .. table.concat(lines, '\\n') .. '\\nreturn ' .. result .. '\\nend'\n"
     "end\n";
@@ -332,7 +388,8 @@ TEST(displaced_nodes_are_errors_where_they_cannot_be) {
         {"mesh():displace(f, 0.1)", NULL},
         {"gr.difference{mesh():displace{f = f, level = 3}, gr.sphere('s')}", NULL},
         {"gr.node('g'):add_child(mesh()):add_child(mesh()):displace{f = f, level = 1, smooth = 0}", NULL},
-        {"local m = mesh() gr.node('g'):add_child(gr.node('h'):add_child(m)):add_child(m):displace{f = f, level = 1} assert(#select(2, m:faces()) == 48)",
+        {"local m = mesh() gr.node('g'):add_child(gr.node('h'):add_child(m)):add_child(m):displace{f = f, level = 1} "
+         "assert(#select(2, m:faces()) == 48)",
          NULL},
         {"gr.height_field{heights = {{0, 0}, {1, 0}}}:displace(f, 0.1)", NULL},
         {"gr.height_field{f = function(p, s) return p.x * s.v end, columns = 5, rows = 3}", NULL},

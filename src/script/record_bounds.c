@@ -1,0 +1,150 @@
+/* Recorded functions compared with Lua where they are used: within the bounds of the shapes whose materials have them,
+ * of implicit solids, fogs and displaced meshes. Bounds are in object space, as p is. What is infinite counts within
+ * +-100. A function is compared before a picture is rendered, again only if its bounds have grown since. */
+#include "script/record_internal.h"
+
+#include "scene/traversal.h"
+
+#include <lauxlib.h>
+#include <string.h>
+
+#define FAR 100.0
+
+void record_remember(struct script_context *context, int index, const struct expr_program *program,
+                     enum record_domain domain) {
+    lua_State *L = context->lua;
+    struct recorded_function *function = arena_alloc(&context->keep, sizeof *function);
+    if (!function)
+        context_raise_no_memory(context);
+    lua_pushvalue(L, index);
+    *function = (struct recorded_function){.program = program,
+                                           .reference = luaL_ref(L, LUA_REGISTRYINDEX),
+                                           .domain = domain,
+                                           .bounds = box_empty(),
+                                           .is_compared = true,
+                                           .next = context->recorder->functions};
+    context->recorder->functions = function;
+}
+
+static bool contains(const struct box *outer, const struct box *inner) {
+    return outer->min.x <= inner->min.x && outer->min.y <= inner->min.y && outer->min.z <= inner->min.z &&
+           outer->max.x >= inner->max.x && outer->max.y >= inner->max.y && outer->max.z >= inner->max.z;
+}
+
+/* The finite part of an interval. */
+static void cut_axis(double *low, double *high) {
+    if (!(*low > -1e30 && *high < 1e30)) {
+        *low = *low > -FAR && *low < FAR ? *low : -FAR;
+        *high = *high<FAR && * high> - FAR ? *high : FAR;
+    }
+}
+
+void record_use(struct script_context *context, const struct expr_program *program, const struct box *bounds) {
+    struct recorded_function *function = context->recorder->functions;
+    struct box box = *bounds;
+    while (function && function->program != program)
+        function = function->next;
+    if (!function || function->domain == RECORD_DIRECTIONS || !(box.min.x <= box.max.x))
+        return;
+    cut_axis(&box.min.x, &box.max.x);
+    cut_axis(&box.min.y, &box.max.y);
+    cut_axis(&box.min.z, &box.max.z);
+    if (contains(&function->bounds, &box))
+        return;
+    function->bounds = box_join(function->bounds, box);
+    function->is_compared = false;
+}
+
+/* --- materials --- */
+
+static void use_texture(struct script_context *context, const struct texture *texture, const struct box *bounds) {
+    if (!texture || !texture->has_function)
+        return;
+    if (texture->kind == TEXTURE_FUNCTION)
+        record_use(context, texture->recorded.program, bounds);
+    struct texture own = *texture;
+    union texture_ref *parts[TEXTURE_PARTS];
+    for (int k = texture_parts(&own, parts); k-- > 0;)
+        use_texture(context, parts[k]->authored, bounds);
+}
+
+static void use_material(struct script_context *context, const struct material *material, const struct box *bounds) {
+    for (int k = 0; material && k < INPUT_COUNT; k++)
+        use_texture(context, material->inputs[k].authored, bounds);
+    for (const struct bump *bump = material ? material->bump.authored : NULL; bump; bump = bump->below.authored)
+        use_texture(context, bump->texture.authored, bounds);
+}
+
+/* The material of an operand without its own is that of a solid above it. */
+static const struct material *inherited_material(const struct scene_traversal *t) {
+    for (uint32_t k = t->depth; k-- > 0;) {
+        const struct node *node = t->steps[k].node;
+        if (node->material && (k + 1 == t->depth || node->kind == NODE_CSG))
+            return node->material;
+    }
+    return NULL;
+}
+
+static void use_node(struct script_context *context, const struct scene_traversal *t) {
+    const struct node *node = scene_traversal_node(t);
+    if (!node_has_surface(node))
+        return;
+    const struct box bounds = shape_bounds(&node->shape);
+    use_material(context, inherited_material(t), &bounds);
+    for (uint32_t k = 0; k < node->slot_count; k++)
+        use_material(context, node->slots[k], &bounds);
+    if (node->bump)
+        use_texture(context, node->bump->texture.authored, &bounds);
+}
+
+static bool use_nodes(struct script_context *context, const struct node *root, struct error *error) {
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
+    enum scene_event event;
+    scene_traversal_begin(&t, root);
+    while ((event = scene_traversal_next(&t)) != SCENE_END && event != SCENE_NO_MEMORY)
+        if (event == SCENE_ENTER && scene_traversal_node(&t)->kind == NODE_GEOMETRY)
+            use_node(context, &t);
+    scene_traversal_end(&t);
+    return event == SCENE_END || error_no_memory(error, "the bounds of functions");
+}
+
+/* --- comparison --- */
+
+/* Argument: the struct recorded_function. */
+static int compare_protected(lua_State *L) {
+    const struct recorded_function *function = lua_touserdata(L, 1);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function->reference);
+    record_compare_in_bounds(L, function);
+    return 0;
+}
+
+static bool compare(struct script_context *context, struct recorded_function *function, struct error *error) {
+    lua_State *L = context->lua;
+    context->recorder->busy = true;
+    lua_pushcfunction(L, compare_protected);
+    lua_pushlightuserdata(L, function);
+    int status = lua_pcall(L, 1, 0, 0);
+    context->recorder->busy = false;
+    context->lua = L;
+    function->is_compared = true;
+    if (status == LUA_OK)
+        return true;
+    if (lua_type(L, -1) == LUA_TSTRING && context->fatal.kind == ERROR_NONE && !context->limits.memory_out)
+        (void)error_set(error, ERROR_SCENE, "%.900s", lua_tostring(L, -1));
+    else
+        *error = context->fatal;
+    lua_pop(L, 1);
+    return false;
+}
+
+bool record_check(struct script_context *context, const struct node *root, struct error *error) {
+    struct recorded_function *function = context->recorder->functions;
+    if (!function)
+        return true;
+    if (!use_nodes(context, root, error))
+        return false;
+    for (; function; function = function->next)
+        if (!function->is_compared && !compare(context, function, error))
+            return false;
+    return true;
+}
