@@ -424,6 +424,48 @@ bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t cou
     return ok;
 }
 
+static struct box child_box(const struct box_tree_node *node, int slot) {
+    return (struct box){{node->planes[0][0][slot], node->planes[1][0][slot], node->planes[2][0][slot]},
+                        {node->planes[0][1][slot], node->planes[1][1][slot], node->planes[2][1][slot]}};
+}
+
+static struct box node_box(const struct box_tree_node *node) {
+    struct box box = box_empty();
+    for (int k = 0; k < BOX_TREE_WIDTH; k++) {
+        struct box child = child_box(node, k);
+        if (node->child[k] != BOX_TREE_NONE)
+            box = box_join(box, child);
+    }
+    return box;
+}
+
+/* The numbers of children are larger than that of their parent. */
+void box_tree_refit(struct box_tree *tree, const struct box *boxes) {
+    for (uint32_t n = tree->node_count; n-- > 0;) {
+        struct box_tree_node *node = &tree->nodes[n];
+        for (int k = 0; k < BOX_TREE_WIDTH; k++) {
+            uint32_t child = node->child[k];
+            if (child == BOX_TREE_NONE)
+                continue;
+            struct box box = child & BOX_TREE_ITEM ? boxes[child & ~BOX_TREE_ITEM] : node_box(&tree->nodes[child]);
+            set_child(node, k, &box, child);
+        }
+    }
+    tree->bounds = tree->node_count > 0 ? node_box(&tree->nodes[0]) : box_empty();
+}
+
+double box_tree_cost(const struct box_tree *tree) {
+    double cost = 0;
+    for (uint32_t n = 0; n < tree->node_count; n++) {
+        for (int k = 0; k < BOX_TREE_WIDTH; k++) {
+            struct box box = child_box(&tree->nodes[n], k);
+            double area = tree->nodes[n].child[k] & BOX_TREE_ITEM ? 0 : half_area(&box);
+            cost += isfinite(area) ? area : 0;
+        }
+    }
+    return cost;
+}
+
 void box_tree_destroy(struct box_tree *tree) {
     mem_free(tree->nodes);
     *tree = (struct box_tree){.bounds = box_empty()};

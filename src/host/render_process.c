@@ -36,6 +36,7 @@ struct render_process {
     struct pool *pool;  /* made for the first picture */
     struct arena job;   /* memory of the current picture */
     struct assets assets;
+    struct accel_cache accel_cache;  /* of the frame before, in an animation */
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
     uint64_t played;                 /* those of them that are frames in a window: nothing is written */
@@ -254,6 +255,12 @@ static void report_samples(const struct picture_work *work) {
     report_scene(work->process, LINE_NOTICE, line);
 }
 
+/* Whether the next picture may be like this one. */
+static bool is_frame(const struct picture_work *work) {
+    return (work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE) &&
+           !work->asked.in_window;
+}
+
 static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
                         struct error *error) {
     struct render_process *process = work->process;
@@ -271,6 +278,7 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                                       .accel = work->job.settings.accel,
                                       .linear_colours = settings_linear(&work->job.settings),
                                       .encodes = work->job.settings.tone.srgb,
+                                      .cache = is_frame(work) ? &process->accel_cache : NULL,
                                       .warn = warn_of_scene,
                                       .warn_context = process};
     bool ok = world_build(&work->world, &input, &process->job, process->pool, error);
@@ -351,6 +359,8 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     fill_report(work, job->film, report);
     if (ok && job->world)
         warn_of_nan(process, job->world);
+    if (ok && is_frame(work))
+        world_keep_accel(&work->world, &process->accel_cache);
     world_destroy(&work->world);
     if (ok && !is_asked(process->options) && !process->options->check)
         report_samples(work);
@@ -616,8 +626,10 @@ static void begin_memory(struct render_process *process) {
     arena_destroy(&process->job);
     (void)mem_charge(NULL);
     process->assets.memory += process->memory.held > 0 ? (uint64_t)process->memory.held : 0;
-    if (process->assets.memory > script_picture_memory(&process->options->script))
+    if (process->assets.memory > script_picture_memory(&process->options->script)) {
         assets_destroy(&process->assets);
+        accel_cache_destroy(&process->accel_cache);
+    }
     process->account = NULL;
     process->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory is the limit"};
 }
@@ -708,6 +720,9 @@ static int run_script(struct render_process *process, const char *path) {
         frame.number = next_frame(process, &frame);
     }
     process->skips = repeats && !frame_is_selected(selection, frame.number);
+    (void)mem_charge(process->account);
+    accel_cache_destroy(&process->accel_cache);
+    (void)mem_charge(NULL);
     uint64_t before = process->pictures;
     int status = run_once(process, path, &frame);
     while (status == 0 && process->rewinds)
@@ -777,6 +792,7 @@ void render_process_run(const struct options *options, const struct host_service
     pool_destroy(process.pool);
     arena_destroy(&process.job);
     assets_destroy(&process.assets);
+    accel_cache_destroy(&process.accel_cache);
     file_read_log_destroy(&process.read_log);
     file_set_destroy(&process.reported);
 }

@@ -34,7 +34,7 @@ struct flattening {
     struct world *world;
     struct pool *pool;
     bool linear_colours, encodes; /* as in struct world_input */
-    world_warning *warn; /* or NULL */
+    world_warning *warn;          /* or NULL */
     void *warn_context;
     struct error *error;
     bool unasked; /* no ray will query this world: its meshes get no index */

@@ -9,7 +9,10 @@
 #include "world/scene_accel.h"
 
 #include "accel/accel_cost.h"
+#include "base/mem.h"
 #include "math/elementary.h"
+
+#include <string.h>
 
 static struct box box_of(const void *context, uint32_t i) {
     return ((const struct box *)context)[i];
@@ -60,6 +63,66 @@ void scene_accel_destroy(struct scene_accel *accel) {
 
 size_t scene_accel_memory(const struct scene_accel *accel) {
     return grid_memory(&accel->grid) + box_tree_memory(&accel->tree) + kd_tree_memory(&accel->kd_tree);
+}
+
+/* --- from frame to frame --- */
+
+static const double cost_growth = 1.25; /* rays visit as much more; a new hierarchy costs some tenths of a picture */
+
+/* A hierarchy has no place for items that were empty. */
+static bool same_items(const struct box *a, const struct box *b, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        if (box_is_empty(&a[i]) != box_is_empty(&b[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool refit(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count) {
+    if (cache->accel.kind != ACCEL_BVH || (wanted == ACCEL_AUTO && choose(boxes, count) != ACCEL_BVH) ||
+        !same_items(cache->boxes, boxes, count))
+        return false;
+    box_tree_refit(&cache->accel.tree, boxes);
+    return box_tree_cost(&cache->accel.tree) <= cost_growth * cache->cost;
+}
+
+bool accel_cache_take(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+                      struct scene_accel *accel) {
+    bool fits = cache->full && cache->wanted == wanted && cache->count == count &&
+                (memcmp(cache->boxes, boxes, count * sizeof *boxes) == 0 || refit(cache, wanted, boxes, count));
+    if (fits)
+        *accel = cache->accel;
+    else
+        scene_accel_destroy(&cache->accel);
+    cache->full = false;
+    cache->cost = fits ? cache->cost : 0;
+    cache->accel = (struct scene_accel){0};
+    return fits;
+}
+
+void accel_cache_keep(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+                      struct scene_accel *accel) {
+    if (count > cache->capacity || !cache->boxes) {
+        mem_free(cache->boxes);
+        cache->boxes = mem_alloc((count > 0 ? count : 1) * sizeof *cache->boxes);
+        cache->capacity = cache->boxes ? count : 0;
+    }
+    cache->full = cache->boxes != NULL;
+    if (cache->full) {
+        memcpy(cache->boxes, boxes, count * sizeof *boxes);
+        cache->accel = *accel;
+        *accel = (struct scene_accel){0};
+    }
+    cache->count = count;
+    cache->wanted = wanted;
+    if (cache->cost == 0)
+        cache->cost = box_tree_cost(&cache->accel.tree);
+}
+
+void accel_cache_destroy(struct accel_cache *cache) {
+    scene_accel_destroy(&cache->accel);
+    mem_free(cache->boxes);
+    *cache = (struct accel_cache){0};
 }
 
 /* --- cells --- */

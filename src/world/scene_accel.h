@@ -24,6 +24,26 @@ bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const 
 void scene_accel_destroy(struct scene_accel *accel);
 size_t scene_accel_memory(const struct scene_accel *accel); /* bytes */
 
+/* The accelerator of the frame before, kept for the next one. Zero-initialised: there is none. Owns what it holds. */
+struct accel_cache {
+    bool full; /* it has an accelerator */
+    struct scene_accel accel;
+    struct box *boxes; /* that it was made of, or last refitted to */
+    uint32_t count, capacity;
+    enum accel_kind wanted;
+    double cost; /* of the hierarchy when it was built; 0: it was not kept yet */
+};
+
+/* Hands over the accelerator if it suits these boxes: if they are the same, as it is, and if they are as many and the
+ * cost model still chooses a hierarchy, refitted, unless its cost has grown by a quarter since it was built. Searches
+ * find the same as in a new one. False: there is none, and it is to be built. */
+bool accel_cache_take(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+                      struct scene_accel *accel);
+/* Takes over an accelerator over these boxes, which are copied; without memory for them nothing is kept. */
+void accel_cache_keep(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+                      struct scene_accel *accel);
+void accel_cache_destroy(struct accel_cache *cache);
+
 /* Called with a cell and its load, or its closeness to the root: 1 and more is high. `whole`: the box of everything,
  * which comes first. Returns whether to continue. */
 typedef bool scene_accel_visit(void *context, const struct box *cell, bool whole, double share);

@@ -120,10 +120,11 @@ struct world_input {
     uint32_t light_count;
     const struct sky *sky;
     struct shutter shutter;
-    enum accel_kind accel; /* of the world and of the meshes */
-    bool linear_colours;   /* pictures and display colours are decoded (docs/colour.md) */
-    bool encodes;          /* the sRGB function is applied to the result */
-    world_warning *warn;   /* or NULL */
+    enum accel_kind accel;     /* of the world and of the meshes */
+    bool linear_colours;       /* pictures and display colours are decoded (docs/colour.md) */
+    bool encodes;              /* the sRGB function is applied to the result */
+    struct accel_cache *cache; /* of the frame before, or NULL */
+    world_warning *warn;       /* or NULL */
     void *warn_context;
 };
 /* Flattens the tree under the root; missing mesh indices are built. The world points into the scene's
@@ -133,6 +134,8 @@ bool world_build(struct world *world, const struct world_input *input, struct ar
                  struct error *error);
 /* Copies the numbers of the scene's materials again, after changes that keep the world (change_keeps_world). */
 void world_update_materials(struct world *world);
+/* The accelerator is for the world of the next frame; this world answers no more queries. */
+void world_keep_accel(struct world *world, struct accel_cache *cache);
 void world_destroy(struct world *world); /* memory outside the arena */
 /* Bytes of placements with what they share and their boxes. */
 size_t world_primitive_memory(const struct world *world);

@@ -82,7 +82,10 @@ static bool build(struct world *world, const struct world_input *input, struct a
     if (!make_materials(&flattening) || !world_primitive_boxes(world, flattening.limits, pool, error))
         return false;
     add_up_meshes(world, input->scene->assets);
-    if (!scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
+    bool taken = input->cache &&
+                 accel_cache_take(input->cache, world->mesh_accel, world->boxes, world->primitive_count, &world->accel);
+    if (!taken &&
+        !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
         return false;
     return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||
            mesh_group_build(&world->group, world, arena, pool, error);
@@ -96,6 +99,10 @@ bool world_build(struct world *world, const struct world_input *input, struct ar
     if (!ok)
         world_destroy(world);
     return ok;
+}
+
+void world_keep_accel(struct world *world, struct accel_cache *cache) {
+    accel_cache_keep(cache, world->mesh_accel, world->boxes, world->primitive_count, &world->accel);
 }
 
 void world_destroy(struct world *world) {
