@@ -69,18 +69,26 @@ size_t scene_accel_memory(const struct scene_accel *accel) {
 
 static const double cost_growth = 1.25; /* rays visit as much more; a new hierarchy costs some tenths of a picture */
 
-/* A hierarchy has no place for items that were empty. */
-static bool same_items(const struct box *a, const struct box *b, uint32_t count) {
+/* A share of the boxes that does not change what the cost model chooses. */
+static const double few_changes = 1 / 32.0;
+
+/* How many boxes differ; more than there are: one is empty in a and not in b, or the reverse. */
+static uint32_t changes(const struct box *a, const struct box *b, uint32_t count) {
+    uint32_t changed = 0;
     for (uint32_t i = 0; i < count; i++) {
+        if (memcmp(&a[i], &b[i], sizeof a[i]) == 0)
+            continue;
         if (box_is_empty(&a[i]) != box_is_empty(&b[i]))
-            return false;
+            return UINT32_MAX;
+        changed++;
     }
-    return true;
+    return changed;
 }
 
+/* A hierarchy has no place for items that were empty. */
 static bool refit(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count) {
-    if (cache->accel.kind != ACCEL_BVH || (wanted == ACCEL_AUTO && choose(boxes, count) != ACCEL_BVH) ||
-        !same_items(cache->boxes, boxes, count))
+    uint32_t changed = cache->accel.kind == ACCEL_BVH ? changes(cache->boxes, boxes, count) : UINT32_MAX;
+    if (changed > count || (wanted == ACCEL_AUTO && changed > few_changes * count && choose(boxes, count) != ACCEL_BVH))
         return false;
     box_tree_refit(&cache->accel.tree, boxes);
     return box_tree_cost(&cache->accel.tree) <= cost_growth * cache->cost;
