@@ -352,6 +352,10 @@ struct light_part light_sampler_sample(const struct light_sampler *s, struct vec
     case LIGHT_CHOICE_UNIFORM:
         return sample_shares(s, u, pmf);
     }
+    if (s->infinite_count == 0 && s->node_count == 1) { /* as often the only light */
+        *pmf = 1;
+        return s->nodes[0].part;
+    }
     double tree = tree_share(s, point, normal);
     if (tree == 0 && s->infinite_count == 0) /* no light can be chosen */
         return no_part;

@@ -134,15 +134,17 @@ static void short_sincos(double x, double *sine, double *cosine) {
 /* In proportion to the cosine: sample_disc, raised to the hemisphere. In each eighth of the disc the angle to the next
  * axis is at most pi/4. */
 static struct vec3 diffuse_sample(struct vec3 normal, struct sample2 u) {
-    double x = 2 * u.x - 1, y = 2 * u.y - 1, sine, cosine;
-    bool wide = fabs(x) > fabs(y);
-    double radius = wide ? x : y, other = wide ? y : x;
+    /* Chosen by an index: no processor can predict which of them is larger. */
+    const double at[2] = {2 * u.y - 1, 2 * u.x - 1};
+    int wide = fabs(at[1]) > fabs(at[0]);
+    double radius = at[wide], other = at[!wide], sine, cosine;
     short_sincos(radius != 0 ? PI / 4 * (other / radius) : 0, &sine, &cosine);
-    double along = radius * cosine, across = radius * sine, height = 1 - radius * radius;
+    const double along[2] = {radius * sine, radius * cosine};
+    double height = 1 - radius * radius;
     struct vec3 a, b;
     frame_tangents(normal, &a, &b);
     struct vec3 out = vec3_scale(normal, height > 0 ? sqrt(height) : 0);
-    return vec3_add_scaled(vec3_add_scaled(out, a, wide ? along : across), b, wide ? across : along);
+    return vec3_add_scaled(vec3_add_scaled(out, a, along[wide]), b, along[!wide]);
 }
 
 static double blinn_pdf(const struct lobe *lobe, struct vec3 normal, struct vec3 wo, struct vec3 wi) {
@@ -413,7 +415,16 @@ static double pdf_of_chances(const struct bsdf *bsdf, const struct lobe_chances 
     return sum;
 }
 
+/* A diffuse lobe, which is the only one of most surfaces. */
+static struct vec3 diffuse_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wi) {
+    double n_l = bsdf->dark ? 0 : classic_cosine(bsdf, wi);
+    return n_l > 0 ? vec3_scale(lobe->weight, intensity_of(n_l)) : vec3_all(0);
+}
+
 struct vec3 bsdf_eval(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct vec3 wi) {
+    const struct lobe *only = only_lobe(bsdf, lobes);
+    if (only && only->kind == LOBE_DIFFUSE)
+        return diffuse_eval(bsdf, only, wi);
     struct vec3 sum = {0, 0, 0};
     for (uint32_t left = lobes & ((UINT32_C(1) << bsdf->count) - 1); left; left &= left - 1) {
         const struct lobe *lobe = &bsdf->lobes[__builtin_ctz(left)];
@@ -461,9 +472,22 @@ static const struct lobe *choose_lobe(const struct bsdf *bsdf, const struct lobe
     return &bsdf->lobes[chosen];
 }
 
+static bool sample_diffuse(const struct bsdf *bsdf, const struct lobe *lobe, struct sample2 u,
+                           struct bsdf_sample *out) {
+    if (bsdf->dark || !(vec3_max_abs(lobe->weight) > 0))
+        return false;
+    out->direction = diffuse_sample(bsdf->lit, u);
+    out->pdf = classic_cosine(bsdf, out->direction) / PI;
+    out->weight = lobe->weight;
+    out->flags = BSDF_REFLECTS;
+    return out->pdf > 0;
+}
+
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out) {
     const struct lobe *only = only_lobe(bsdf, lobes), *lobe = only;
+    if (only && only->kind == LOBE_DIFFUSE)
+        return sample_diffuse(bsdf, only, u, out);
     struct lobe_chances chances;
     chances.all = 0;
     out->pdf = 1;

@@ -259,12 +259,42 @@ static void set_lobes(const struct surface_inputs *inputs, const struct material
         add_lobe(bsdf, rough ? LOBE_GGX_TRANSMISSION : LOBE_REFRACTION, vec3_scale(inputs->ks, refract), 0);
 }
 
+/* Whether the surface only has a diffuse lobe, and every input is a number. */
+static bool is_matte(const struct material *material, const struct phong *numbers) {
+    return material->plain && !material->openpbr && !material->fresnel && !numbers->unlit && numbers->reflect == 0 &&
+           numbers->refract == 0 && vec3_max_abs(numbers->ks) == 0;
+}
+
+/* The same as material_eval of such a material. */
+static void eval_matte(const struct phong *numbers, const struct hit *hit, const struct material_context *context,
+                       struct bsdf *out) {
+    struct surface_inputs inputs;
+    inputs.normal = hit->normal;
+    inputs.two_sided = numbers->two_sided;
+    set_frame(hit, &inputs, out);
+    out->count = 0;
+    add_lobe(out, LOBE_DIFFUSE, numbers->kd, 0);
+    out->albedo = numbers->kd;
+    out->ambient = context->ambient_plain ? vec3_all(1) : numbers->kd;
+    out->emission = numbers->emission;
+    out->opacity = out->eta = 1;
+    out->alpha = numbers->roughness * numbers->roughness;
+    out->glossy_samples = numbers->glossy_samples;
+    out->fresnel = -1;
+    out->fresnel_of_facets = out->transmits = false;
+    out->turns_back = context->total_reflection;
+}
+
 void material_eval(const struct material *material, const struct hit *hit, const struct medium_stack *media,
                    const struct material_context *context, struct bsdf *out) {
     static const struct material_context defaults = {.observer = NULL};
     struct surface_inputs inputs;
     if (!context)
         context = &defaults;
+    if (context->no_black_highlight && is_matte(material, numbers_of(material))) {
+        eval_matte(numbers_of(material), hit, context, out);
+        return;
+    }
     if (context->observer)
         material_inputs_observe(context->authored, hit, &inputs, context->observer, context->observer_context);
     else

@@ -48,6 +48,8 @@ static void add_to_groups(struct path_parts *parts, int depth, const struct vec3
 
 /* The hit of the path's ray. */
 static void add_light(struct path *path, struct vec3 radiance) {
+    if (radiance.x == 0 && radiance.y == 0 && radiance.z == 0)
+        return;
     struct vec3 light = vec3_mul(path->weight, radiance);
     path->light = vec3_add(path->light, light);
     if (path->parts)
@@ -294,7 +296,8 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
                          const struct sampler *sampler, const struct hit *hit) {
     const struct settings *settings = &state->job->settings;
     const struct world *world = state->job->world;
-    const struct material_context context = {.specular = settings->specular, .total_reflection = true};
+    const struct material_context context = {
+        .specular = settings->specular, .total_reflection = true, .no_black_highlight = true};
     uint32_t dimension = path->dimension;
     struct bsdf bsdf;
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;

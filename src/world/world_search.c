@@ -223,28 +223,46 @@ FOR_EACH_MODE void search_grid(struct search *s, enum search_mode mode) {
     s->scratch->geom.cost.voxels += traversal.voxels;
 }
 
-/* The members of the group, all at once. True: an occluder. */
-FOR_EACH_MODE bool search_group(struct search *s, enum search_mode mode) {
-    const struct mesh_group *group = &s->world->group;
-    struct geom_scratch *geom = &s->scratch->geom;
-    struct triangle_run skipped = mesh_group_skipped(group, s->ray);
+/* The members of the group, all at once. */
+static bool nearest_of_group(const struct world *world, const struct ray *ray, struct geom_scratch *geom,
+                             uint32_t *primitive, struct crossing *out) {
+    const struct mesh_group *group = &world->group;
+    geom->shape_tests++;
+    if (!triangle_index_nearest_but(group->index, &group->set, ray, mesh_group_skipped(group, ray), &out->on_mesh,
+                                    &geom->cost))
+        return false;
+    uint32_t index = group->primitive[out->part];
+    out->part -= group->first[index];
+    out->leaf = 0;
+    out->flip = false;
+    *primitive = index;
+    return true;
+}
+
+static bool any_of_group(const struct world *world, const struct ray *ray, struct geom_scratch *geom,
+                         uint32_t *primitive) {
+    const struct mesh_group *group = &world->group;
     uint32_t triangle;
     geom->shape_tests++;
-    if (mode == SEARCH_ANY) {
-        if (!triangle_index_any_but(group->index, &group->set, s->ray, skipped, &triangle, &geom->cost))
-            return false;
-        s->primitive = group->primitive[triangle];
-        return s->found = true;
-    }
-    struct crossing *crossing = s->next;
-    if (triangle_index_nearest_but(group->index, &group->set, &s->limited, skipped, &crossing->on_mesh, &geom->cost)) {
-        uint32_t index = group->primitive[crossing->part];
-        crossing->part -= group->first[index];
-        crossing->leaf = 0;
-        crossing->flip = false;
+    if (!triangle_index_any_but(group->index, &group->set, ray, mesh_group_skipped(group, ray), &triangle, &geom->cost))
+        return false;
+    *primitive = group->primitive[triangle];
+    return true;
+}
+
+/* True: an occluder. */
+FOR_EACH_MODE bool search_group(struct search *s, enum search_mode mode) {
+    uint32_t index;
+    if (mode == SEARCH_ANY)
+        return s->found = any_of_group(s->world, s->ray, &s->scratch->geom, &s->primitive);
+    if (nearest_of_group(s->world, &s->limited, &s->scratch->geom, &index, s->next))
         keep_nearest(s, index);
-    }
     return false;
+}
+
+/* Whether all primitives are members: then nothing else is searched. */
+static bool is_group_only(const struct world *world) {
+    return world->group.index && world->group.rest.item_count == 0;
 }
 
 FOR_EACH_MODE void search_tree(struct search *s, enum search_mode mode) {
@@ -313,6 +331,9 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
                             uint32_t *primitive, struct crossing *crossing) {
     struct search s;
     struct crossing other;
+    scratch->rays++;
+    if (is_group_only(world))
+        return nearest_of_group(world, ray, &scratch->geom, primitive, crossing);
     s.world = world;
     s.ray = ray;
     s.scratch = scratch;
@@ -321,7 +342,6 @@ bool world_nearest_crossing(const struct world *world, const struct ray *ray, st
     s.primitive = 0;
     s.next = crossing;
     s.best = &other;
-    scratch->rays++;
     search_accel(&s, SEARCH_NEAREST);
     *primitive = s.primitive;
     if (s.found && s.best != crossing)
@@ -341,13 +361,17 @@ bool world_nearest(const struct world *world, const struct ray *ray, struct worl
 bool world_any(const struct world *world, const struct ray *ray, struct world_scratch *scratch) {
     /* Neighbouring shadow rays mostly have the same occluder: it is tested first. The result does not depend on it. */
     uint32_t *blocker = &scratch->shadow_cache[scratch->light];
+    scratch->any_rays++;
+    if (is_group_only(world)) {
+        *blocker = WORLD_NOTHING;
+        return any_of_group(world, ray, &scratch->geom, blocker);
+    }
     struct search s;
     s.world = world;
     s.ray = ray;
     s.scratch = scratch;
     s.found = false;
     s.primitive = *blocker;
-    scratch->any_rays++;
     /* A group is searched in about the time of one member. */
     bool in_group =
         world->group.index && (*blocker >= world->primitive_count || mesh_group_run(&world->group, *blocker).count > 0);
