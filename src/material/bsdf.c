@@ -111,22 +111,14 @@ static double power_pdf(double cosine, double exponent) {
     return cosine > 0 ? (e + 1) / (2 * PI) * lobe_power(cosine, e) : 0;
 }
 
-/* Sine and cosine of -pi/4 to pi/4 by their series, to 2^-52; without branches, for directions only. */
+/* Sine and cosine of -pi/4 to pi/4 by their series, to 2^-52; without branches, for directions only. The terms are
+ * added in pairs (Estrin's scheme): one after the other, each would wait for the one before. */
 static void short_sincos(double x, double *sine, double *cosine) {
-    double z = x * x, s = -1.0 / 1307674368000, c = 1.0 / 20922789888000;
-    s = s * z + 1.0 / 6227020800;
-    s = s * z - 1.0 / 39916800;
-    s = s * z + 1.0 / 362880;
-    s = s * z - 1.0 / 5040;
-    s = s * z + 1.0 / 120;
-    s = s * z - 1.0 / 6;
-    c = c * z - 1.0 / 87178291200;
-    c = c * z + 1.0 / 479001600;
-    c = c * z - 1.0 / 3628800;
-    c = c * z + 1.0 / 40320;
-    c = c * z - 1.0 / 720;
-    c = c * z + 1.0 / 24;
-    c = c * z - 0.5;
+    double z = x * x, z2 = z * z, z4 = z2 * z2;
+    double s = (-1.0 / 6 + z * (1.0 / 120)) + z2 * (-1.0 / 5040 + z * (1.0 / 362880)) +
+               z4 * ((-1.0 / 39916800 + z * (1.0 / 6227020800)) + z2 * (-1.0 / 1307674368000));
+    double c = (-0.5 + z * (1.0 / 24)) + z2 * (-1.0 / 720 + z * (1.0 / 40320)) +
+               z4 * ((-1.0 / 3628800 + z * (1.0 / 479001600)) + z2 * (-1.0 / 87178291200 + z * (1.0 / 20922789888000)));
     *sine = x + x * (z * s);
     *cosine = 1 + z * c;
 }

@@ -329,8 +329,10 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     }
     bool chooses = tracer->lights.sampler.count > 1 || path->depth >= tracer->roulette_depth;
     struct sample2 choice = chooses ? sampler_point(sampler, dimension) : (struct sample2){0, 0};
+    /* Needed after the shadow ray, but computed beside it. */
+    struct sample2 onward = sampler_point(sampler, dimension + 2);
     add_direct(tracer, state, path, &vertex, &(struct path_light_draw){choice.x, sampler, dimension + 1});
-    return scatter(tracer, state, path, &vertex, sampler_point(sampler, dimension + 2), choice.y);
+    return scatter(tracer, state, path, &vertex, onward, choice.y);
 }
 
 /* --clamp: the colour is kept. Pictures become darker where samples differ much. */
