@@ -1,7 +1,7 @@
 /* The regions of an implicit solid: an octree, level by level. Bounds of the function over a region (interval
  * arithmetic) prove it outside or inside; what is left is split until the surface is nearly flat in it, which bounds of
  * the slopes show, since then one evaluation at each end of a line's stretch decides it. What min, max and selections
- * decide over a region is left out of its program.
+ * decide over a region is left out of its program; the programs of divided nodes are dropped at the end.
  *
  * T. Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid geometry",
  * SIGGRAPH 1992; M. Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", SIGGRAPH 2020. */
@@ -13,8 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What bounds the work and the memory: nodes, instructions that are evaluated over regions, instructions that are kept
- * in shortened programs. */
+/* What bounds the work and the memory: nodes, instructions that are evaluated over regions, and instructions of
+ * shortened programs: beyond KEPT, regions take the program of a larger region, up to twice KEPT in all. */
 enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
 /* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
 static const double slope_spread = 0.4;
@@ -22,9 +22,18 @@ static const double slope_spread = 0.4;
 /* A node while it waits. */
 struct pending {
     struct box box;
-    uint32_t program;
+    uint32_t candidate; /* the program of the node that was divided */
     int level;
 };
+
+/* The program of a node that was divided. Candidates live as long as the building; regions keep those that they need.
+ */
+struct candidate {
+    struct expr_program program;
+    uint32_t parent; /* the candidate that it is a part of */
+    uint32_t kept;   /* its number among the programs, or NOT_KEPT */
+};
+#define NOT_KEPT UINT32_MAX
 
 struct building {
     struct implicit *solid;
@@ -33,7 +42,10 @@ struct building {
     struct pending *pending; /* of each node */
     struct implicit_region *regions;
     struct expr_program *programs;
+    struct candidate *candidates;
+    struct arena candidate_arena;
     uint32_t node_count, node_capacity, region_count, region_capacity, program_count, program_capacity;
+    uint32_t candidate_count, candidate_capacity;
     uint64_t evaluated, kept;
     struct expr_directions directions; /* the axes */
     struct expr_choice *choices;
@@ -76,23 +88,45 @@ static bool is_flat(const struct expr_interval slopes[EXPR_DIRECTIONS]) {
     return deviation < slope_spread * slope_spread * length;
 }
 
-/* The program for the region whose choices have been found: a shorter one where that pays. */
-static bool shorten(struct building *b, uint32_t program, int lane, uint32_t *out) {
-    const struct expr_program *whole = &b->programs[program];
-    *out = program;
-    if (b->kept > KEPT)
-        return true;
+/* The program for a region whose choices have been found. False where it is not much shorter. It is overwritten by the
+ * next one. */
+static bool shorten(struct building *b, const struct expr_program *whole, int lane, struct expr_program *out) {
     struct expr_stack stack = {.code = b->code, .free = whole->count};
-    struct expr_program shorter, stored;
-    if (!expr_shorten(whole, b->choices, (uint32_t)lane, &stack, implicit_aligned(b->scratch), &shorter) ||
-        shorter.count + shorter.count / 16 >= whole->count)
-        return true;
-    if (!expr_keep(&shorter, b->arena, &stored) ||
+    return expr_shorten(whole, b->choices, (uint32_t)lane, &stack, implicit_aligned(b->scratch), out) &&
+           out->count + out->count / 16 < whole->count;
+}
+
+static bool add_candidate(struct building *b, const struct expr_program *program, uint32_t parent, uint32_t *out) {
+    struct candidate candidate = {.parent = parent, .kept = NOT_KEPT};
+    if (!expr_keep(program, &b->candidate_arena, &candidate.program) ||
+        !reserve((void **)&b->candidates, &b->candidate_capacity, b->candidate_count, 1, sizeof *b->candidates))
+        return false;
+    b->candidates[b->candidate_count] = candidate;
+    *out = b->candidate_count++;
+    return true;
+}
+
+static bool keep_program(struct building *b, const struct expr_program *program, uint32_t *out) {
+    struct expr_program stored;
+    if (!expr_keep(program, b->arena, &stored) ||
         !reserve((void **)&b->programs, &b->program_capacity, b->program_count, 1, sizeof *b->programs))
         return false;
-    b->kept += shorter.count;
+    b->kept += program->count;
     b->programs[b->program_count] = stored;
     *out = b->program_count++;
+    return true;
+}
+
+/* The program of a region: the shorter one, or without it (NULL) or without room for it that of the divided node. */
+static bool choose_program(struct building *b, const struct expr_program *shorter, uint32_t candidate, uint32_t *out) {
+    if (shorter && b->kept < KEPT)
+        return keep_program(b, shorter, out);
+    while (b->candidates[candidate].kept == NOT_KEPT && b->kept >= 2 * (uint64_t)KEPT)
+        candidate = b->candidates[candidate].parent;
+    struct candidate *chosen = &b->candidates[candidate];
+    if (chosen->kept == NOT_KEPT && !keep_program(b, &chosen->program, &chosen->kept))
+        return false;
+    *out = chosen->kept;
     return true;
 }
 
@@ -101,13 +135,16 @@ static float below(double x) {
     return f <= x ? f : nextafterf(f, -INFINITY);
 }
 
-static bool add_region(struct building *b, uint32_t node, const struct expr_interval slopes[EXPR_DIRECTIONS]) {
+static bool add_region(struct building *b, uint32_t node, const struct expr_program *shorter,
+                       const struct expr_interval slopes[EXPR_DIRECTIONS]) {
     const struct pending *here = &b->pending[node];
-    struct implicit_region region = {.program = here->program};
+    struct implicit_region region;
     double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
     for (int k = 0; k < 3; k++)
         inputs[EXPR_POINT_X + k] = region_middle(vec3_get(here->box.min, k), vec3_get(here->box.max, k));
-    expr_evaluate(&b->programs[here->program], inputs, outputs);
+    if (!choose_program(b, shorter, here->candidate, &region.program))
+        return false;
+    expr_evaluate(&b->programs[region.program], inputs, outputs);
     region.middle_low = outputs[0] == outputs[0] ? below(outputs[0]) : -INFINITY;
     region.middle_high = outputs[0] == outputs[0] ? -below(-outputs[0]) : INFINITY;
     for (int k = 0; k < 3; k++) {
@@ -136,7 +173,7 @@ static bool add_parts(struct building *b, uint32_t node) {
     struct vec3 lo = whole.box.min, hi = whole.box.max;
     struct vec3 middle = {region_middle(lo.x, hi.x), region_middle(lo.y, hi.y), region_middle(lo.z, hi.z)};
     for (uint32_t k = 0; k < 8; k++) {
-        struct pending part = {.program = whole.program, .level = whole.level + 1};
+        struct pending part = {.candidate = whole.candidate, .level = whole.level + 1};
         part.box.min = vec3_make(k & 1 ? middle.x : lo.x, k & 2 ? middle.y : lo.y, k & 4 ? middle.z : lo.z);
         part.box.max = vec3_make(k & 1 ? hi.x : middle.x, k & 2 ? hi.y : middle.y, k & 4 ? hi.z : middle.z);
         b->pending[first + k] = part;
@@ -194,6 +231,8 @@ static bool decide(struct building *b, uint32_t node, const struct box *box, con
                    int lane) {
     struct implicit *solid = b->solid;
     struct pending *here = &b->pending[node];
+    const struct expr_program *program = &b->candidates[here->candidate].program;
+    struct expr_program shorter;
     struct expr_interval slopes[EXPR_DIRECTIONS];
     enum region_kind kind = kind_of_lane(range, lane);
     bool is_bounded = true;
@@ -204,24 +243,22 @@ static bool decide(struct building *b, uint32_t node, const struct box *box, con
     if (solid->in.is_ball && !meets_ball(&solid->in, box))
         kind = REGION_OUTSIDE;
     else if (kind == REGION_SURFACE && !is_bounded)
-        kind = kind_of_cases(b, &b->programs[here->program], box);
+        kind = kind_of_cases(b, program, box);
     b->nodes[node] = kind;
     if (kind == REGION_OUTSIDE)
         return true;
     solid->tight = box_join(solid->tight, *box);
     if (kind == REGION_INSIDE)
         return true;
-    uint32_t before = b->programs[here->program].count;
-    if (!shorten(b, here->program, lane, &here->program))
-        return false;
-    uint32_t after = b->programs[here->program].count;
+    bool is_shorter = shorten(b, program, lane, &shorter);
+    uint32_t before = program->count, after = is_shorter ? shorter.count : before;
     bool is_simple = is_flat(slopes) && (after < 32 || after > before - before / 8);
     bool has_room = here->level < LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED;
     if (has_room && (here->level < FIRST_LEVELS || !is_simple)) {
         b->evaluated += 8 * (uint64_t)after;
-        return add_parts(b, node);
+        return (!is_shorter || add_candidate(b, &shorter, here->candidate, &here->candidate)) && add_parts(b, node);
     }
-    return add_region(b, node, slopes);
+    return add_region(b, node, is_shorter ? &shorter : NULL, slopes);
 }
 
 /* Decides the eight parts of a node. */
@@ -230,7 +267,7 @@ static bool decide_parts(struct building *b, uint32_t first) {
     struct expr_lane_range range;
     for (uint32_t k = 0; k < EXPR_LANES; k++)
         boxes[k] = wider(b->solid, &b->pending[first + k].box);
-    evaluate_boxes(b, &b->programs[b->pending[first].program], boxes, false, &range);
+    evaluate_boxes(b, &b->candidates[b->pending[first].candidate].program, boxes, false, &range);
     for (uint32_t k = 0; k < EXPR_LANES; k++)
         if (!decide(b, first + k, &boxes[k], &range, (int)k))
             return false;
@@ -254,9 +291,11 @@ static bool build(struct building *b) {
     b->rows = mem_alloc_zero(expr_lanes_size(program) + 64, 1);
     b->scratch = mem_alloc_zero(expr_shorten_size(program) + 64, 1);
     if (!b->choices || !b->code || !b->rows || !b->scratch || !add_nodes(b, 1) ||
-        !reserve((void **)&b->programs, &b->program_capacity, 0, 1, sizeof *b->programs))
+        !reserve((void **)&b->programs, &b->program_capacity, 0, 1, sizeof *b->programs) ||
+        !reserve((void **)&b->candidates, &b->candidate_capacity, 0, 1, sizeof *b->candidates))
         return false;
     b->programs[b->program_count++] = *program;
+    b->candidates[b->candidate_count++] = (struct candidate){.program = *program, .kept = 0};
     b->pending[0] = (struct pending){.box = solid->in.bounds};
     b->node_count = 1;
     solid->tight = box_empty();
@@ -285,6 +324,8 @@ bool implicit_regions_build(struct arena *arena, struct implicit *solid, struct 
     mem_free(b.pending);
     mem_free(b.regions);
     mem_free(b.programs);
+    mem_free(b.candidates);
+    arena_destroy(&b.candidate_arena);
     mem_free(b.choices);
     mem_free(b.code);
     mem_free(b.rows);

@@ -3,7 +3,7 @@
 
 #include "csg/geometry.h"
 #include "math/elementary.h"
-#include "shape/implicit.h"
+#include "shape/implicit_internal.h"
 #include "shape/shape.h"
 #include "tests/unit/function_makers.h"
 #include "tests/unit/swept_makers.h"
@@ -324,6 +324,25 @@ TEST(a_selection_whose_other_side_is_nan_leaves_few_regions) {
     }
     CHECK_EQ_INT(holes.sides + holes.nearest + holes.lengths, 0);
     geom_scratch_destroy(&scratch);
+    arena_destroy(&arena);
+}
+
+TEST(regions_of_a_union_of_hundreds_of_balls_have_the_programs_of_a_few) {
+    struct arena arena = {0};
+    struct function_maker m;
+    function_begin(&m);
+    uint32_t all = fn_ball(&m, (struct vec3){0, 0, 0}, 0.09, true);
+    for (int k = 0; k < 512; k++) {
+        struct vec3 centre = {0.25 * (k % 8) - 0.87, 0.25 * (k / 8 % 8) - 0.87, 0.25 * (k / 64) - 0.87};
+        all = fn_two(&m, EXPR_MIN, all, fn_ball(&m, centre, 0.09, true));
+    }
+    struct implicit_input in = {.program = function_end(&m, all, &arena), .bounds = unit};
+    struct shape shape = implicit_shape(&arena, &in);
+    uint64_t instructions = 0;
+    CHECK(shape.implicit->region_count > 1000);
+    for (uint32_t k = 0; k < shape.implicit->region_count; k++)
+        instructions += shape.implicit->programs[shape.implicit->regions[k].program].count;
+    CHECK(instructions < 30 * (uint64_t)shape.implicit->region_count); /* a ball has 9 */
     arena_destroy(&arena);
 }
 
