@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 static bool nobody_there(struct channel_services *link, struct error *error) {
     link->broken = true;
@@ -40,6 +41,28 @@ static bool link_begin(void *context, const struct picture_request *request, str
         return false;
     }
     picture_film_layout(request, link->memory.block, film);
+    link->request = *request;
+    return true;
+}
+
+/* The memory of a larger pass comes with its command; it stays mapped until another one comes. */
+static bool attach_large(struct channel_services *link, int descriptor, struct preview_command *command,
+                         struct error *error) {
+    struct picture_request request;
+    size_t bytes;
+    command->block = NULL;
+    if (descriptor < 0 && command->view.width == 0)
+        return true;
+    share_destroy(&link->large);
+    if (!picture_request_enlarge(&link->request, command->view.width, command->view.height, &request) ||
+        !picture_film_size(&request, &bytes, error) || descriptor < 0) {
+        if (descriptor >= 0)
+            (void)close(descriptor);
+        return nobody_there(link, error);
+    }
+    if (!share_attach(&link->large, descriptor, bytes, error))
+        return false;
+    command->block = link->large.block;
     return true;
 }
 
@@ -51,12 +74,13 @@ static bool link_reply(void *context, const struct preview_reply *reply, struct 
         channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_PREVIEW_COMMAND)
         return nobody_there(link, error);
     *command = message.body.command;
-    return true;
+    return attach_large(link, message.descriptor, command, error);
 }
 
 static void link_abandon(void *context) {
     struct channel_services *link = context;
     share_destroy(&link->memory);
+    share_destroy(&link->large);
     note(link, channel_send(&link->channel, MESSAGE_ABANDON, NULL, 0, -1));
 }
 
@@ -64,6 +88,7 @@ static bool link_done(void *context, const struct picture_report *report, struct
     struct channel_services *link = context;
     struct message message;
     share_destroy(&link->memory);
+    share_destroy(&link->large);
     if (!channel_send(&link->channel, MESSAGE_DONE, report, sizeof *report, -1) ||
         channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_ANSWER)
         return nobody_there(link, error);
@@ -127,5 +152,6 @@ struct host_services channel_services_make(struct channel_services *link, struct
 
 void channel_services_close(struct channel_services *link) {
     share_destroy(&link->memory);
+    share_destroy(&link->large);
     channel_close(&link->channel);
 }

@@ -10,7 +10,9 @@ struct channel_services {
     struct error_stream *stream; /* of the control passed to channel_services_make */
     struct channel channel;      /* to the supervisor */
     struct share memory;         /* the film of the current picture */
-    bool broken;                 /* a message was not delivered: this process must end */
+    struct share large;          /* that of a larger pass */
+    struct picture_request request;
+    bool broken; /* a message was not delivered: this process must end */
 };
 
 /* The services point to `link`, which must not move. */

@@ -6,11 +6,15 @@
 
 #include <SDL.h>
 
+struct screen_texture {
+    SDL_Texture *pixels; /* or NULL */
+    int width, height;
+};
+
 struct sdl {
     SDL_Window *window;
     SDL_Renderer *renderer;
-    SDL_Texture *picture, *overlay;
-    int overlay_width, overlay_height;
+    struct screen_texture picture, overlay;
     int width, height; /* of the window in pixels */
     double unit;       /* pixels per unit of the desktop, in which SDL reports the mouse */
     double density;    /* pixels per dot of a letter */
@@ -19,10 +23,10 @@ struct sdl {
 
 static void close_window(void *context) {
     struct sdl *sdl = context;
-    if (sdl->overlay)
-        SDL_DestroyTexture(sdl->overlay);
-    if (sdl->picture)
-        SDL_DestroyTexture(sdl->picture);
+    if (sdl->overlay.pixels)
+        SDL_DestroyTexture(sdl->overlay.pixels);
+    if (sdl->picture.pixels)
+        SDL_DestroyTexture(sdl->picture.pixels);
     if (sdl->renderer)
         SDL_DestroyRenderer(sdl->renderer);
     if (sdl->window)
@@ -58,6 +62,19 @@ static bool measure(struct sdl *sdl) {
     return other;
 }
 
+/* The texture has this size; *other: it has no contents yet. False: there is none. */
+static bool fit_texture(SDL_Renderer *renderer, struct screen_texture *texture, Uint32 format, uint32_t width,
+                        uint32_t height, bool *other) {
+    *other = !texture->pixels || texture->width != (int)width || texture->height != (int)height;
+    if (!*other)
+        return true;
+    if (texture->pixels)
+        SDL_DestroyTexture(texture->pixels);
+    *texture = (struct screen_texture){NULL, (int)width, (int)height};
+    texture->pixels = SDL_CreateTexture(renderer, format, SDL_TEXTUREACCESS_STREAMING, texture->width, texture->height);
+    return texture->pixels != NULL;
+}
+
 static bool open_window(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
     struct sdl *sdl = context;
     SDL_DisplayMode screen;
@@ -79,42 +96,34 @@ static bool open_window(void *context, uint32_t width, uint32_t height, const ch
     }
     if (sdl->window)
         sdl->renderer = SDL_CreateRenderer(sdl->window, -1, 0);
-    if (sdl->renderer)
-        sdl->picture = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGB24, SDL_TEXTUREACCESS_STREAMING, (int)width,
-                                         (int)height);
-    if (sdl->picture && measure(sdl))
+    bool ignored;
+    if (sdl->renderer && fit_texture(sdl->renderer, &sdl->picture, SDL_PIXELFORMAT_RGB24, width, height, &ignored) &&
+        measure(sdl))
         return true;
     error_set(error, ERROR_MACHINE, "-gui: no window can be opened: %s", SDL_GetError());
     close_window(sdl);
     return false;
 }
 
-/* The texture has the window's size. False: there is none. */
-static bool fit_overlay(struct sdl *sdl, int width, int height) {
-    if (sdl->overlay && sdl->overlay_width == width && sdl->overlay_height == height)
-        return true;
-    if (sdl->overlay)
-        SDL_DestroyTexture(sdl->overlay);
-    sdl->overlay = SDL_CreateTexture(sdl->renderer, SDL_PIXELFORMAT_RGBA32, SDL_TEXTUREACCESS_STREAMING, width, height);
-    sdl->overlay_width = width;
-    sdl->overlay_height = height;
-    return sdl->overlay && SDL_SetTextureBlendMode(sdl->overlay, SDL_BLENDMODE_BLEND) == 0;
-}
-
 static void show_frame(void *context, const struct window_content *frame) {
     struct sdl *sdl = context;
     SDL_Rect target = {frame->left, frame->top, frame->shown_width, frame->shown_height};
-    int width = (int)frame->window_width, height = (int)frame->window_height;
-    if (frame->picture_changed)
-        (void)SDL_UpdateTexture(sdl->picture, NULL, frame->picture, 3 * (int)frame->width);
-    bool other = sdl->overlay_width != width || sdl->overlay_height != height;
-    bool over = frame->overlay && fit_overlay(sdl, width, height);
+    bool other;
+    bool has_picture =
+        fit_texture(sdl->renderer, &sdl->picture, SDL_PIXELFORMAT_RGB24, frame->width, frame->height, &other);
+    if (has_picture && (frame->picture_changed || other))
+        (void)SDL_UpdateTexture(sdl->picture.pixels, NULL, frame->picture, 3 * (int)frame->width);
+    bool over = frame->overlay &&
+                fit_texture(sdl->renderer, &sdl->overlay, SDL_PIXELFORMAT_RGBA32, frame->window_width,
+                            frame->window_height, &other) &&
+                SDL_SetTextureBlendMode(sdl->overlay.pixels, SDL_BLENDMODE_BLEND) == 0;
     if (over && (frame->overlay_changed || other))
-        (void)SDL_UpdateTexture(sdl->overlay, NULL, frame->overlay, 4 * width);
+        (void)SDL_UpdateTexture(sdl->overlay.pixels, NULL, frame->overlay, 4 * (int)frame->window_width);
     (void)SDL_RenderClear(sdl->renderer);
-    (void)SDL_RenderCopy(sdl->renderer, sdl->picture, NULL, &target);
+    if (has_picture)
+        (void)SDL_RenderCopy(sdl->renderer, sdl->picture.pixels, NULL, &target);
     if (over)
-        (void)SDL_RenderCopy(sdl->renderer, sdl->overlay, NULL, NULL);
+        (void)SDL_RenderCopy(sdl->renderer, sdl->overlay.pixels, NULL, NULL);
     SDL_RenderPresent(sdl->renderer);
 }
 

@@ -253,6 +253,7 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     supervisor->control = mem_share(sizeof *supervisor->control);
     supervisor->viewer.control = supervisor->control;
     supervisor->viewer.logs_notes = options->verbose;
+    supervisor->viewer.sends_memory = true;
     supervisor->viewer.frames = options->script.frames.selection;
     output_init(&supervisor->output, options, supervisor->control);
     supervisor->output.wait_for_text = supervisor_wait_for_reader;

@@ -122,7 +122,9 @@ static void send_command(struct supervisor *supervisor, const struct preview_com
     if (supervisor->viewer.pass.state == PASS_WAITING) /* END: it was not the viewer that decided */
         supervisor->viewer.pass.state = PASS_BUSY;
     forget_stop(supervisor);
-    if (!channel_send(&supervisor->channel, MESSAGE_PREVIEW_COMMAND, command, sizeof *command, -1))
+    bool large = command->kind == COMMAND_PASS && command->view.width > 0;
+    if (!channel_send(&supervisor->channel, MESSAGE_PREVIEW_COMMAND, command, sizeof *command,
+                      large ? supervisor->viewer.large.memory.descriptor : -1))
         note_unsent(supervisor);
 }
 

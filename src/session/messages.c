@@ -9,6 +9,7 @@
 #include "render/aov.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
@@ -83,6 +84,25 @@ bool message_is_valid(const struct message *message) {
                ends_with_zero(message->body.answer.error.text, sizeof message->body.answer.error.text);
     }
     return false;
+}
+
+bool picture_request_enlarge(const struct picture_request *request, uint32_t width, uint32_t height,
+                             struct picture_request *out) {
+    double across = (double)width / request->width, down = (double)height / request->height;
+    double full_width = floor(across * request->full_width + 0.5),
+           full_height = floor(down * request->full_height + 0.5);
+    *out = *request;
+    if (width < request->width || height < request->height || full_width > 1 << 20 || full_height > 1 << 20)
+        return false;
+    out->width = width;
+    out->height = height;
+    out->full_width = (uint32_t)full_width;
+    out->full_height = (uint32_t)full_height;
+    out->x0 = (uint32_t)fmin(floor(across * request->x0 + 0.5), full_width - width);
+    out->y0 = (uint32_t)fmin(floor(down * request->y0 + 0.5), full_height - height);
+    out->shown = (struct film_rectangle){out->x0, out->y0, out->x0 + width, out->y0 + height};
+    out->layers = out->in_window = 0;
+    return true;
 }
 
 /* Room for both parts of the overlay. */
@@ -205,7 +225,7 @@ enum channel_result channel_receive(struct channel *channel, struct message *mes
     bool lost = (packet.msg_flags & MSG_CTRUNC) != 0;
     bool sound = (size_t)got >= sizeof word && (packet.msg_flags & MSG_TRUNC) == 0 &&
                  (!lost || (message->kind == MESSAGE_FILM && message->descriptor < 0)) && message_is_valid(message) &&
-                 (message->descriptor < 0 || message->kind == MESSAGE_FILM);
+                 (message->descriptor < 0 || message->kind == MESSAGE_FILM || message->kind == MESSAGE_PREVIEW_COMMAND);
     if (sound)
         return CHANNEL_MESSAGE;
     if (message->descriptor >= 0)

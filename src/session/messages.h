@@ -34,7 +34,7 @@ enum message_kind {
                      */
     MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
     MESSAGE_ANSWER, /* struct message_answer */
-    MESSAGE_PREVIEW_COMMAND, /* struct preview_command */
+    MESSAGE_PREVIEW_COMMAND, /* struct preview_command, with the descriptor of a film's memory for a larger pass */
 };
 
 /* The kind of a line: decides whether -q or --verbose print it, and on which stream. */
@@ -138,11 +138,12 @@ struct picture_report {
 
 /* A pass of a picture in a window. */
 struct pass_view {
-    struct camera camera; /* its view a direction */
-    double exposure;      /* stops: it decides which pixels are sampled again */
-    uint32_t divide;      /* one pixel represents a square with this side; from 1 */
-    bool plain;           /* one sample a pixel, coarse soft light */
-    bool own;             /* the camera, lens and motion of the script */
+    struct camera camera;   /* its view a direction */
+    double exposure;        /* stops: it decides which pixels are sampled again */
+    uint32_t divide;        /* one pixel represents a square with this side; from 1 */
+    bool plain;             /* one sample a pixel, coarse soft light */
+    bool own;               /* the camera, lens and motion of the script */
+    uint32_t width, height; /* not 0: so many pixels in place of those of the picture, in the memory of the command */
 };
 
 /* Lights of a scene are reported in groups of this size. */
@@ -206,6 +207,7 @@ struct preview_command {
     struct change change;
     bool present; /* of CHANGE: it is applied; else it is undone */
     bool more;    /* of CHANGE: another change follows at once */
+    void *block;  /* the memory that came along, or NULL; set by the receiver */
 };
 
 struct message_answer {
@@ -246,6 +248,9 @@ struct message {
 /* Whether sizes, texts and numbers are such that later code can rely on them: texts end in NUL, enums are known. */
 bool message_is_valid(const struct message *message);
 
+/* The same picture in another size, at least its own: only its film. False: it is too large. */
+bool picture_request_enlarge(const struct picture_request *request, uint32_t width, uint32_t height,
+                             struct picture_request *out);
 /* Bytes of the memory of the film, layers and overlay included. False: too large. */
 bool picture_film_size(const struct picture_request *request, size_t *bytes, struct error *error);
 /* The film in that memory, with its layers and the part of the picture that it is. */

@@ -23,9 +23,8 @@ struct preview_state {
 
 /* Settings of a pass: a coarse pass has one sample per pixel, and few rays for a soft light. */
 static void set_pass(struct render_job *job, const struct render_job *own, const struct pass_view *view,
-                     const struct picture_request *asked, struct film *film, void *block) {
+                     struct film *film) {
     *job = *own;
-    *film = pass_film(asked, block, view->divide);
     job->film = film;
     job->width = film->full_width;
     job->height = film->full_height;
@@ -37,7 +36,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
         job->settings.path_samples = 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
-    if (view->divide > 1) { /* the film defines the part */
+    if (view->divide > 1 || view->width > 0) { /* the film defines the part */
         job->settings.cropped = false;
         job->settings.keep_first = false;
     }
@@ -71,12 +70,28 @@ bool preview_was_stopped(const struct control *control, const struct error *erro
     return error->kind == ERROR_CANCELLED && atomic_load(&control->cancel) != CANCEL_ALL;
 }
 
-static bool make_pass(struct preview_state *work, struct picture_report *report, struct error *error) {
+/* The film of the pass: in the memory of the picture, or a larger one. */
+static bool lay_film(const struct preview_state *work, void *large, struct film *film, struct error *error) {
+    const struct preview_session *preview = work->preview;
+    struct picture_request request;
+    if (work->view.width == 0) {
+        *film = pass_film(preview->asked, preview->job->film->pixels, work->view.divide);
+        return true;
+    }
+    if (!large || !picture_request_enlarge(preview->asked, work->view.width, work->view.height, &request))
+        return error_set(error, ERROR_MACHINE, "the memory of the picture cannot be reached");
+    *film = pass_film(&request, large, 1);
+    return true;
+}
+
+static bool make_pass(struct preview_state *work, void *large, struct picture_report *report, struct error *error) {
     struct preview_session *preview = work->preview;
     struct render_job job;
     struct film film;
     double begun = progress_clock();
-    set_pass(&job, preview->job, &work->view, preview->asked, &film, preview->job->film->pixels);
+    if (!lay_film(work, large, &film, error))
+        return false;
+    set_pass(&job, preview->job, &work->view, &film);
     /* A coarse pass needs no time estimate. */
     struct progress_estimate *progress_estimate = &preview->services->control->progress_estimate;
     bool fine = work->view.divide <= 1 && !work->view.plain;
@@ -274,7 +289,7 @@ static bool execute_command(struct preview_state *work, const struct preview_com
     case COMMAND_PASS:
         reply->kind = REPLY_PASS;
         work->view = command->view;
-        return make_pass(work, &reply->report, error) &&
+        return make_pass(work, command->block, &reply->report, error) &&
                (reply->report.stopped || make_overlay(work, &command->view, &command->overlay, reply, error));
     case COMMAND_PICK:
         reply->kind = REPLY_PICKED;

@@ -53,6 +53,7 @@ static void close_window(struct viewer *viewer) {
     mem_free(viewer->display.light);
     mem_free(viewer->display.drawn);
     viewer_destroy_overlay(viewer);
+    viewer_destroy_large(viewer);
     mem_free(viewer->display.panel.canvas.rgba);
     viewer->display.image = viewer->display.drawn = viewer->display.panel.canvas.rgba = NULL;
     viewer->display.light = NULL;
@@ -66,6 +67,7 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->number = before->number;
     viewer->logs_notes = before->logs_notes;
     viewer->frames = before->frames;
+    viewer->sends_memory = before->sends_memory;
     viewer->display.image = before->display.image;
     viewer->display.light = before->display.light;
     viewer->display.drawn = before->display.drawn;
@@ -74,6 +76,9 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->display.hides_hud = before->display.hides_hud;
     viewer->display.dirty = before->display.dirty;
     viewer->notice = before->notice;
+    viewer->large = before->large;
+    viewer->large.shown = false;
+    viewer->large.refused_width = 0;
     viewer->overlay.kind = before->open ? before->overlay.kind : viewer->overlay.kind;
     viewer->open = before->open;
 }
@@ -180,7 +185,7 @@ void viewer_note_stop(struct viewer *viewer, double seconds) {
 bool viewer_is_idle(const struct viewer *viewer) {
     return viewer->pass.state == PASS_WAITING && viewer->pass.result == RESULT_COMPLETE && !viewer->pass.outdated &&
            !viewer->edit.click_waits && !viewer->trace.wanted && viewer->edit.pending.count == 0 &&
-           !viewer_needs_overlay(viewer);
+           !viewer_needs_overlay(viewer) && !viewer_wants_large(viewer) && !viewer_large_is_outdated(viewer);
 }
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
@@ -189,8 +194,10 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     if (report->stopped)
         return;
     /* Tiles that were done before a pass was stopped may be denoised now. */
-    if (path_film_parts(viewer->pass.film.record) != 0)
+    if (path_film_parts(viewer->pass.film.record) != 0) {
         memset(viewer->display.drawn, 0, viewer->display.tiles);
+        viewer->large.stale = viewer->large.shown;
+    }
     viewer->pass.report = *report;
     if (viewer_plays(viewer)) {
         viewer_player_end_pass(viewer, now);
@@ -248,9 +255,17 @@ void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply,
     }
 }
 
+static void command_pass(struct viewer *viewer, double now) {
+    viewer->command = (struct preview_command){.kind = COMMAND_PASS, .view = viewer->pass.view};
+    viewer->pass.result = RESULT_NONE;
+    viewer->pass.state = PASS_RUNNING;
+    viewer->pass.began = now;
+}
+
 /* resume: finished tiles are kept. */
 static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool resume, double now) {
     if (!resume) {
+        viewer_drop_large(viewer);
         viewer->pass.view = current_view(viewer, divide, plain);
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
         viewer->pass.edited =
@@ -263,15 +278,19 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
         if (!resume || atomic_load(&viewer->pass.film.tiles[tile]) != FILM_TILE_DONE)
             atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
     }
-    viewer->command = (struct preview_command){.kind = COMMAND_PASS, .view = viewer->pass.view};
+    command_pass(viewer, now);
     if (viewer->pass.outdated)
         viewer_invalidate_overlay(viewer);
     if (plain && !resume && viewer_needs_overlay(viewer))
         viewer->command.overlay = viewer_overlay_request(viewer, viewer->pass.outdated);
     viewer->pass.outdated = false;
-    viewer->pass.result = RESULT_NONE;
-    viewer->pass.state = PASS_RUNNING;
-    viewer->pass.began = now;
+}
+
+/* The complete view once more, with the pixels of the window. */
+static void begin_large_pass(struct viewer *viewer, double now) {
+    for (uint32_t tile = 0; tile < film_tile_count(&viewer->pass.film); tile++)
+        atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
+    command_pass(viewer, now);
 }
 
 /* The first change that was not sent yet. */
@@ -313,6 +332,8 @@ static void command_overlay(struct viewer *viewer) {
 }
 
 static enum viewer_action next_command(struct viewer *viewer, double now) {
+    if (viewer_large_is_outdated(viewer) && !viewer->pass.outdated)
+        viewer_drop_large(viewer);
     uint32_t divide = viewer->pass.from_coarse ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
     if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
@@ -337,7 +358,9 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
     } else if (viewer->pass.result == RESULT_STOPPED) {
         begin_pass(viewer, 0, false, true, now);
     } else if (viewer->pass.result == RESULT_COMPLETE) {
-        return VIEWER_NOTHING;
+        if (!viewer_wants_large(viewer) || !viewer_begin_large(viewer))
+            return VIEWER_NOTHING;
+        begin_large_pass(viewer, now);
     } else if (viewer->pass.view.divide > MIDDLE_DIVIDE) {
         begin_pass(viewer, MIDDLE_DIVIDE, true, false, now);
     } else {
@@ -356,9 +379,9 @@ static enum viewer_action step_running(struct viewer *viewer) {
         viewer->pass.state = PASS_STOPPING;
         return VIEWER_STOP_PASS;
     }
-    bool wanted = viewer->pass.outdated || viewer->player.wanted > 0 || (!coarse && viewer_needs_overlay(viewer)) ||
-                  viewer->edit.click_waits || viewer->trace.wanted || viewer->edit.pending.count > 0 ||
-                  is_different(viewer->pass.view.exposure, viewer->request.exposure);
+    bool wanted = viewer->pass.outdated || viewer_large_is_outdated(viewer) || viewer->player.wanted > 0 ||
+                  (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits || viewer->trace.wanted ||
+                  viewer->edit.pending.count > 0 || is_different(viewer->pass.view.exposure, viewer->request.exposure);
     if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)
         return VIEWER_NOTHING;
     viewer->pass.state = PASS_STOPPING;
@@ -391,8 +414,8 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         return VIEWER_LOG_NOTE;
     if (viewer->quit)
         return VIEWER_QUIT;
-    if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.own && !viewer->pass.edited && !viewer->written &&
-        lines_of_script(viewer)) {
+    if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->pass.view.own &&
+        !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
         viewer->written = true;
         if (viewer->request.overlay != OVERLAY_NONE)
             overlay_lay(&viewer->pass.film, viewer->overlay.lines);

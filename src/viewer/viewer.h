@@ -7,6 +7,7 @@
 #define GRAY_VIEWER_VIEWER_H
 
 #include "base/file_output.h"
+#include "base/share.h"
 #include "render/film.h"
 #include "session/control.h"
 #include "session/messages.h"
@@ -165,6 +166,18 @@ struct viewer_player {
     uint32_t played, left_out;    /* since playing began */
 };
 
+/* The view with as many pixels as the window shows (viewer_large.c). */
+struct viewer_large {
+    struct share memory;    /* of its film; owned */
+    uint32_t width, height; /* of the part that is rendered */
+    uint8_t *image;         /* 3 bytes for each pixel; owned */
+    uint8_t *drawn;         /* by tile, as in the display; owned */
+    size_t tiles;
+    bool shown;                             /* in place of the image of the display */
+    bool stale;                             /* the image is to be drawn again */
+    uint32_t refused_width, refused_height; /* there was no memory for this size */
+};
+
 /* A line that is shown for some seconds: which file was saved, or why not. */
 struct viewer_notice {
     char text[512];
@@ -178,6 +191,7 @@ struct viewer {
     const struct control *control; /* or NULL; set by the caller, not owned */
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
+    bool sends_memory;             /* whether memory is sent with a larger pass; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
     bool open;
     bool keep; /* the scripts run again: camera and edits are kept, earlier pictures are skipped */
@@ -203,6 +217,7 @@ struct viewer {
     struct viewer_display display;
     struct viewer_input input;
     struct viewer_player player;
+    struct viewer_large large;
 
     double stepped;                 /* time of the last call of viewer_step */
     struct preview_command command; /* for VIEWER_SEND_COMMAND */

@@ -68,6 +68,7 @@ void viewer_redraw(struct viewer *viewer) {
     for (size_t i = 0; i < (size_t)viewer->request.width * viewer->request.height; i++)
         tone_pixel(viewer, &tone, i);
     viewer->display.dirty = true;
+    viewer->large.stale = viewer->large.shown;
 }
 
 /* One pixel of the film is a square of the canvas. */
@@ -100,6 +101,10 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
 /* Tiles that are finished or, after a pass over the picture, have more samples than before, and in those under way the
  * pixels that are being sampled again, in red. */
 void viewer_draw_tiles(struct viewer *viewer) {
+    if (viewer->pass.view.width > 0) {
+        viewer_draw_large(viewer);
+        return;
+    }
     const struct film *film = &viewer->pass.film;
     struct tone tone = tone_of(viewer);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
@@ -228,6 +233,8 @@ void viewer_show(struct viewer *viewer, double now) {
          !((viewer->display.dirty || viewer->display.hud_dirty) && now - viewer->display.shown_at >= redraw_pause)))
         return;
     bool over = due || viewer->display.hud_dirty;
+    if (viewer->large.shown && viewer->large.stale && viewer->block && viewer->pass.view.width > 0)
+        viewer_draw_large(viewer);
     end_notice(&viewer->notice, now);
     if (over) {
         struct figures figures;
@@ -239,9 +246,10 @@ void viewer_show(struct viewer *viewer, double now) {
         viewer->display.figures_at = due ? now : viewer->display.figures_at;
     }
     const struct window_layout *layout = &viewer->display.layout;
-    struct window_content frame = {.picture = viewer->display.image,
-                                   .width = viewer->request.width,
-                                   .height = viewer->request.height,
+    const struct viewer_large *large = &viewer->large;
+    struct window_content frame = {.picture = large->shown ? large->image : viewer->display.image,
+                                   .width = large->shown ? large->width : viewer->request.width,
+                                   .height = large->shown ? large->height : viewer->request.height,
                                    .picture_changed = viewer->display.dirty,
                                    .left = (int)layout->left,
                                    .top = (int)layout->top,

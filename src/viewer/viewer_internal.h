@@ -103,6 +103,14 @@ void viewer_go_to_frame(struct viewer *viewer, uint32_t number); /* pauses */
 uint32_t viewer_frame_index(const struct viewer *viewer);
 uint32_t viewer_frame_number(const struct viewer *viewer, double index);
 
+/* viewer_large.c */
+bool viewer_wants_large(const struct viewer *viewer);       /* the view is complete, and the window larger */
+bool viewer_large_is_outdated(const struct viewer *viewer); /* the pass is for another size of the window */
+bool viewer_begin_large(struct viewer *viewer);             /* lays out its film; false: there is no memory */
+void viewer_draw_large(struct viewer *viewer);              /* film to image */
+void viewer_drop_large(struct viewer *viewer);              /* the image of the display is shown */
+void viewer_destroy_large(struct viewer *viewer);
+
 /* viewer_draw.c */
 struct figures {
     char state[64], size[48], rays[48], triangles[48], voxels[64], frames[48], frame[64];

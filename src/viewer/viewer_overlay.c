@@ -54,6 +54,7 @@ static void take_lines(struct viewer *viewer, const struct view_overlay_buffers 
             viewer_draw_again(viewer, i);
     }
     viewer->display.dirty = true;
+    viewer->large.stale = viewer->large.shown;
 }
 
 static bool add_side(struct viewer *viewer, uint32_t x, uint32_t y, bool upright) {

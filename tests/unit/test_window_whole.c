@@ -28,7 +28,8 @@ struct person {
     bool open, size_sent;
     const char *other_scene; /* that scene.lua is from the deed WINDOW_LEAVE on */
     char title[1024];
-    uint8_t *over; /* the last overlay, of the whole window */
+    uint8_t *over;  /* the last overlay, of the whole window */
+    uint8_t *large; /* or NULL: the last picture that had the pixels of the window */
 };
 
 static bool person_open(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
@@ -40,6 +41,8 @@ static bool person_open(void *context, uint32_t width, uint32_t height, const ch
 static void person_show(void *context, const struct window_content *frame) {
     struct person *person = context;
     CHECK(frame->window_width == WIDE && frame->window_height == HIGH);
+    if (person->large && frame->width == WIDE && frame->height == HIGH)
+        memcpy(person->large, frame->picture, (size_t)3 * WIDE * HIGH);
     if (person->over)
         memcpy(person->over, frame->overlay, (size_t)4 * WIDE * HIGH);
 }
@@ -103,10 +106,11 @@ struct setting {
     const char *scene, *option; /* NULL: the scene above; --progress=none */
     const char *overlay;        /* NULL: none */
     const char *other_scene;    /* for the deed WINDOW_LEAVE */
+    uint8_t *large;             /* as in struct person */
 };
 
 static int viewer_that(const struct deed *deeds, const struct setting *setting, uint8_t *over) {
-    struct person person = {.deeds = deeds, .over = over, .other_scene = setting->other_scene};
+    struct person person = {.deeds = deeds, .over = over, .large = setting->large, .other_scene = setting->other_scene};
     const struct window_driver driver = {&person,      person_open, person_show,    person_poll,
                                          person_title, person_grab, person_nothing, person_close};
     struct arena arena = {0};
@@ -308,4 +312,26 @@ TEST(window_goes_on_after_an_animation_and_plays_turntables_and_scripts_of_one_f
     const struct deed frames[] = {{"ready  frame 3/3", KEY('h'), 0}, {"ready  frame 2/3", KEY('q'), 0}};
     CHECK_EQ_INT(viewer_that(turns, &(struct setting){.option = "--turntable=4"}, NULL), 0);
     CHECK_EQ_INT(viewer_that(frames, &(struct setting){.option = "--frames=3"}, NULL), 0);
+}
+
+/* At the size of the picture the pixels of the window are squares of 10 x 10. */
+TEST(window_larger_than_the_picture_shows_it_with_the_pixels_of_the_window) {
+    static uint8_t large[3 * WIDE * HIGH];
+    const struct deed deeds[] = {{"ready", KEY('s'), 0}, {"ready", KEY('q'), 0}};
+    const struct setting setting = {
+        .scene = "local r = gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.1}, {0.4, 0.4, 0.4}, 20)))\n"
+                 "gr.render{node = r, file = 'out.png', width = 64, height = 48, eye = {0, 0, 3}, view = {0, 0, -1}}\n",
+        .large = large};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    CHECK(same_files("out.png", "out-view1.png"));
+    struct test_result result = test_gray(NULL, "-q --progress=none scene.lua --size 640x480 -o whole.png");
+    CHECK_EQ_INT(result.status, 0);
+    struct test_picture whole = test_read_picture(test_path("whole.png")),
+                        own = test_read_picture(test_path("out.png"));
+    CHECK(own.width == 64 && own.height == 48 && whole.width == WIDE && whole.height == HIGH);
+    CHECK(memcmp(whole.rgb, large, sizeof large) == 0);
+    free(whole.rgb);
+    free(own.rgb);
+    free(result.out);
+    free(result.err);
 }

@@ -1,0 +1,153 @@
+/* A window that is larger than the picture: when the view is complete at the size of the picture, it is rendered once
+ * more, with as many pixels as the window shows. That film has a memory of its own, which is sent to the render process
+ * with each such pass; the film of the picture, what is picked, saved and drawn over it keep the size of the picture.
+ * Until a tile is finished, the picture is shown there in its own pixels. */
+#include "viewer/viewer_internal.h"
+
+#include "base/mem.h"
+#include "image/png_write.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LARGE_PIXELS = 1 << 26 };
+
+/* The size of the picture in the window; false: it has no more pixels than the picture itself. */
+static bool wanted_size(const struct viewer *viewer, uint32_t *width, uint32_t *height) {
+    const struct window_layout *layout = &viewer->display.layout;
+    if (!(layout->shown_width > viewer->request.width && layout->shown_height >= viewer->request.height) ||
+        layout->shown_width * layout->shown_height > LARGE_PIXELS)
+        return false;
+    *width = (uint32_t)layout->shown_width;
+    *height = (uint32_t)layout->shown_height;
+    return true;
+}
+
+bool viewer_large_is_outdated(const struct viewer *viewer) {
+    uint32_t width, height;
+    const struct pass_view *view = &viewer->pass.view;
+    return view->width > 0 && (!wanted_size(viewer, &width, &height) || view->width != width || view->height != height);
+}
+
+bool viewer_wants_large(const struct viewer *viewer) {
+    uint32_t width, height;
+    const struct viewer_large *large = &viewer->large;
+    return viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->block &&
+           viewer->sends_memory && wanted_size(viewer, &width, &height) &&
+           !(large->refused_width == width && large->refused_height == height);
+}
+
+void viewer_drop_large(struct viewer *viewer) {
+    viewer->display.dirty = viewer->display.dirty || viewer->large.shown;
+    viewer->large.shown = false;
+    if (viewer->pass.view.width == 0)
+        return;
+    viewer->pass.view.width = viewer->pass.view.height = 0;
+    viewer->pass.film = pass_film(&viewer->request, viewer->block, viewer->pass.view.divide);
+    viewer->pass.result = RESULT_COMPLETE; /* that of the picture's size, which came before */
+}
+
+void viewer_destroy_large(struct viewer *viewer) {
+    share_destroy(&viewer->large.memory);
+    mem_free(viewer->large.image);
+    mem_free(viewer->large.drawn);
+    viewer->large = (struct viewer_large){0};
+}
+
+/* Memory for a film and an image of this size. */
+static bool make_room(struct viewer_large *large, const struct picture_request *request) {
+    struct error ignored;
+    size_t bytes;
+    struct film film = {.width = request->width, .height = request->height, .x0 = request->x0, .y0 = request->y0};
+    if (!picture_film_size(request, &bytes, &ignored))
+        return false;
+    if (large->memory.block && large->memory.size != bytes)
+        share_destroy(&large->memory);
+    if (!large->memory.block && !share_create(&large->memory, bytes, &ignored))
+        return false;
+    mem_free(large->image);
+    mem_free(large->drawn);
+    large->tiles = film_tile_count(&film);
+    large->image = mem_alloc_zero((size_t)request->width * request->height, 3);
+    large->drawn = mem_alloc_zero(large->tiles, 1);
+    return large->image && large->drawn;
+}
+
+bool viewer_begin_large(struct viewer *viewer) {
+    struct viewer_large *large = &viewer->large;
+    struct picture_request request;
+    uint32_t width, height;
+    if (!wanted_size(viewer, &width, &height))
+        return false;
+    if (!picture_request_enlarge(&viewer->request, width, height, &request) || !make_room(large, &request)) {
+        viewer_destroy_large(viewer);
+        large->refused_width = width;
+        large->refused_height = height;
+        viewer_show_notice(viewer, "gray: out of memory for a picture as large as the window", true);
+        return false;
+    }
+    viewer->pass.view.width = large->width = width;
+    viewer->pass.view.height = large->height = height;
+    viewer->pass.film = pass_film(&request, large->memory.block, 1);
+    if (viewer->pass.film.marked)
+        memset(viewer->pass.film.marked, 0, (size_t)width * height);
+    large->shown = large->stale = true;
+    return true;
+}
+
+static void tone_large(struct viewer *viewer, const struct tone *tone, uint32_t x, uint32_t y) {
+    const struct viewer_large *large = &viewer->large;
+    size_t at = (size_t)y * large->width + x;
+    uint32_t u = (uint32_t)((uint64_t)x * viewer->request.width / large->width);
+    uint32_t v = (uint32_t)((uint64_t)y * viewer->request.height / large->height);
+    float rgb[3];
+    memcpy(rgb, viewer->pass.film.pixels[at].rgb, sizeof rgb);
+    if (viewer->overlay.has_lines)
+        overlay_blend(viewer->overlay.lines[(size_t)v * viewer->request.width + u], rgb);
+    for (size_t c = 0; c < 3; c++)
+        large->image[3 * at + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
+}
+
+/* The picture in its own pixels. */
+static void copy_picture(struct viewer *viewer) {
+    const struct viewer_large *large = &viewer->large;
+    uint32_t width = viewer->request.width, height = viewer->request.height;
+    for (uint32_t y = 0; y < large->height; y++) {
+        const uint8_t *row = viewer->display.image + 3 * (size_t)width * ((uint64_t)y * height / large->height);
+        uint8_t *out = large->image + 3 * (size_t)large->width * y;
+        for (uint32_t x = 0; x < large->width; x++)
+            memcpy(out + 3 * (size_t)x, row + 3 * ((uint64_t)x * width / large->width), 3);
+    }
+}
+
+void viewer_draw_large(struct viewer *viewer) {
+    static const uint8_t marked_colour[3] = {255, 0, 0};
+    struct viewer_large *large = &viewer->large;
+    const struct film *film = &viewer->pass.film;
+    const struct picture_request *request = &viewer->request;
+    struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    if (large->stale) {
+        copy_picture(viewer);
+        memset(large->drawn, 0, large->tiles);
+        large->stale = false;
+        viewer->display.dirty = true;
+    }
+    for (uint32_t tile = 0; tile < large->tiles; tile++) {
+        uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
+        bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && film->marked;
+        if (shows ? large->drawn[tile] == state : !in_progress)
+            continue;
+        struct film_rectangle r = film_tile_rectangle(film, tile);
+        for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
+            for (uint32_t x = r.x0 - film->x0; x < r.x1 - film->x0; x++) {
+                size_t at = (size_t)y * large->width + x;
+                if (shows)
+                    tone_large(viewer, &tone, x, y);
+                else if (film->marked[at] == FILM_MARK_WAITS)
+                    memcpy(large->image + 3 * at, marked_colour, 3);
+            }
+        }
+        large->drawn[tile] = shows ? state : large->drawn[tile];
+        viewer->display.dirty = true;
+    }
+}
