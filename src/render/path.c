@@ -261,9 +261,28 @@ static const char *user_of(const struct world *world, uint32_t material) {
     return "CSG";
 }
 
+/* Next-event estimation needs a bound. */
+static void warn_of_infinite_emitter(const struct world *world, world_warning *warn, void *context) {
+    char text[256];
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        const struct prototype *prototype = primitive_prototype(world, i);
+        const struct box *box = &world->boxes[i];
+        if (prototype->geometry.csg || (vec3_finite(box->min) && vec3_finite(box->max)) ||
+            vec3_max_abs(material_emission(&world->materials[prototype->material])) == 0)
+            continue;
+        (void)snprintf(text, sizeof text,
+                       "--integrator path: '%.100s' emits light and has no bounds: paths find its light by scattering "
+                       "only, which makes noise",
+                       primitive_node(world, i)->name);
+        warn(context, text);
+        return;
+    }
+}
+
 void path_tracer_warn(const struct render_job *job, world_warning *warn, void *context) {
     const struct world *world = job->world;
     char text[256];
+    warn_of_infinite_emitter(world, warn, context);
     if (vec3_max_abs(job->ambient) > 0)
         warn(context, "--integrator path ignores ambient: light goes from wall to wall instead");
     for (uint32_t i = 0; i < world->material_count; i++) {

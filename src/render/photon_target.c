@@ -213,10 +213,16 @@ static bool square_meets(const struct photon_target *target, double x, double y,
     return true;
 }
 
+/* A square of a face of the sphere of directions: face / 2^level in each direction. */
+struct target_square {
+    uint32_t face, level, i, j;
+};
+
 /* The brightness in the middle of a cell, or a little where only another part of it is lit; 0 where none is. */
-static double cell_shine(const struct photon_target *target, uint32_t face, uint32_t i, uint32_t j,
-                         double *solid_angle) {
-    double width = ldexp(2, -(int)target->level), a = -1 + width * (i + 0.5), b = -1 + width * (j + 0.5), density;
+static double cell_shine(const struct photon_target *target, struct target_square cell, double *solid_angle) {
+    double width = ldexp(2, -(int)cell.level), a = -1 + width * (cell.i + 0.5), b = -1 + width * (cell.j + 0.5),
+           density;
+    uint32_t face = cell.face;
     struct vec3 middle = vec3_normalize(face_direction(face, a, b, solid_angle));
     *solid_angle *= width * width;
     double own = light_emitter_shine(&target->emitter, middle), max = own, cos_half = 1;
@@ -244,25 +250,27 @@ struct search {
     bool keep, stopped;
 };
 
-static void meet_cell(struct search *s, uint32_t face, uint32_t i, uint32_t j, uint32_t strongest) {
+static void meet_cell(struct search *s, struct target_square cell, uint32_t strongest) {
     struct photon_target *target = s->target;
     double area = 1, bright = 1;
     if (!is_distant(target) && (s->keep || !target->emitter.even))
-        bright = cell_shine(target, face, i, j, &area);
+        bright = cell_shine(target, cell, &area);
     if (!(bright > 0))
         return;
     if (s->keep) {
         double strength = s->specular_objects->list[strongest].strength;
         target->total += area * bright * strength;
-        target->cells[s->found] = (struct photon_cell){target->total, face, i, j, (float)strength, (float)bright};
+        target->cells[s->found] =
+            (struct photon_cell){target->total, cell.face, cell.i, cell.j, (float)strength, (float)bright};
     }
     s->found++;
 }
 
-/* A square of a face of the sphere of directions: face / 2^level in each direction. */
-struct target_square {
-    uint32_t face, level, i, j;
-};
+/* The light shines into no direction of the square, so neither into those of its parts. */
+static bool is_dark(const struct photon_target *target, struct target_square square) {
+    double area;
+    return !is_distant(target) && !target->emitter.even && !(cell_shine(target, square, &area) > 0);
+}
 
 /* `list`: the casters that the parent may meet. */
 static void visit(struct search *s, struct target_square square, const uint32_t *list, uint32_t count,
@@ -285,10 +293,10 @@ static void visit(struct search *s, struct target_square square, const uint32_t 
         if (meets)
             free_room[met++] = list[k];
     }
-    if (met == 0)
+    if (met == 0 || (level < s->level && is_dark(target, square)))
         return;
     if (level == s->level) {
-        meet_cell(s, face, i, j, free_room[0]);
+        meet_cell(s, square, free_room[0]);
         return;
     }
     for (uint32_t k = 0; k < 4; k++)

@@ -614,6 +614,26 @@ TEST(photons_are_sent_towards_specular_objects) {
     }
 }
 
+/* Cells without light have no parts with light: the search ends at the first of them. It took minutes. */
+TEST(a_spot_that_shines_away_from_all_glass_sends_no_photon) {
+    struct stage s;
+    struct photon_map map;
+    stage_begin(&s, 2);
+    for (int i = 0; i < 1000; i++)
+        ball(&s, vec3_make(i % 10, 1 + (double)(i / 100), (double)(i / 10 % 10)), 0.3, stage_glass(&s, 0, 1, 1.5));
+    add_light(&s, (struct light){.kind = LIGHT_SPOT,
+                                 .position = {5, 15, 5},
+                                 .direction = {0, 1, 0},
+                                 .cos_inner = 0.95,
+                                 .cos_outer = 0.94,
+                                 .colour = {1, 1, 1}});
+    struct photon_statistics statistics = send(&s, 100000, &map);
+    CHECK_EQ_INT(statistics.sent, 0);
+    CHECK_EQ_INT(map.count, 0);
+    photon_map_destroy(&map);
+    stage_end(&s);
+}
+
 TEST(without_anything_specular_no_photon_is_sent) {
     struct stage s;
     struct photon_map map;

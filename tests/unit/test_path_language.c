@@ -420,6 +420,20 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
     stage_end(&s);
 }
 
+TEST(an_emitter_without_bounds_has_one_notice) {
+    static const char scene[] =
+        "local r, m = gr.node('r'), gr.material{kd={0,0,0}, emission={1,1,1}, two_sided=true}\n"
+        "r:add_child(gr.plane{normal={0,1,0}, material=m})\n"
+        "r:add_child(gr.plane{normal={0,1,0}, distance=9, material=m})\n"
+        "gr.render{node=r, file='a.pfm', width=8, height=8, eye={0,1,0}, integrator='path', spp=16}\n";
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *notice = strstr(result.err, "has no bounds");
+    CHECK(notice && !strstr(notice + 1, "has no bounds"));
+    free(result.out);
+    free(result.err);
+}
+
 /* --- media --- */
 
 TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
