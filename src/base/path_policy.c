@@ -428,32 +428,60 @@ static int compare_entries(const void *a, const void *b) {
     return strcmp(left->name, right->name);
 }
 
-/* The entries that `stream` returns, copied into the arena; NULL without memory. */
+/* The first `limit` names of a folder in byte order, whatever the order of the file system. Owner: read_entries. */
+struct name_list {
+    struct path_policy_entry *entries;
+    size_t count, room, limit;
+};
+
+/* Sorts, and drops what is beyond the limit. */
+static void name_list_cut(struct name_list *list) {
+    if (list->count > 0)
+        qsort(list->entries, list->count, sizeof *list->entries, compare_entries);
+    while (list->count > list->limit)
+        mem_free((void *)(uintptr_t)list->entries[--list->count].name);
+}
+
+/* False: no memory. */
+static bool name_list_add(struct name_list *list, const char *name, bool is_folder) {
+    if (list->count >= 2 * list->limit)
+        name_list_cut(list);
+    if (list->count == list->room) {
+        size_t room = list->room ? 2 * list->room : 64;
+        struct path_policy_entry *more = mem_resize_array(list->entries, room, sizeof *more);
+        if (!more)
+            return false;
+        list->entries = more;
+        list->room = room;
+    }
+    size_t size = strlen(name) + 1;
+    char *copy = mem_alloc(size);
+    if (!copy)
+        return false;
+    memcpy(copy, name, size);
+    list->entries[list->count++] = (struct path_policy_entry){copy, is_folder};
+    return true;
+}
+
+/* Copied into the arena; NULL without memory. */
 static struct path_policy_entry *read_entries(DIR *stream, size_t limit, struct arena *arena, size_t *count) {
-    struct path_policy_entry *found = NULL, *kept;
-    size_t room = 0, seen = 0;
-    *count = 0;
-    for (struct dirent *entry; seen < limit && (entry = readdir(stream)) != NULL; seen++) {
-        if (entry->d_name[0] == '.')
-            continue;
-        if (*count == room) {
-            struct path_policy_entry *more = mem_resize_array(found, room ? 2 * room : 64, sizeof *found);
-            if (!more)
-                break;
-            found = more;
-            room = room ? 2 * room : 64;
-        }
-        const char *name = arena_copy_text(arena, entry->d_name, strlen(entry->d_name));
-        if (!name)
-            break;
-        found[(*count)++] = (struct path_policy_entry){name, is_folder_entry(dirfd(stream), entry)};
+    struct name_list list = {.limit = limit};
+    bool ok = true;
+    for (struct dirent *entry; ok && limit > 0 && (entry = readdir(stream)) != NULL;)
+        if (entry->d_name[0] != '.')
+            ok = name_list_add(&list, entry->d_name, is_folder_entry(dirfd(stream), entry));
+    name_list_cut(&list);
+    struct path_policy_entry *kept = ok ? arena_alloc_array(arena, list.count ? list.count : 1, sizeof *kept) : NULL;
+    for (size_t i = 0; kept && i < list.count; i++) {
+        kept[i] = list.entries[i];
+        kept[i].name = arena_copy_text(arena, list.entries[i].name, strlen(list.entries[i].name));
+        if (!kept[i].name)
+            kept = NULL;
     }
-    kept = arena_alloc_array(arena, *count ? *count : 1, sizeof *kept);
-    if (kept && *count > 0) {
-        qsort(found, *count, sizeof *found, compare_entries);
-        memcpy(kept, found, *count * sizeof *kept);
-    }
-    mem_free(found);
+    *count = kept ? list.count : 0;
+    list.limit = 0;
+    name_list_cut(&list);
+    mem_free(list.entries);
     return kept;
 }
 

@@ -103,7 +103,7 @@ static bool fetch(struct gltf *g, uint32_t index) {
         if (!model_find(g->model, name, strlen(name), &path, g->error))
             return false;
         if (!path)
-            return gltf_fail(g, where, "the file '%.200s' is not there", name);
+            return gltf_fail(g, where, "the file '%.200s' %s", name, model_why_missing(g->model));
         if (!path_policy_map(g->model->options.path_policy, path, FETCH_LIMIT - g->bytes, &buffer->file, g->error))
             return false;
         buffer->data = buffer->file.data;

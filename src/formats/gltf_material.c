@@ -45,7 +45,7 @@ static bool find_image(struct gltf *g, uint32_t index, struct model_texture *map
         if (!model_find(g->model, name, strlen(name), &map->path, g->error))
             return false;
         if (!map->path && !g->model->options.single_file)
-            model_warn(g->model, "%s: the picture '%.200s' is not there", g->path, name);
+            model_warn(g->model, "%s: the picture '%.200s' %s", g->path, name, model_why_missing(g->model));
         return true;
     }
     if (!g->images[index]) {

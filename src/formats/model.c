@@ -164,6 +164,7 @@ void model_warn(struct model *model, const char *format, ...) {
 
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error) {
     *path = NULL;
+    model->refused = false;
     if (model->options.single_file || length == 0 || length > 4000 || memchr(name, '\0', length))
         return true;
     const char *slash = strrchr(model->path, '/');
@@ -189,7 +190,21 @@ bool model_find(struct model *model, const char *name, size_t length, const char
             return true;
         }
     }
-    return true;
+    if (!model->options.search)
+        return true;
+    char *beside = arena_format(&model->arena, "%.*s", folder, model->path);
+    const char *found;
+    if (!beside)
+        return error_no_memory(error, model->path);
+    if (!model->options.search(model->options.search_context, beside, plain, &found, &model->refused, error))
+        return false;
+    *path = found ? arena_copy_text(&model->arena, found, strlen(found)) : NULL;
+    return *path || !found || error_no_memory(error, model->path);
+}
+
+const char *model_why_missing(const struct model *model) {
+    return model->refused ? "lies outside the folders that scenes may read (--allow-read DIR adds one)"
+                          : "is not there";
 }
 
 /* --- from tables to meshes --- */
@@ -430,6 +445,7 @@ static bool parse(struct model *model, const char *path, struct file_bytes file,
     if (is_mapped)
         file_unmap(&file);
     ok = ok && model_finish(model, error);
+    model->options.search = NULL;
     if (!ok)
         model_destroy(model);
     return ok;

@@ -67,6 +67,11 @@ struct model_node {
     struct transform parent_from_node;
 };
 
+/* Looks for a file that is not where the file in `folder` ("" or with a final slash) names it. *path is NULL if there
+ * is none; *refused: the name leads out of the readable folders, and is not looked for. False with an error. */
+typedef bool model_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
+                          struct error *error);
+
 /* Zero values: as in the file. */
 struct model_options {
     bool smooth;         /* computed normals instead of the file's */
@@ -74,8 +79,10 @@ struct model_options {
     bool weld, flip;     /* one vertex for each position; faces reversed */
     bool forgive;        /* faces with indices of nothing are left out */
     const struct path_policy *path_policy; /* the readable folders; NULL: all */
-    bool single_file;                      /* no other file is opened (tests of readers with unknown bytes) */
-    size_t max;                            /* vertices, and corners, of a mesh; 0: the maximum of an index */
+    model_search *search;                  /* or NULL; only while the file is read */
+    void *search_context;
+    bool single_file; /* no other file is opened (tests of readers with unknown bytes) */
+    size_t max;       /* vertices, and corners, of a mesh; 0: the maximum of an index */
 };
 
 enum { MODEL_WARNINGS = 16 };
@@ -88,6 +95,7 @@ struct model {
     struct list materials, meshes, nodes; /* struct model_material, model_mesh, model_node */
     const char *warnings[MODEL_WARNINGS];
     int warning_count;
+    bool refused; /* model_find: the last name leads out of the readable folders */
 };
 
 /* The maximum number of vertices, and of corners, of a mesh: some numbers of 32 bits have other meanings. */
@@ -120,8 +128,10 @@ struct model_material *model_add_material(struct model *model, struct error *err
 struct model_node *model_add_node(struct model *model, struct error *error);         /* at the top, no mesh */
 /* Warnings beyond the limit are dropped; the first ones are kept. */
 void model_warn(struct model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* A file that the model names: in its folder, by any spelling of the path; as a last resort, by the bare name. */
+/* A file that the model names: in its folder, by any spelling of the path; by the bare name; by the search of the
+ * options. *path is NULL if there is none, model_why_missing() says why. */
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
+const char *model_why_missing(const struct model *model);
 
 /* Makes meshes from the tables, and one node for files without nodes. */
 bool model_finish(struct model *model, struct error *error);

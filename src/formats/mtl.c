@@ -170,7 +170,8 @@ static bool read_map(struct library *l, struct model_texture *map) {
     if (!model_find(l->model, name, length, &map->path, l->error))
         return false;
     if (!map->path && !l->model->options.single_file)
-        model_warn(l->model, "%s:%zu: the picture '%.200s' is not there", l->path, l->line, map->name);
+        model_warn(l->model, "%s:%zu: the picture '%.200s' %s", l->path, l->line, map->name,
+                   model_why_missing(l->model));
     return true;
 }
 

@@ -413,8 +413,8 @@ static bool read_libraries(struct reader *reader) {
             at++;
     }
     if (!all)
-        model_warn(reader->model, "%s:%zu: the material library '%.*s' is not there", reader->path, reader->line,
-                   length < 200 ? (int)length : 200, name);
+        model_warn(reader->model, "%s:%zu: the material library '%.*s' %s", reader->path, reader->line,
+                   length < 200 ? (int)length : 200, name, model_why_missing(reader->model));
     return true;
 }
 

@@ -223,6 +223,9 @@ const char *files_unshorten(struct script_context *context, const char *message)
 /* dialect.c */
 bool dialect_add_folder(const struct script_options *options, struct path_policy *path_policy, struct error *error);
 bool dialect_find(struct script_context *context, struct error *error); /* sets context->dialect */
+/* A file that is not where a file of the scene in `folder` names it; with a notice if it is found. A model_search. */
+bool files_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
+                  struct error *error);
 void dialect_run(lua_State *L);                                         /* before the scene; may raise */
 void dialect_finish(lua_State *L);                                      /* after it */
 

@@ -98,6 +98,14 @@ static bool search_file(struct script_context *context, const char *name, const 
     return true;
 }
 
+bool files_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
+                  struct error *error) {
+    struct script_context *c = context;
+    *path = NULL;
+    *refused = !search_may(c->path_policy, folder, name);
+    return *refused || strlen(name) >= PATH_SIZE || search_file(c, name, path, error);
+}
+
 static bool outside(const char *name, struct error *error) {
     return error_set(error, ERROR_SCENE,
                      "'%s' lies outside the folders that scenes may read (--allow-read DIR adds one)", name);

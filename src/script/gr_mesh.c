@@ -22,7 +22,10 @@ static const struct model *model_of_file(struct script_context *context, const s
                                          struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    struct model_options options = {.path_policy = context->path_policy, .forgive = context->lenient != NULL};
+    struct model_options options = {.path_policy = context->path_policy,
+                                    .search = files_search,
+                                    .search_context = context,
+                                    .forgive = context->lenient != NULL};
     read_options(args, &options);
     if (!files_require(context, name, path, error))
         return NULL;

@@ -66,6 +66,65 @@ TEST(a_mesh_is_found_below_the_scene_and_above_it_with_one_notice) {
     says("local n = gr.mesh('a', 'data\\\\cow.obj')\n" PICTURE("n"), "", 0, "was found as 's/../meshes/cow.obj'");
 }
 
+/* A picture of one texel. */
+static void dot(const char *name) {
+    static const char text[] = "PF\n1 1\n-1.0\n\0\0\0\0\0\0\0\0\0\0\0";
+    test_write_file(in(name), text, sizeof text);
+}
+
+TEST(materials_and_pictures_that_mesh_files_name_are_found_too) {
+    begin();
+    folder("w/s/tex");
+    folder("w/s/mats");
+    folder("w/art");
+    file("w/s/m.obj", "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n");
+    file("w/s/mats/paint.mtl", "newmtl a\nmap_Kd C:\\art\\wood.pfm\nmap_Ks ../../../secret.pfm\nmap_d none.pfm\n");
+    dot("w/s/tex/wood.pfm");
+    dot("w/s/tex/secret.pfm"); /* not looked for */
+    struct test_result result = run("local n = gr.mesh('a', 'm.obj')\n" PICTURE("n"), "");
+    CHECK_EQ_INT(result.status, 0);
+    static const char *const lines[] = {
+        "s/scene.lua:1: 'paint.mtl' was found as 's/mats/paint.mtl'",
+        "s/scene.lua:1: 'C:/art/wood.pfm' was found as 's/tex/wood.pfm'",
+        "the picture '../../../secret.pfm' lies outside the folders that scenes may read (--allow-read DIR adds one)",
+        "the picture 'none.pfm' is not there"};
+    for (int i = 0; i < 4; i++)
+        if (!strstr(result.err, lines[i]))
+            test_fail(__FILE__, __LINE__, "%s is not in %s", lines[i], result.err);
+    free(result.out);
+    free(result.err);
+#ifdef HAVE_JANSSON
+    file("w/s/m.gltf",
+         "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],"
+         "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+         "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"maps/leaf.pfm\"}],"
+         "\"buffers\":[{\"uri\":\"numbers.bin\",\"byteLength\":36}],"
+         "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","
+         "\"min\":[0,0,0],\"max\":[1,1,0]}]}");
+    const float numbers[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    test_write_file(in("w/s/tex/numbers.bin"), numbers, sizeof numbers);
+    dot("w/art/leaf.pfm");
+    says("local n = gr.mesh('a', 'm.gltf')\n" PICTURE("n"), "", 0, "'numbers.bin' was found as 's/tex/numbers.bin'");
+    says("local n = gr.mesh('a', 'm.gltf')\n" PICTURE("n"), "", 0, "'maps/leaf.pfm' was found as 's/../art/leaf.pfm'");
+#endif
+}
+
+TEST(of_a_folder_with_too_many_files_the_first_in_byte_order_are_searched) {
+    begin();
+    folder("w/s/many");
+    file("w/s/many/zzz.obj", triangle);
+    for (int i = 10100; i > 0; i--) {
+        char name[64];
+        (void)snprintf(name, sizeof name, "w/s/many/f%05d.txt", i);
+        file(name, "");
+    }
+    file("w/s/many/aaa.obj", triangle);
+    says("local n = gr.mesh('a', 'aaa.obj')\n" PICTURE("n"), "", 0, "'aaa.obj' was found as 's/many/aaa.obj'");
+    says("local n = gr.mesh('a', 'zzz.obj')\n" PICTURE("n"), "", 1, "cannot find 'zzz.obj'");
+}
+
 TEST(modules_and_pictures_are_found_by_name_too) {
     begin();
     folder("w/s/lib");
