@@ -1498,6 +1498,7 @@ function gr.change_exposure(picture, stops) end
 ---@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@return gr.light
 ---@overload fun(fields: gr.sun_light.fields): gr.light
+---@field year? integer year (a whole number, 1901 to 2099; default 2025): Year of the day.
 function gr.sun_light(sun, colour) end
 
 ---@class gr.sky_faces.fields
@@ -1581,6 +1582,7 @@ function gr.sky_function(f) end
 ---The clear sky model of Preetham, Shirley and Smits (1999).
 ---@param sun gr.triple sun (a direction {x, y, z}; optional): Direction to the sun, instead of time and position.
 ---@param turbidity? number turbidity (a number, 1.7 to 10; default 2.5): Turbidity of the air: 2 is very clear, 10 is hazy.
+---@field year? integer year (a whole number, 1901 to 2099; default 2025): Year of the day.
 ---@return gr.sky
 ---@overload fun(fields: gr.clear_sky.fields): gr.sky
 function gr.clear_sky(sun, turbidity) end

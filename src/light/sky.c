@@ -20,7 +20,7 @@
 
 /* The clear sky of Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999: luminance and
  * chromaticity each as Perez' function of the angles to the zenith and to the sun, with the coefficients of the paper's
- * appendix A.2; position of the sun by its appendix A.6. xyY becomes linear sRGB by the matrix of IEC 61966-2-1.
+ * appendix A.2. xyY becomes linear sRGB by the matrix of IEC 61966-2-1.
  * Luminance in kcd/m^2 is divided by 20, so that a bright blue sky comes out near 1. */
 
 static double perez(const double c[5], double cos_zenith, double cos_sun) {
@@ -80,13 +80,37 @@ static struct vec3 sky_clear_colour(const struct clear_sky *clear, struct vec3 d
     return vec3_max(c, vec3_all(0));
 }
 
-struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone) {
-    double time = hour + 0.170 * el_sin(4 * PI * (day - 80) / 373) - 0.129 * el_sin(2 * PI * (day - 8) / 355);
-    time += (longitude - 15 * zone) / 15;
-    double declination = 0.4093 * el_sin(2 * PI * (day - 81) / 368), turn = PI * (time - 12) / 12;
-    double s_lat, c_lat, s_dec, c_dec, s_turn, c_turn;
-    el_sincos(latitude * (PI / 180), &s_lat, &c_lat);
-    el_sincos(declination, &s_dec, &c_dec);
+/* The Julian day of 0 h on the first of January (Gregorian calendar). */
+static double january_first(int year) {
+    int before = year - 1;
+    return 1721425.5 + 365.0 * before + (before / 4 - before / 100 + before / 400);
+}
+
+/* The position of the sun by the Solar Calculator of NOAA (gml.noaa.gov/grad/solcalc, calcdetails.html), whose formulas
+ * are those of J. Meeus, "Astronomical Algorithms", 2nd ed., chapters 25 and 28: angles in radians, without refraction.
+ */
+struct vec3 sky_sun(const struct sky_time *time, double latitude, double longitude) {
+    const double degree = PI / 180;
+    double julian = january_first(time->year) + (time->day - 1) + (time->hour - time->zone) / 24;
+    double t = (julian - 2451545) / 36525; /* centuries from 2000 */
+    double mean_longitude = (280.46646 + t * (36000.76983 + t * 0.0003032)) * degree;
+    double anomaly = (357.52911 + t * (35999.05029 - 0.0001537 * t)) * degree;
+    double eccentricity = 0.016708634 - t * (0.000042037 + 0.0000001267 * t);
+    double centre = el_sin(anomaly) * (1.914602 - t * (0.004817 + 0.000014 * t)) +
+                    el_sin(2 * anomaly) * (0.019993 - 0.000101 * t) + el_sin(3 * anomaly) * 0.000289;
+    double node = (125.04 - 1934.136 * t) * degree; /* of the moon's orbit, for the nutation */
+    double apparent = mean_longitude + (centre - 0.00569 - 0.00478 * el_sin(node)) * degree;
+    double obliquity = 23 + (26 + (21.448 - t * (46.815 + t * (0.00059 - t * 0.001813))) / 60) / 60;
+    obliquity = (obliquity + 0.00256 * el_cos(node)) * degree;
+    double half = el_sin(obliquity / 2) / el_cos(obliquity / 2), y = half * half;
+    double equation = y * el_sin(2 * mean_longitude) - 2 * eccentricity * el_sin(anomaly) +
+                      4 * eccentricity * y * el_sin(anomaly) * el_cos(2 * mean_longitude) -
+                      0.5 * y * y * el_sin(4 * mean_longitude) -
+                      1.25 * eccentricity * eccentricity * el_sin(2 * anomaly);
+    double turn = (15 * (time->hour - time->zone - 12) + longitude) * degree + equation; /* from south to west */
+    double s_lat, c_lat, s_turn, c_turn;
+    double s_dec = el_sin(obliquity) * el_sin(apparent), c_dec = sqrt(1 - s_dec * s_dec);
+    el_sincos(latitude * degree, &s_lat, &c_lat);
     el_sincos(turn, &s_turn, &c_turn);
     double north = c_lat * s_dec - s_lat * c_dec * c_turn;
     return (struct vec3){-c_dec * s_turn, s_lat * s_dec + c_lat * c_dec * c_turn, -north};

@@ -51,9 +51,13 @@ bool sky_from_faces(struct image *const faces[6], struct sky *out, struct error 
 void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struct sky *out);
 /* Of a function with one output or three. Errors: it reads more than the direction, or no memory. */
 bool sky_from_function(const struct expr_program *program, struct sky *out, struct error *error);
-/* The unit direction to the sun: y up, -z north, +x east. day: 1..365; hour: of the clock; degrees, east and north
- * positive; zone: hours that the clock is ahead of Greenwich. */
-struct vec3 sky_sun(double day, double hour, double latitude, double longitude, double zone);
+/* A time of the clock; it is `zone` hours ahead of Greenwich. */
+struct sky_time {
+    int year;               /* 1901 to 2099 */
+    double day, hour, zone; /* day of the year, from 1 */
+};
+/* The unit direction to the sun: y up, -z north, +x east. Degrees, north and east positive. */
+struct vec3 sky_sun(const struct sky_time *time, double latitude, double longitude);
 /* Rotates it further about the y axis: light from +x then comes from (cosine, 0, -sine). */
 void sky_turn(struct sky *sky, double sine, double cosine);
 /* For linear colours: its images (image_colour_transfer) and colours of the screen are decoded. False: no memory. */

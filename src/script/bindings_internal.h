@@ -153,7 +153,7 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
                                     struct error *error);
 
 /* gr_environment.c; the fields of the sun follow one another from SUN_DIRECTION on */
-enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_FIELDS };
+enum { SUN_DIRECTION, SUN_HOUR, SUN_DAY, SUN_LATITUDE, SUN_LONGITUDE, SUN_ZONE, SUN_YEAR, SUN_FIELDS };
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 enum { FACES_FRONT = SKY_OWN, FACES_RIGHT, FACES_BACK, FACES_LEFT, FACES_TOP, FACES_BOTTOM };
 enum { CROSS_IMAGE = SKY_OWN, CROSS_MIRROR };

@@ -72,18 +72,21 @@ bool gr_sky_function(struct script_context *context, const struct script_value *
  * the fields. */
 static bool find_sun(const struct script_value *sun, struct vec3 *out, struct error *error) {
     bool by_time = sun[SUN_HOUR].given || sun[SUN_DAY].given || sun[SUN_LATITUDE].given || sun[SUN_LONGITUDE].given ||
-                   sun[SUN_ZONE].given;
+                   sun[SUN_ZONE].given || sun[SUN_YEAR].given;
     if (sun[SUN_DIRECTION].given && by_time)
-        return error_set(error, ERROR_SCENE, "sun excludes time and position (hour, day, latitude, longitude, zone)");
+        return error_set(error, ERROR_SCENE,
+                         "sun excludes time and position (hour, day, latitude, longitude, zone, year)");
     if (sun[SUN_DIRECTION].given) {
         if (!(vec3_length(sun[SUN_DIRECTION].vector) > 0))
             return error_set(error, ERROR_SCENE, "sun must not be zero");
         *out = vec3_normalize(sun[SUN_DIRECTION].vector);
         return true;
     }
-    *out = sky_sun(sun[SUN_DAY].given ? sun[SUN_DAY].number : 172, sun[SUN_HOUR].given ? sun[SUN_HOUR].number : 12,
-                   sun[SUN_LATITUDE].given ? sun[SUN_LATITUDE].number : 45, sun[SUN_LONGITUDE].number,
-                   sun[SUN_ZONE].number);
+    const struct sky_time time = {.year = sun[SUN_YEAR].given ? (int)sun[SUN_YEAR].number : 2025,
+                                  .day = sun[SUN_DAY].given ? sun[SUN_DAY].number : 172,
+                                  .hour = sun[SUN_HOUR].given ? sun[SUN_HOUR].number : 12,
+                                  .zone = sun[SUN_ZONE].number};
+    *out = sky_sun(&time, sun[SUN_LATITUDE].given ? sun[SUN_LATITUDE].number : 45, sun[SUN_LONGITUDE].number);
     return true;
 }
 

@@ -536,7 +536,8 @@ static const struct script_parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] 
                                 IN_RANGE(-14, 14),                                                                     \
                                 "hours",                                                                               \
                                 "0",                                                                                   \
-                                "Difference of the local time to Greenwich; positive is east."}
+                                "Difference of the local time to Greenwich; positive is east."},                       \
+        [(first) + SUN_YEAR] = {"year", KIND_WHOLE, OPTIONAL, IN_RANGE(1901, 2099), NULL, "2025", "Year of the day."}
 
 static const struct script_parameter sky_faces_parameters[] = {
     SKY_FIELDS,

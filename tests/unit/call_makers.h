@@ -50,7 +50,7 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
         (void)snprintf(out, size, "%.17g", middle);
         return;
     case KIND_WHOLE:
-        (void)snprintf(out, size, "%.0f", middle > 16 ? 16 : middle);
+        (void)snprintf(out, size, "%.0f", middle > 16 && p->low <= 16 ? 16 : middle);
         return;
     case KIND_BOOLEAN:
         text = "true";

@@ -158,18 +158,84 @@ TEST(the_clear_sky_has_the_zenith_luminance_and_symmetry_of_its_model) {
     }
 }
 
+static struct vec3 sun_at(int year, double day, double hour, double latitude, double longitude, double zone) {
+    return sky_sun(&(struct sky_time){.year = year, .day = day, .hour = hour, .zone = zone}, latitude, longitude);
+}
+
 TEST(the_sun_has_the_direction_of_the_almanac) {
     /* Altitude at true noon is 90 - latitude + declination; 23.4 degrees on 21 June, 0 at the equinoxes. */
-    struct vec3 june = sky_sun(172, 12, 51.5, 0, 0), december = sky_sun(355, 12, 51.5, 0, 0);
+    struct vec3 june = sun_at(2025, 172, 12, 51.5, 0, 0), december = sun_at(2025, 355, 12, 51.5, 0, 0);
     CHECK_NEAR(asin(june.y) * 180 / pi, 90 - 51.5 + 23.4, 0.5);
     CHECK_NEAR(asin(december.y) * 180 / pi, 90 - 51.5 - 23.4, 0.5);
     CHECK(june.z > 0.4); /* in the south */
-    struct vec3 morning = sky_sun(80, 6, 0, 0, 0), equator = sky_sun(80, 12, 0, 0, 0);
+    struct vec3 morning = sun_at(2025, 80, 6, 0, 0, 0), equator = sun_at(2025, 80, 12, 0, 0, 0);
     CHECK(morning.x > 0.99 && fabs(morning.y) < 0.05); /* rises in the east */
     CHECK(equator.y > 0.998);
     /* An hour of clock time is fifteen degrees of longitude; a time zone compensates them. */
-    struct vec3 a = sky_sun(172, 9, 40, 15, 0), b = sky_sun(172, 10, 40, 0, 0), c = sky_sun(172, 11, 40, 15, 2);
-    CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-12);
+    struct vec3 a = sun_at(2025, 172, 9, 40, 15, 0), b = sun_at(2025, 172, 10, 40, 0, 0),
+                c = sun_at(2025, 172, 11, 40, 15, 2);
+    CHECK(vec3_max_abs(vec3_sub(a, b)) < 1e-4); /* in an hour, the sun moves among the stars, too */
     CHECK(vec3_max_abs(vec3_sub(a, c)) < 1e-12);
     CHECK_NEAR(vec3_length(a), 1, 1e-14);
+}
+
+/* The Solar Calculator of NOAA in its own steps: columns D to AH of NOAA_Solar_Calculations_day.xls, in degrees and
+ * minutes. Out: elevation without refraction, azimuth from north over east. */
+static void noaa_angles(double julian, double minutes, double zone, double latitude, double longitude,
+                        double *elevation, double *azimuth) {
+    const double d = pi / 180;
+    double g = (julian - 2451545) / 36525;
+    double i = fmod(280.46646 + g * (36000.76983 + g * 0.0003032), 360);
+    double j = 357.52911 + g * (35999.05029 - 0.0001537 * g), k = 0.016708634 - g * (0.000042037 + 0.0000001267 * g);
+    double l = sin(j * d) * (1.914602 - g * (0.004817 + 0.000014 * g)) + sin(2 * j * d) * (0.019993 - 0.000101 * g) +
+               sin(3 * j * d) * 0.000289;
+    double p = i + l - 0.00569 - 0.00478 * sin((125.04 - 1934.136 * g) * d);
+    double q = 23 + (26 + ((21.448 - g * (46.815 + g * (0.00059 - g * 0.001813)))) / 60) / 60;
+    double r = q + 0.00256 * cos((125.04 - 1934.136 * g) * d), declination = asin(sin(r * d) * sin(p * d)) / d;
+    double u = tan(r / 2 * d) * tan(r / 2 * d);
+    double v = 4 / d *
+               (u * sin(2 * i * d) - 2 * k * sin(j * d) + 4 * k * u * sin(j * d) * cos(2 * i * d) -
+                0.5 * u * u * sin(4 * i * d) - 1.25 * k * k * sin(2 * j * d));
+    double solar_time = fmod(minutes + v + 4 * longitude - 60 * zone + 1440, 1440);
+    double hour_angle = solar_time / 4 < 0 ? solar_time / 4 + 180 : solar_time / 4 - 180;
+    double zenith = acos(sin(latitude * d) * sin(declination * d) +
+                         cos(latitude * d) * cos(declination * d) * cos(hour_angle * d)) /
+                    d;
+    double side =
+        acos((sin(latitude * d) * cos(zenith * d) - sin(declination * d)) / (cos(latitude * d) * sin(zenith * d))) / d;
+    *elevation = 90 - zenith;
+    *azimuth = hour_angle > 0 ? fmod(side + 180, 360) : fmod(540 - side, 360);
+}
+
+TEST(the_sun_is_within_a_hundredth_of_a_degree_of_noaas_position) {
+    static const struct {
+        int year;
+        double day, julian; /* Julian day of 0 h local time, without its zone */
+        double latitude, longitude, zone;
+    } observers[] = {{2000, 1, 2451544.5, 40, -105, -7},        {2025, 172, 2460847.5, 51.48, 0, 0},
+                     {2024, 80, 2460389.5, -33.87, 151.21, 10}, {2010, 355, 2455551.5, 64.15, -21.94, 0},
+                     {1950, 45, 2433326.5, 35.68, 139.69, 9},   {2080, 300, 2481063.5, -54.8, -68.3, -3}};
+    for (size_t n = 0; n < sizeof observers / sizeof observers[0]; n++)
+        for (double hour = 0.3; hour < 24; hour += 1.1) {
+            double elevation, azimuth, d = pi / 180;
+            noaa_angles(observers[n].julian + (hour - observers[n].zone) / 24, 60 * hour, observers[n].zone,
+                        observers[n].latitude, observers[n].longitude, &elevation, &azimuth);
+            struct vec3 expected = {cos(elevation * d) * sin(azimuth * d), sin(elevation * d),
+                                    -cos(elevation * d) * cos(azimuth * d)};
+            struct vec3 sun = sun_at(observers[n].year, observers[n].day, hour, observers[n].latitude,
+                                     observers[n].longitude, observers[n].zone);
+            CHECK(vec3_length(vec3_sub(sun, expected)) < 0.01 * d);
+        }
+}
+
+TEST(the_sun_crosses_the_equator_and_turns_at_the_times_of_the_almanac) {
+    /* Times in UTC of the U.S. Naval Observatory, "Earth's Seasons". Seen from the north pole, y is the sine of the
+     * declination. */
+    const double degree = pi / 180;
+    CHECK_NEAR(asin(sun_at(2024, 80, 3 + 6 / 60.0, 90, 0, 0).y) / degree, 0, 0.01);         /* 20 March, 03:06 */
+    CHECK_NEAR(asin(sun_at(2024, 266, 12 + 44 / 60.0, 90, 0, 0).y) / degree, 0, 0.01);      /* 22 September, 12:44 */
+    CHECK_NEAR(asin(sun_at(2025, 79, 9 + 1 / 60.0, 90, 0, 0).y) / degree, 0, 0.01);         /* 20 March, 09:01 */
+    CHECK_NEAR(asin(sun_at(2025, 265, 18 + 19 / 60.0, 90, 0, 0).y) / degree, 0, 0.01);      /* 22 September, 18:19 */
+    CHECK_NEAR(asin(sun_at(2025, 172, 2 + 42 / 60.0, 90, 0, 0).y) / degree, 23.438, 0.01);  /* 21 June, 02:42 */
+    CHECK_NEAR(asin(sun_at(2025, 355, 15 + 3 / 60.0, 90, 0, 0).y) / degree, -23.438, 0.01); /* 21 December, 15:03 */
 }
