@@ -998,6 +998,7 @@ function gr.wood_pnd_material(material, f, density, interp, mix) end
 ---@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
+---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image on each side of the unit cube, over another material.
 ---@param material gr.material material (a material): The base material.
@@ -1011,6 +1012,7 @@ function gr.td_cube_material(material, png) end
 ---@field png string|gr.texture png (the name of a picture file or a texture): A PNG or JPEG file, or a texture.
 ---@field filter? 'nearest'|'bilinear'|'mipmap' filter ('nearest'|'bilinear'|'mipmap'; default 'mipmap'): Filter of the lookup.
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
+---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image around the unit sphere, over another material.
 ---@param material gr.material material (a material): The base material.
@@ -1045,6 +1047,7 @@ function gr.difresneld_material(material) end
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
 ---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image texture for node:set_texture and for inputs of gr.material.
 ---@param file string|gr.texture file (the name of a picture file or a texture): A PNG or JPEG file.
@@ -1060,6 +1063,7 @@ function gr.texture(file) end
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
 ---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
@@ -1079,6 +1083,7 @@ function gr.bump(file, height) end
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
 ---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 ---@field channel? 'kd'|'ks'|'emission'|'opacity' channel ('kd'|'ks'|'emission'|'opacity'; default 'kd'): The input that the image replaces; where opacity is below 1, the surface has holes.
 
 ---An image mapped by the texture coordinates of the shape, over another material.
@@ -1097,6 +1102,7 @@ function gr.image_material(material, image) end
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
 ---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
 
@@ -1492,13 +1498,13 @@ function gr.change_exposure(picture, stops) end
 ---@field latitude? number latitude (a number, >= -90 and <= 90, in degrees; default 45): Positive is north; in the scene, -z is north and +x is east.
 ---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): Positive is east.
 ---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): Difference of the local time to Greenwich; positive is east.
+---@field year? integer year (a whole number, 1901 to 2099; default 2025): Year of the day.
 
 ---A directional light from the position of the sun.
 ---@param sun gr.triple sun (a direction {x, y, z}; optional): Direction to the sun, instead of time and position.
 ---@param colour gr.triple|string colour (a colour {r, g, b}): Colour and strength.
 ---@return gr.light
 ---@overload fun(fields: gr.sun_light.fields): gr.light
----@field year? integer year (a whole number, 1901 to 2099; default 2025): Year of the day.
 function gr.sun_light(sun, colour) end
 
 ---@class gr.sky_faces.fields
@@ -1576,13 +1582,13 @@ function gr.sky_function(f) end
 ---@field latitude? number latitude (a number, >= -90 and <= 90, in degrees; default 45): Positive is north; in the scene, -z is north and +x is east.
 ---@field longitude? number longitude (a number, >= -180 and <= 180, in degrees; default 0): Positive is east.
 ---@field zone? number zone (a number, >= -14 and <= 14, in hours; default 0): Difference of the local time to Greenwich; positive is east.
+---@field year? integer year (a whole number, 1901 to 2099; default 2025): Year of the day.
 ---@field turbidity? number turbidity (a number, 1.7 to 10; default 2.5): Turbidity of the air: 2 is very clear, 10 is hazy.
 ---@field ground? gr.triple|string ground (a colour {r, g, b}; default {0.15, 0.15, 0.15}): Colour below the horizon.
 
 ---The clear sky model of Preetham, Shirley and Smits (1999).
 ---@param sun gr.triple sun (a direction {x, y, z}; optional): Direction to the sun, instead of time and position.
 ---@param turbidity? number turbidity (a number, 1.7 to 10; default 2.5): Turbidity of the air: 2 is very clear, 10 is hazy.
----@field year? integer year (a whole number, 1901 to 2099; default 2025): Year of the day.
 ---@return gr.sky
 ---@overload fun(fields: gr.clear_sky.fields): gr.sky
 function gr.clear_sky(sun, turbidity) end

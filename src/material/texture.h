@@ -79,6 +79,7 @@ struct texture_image {
     enum image_wrap wrap;   /* of coordinates that a shape supplies */
     enum image_wrap wrap_v; /* if `apart` is set, else wrap is for both */
     bool flip_u;
+    bool outside; /* on spheres, u runs to the right as seen from outside; the classic mappings are mirrored */
     /* The point is scale * uv + offset (v from below), the colour is multiplied by tint. */
     bool apart;
     double scale[2], offset[2];

@@ -100,6 +100,26 @@ static void stretch(const struct texture_image *image, struct texcoord *at) {
     at->wrap_v = image->wrap_v;
 }
 
+static void mirror(struct texcoord *at) {
+    at->u = 1 - at->u;
+    at->dpdu = vec3_negate(at->dpdu);
+}
+
+static bool is_spherical(enum texture_mapping mapping) {
+    switch (mapping) {
+    case MAPPING_SPHERE:
+    case MAPPING_BALL:
+    case MAPPING_BALL_CLASSIC:
+        return true;
+    case MAPPING_CUBE:
+    case MAPPING_UV:
+    case MAPPING_BY_SHAPE:
+    case MAPPING_FACES:
+        break;
+    }
+    return false;
+}
+
 bool texture_coordinates(const struct texture_image *image, const struct hit *hit, struct texcoord *out) {
     switch (image->mapping) {
     case MAPPING_SPHERE:
@@ -124,12 +144,12 @@ bool texture_coordinates(const struct texture_image *image, const struct hit *hi
         on_ball(hit, true, out);
         break;
     }
+    if (image->outside && is_spherical(image->mapping))
+        mirror(out);
     if (image->apart)
         stretch(image, out);
-    if (image->flip_u) {
-        out->u = 1 - out->u;
-        out->dpdu = vec3_negate(out->dpdu);
-    }
+    if (image->flip_u)
+        mirror(out);
     return true;
 }
 

@@ -182,6 +182,8 @@ static bool read_image(struct script_context *context, const struct script_value
                        const struct script_value *lookup, struct texture_image *out, struct error *error) {
     struct image *image = gr_find_image(context, value, error);
     if (!image)
+    if (lookup[LOOKUP_MAPPING].given)
+        out->outside = lookup[LOOKUP_MAPPING].choice == SPHERE_MAPPING_OUTSIDE;
         return false;
     image_defaults(out, value, image);
     out->mapping = MAPPING_BY_SHAPE;
@@ -232,8 +234,9 @@ static bool image_over(struct script_context *context, const struct texture_imag
 
 static bool td_material(struct script_context *context, const struct script_value *args, enum texture_mapping mapping,
                         struct script_result *result, struct error *error) {
-    struct script_value lookup[LOOKUP_COUNT] = {
-        [LOOKUP_FILTER] = args[IMAGE_FILTER], [LOOKUP_FLIP_U] = args[IMAGE_FLIP_U]};
+    struct script_value lookup[LOOKUP_COUNT] = {[LOOKUP_FILTER] = args[IMAGE_FILTER],
+                                                [LOOKUP_FLIP_U] = args[IMAGE_FLIP_U],
+                                                [LOOKUP_MAPPING] = args[IMAGE_MAPPING]};
     struct texture_image image;
     if (!read_image(context, &args[IMAGE_PNG], lookup, &image, error))
         return false;

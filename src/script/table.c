@@ -446,11 +446,18 @@ static const struct script_parameter wood_parameters[] = {
 #define FLIP_U                                                                                                         \
     { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the image is mirrored from left to right." }
 
+#define SPHERE_MAPPING                                                                                                 \
+    {                                                                                                                  \
+        "mapping", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPHERE_MAPPINGS), NULL, "'classic'",                       \
+            "On spheres: classic is mirrored, seen from outside; outside is not."                                      \
+    }
+
 static const struct script_parameter image_parameters[] = {
     [IMAGE_MATERIAL] = BASE,
     [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
     [IMAGE_FILTER] = FILTER,
     [IMAGE_FLIP_U] = FLIP_U,
+    [IMAGE_MAPPING] = SPHERE_MAPPING,
 };
 
 #define TILES                                                                                                          \
@@ -465,7 +472,8 @@ static const struct script_parameter image_parameters[] = {
     }
 #define LOOKUP_FIELDS(first)                                                                                           \
     [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
-             [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET, [first + LOOKUP_ENCODING] = ENCODING
+             [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET, [first + LOOKUP_ENCODING] = ENCODING,   \
+             [first + LOOKUP_MAPPING] = SPHERE_MAPPING
 
 static const struct script_parameter texture_parameters[] = {
     [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},

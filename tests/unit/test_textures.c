@@ -592,6 +592,30 @@ TEST(mappings_become_those_of_the_shape_that_shows_them) {
     palette_destroy(&p);
 }
 
+TEST(spheres_show_letters_unmirrored_from_outside_where_the_mapping_says_so) {
+    struct palette p;
+    palette_init(&p);
+    static const enum texture_mapping mappings[] = {MAPPING_SPHERE, MAPPING_BALL, MAPPING_BALL_CLASSIC};
+    for (int k = 0; k < 3; k++)
+        for (int step = 0; step < 6; step++) {
+            double angle = 0.4 + step;
+            struct vec3 n = vec3_normalize(vec3_make(cos(angle), 0.3, sin(angle)));
+            struct vec3 right = vec3_cross(vec3_negate(n), vec3_make(0, 1, 0)); /* of the viewer, who looks along -n */
+            struct hit here = ball_hit(n), beside = ball_hit(vec3_normalize(vec3_add_scaled(n, right, 1e-3)));
+            here.pattern_point = here.pattern_normal, beside.pattern_point = beside.pattern_normal;
+            here.dpdu = vec3_scale(right, -1); /* of the classic mapping: u runs to the left */
+            for (int outside = 0; outside < 2; outside++) {
+                struct texture_image image = {.image = p.image, .mapping = mappings[k], .outside = outside};
+                struct texcoord at, next;
+                CHECK(texture_coordinates(&image, &here, &at) && texture_coordinates(&image, &beside, &next));
+                CHECK((next.u > at.u) == outside);
+                CHECK(mappings[k] == MAPPING_SPHERE || (vec3_dot(at.dpdu, right) > 0) == outside);
+                CHECK(at.v == next.v || fabs(at.v - next.v) < 1e-5);
+            }
+        }
+    palette_destroy(&p);
+}
+
 /* Images with other mappings below each kind of texture are found in every branch of the tree. */
 TEST(a_copy_for_a_layout_changes_every_image_and_shares_what_its_tree_shares) {
     struct palette p;
