@@ -54,7 +54,22 @@ static int poll_time(const struct supervisor *supervisor) {
         return 4;
     if (supervisor->deadline > 0)
         return 5;
-    return supervisor->output.current.open || supervisor->watch.open ? 50 : supervisor_script_patience(supervisor);
+    if (supervisor->output.current.open || supervisor->watch.open)
+        return 50;
+    int patience = supervisor_script_patience(supervisor);
+    bool reports = supervisor->script.runs && supervisor->output.progress.mode == PROGRESS_BAR;
+    return reports && (patience < 0 || patience > 500) ? 500 : patience;
+}
+
+/* A sign of life while a script computes. */
+static void report_script(struct supervisor *supervisor) {
+    const struct options *options = supervisor->options;
+    char line[4096 + 128];
+    bool runs = supervisor->script.runs && supervisor->next_script < options->script_count && !supervisor->window &&
+                !supervisor->output.current.open;
+    const char *script = runs ? options->scripts[supervisor->next_script] : "";
+    if (progress_script_line(&supervisor->output.progress, script, runs, line, sizeof line))
+        output_report(&supervisor->output, LINE_NOTICE, line);
 }
 
 static bool files_changed(struct supervisor *supervisor) {
@@ -86,6 +101,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         if (supervisor->deadline > 0 && progress_clock() > supervisor->deadline)
             break;
         output_show_progress(&supervisor->output);
+        report_script(supervisor);
         show_notes(supervisor);
         supervisor_step_window(supervisor);
         if (files_changed(supervisor))

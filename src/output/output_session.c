@@ -283,6 +283,12 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     }
     if (!output->plays && !check_files(output, picture, error))
         return false;
+    if (!request->in_window && picture_files_is_own(&output->files, written)) {
+        char notice[NAME_LIMIT + 128];
+        (void)snprintf(notice, sizeof notice,
+                       "gray: notice: %s replaces the picture of this name that was rendered before", written);
+        output_report(output, LINE_NOTICE, notice);
+    }
     describe_tiles(output, picture);
     if (!prepare_film(output, written, already, error))
         return false;

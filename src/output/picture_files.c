@@ -85,6 +85,12 @@ void picture_files_own(struct picture_files *files, const char *name) {
         (void)file_set_add(&files->guard.own[FILE_ROLE_PICTURE], identity);
 }
 
+bool picture_files_is_own(const struct picture_files *files, const char *name) {
+    struct file_identity identity;
+    return file_is_regular(name) && file_identity_of(name, &identity) &&
+           file_set_has(&files->guard.own[FILE_ROLE_PICTURE], identity);
+}
+
 /* Names. */
 
 static const char *last_part(const char *name) {

@@ -37,6 +37,8 @@ void picture_files_destroy(struct picture_files *files);
 void picture_files_keep(struct picture_files *files, struct file_identity identity, bool written);
 /* A picture that an earlier run wrote and this one does not change: treated as written by this run. */
 void picture_files_own(struct picture_files *files, const char *name);
+/* Whether the file is a picture that this run wrote before. */
+bool picture_files_is_own(const struct picture_files *files, const char *name);
 
 /* What a picture is called by: the name that the script wrote, and its number, from 1, of a frame that of the frame. */
 struct picture_label {

@@ -219,6 +219,25 @@ void progress_update(struct progress *progress, uint32_t done, uint32_t count,
         print_json(progress, count > 0 ? "render" : "build", &state);
 }
 
+bool progress_script_line(struct progress *progress, const char *script, bool runs, char *line, size_t size) {
+    double now = progress_clock();
+    char elapsed[48];
+    if (!runs || progress->mode != PROGRESS_BAR) {
+        progress->script_since = 0;
+        return false;
+    }
+    if (progress->script_since == 0) {
+        progress->script_since = now;
+        progress->script_next = 2;
+    }
+    if (now - progress->script_since < progress->script_next)
+        return false;
+    text_duration(progress->script_next, elapsed, sizeof elapsed);
+    (void)snprintf(line, size, "gray: notice: %s still computes after %s (Ctrl-C ends it)", script, elapsed);
+    progress->script_next *= 2;
+    return true;
+}
+
 void progress_end(struct progress *progress, enum progress_end how) {
     if (!progress->name)
         return;

@@ -24,6 +24,8 @@ struct progress {
     double share;        /* the reported share; it never decreases */
     int columns;         /* columns of the bar on the screen; 0: no bar */
     bool elsewhere;      /* a window shows it; standard error has only the begin and the end of JSON */
+    double script_since; /* when the script began to run between pictures; 0: it does not */
+    double script_next;  /* after how many seconds its next line is due */
 };
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
@@ -46,5 +48,8 @@ bool progress_wants_estimate(const struct progress *progress);
 /* Erases the bar, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);
+/* `runs`: the script computes, and no picture is made. On a terminal its line is due after 2 seconds, and again
+ * whenever the time has doubled. Lines, no bar: the script may print at any time. False: no line is due. */
+bool progress_script_line(struct progress *progress, const char *script, bool runs, char *line, size_t size);
 
 #endif

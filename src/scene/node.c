@@ -28,19 +28,18 @@ static size_t node_size(enum node_kind kind) {
     return sizeof(struct node);
 }
 
-/* A copy of the name, shared with the node before that had the same. */
-static const char *keep_name(struct scene *scene, const char *name) {
-    size_t length = strlen(name);
-    const char **slot = &scene->names[hash_bytes(name, length, 0) % SCENE_NAMES];
-    if (!*slot || strcmp(*slot, name) != 0)
-        *slot = arena_copy_text(&scene->arena, name, length);
+const char *scene_keep_text(struct scene *scene, const char *text) {
+    size_t length = strlen(text);
+    const char **slot = &scene->names[hash_bytes(text, length, 0) % SCENE_NAMES];
+    if (!*slot || strcmp(*slot, text) != 0)
+        *slot = arena_copy_text(&scene->arena, text, length);
     return *slot;
 }
 
 struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error) {
     struct node *node = arena_alloc(&scene->arena, node_size(kind));
     if (node)
-        node->name = keep_name(scene, name);
+        node->name = scene_keep_text(scene, name);
     if (!node || !node->name) {
         error_no_memory(error, "a node");
         return NULL;
@@ -49,6 +48,10 @@ struct node *scene_node(struct scene *scene, enum node_kind kind, const char *na
     node->serial = scene->node_count++;
     node->index = scene->node_total++;
     node->parent_from_node = transform_identity();
+    if (kind == NODE_GEOMETRY) {
+        node->file = scene->file;
+        node->line = scene->line;
+    }
     return node;
 }
 

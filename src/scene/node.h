@@ -94,8 +94,10 @@ struct node {
     const struct texture_image *texture; /* set_texture: over kd of the material; the mapping is that of the shape */
     const struct bump *bump;             /* set_bump, likewise */
     enum node_csg operation;             /* NODE_CSG */
-    struct node *const *operands;
     uint32_t operand_count;
+    struct node *const *operands;
+    const char *file; /* the scene's file and line when the node was made; line 0: unknown */
+    uint32_t line;
 };
 
 /* The store of assets: outlives scripts and renders. */
@@ -167,10 +169,14 @@ struct scene {
     struct own_material *own;
     struct material *last_material; /* they are linked from the newest to the oldest */
     enum transform_order order;
+    const char *file; /* of the script: nodes that are made get them; line 0: unknown */
+    uint32_t line;
 };
 void scene_init(struct scene *scene, struct assets *assets);
 void scene_destroy(struct scene *scene);
 
+/* A copy of the text in the scene's arena, shared with the last equal one; NULL without memory. */
+const char *scene_keep_text(struct scene *scene, const char *text);
 struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error);
 bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error);
 /* Whether `part` is the node or below it. It stops after `budget` steps (at most a thousand, since it recurses), with

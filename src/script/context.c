@@ -3,8 +3,11 @@
  */
 #include "script/context_internal.h"
 
+#include "base/hash.h"
+
 #include <assert.h>
 #include <lauxlib.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,17 +16,50 @@ struct script_context *context_of(lua_State *L) {
     return *(struct script_context **)lua_getextraspace(L);
 }
 
+/* The nearest Lua function on the stack with a known line. */
+static bool find_frame(lua_State *L, lua_Debug *frame) {
+    for (int level = 0; lua_getstack(L, level, frame); level++) {
+        lua_getinfo(L, "l", frame);
+        if (frame->currentline > 0 && lua_getinfo(L, "S", frame))
+            return true;
+    }
+    return false;
+}
+
+static const char *frame_file(const lua_Debug *frame) {
+    return frame->source[0] == '@' ? frame->source + 1 : frame->short_src;
+}
+
 void context_where(const struct script_context *context, char *out, size_t size) {
     lua_Debug frame;
-    for (int level = 0; lua_getstack(context->lua, level, &frame); level++) {
-        lua_getinfo(context->lua, "Sl", &frame);
-        if (frame.currentline <= 0)
-            continue;
-        const char *name = frame.source[0] == '@' ? frame.source + 1 : frame.short_src;
-        snprintf(out, size, "%s:%d: ", name, frame.currentline);
+    if (find_frame(context->lua, &frame))
+        snprintf(out, size, "%s:%d: ", frame_file(&frame), frame.currentline);
+    else
+        snprintf(out, size, "%s: ", context->path);
+}
+
+void context_note_line(struct script_context *context) {
+    lua_Debug frame;
+    context->scene.line = 0;
+    if (!find_frame(context->lua, &frame))
         return;
+    if (frame.source != context->line_source) { /* otherwise the file is that of the node before */
+        context->line_source = frame.source;
+        context->scene.file = scene_keep_text(&context->scene, frame_file(&frame));
     }
-    snprintf(out, size, "%s: ", context->path);
+    context->scene.line = context->scene.file ? (uint32_t)frame.currentline : 0;
+}
+
+bool context_is_new_line(struct script_context *context) {
+    lua_Debug frame;
+    if (!find_frame(context->lua, &frame))
+        return true;
+    const struct script_line line = {frame.source, frame.currentline};
+    uint64_t hash = hash_bytes(&line.source, sizeof line.source, (uint64_t)line.number);
+    struct script_line *slot = &context->checked_lines[hash % CHECKED_LINES];
+    bool is_new = slot->source != line.source || slot->number != line.number;
+    *slot = line;
+    return is_new;
 }
 
 const char *function_title(const struct script_function *function, char out[96]) {
@@ -70,6 +106,16 @@ void context_warn_once(struct script_context *context, unsigned bit, const char 
     va_start(arguments, format);
     warn(context, format, arguments);
     va_end(arguments);
+}
+
+/* {200, 50, 50}: bytes, where numbers from 0 to 1 are meant. */
+void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 c) {
+    bool whole = c.x == floor(c.x) && c.y == floor(c.y) && c.z == floor(c.z);
+    double max = vec3_max_abs(c);
+    if (whole && max > 10 && max <= 255 && c.x >= 0 && c.y >= 0 && c.z >= 0)
+        context_warn_once(context, WARNED_BYTES,
+                          "%s {%g, %g, %g} looks like bytes; colours are numbers from 0 to 1, as {%.3g, %.3g, %.3g}",
+                          name, c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
 }
 
 _Noreturn static void raise_text(struct script_context *context, const char *text) {

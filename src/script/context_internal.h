@@ -71,6 +71,13 @@ struct changed_view {
 struct recorder;
 struct lenient;
 
+/* A line of a script; the source by its address in the Lua state. */
+struct script_line {
+    const char *source;
+    int number;
+};
+enum { CHECKED_LINES = 1024 };
+
 struct script_context {
     lua_State *lua; /* the thread that called last */
     struct limits limits;
@@ -92,7 +99,8 @@ struct script_context {
     uint32_t handle_count;
     const struct script_function *function; /* the one that runs */
     const char *subject;                    /* the node it is about, or NULL */
-    uint64_t checked_line;                  /* hint_check_field: a hash of its position */
+    struct script_line *checked_lines;      /* context_is_new_line: CHECKED_LINES of them, in `keep` */
+    const char *line_source;                /* context_note_line: the source that scene.file is of */
     uint8_t *warned;                        /* WARNED_ bits by row of the table */
     struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
     uint32_t change_count, change_room, added, owned;
@@ -114,7 +122,7 @@ struct script_context {
     struct error failure; /* the message of a script error, made by the message handler */
 };
 
-enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4 };
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8 };
 
 struct script_context *context_of(lua_State *L);
 
@@ -124,6 +132,12 @@ void context_where(const struct script_context *context, char *out, size_t size)
 void context_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Warns once for a function if the colour has numbers from 0 to 255. */
+void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 colour);
+/* The nodes that are made from now on have the running line. */
+void context_note_line(struct script_context *context);
+/* False if the running line was asked about before; true at times even then, since only some lines are kept. */
+bool context_is_new_line(struct script_context *context);
 /* "gr.sphere: TEXT (node 'eye')", always one line. */
 void context_compose(const struct script_context *context, const char *text, char *out, size_t size);
 /* "gr.sphere" or "node:scale". */
@@ -209,6 +223,9 @@ void files_open(lua_State *L);
 bool files_find(struct script_context *context, const char *name, char out[PATH_SIZE]);
 /* The same with the number in its name repaired, and with an error that names the folders that were searched. */
 bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error);
+/* A file that is not where a file of the scene in `folder` names it; with a notice if it is found. A model_search. */
+bool files_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
+                  struct error *error);
 /* The templates of package.path with `file` instead of the question marks: the first file that can be read. */
 bool files_on_path(const struct script_context *context, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
@@ -223,9 +240,6 @@ const char *files_unshorten(struct script_context *context, const char *message)
 /* dialect.c */
 bool dialect_add_folder(const struct script_options *options, struct path_policy *path_policy, struct error *error);
 bool dialect_find(struct script_context *context, struct error *error); /* sets context->dialect */
-/* A file that is not where a file of the scene in `folder` names it; with a notice if it is found. A model_search. */
-bool files_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
-                  struct error *error);
 void dialect_run(lua_State *L);                                         /* before the scene; may raise */
 void dialect_finish(lua_State *L);                                      /* after it */
 

@@ -141,6 +141,14 @@ static struct node *self_of(struct script_context *c, const struct script_functi
     return handle->pointer;
 }
 
+/* Whether it makes a shape that has no material yet: a warning may have to name its line. */
+static bool lacks_material(const struct script_function *function, const struct script_value *args) {
+    for (int k = 0; function->result == RESULT_NODE && k < function->parameter_count; k++)
+        if (function->parameters[k].kind == KIND_MATERIAL)
+            return !args[k].given;
+    return false;
+}
+
 static int dispatch(lua_State *L) {
     const struct script_function *function = lua_touserdata(L, lua_upvalueindex(1));
     struct script_context *c = context_of(L);
@@ -156,7 +164,7 @@ static int dispatch(lua_State *L) {
     c->function = function;
     c->subject = NULL;
     arena_reset(&c->call);
-
+    c->scene.line = 0;
     if (c->lenient)
         return lenient_call(L, c, function);
     int first = 1;
@@ -167,6 +175,8 @@ static int dispatch(lua_State *L) {
         first = 2;
     }
     (void)arguments_read(c, function, first, args); /* there are no ghosts */
+    if (lacks_material(function, args))
+        context_note_line(c);
 
     struct script_result result = {0};
     struct error error = {0};

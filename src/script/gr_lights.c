@@ -136,6 +136,13 @@ static bool keep_nodes(struct script_context *context, const struct script_value
     return kept != NULL;
 }
 
+/* Lights that fade with distance and those that emit may have large numbers, and the sun may have some. */
+static void warn_of_bytes(struct script_context *context, const struct light *light, struct vec3 colour) {
+    bool fades = light->attenuation != ATTENUATION_COEFFICIENTS || light->falloff[1] != 0 || light->falloff[2] != 0;
+    if (!fades && !light->emissive && vec3_max_abs(colour) >= 100)
+        context_warn_of_bytes(context, "colour", colour);
+}
+
 /* Sets what every light has, and copies the light to the arena of the scene. */
 static bool give_light(struct script_context *context, const struct light *light, const struct script_value *args,
                        struct script_result *result, struct error *error) {
@@ -145,6 +152,7 @@ static bool give_light(struct script_context *context, const struct light *light
         return error_no_memory(error, "a light");
     kept->light = *light;
     kept->light.colour = args[LIGHT_COLOUR].vector;
+    warn_of_bytes(context, light, kept->light.colour);
     kept->light.has_display = args[LIGHT_COLOUR].display;
     kept->light.display = kept->light.colour;
     result->pointer = kept;

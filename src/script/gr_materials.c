@@ -84,19 +84,10 @@ static struct material *phong(struct script_context *context, const struct scrip
     return with_textures(context, m, args, error) ? m : NULL;
 }
 
-/* {200, 50, 50}: bytes, where numbers from 0 to 1 are meant. */
-static void warn_of_bytes(struct script_context *context, struct vec3 c) {
-    bool whole = c.x == floor(c.x) && c.y == floor(c.y) && c.z == floor(c.z);
-    double max = vec3_max_abs(c);
-    if (whole && max > 10 && max <= 255 && c.x >= 0 && c.y >= 0 && c.z >= 0)
-        context_warn_once(context, WARNED_OTHER,
-                          "kd {%g, %g, %g} looks like bytes; colours are numbers from 0 to 1, as {%.3g, %.3g, %.3g}",
-                          c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
-}
-
 bool gr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
                  struct error *error) {
-    warn_of_bytes(context, args[PHONG_KD].vector);
+    context_warn_of_bytes(context, "kd", args[PHONG_KD].vector);
+    context_warn_of_bytes(context, "ks", args[PHONG_KS].vector);
     if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
         return error_set(error, ERROR_SCENE, "ior is missing: refraction needs an index of refraction");
     return give(result, phong(context, args, error));
@@ -182,8 +173,6 @@ static bool read_image(struct script_context *context, const struct script_value
                        const struct script_value *lookup, struct texture_image *out, struct error *error) {
     struct image *image = gr_find_image(context, value, error);
     if (!image)
-    if (lookup[LOOKUP_MAPPING].given)
-        out->outside = lookup[LOOKUP_MAPPING].choice == SPHERE_MAPPING_OUTSIDE;
         return false;
     image_defaults(out, value, image);
     out->mapping = MAPPING_BY_SHAPE;
@@ -193,6 +182,8 @@ static bool read_image(struct script_context *context, const struct script_value
         out->wrap = out->wrap_v = (enum image_wrap)lookup[LOOKUP_WRAP].choice;
     if (lookup[LOOKUP_FLIP_U].given)
         out->flip_u = lookup[LOOKUP_FLIP_U].boolean;
+    if (lookup[LOOKUP_MAPPING].given)
+        out->outside = lookup[LOOKUP_MAPPING].choice == SPHERE_MAPPING_OUTSIDE;
     if (lookup[LOOKUP_ENCODING].given) {
         out->encoding = (enum texture_encoding)lookup[LOOKUP_ENCODING].choice;
         out->gamma = lookup[LOOKUP_ENCODING].number;

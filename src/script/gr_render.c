@@ -271,6 +271,9 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
     request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
     apply_settings(args, &request.settings);
     repair_view(context, args, &request);
+    context_warn_of_bytes(context, "ambient", request.ambient);
+    if (args[RENDER_BACKGROUND].given)
+        context_warn_of_bytes(context, "background", args[RENDER_BACKGROUND].vector);
     bool linear = settings_linear(&request.settings);
     if (linear && args[RENDER_AMBIENT].display)
         request.ambient = transfer_decode_colour(srgb, request.ambient);

@@ -5,7 +5,6 @@
 #include "script/hints_internal.h"
 
 #include "base/file.h"
-#include "base/hash.h"
 #include "script/lexer_internal.h"
 
 #include <stdio.h>
@@ -124,24 +123,70 @@ static bool copy_name(const struct token *token, char name[NAME_SIZE]) {
     return true;
 }
 
+/* How many blocks are open after the word. */
+static int block_depth(const struct token *word, int depth) {
+    static const char *const begin[] = {"function", "if", "do", "repeat"}, *const end[] = {"end", "until"};
+    for (size_t i = 0; i < sizeof begin / sizeof *begin; i++)
+        if (token_is(word, TOKEN_NAME, begin[i]))
+            return depth + 1;
+    for (size_t i = 0; i < sizeof end / sizeof *end; i++)
+        if (token_is(word, TOKEN_NAME, end[i]))
+            return depth - 1;
+    return depth;
+}
+
 /* Visits the tokens of the running line, and of those after it while a bracket is open; w[1] is visited between those
- * beside it. */
+ * beside it. Functions on the line are left out, since they do not run: their names have other values. If the function
+ * that runs begins on this line, nothing is left out. */
 static bool find_token(const struct running *running,
                        bool (*visit)(const struct running *, const struct token *w, void *), void *wanted) {
     struct lexer lexer = {running->text, running->text + running->size, 1};
     struct token w[4] = {{0}};
-    int depth = 0;
+    int depth = 0, inside = 0;
+    bool is_outermost = running->at.linedefined != running->at.currentline;
     w[2] = lexer_next(&lexer);
     w[3] = lexer_next(&lexer);
     do {
         w[0] = w[1], w[1] = w[2], w[2] = w[3];
         w[3] = lexer_next(&lexer);
-        if (w[1].kind != TOKEN_END && visit(running, w, wanted))
+        if (is_outermost && (inside > 0 || token_is(&w[1], TOKEN_NAME, "function")))
+            inside = block_depth(&w[1], inside);
+        else if (w[1].kind != TOKEN_END && visit(running, w, wanted))
             return true;
         depth += token_is_symbol(&w[1], '(') || token_is_symbol(&w[1], '{');
         depth -= token_is_symbol(&w[1], ')') || token_is_symbol(&w[1], '}');
     } while (w[2].kind != TOKEN_END && (depth > 0 || w[2].line == 1));
     return false;
+}
+
+struct declared {
+    const char *name;
+    bool in_parameters, in_names; /* after `function`, up to the bracket that closes; after `local` or `for` */
+};
+
+/* A name that the line declares: a parameter, a local variable, a variable of a loop. */
+static bool visit_declared(const struct running *running, const struct token *w, void *wanted) {
+    struct declared *declared = wanted;
+    (void)running;
+    bool is_function = token_is(&w[1], TOKEN_NAME, "function");
+    if (is_function || token_is(&w[1], TOKEN_NAME, "local") || token_is(&w[1], TOKEN_NAME, "for")) {
+        declared->in_parameters = is_function;
+        declared->in_names = !is_function;
+        return false;
+    }
+    if (declared->in_parameters && token_is_symbol(&w[1], ')'))
+        declared->in_parameters = false;
+    if (declared->in_names && w[1].kind != TOKEN_NAME && !token_is_symbol(&w[1], ','))
+        declared->in_names = false;
+    if (declared->in_names && token_is(&w[1], TOKEN_NAME, "in"))
+        declared->in_names = false;
+    return (declared->in_parameters || declared->in_names) && token_is(&w[1], TOKEN_NAME, declared->name);
+}
+
+/* Where the function that runs begins on the line, names of other functions of the line may be met. */
+static bool is_declared_here(const struct running *running, const char *name) {
+    struct declared declared = {.name = name};
+    return running->at.linedefined == running->at.currentline && find_token(running, visit_declared, &declared);
 }
 
 /* A name alone: no field, and not left of an assignment. */
@@ -153,7 +198,7 @@ static bool is_variable(const struct token *w, char name[NAME_SIZE]) {
 
 static bool visit_nil(const struct running *running, const struct token *w, void *wanted) {
     char *name = wanted;
-    return is_variable(w, name) && is_nil_global(running, name);
+    return is_variable(w, name) && is_nil_global(running, name) && !is_declared_here(running, name);
 }
 
 struct field {
@@ -246,12 +291,8 @@ const char *hint_of_nil(struct script_context *c) {
 void hint_check_field(struct script_context *c, const char *name) {
     struct running running;
     struct field field = {.name = name};
-    char where[PATH_SIZE + 32];
-    context_where(c, where, sizeof where);
-    uint64_t line = hash_bytes(where, strlen(where), 1);
-    if (c->checked_line == line) /* a loop */
+    if (!context_is_new_line(c)) /* a loop */
         return;
-    c->checked_line = line;
     if (find_running(c, c->lua, &running) && find_token(&running, visit_field, &field))
         context_raise(c, "%s is missing%s", name, nil_words(c, &running, field.value));
 }

@@ -248,7 +248,8 @@ static bool prepare(struct script_context *context, struct path_policy *path_pol
         return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", context->path);
     memcpy(context->folder, context->path, length);
     context->warned = arena_alloc(&context->keep, (size_t)function_count());
-    if (!context->warned || !lenient_begin(context))
+    context->checked_lines = arena_alloc_array(&context->keep, CHECKED_LINES, sizeof *context->checked_lines);
+    if (!context->warned || !context->checked_lines || !lenient_begin(context))
         return error_no_memory(error, "the script");
     struct file_bytes bytes; /* an unreadable file is reported before anything else, in one line */
     if (!file_map(context->path, FILE_LIMIT, &bytes, error))

@@ -77,8 +77,10 @@ static bool grow(struct flattening *f) {
 static void warn_once(struct flattening *f, const struct node *node, const char *what) {
     if (!f->warn || !scene_warns(f->scene, node))
         return;
-    char text[512];
-    (void)snprintf(text, sizeof text, "warning: node '%.100s' %s", node->name, what);
+    char text[512], line[160] = "";
+    if (node->line > 0)
+        (void)snprintf(line, sizeof line, " (made at %.120s:%u)", node->file, (unsigned)node->line);
+    (void)snprintf(text, sizeof text, "warning: node '%.100s' %s%s", node->name, what, line);
     f->warn(f->warn_context, text);
 }
 

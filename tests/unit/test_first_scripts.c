@@ -1,6 +1,8 @@
 /* What newcomers meet first: defaults of positional calls, and messages about common mistakes. */
 #include "tests/harness.h"
 
+#include "output/progress.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,6 +57,74 @@ TEST(a_colour_in_bytes_is_a_warning) {
     free(result.err);
 }
 
+static void notes(const char *scene, const char *text) {
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    if (!strstr(result.err, text))
+        test_fail(__FILE__, __LINE__, "%s prints %s, not %s", scene, result.err, text);
+    free(result.out);
+    free(result.err);
+}
+
+static void notes_not(const char *scene, const char *text) {
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    if (strstr(result.err, text))
+        test_fail(__FILE__, __LINE__, "%s prints %s", scene, result.err);
+    free(result.out);
+    free(result.err);
+}
+
+TEST(colours_in_bytes_of_lights_and_pictures_are_warnings_too) {
+    notes("gr.material{kd = {1, 1, 1}, ks = {255, 255, 255}}", "gr.material: ks {255, 255, 255} looks like bytes");
+    notes("gr.light({0, 9, 0}, {255, 240, 220})", "gr.light: colour {255, 240, 220} looks like bytes");
+    notes("gr.directional_light{direction = {0, -1, 0}, colour = {200, 200, 200}}", "looks like bytes");
+    notes(RENDER(", {40, 40, 40}"), "gr.render: ambient {40, 40, 40} looks like bytes");
+    notes("gr.render{node = gr.sphere{material = gr.material{kd = {1, 1, 1}}}, file = 'x.png', width = 4, height = 4,"
+          "eye = {0, 0, 5}, background = {30, 60, 120}}",
+          "gr.render: background {30, 60, 120} looks like bytes");
+    /* Lights that fade may be strong. */
+    notes_not("gr.light{position = {0, 9, 0}, colour = {200, 200, 200}, falloff = {0, 0, 1}}"
+              "gr.light{position = {0, 9, 0}, colour = {200, 200, 200}, intensity = 2}"
+              "gr.spherical_light{position = {0, 9, 0}, radius = 1, emission = {100, 100, 100}}"
+              "gr.directional_light{direction = {0, -1, 0}, colour = {20, 19, 18}}",
+              "bytes");
+}
+
+TEST(a_warning_about_a_missing_material_names_the_line_of_the_node) {
+    notes("local s = gr.node('scene')\nlocal b = gr.sphere('ball')\ns:add_child(b)\n"
+          "gr.render(s, 'x.png', 4, 4, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
+          "node 'ball' has no material and is shown in plain gray (made at scene.lua:2)");
+    notes("function ball()\nreturn gr.sphere{}\nend\n"
+          "gr.render(ball(), 'x.png', 4, 4, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
+          "(made at scene.lua:2)");
+}
+
+TEST(a_picture_that_replaces_another_of_the_run_is_a_notice) {
+    notes(RENDER("") " " RENDER(""), "gray: notice: x.png replaces the picture of this name that was rendered before");
+    notes_not(RENDER(""), "replaces");
+    notes_not(RENDER(""), "replaces"); /* that of an earlier run */
+}
+
+TEST(a_script_that_computes_long_says_so_on_a_terminal) {
+    struct progress progress = {.mode = PROGRESS_BAR};
+    char line[200] = "";
+    CHECK(!progress_script_line(&progress, "a.lua", true, line, sizeof line));
+    progress.script_since -= 2.5; /* it began earlier */
+    CHECK(progress_script_line(&progress, "a.lua", true, line, sizeof line));
+    CHECK(strstr(line, "a.lua still computes after 2"));
+    CHECK(!progress_script_line(&progress, "a.lua", true, line, sizeof line));
+    progress.script_since -= 2;
+    CHECK(progress_script_line(&progress, "a.lua", true, line, sizeof line));
+    CHECK(strstr(line, "after 4"));
+    CHECK(!progress_script_line(&progress, "a.lua", false, line, sizeof line)); /* a picture is made */
+    CHECK(!progress_script_line(&progress, "a.lua", true, line, sizeof line));
+    struct progress in_file = {.mode = PROGRESS_LINES};
+    (void)progress_script_line(&in_file, "a.lua", true, line, sizeof line);
+    in_file.script_since -= 100;
+    CHECK(!progress_script_line(&in_file, "a.lua", true, line, sizeof line));
+}
+
 TEST(a_script_without_a_picture_says_so) {
     struct test_result result = test_gray_scene("gr.sphere('ball')", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
@@ -103,6 +173,15 @@ TEST(nil_for_a_material_names_the_variable_and_one_that_is_spelt_like_it) {
          "scene.lua:2: gr.sphere: material is missing; 'rad' is nil, did you mean 'red'?");
     says(RED "gr.sphere{\n material = zzzzz}", "gr.sphere: material is missing; 'zzzzz' is nil\n");
     says("ball = gr.sphere('b')\ngr.node('a'):add_child(bal)", "node is missing; 'bal' is nil, did you mean 'ball'?");
+}
+
+TEST(names_of_functions_on_the_same_line_are_no_hints) {
+    says("local f = function(t) return t end; gr.sphere('s'):set_material(nil)", "material is missing (node 's')");
+    says("gr.sphere('s'):set_material((function(t) return t end)(nil))", "material is missing (node 's')");
+    says("local f = function(t) return qqq end; gr.sphere('s'):set_material(zzz)", "'zzz' is nil");
+    says("local s = gr.sphere('s'); local function g(q) s:set_material(zzz) end\ng(1)", "'zzz' is nil");
+    says("local s = gr.sphere('s'); for i, t in ipairs{1} do s:set_material(nil) end",
+         "material is missing (node 's')");
 }
 
 TEST(a_material_that_may_be_nil_is_no_error) {
