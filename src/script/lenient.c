@@ -232,7 +232,7 @@ static int ghost_index(lua_State *L) {
 }
 
 /* A field of a material, a light or another handle without methods. */
-static int handle_index(lua_State *L) {
+int lenient_handle_index(lua_State *L) {
     struct script_context *c = context_of(L);
     lua_settop(L, 2);
     if (lenient_own_field(L))
@@ -321,7 +321,7 @@ void lenient_open(lua_State *L) {
         if (type == HANDLE_GHOST)
             luaL_setfuncs(L, methods, 0);
         else if (type != HANDLE_NODE) {
-            lua_pushcfunction(L, handle_index);
+            lua_pushcfunction(L, lenient_handle_index);
             lua_setfield(L, -2, "__index");
         }
         lua_pop(L, 1);
@@ -609,6 +609,53 @@ static void name_fields(struct script_context *c, const struct script_function *
     }
 }
 
+/* Whether the value at the top is meant for the parameter, whatever its field is called. */
+static bool is_meant_by_type(lua_State *L, const struct script_parameter *p) {
+    const struct handle *handle = handle_at(L, -1);
+    switch ((int)p->kind) {
+    case KIND_NODE:
+        return handle && handle->type == HANDLE_NODE;
+    case KIND_MATERIAL:
+        return handle && handle->type == HANDLE_MATERIAL;
+    case KIND_LIGHTS: {
+        if (lua_istable(L, -1)) {
+            lua_rawgeti(L, -1, 1);
+            handle = handle_at(L, -1);
+            lua_pop(L, 1);
+        }
+        return handle && handle->type == HANDLE_LIGHT;
+    }
+    case KIND_OUTPUT:
+        return lua_type(L, -1) == LUA_TSTRING && strchr(lua_tostring(L, -1), '.');
+    }
+    return false;
+}
+
+/* Fields whose names mean nothing, for parameters that have no value yet; of several the first in byte order. */
+static void name_fields_by_type(struct script_context *c, const struct script_function *function, int table,
+                                int named) {
+    lua_State *L = c->lua;
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+        const struct script_parameter *p = &function->parameters[k];
+        const char *first = NULL;
+        bool taken = lua_getfield(L, named, p->name) != LUA_TNIL;
+        lua_pop(L, 1);
+        if (taken)
+            continue;
+        for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+            if (lua_type(L, -2) != LUA_TSTRING || !is_meant_by_type(L, p))
+                continue;
+            const char *name = lua_tostring(L, -2);
+            if (!meant_field(function, name) && (!first || strcmp(name, first) < 0))
+                first = name;
+        }
+        if (!first)
+            continue;
+        lua_getfield(L, table, first);
+        lua_setfield(L, named, p->name);
+    }
+}
+
 /* Nodes after the positional arguments, or unnamed entries, for the parameter that accepts any number of nodes. */
 static void name_rest(struct script_context *c, const struct script_function *function, int first, int named) {
     lua_State *L = c->lua;
@@ -671,6 +718,7 @@ static bool forgive(struct script_context *c, const struct script_function *func
     lua_newtable(L);
     if (arguments_have_names(L, function, first, named - 1)) {
         name_fields(c, function, first, named);
+        name_fields_by_type(c, function, first, named);
         for (int k = 0; k < function->parameter_count; k++)
             wanted[k] = !(function->parameters[k].flags & OPTIONAL);
     } else {
@@ -765,6 +813,19 @@ static bool run(struct script_context *c, const struct script_function *function
     return false;
 }
 
+/* gr.sphere('head', skin): a material among the arguments that the form does not take. */
+static void take_material(struct script_context *c, const struct script_function *function, int first,
+                          struct node *node) {
+    int last = lua_gettop(c->lua);
+    if (function->result != RESULT_NODE || node->kind != NODE_GEOMETRY || node->material || node->slots)
+        return;
+    for (int i = first; i <= last && !node->material; i++) {
+        const struct handle *handle = handle_at(c->lua, i);
+        if (handle && handle->type == HANDLE_MATERIAL)
+            node->material = handle->pointer;
+    }
+}
+
 static struct node *self_of(struct script_context *c) {
     const struct handle *handle = handle_at(c->lua, 1);
     if (!handle || (handle->type != HANDLE_NODE && handle->type != HANDLE_GHOST))
@@ -793,6 +854,7 @@ int lenient_call(lua_State *L, struct script_context *c, const struct script_fun
         c->subject = node->name;
     }
     c->lenient->nothing = false;
+    context_note_line(c);
     bool read = read_all(c, function, first, args, &complete);
     if (!read)
         warn_line(c, c->raised);
@@ -816,6 +878,7 @@ int lenient_call(lua_State *L, struct script_context *c, const struct script_fun
     }
     if (!done)
         return push_lost(L, function, first);
+    take_material(c, function, first, result.pointer);
     note_result(c, function, args, &result);
     return dispatch_answer(L, function, &result);
 }

@@ -40,6 +40,8 @@ void lenient_push_ghost(lua_State *L, const char *name, bool is_method);
 void *lenient_ghost_as(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
 /* Pushes the field at index 2 of the value at index 1 if the script has set it. */
 bool lenient_own_field(lua_State *L);
+/* __index of handles without methods: fields that do not exist are ignored with a warning. */
+int lenient_handle_index(lua_State *L);
 /* Pushes the original function of gr, even if the script has replaced it. */
 void lenient_push_function(lua_State *L, const char *name);
 

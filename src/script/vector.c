@@ -1,6 +1,7 @@
 /* Vectors, and the functions of gr that take numbers, vectors and symbols alike: what a pattern is written with. A
  * vector is a table {x, y, z} with a metatable, so it is also a colour or a point wherever gr takes one. A function on
  * symbols does the operations of the same function on numbers in the same order, so that their bits are equal. */
+#include "script/lenient_internal.h"
 #include "script/record_internal.h"
 
 #include "math/noise.h"
@@ -604,6 +605,8 @@ static int texture_index(lua_State *L) {
         lua_pushcfunction(L, image_at);
         return 1;
     }
+    if (context_of(L)->lenient)
+        return lenient_handle_index(L);
     return luaL_error(L, "a texture has no field '%s'; img:at(u, v) reads a picture", luaL_tolstring(L, 2, NULL));
 }
 

@@ -302,6 +302,9 @@ local x = 1 + {}
 return root
 for i = 1, 'x' do end
 assert(io.open('nowhere.txt'))
+local t = gr.texture('nowhere.png') t:rotate(3) t.scale = 2 gr.render(root, 'NAME.png', 16, 16, {0, 0, 6})
+gr.render{world = root, filename = 'NAME.png', width = 16, height = 16, camera = {0, 0, 6}, lamps = {lamp}}
+root:add_child(gr.sphere('head', red)) gr.render(root, 'NAME.png', 16, 16, {0, 0, 6})
 """.strip().split("\n")
 
 count = 0

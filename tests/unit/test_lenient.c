@@ -142,6 +142,7 @@ TEST(arguments_in_another_order_mean_the_same_under_lenient) {
         {"gr.cube('c'):rotate('y', 30):scale(2, 2, 2)", "gr.cube('c'):rotate(30, 'y'):scale(2)"},
         {"gr.cube('c'):translate(1, 0, 0)", "gr.cube('c'):translate({1}):set_glow(3)"},
         {"gr.node('n')", "gr.nh_sphere('s', {0, 0, 0}, -1)"},
+        {"gr.sphere(gr.material({1, 0, 0}))", "gr.sphere('s', gr.material({1, 0, 0}))"},
         {"gr.node('n'):add_child(gr.cube('c'))", "gr.unknown('n', 3, {gr.cube('c')}):spin(3)"},
     };
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
@@ -165,4 +166,28 @@ TEST(arguments_in_another_order_mean_the_same_under_lenient) {
         free(bytes[0]);
         free(bytes[1]);
     }
+}
+
+TEST(fields_of_other_names_are_taken_by_their_type_under_lenient) {
+    static const char *const calls[] = {"gr.render{node = ball, file = 'x.png', lights = {lamp}",
+                                        "gr.render{world = ball, filename = 'x.png', lamps = {lamp}"};
+    size_t sizes[2] = {0, 0};
+    char *bytes[2];
+    for (int k = 0; k < 2; k++) {
+        char scene[600];
+        (void)snprintf(scene, sizeof scene,
+                       "local ball = gr.sphere{material = gr.material{kd = {1, 0, 0}}}\n"
+                       "local lamp = gr.light({3, 5, 8}, {1, 1, 1}, {1, 0, 0})\n"
+                       "%s, width = 8, height = 8, eye = {0, 0, 5}}",
+                       calls[k]);
+        struct test_result result = test_gray_scene(scene, "-q --lenient scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 0);
+        free(result.out);
+        free(result.err);
+        bytes[k] = test_read_file(in("x.png"), &sizes[k]);
+        CHECK(bytes[k] && remove(in("x.png")) == 0);
+    }
+    CHECK(bytes[0] && bytes[1] && sizes[0] == sizes[1] && memcmp(bytes[0], bytes[1], sizes[0]) == 0);
+    free(bytes[0]);
+    free(bytes[1]);
 }
