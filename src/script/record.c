@@ -18,6 +18,12 @@
 
 enum { RECORD_POINTS = 1000 };
 
+/* t[x] of a symbol is nil. */
+#define TABLE_HINT "; a table cannot be indexed by a number of the recorded function, gr.lookup(t, i) can"
+#define FOR_HINT                                                                                                       \
+    "; the bounds of a for loop must not depend on the arguments of the function, gr.loop(n, state, f) may end "       \
+    "earlier"
+
 void record_open(lua_State *L) {
     struct script_context *context = context_of(L);
     context->recorder = arena_alloc(&context->keep, sizeof *context->recorder);
@@ -36,6 +42,7 @@ void recorder_destroy(struct recorder *recorder) {
     expr_graph_destroy(&recorder->graph);
     mem_free(recorder->decisions);
     mem_free(recorder->answers);
+    record_bounds_end(recorder);
     recorder->decisions = NULL;
     recorder->answers = NULL;
     recorder->active = recorder->busy = false;
@@ -87,6 +94,15 @@ static int add_position(lua_State *L) {
     return 1;
 }
 
+/* Replaces the sentence on top by "scene.lua:12: SENTENCE" with the line where the function begins. */
+static void name_function(lua_State *L, int function) {
+    lua_Debug where;
+    lua_pushvalue(L, function);
+    (void)lua_getinfo(L, ">S", &where);
+    lua_pushfstring(L, "%s:%d: %s", where.short_src, where.linedefined, lua_tostring(L, -1));
+    lua_replace(L, -2);
+}
+
 /* Calls the function at `function` with the values from `first` on. Pushes its first result, or the error. */
 static bool call_function(lua_State *L, int function, int first) {
     struct script_context *context = context_of(L);
@@ -102,6 +118,7 @@ static bool call_function(lua_State *L, int function, int first) {
     if (status == LUA_OK && results != 1) {
         lua_settop(L, handler - 1);
         lua_pushfstring(L, "the function returns %d values, not a number or a colour {r, g, b}", results);
+        name_function(L, function);
         return false;
     }
     lua_remove(L, handler);
@@ -110,10 +127,11 @@ static bool call_function(lua_State *L, int function, int first) {
 
 /* The count of numbers in the value on top: 1 for a number or symbol, 3 for three of them; else 0, and a sentence that
  * describes the value replaces it. */
-static bool is_result(lua_State *L, int *count) {
+static bool is_result(lua_State *L, int function, int *count) {
     int top = lua_gettop(L);
     if (is_symbol(L, top) && !context_of(L)->recorder->active) {
         lua_pushliteral(L, "a number of a recorded function is used outside of it");
+        name_function(L, function);
         lua_replace(L, top);
         return false;
     }
@@ -132,7 +150,9 @@ static bool is_result(lua_State *L, int *count) {
             return true;
     }
     const char *words = value_words(L, top);
-    lua_pushfstring(L, "the function must return a number or a colour {r, g, b}, not %s", words);
+    lua_pushfstring(L, "the function must return a number or a colour {r, g, b}, not %s%s", words,
+                    lua_isnil(L, top) ? TABLE_HINT : "");
+    name_function(L, function);
     lua_replace(L, top);
     return false;
 }
@@ -166,7 +186,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
     int top = lua_gettop(L);
     recorder->taken = 0;
     recorder->path++;
-    bool fine = call_function(L, function, first) && is_result(L, &result.count);
+    bool fine = call_function(L, function, first) && is_result(L, function, &result.count);
     if (recorder->gave_up) /* even if the function caught the error */
         fine = false;
     if (!fine) {
@@ -191,11 +211,8 @@ static struct path_result record_path(lua_State *L, int function, int first, int
 /* Raises the text at an index, which contains its position. */
 _Noreturn static void raise_text(lua_State *L, int index) {
     const char *text = lua_tostring(L, index);
-    /* t[x] of a symbol is nil */
-    bool hint = strstr(text, "a nil value (field '?')") || strstr(text, "index is");
-    lua_pushfstring(L, "%s%s", text,
-                    hint ? "; a table cannot be indexed by a number of the recorded function, gr.lookup(t, i) can"
-                         : "");
+    bool is_index = strstr(text, "a nil value (field '?')") || strstr(text, "index is");
+    lua_pushfstring(L, "%s%s", text, is_index ? TABLE_HINT : strstr(text, "bad 'for' ") ? FOR_HINT : "");
     lua_error(L);
     __builtin_unreachable();
 }
@@ -298,7 +315,7 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
         put_in_bounds(i, comparison->bounds, &inputs[EXPR_POINT_X]);
     for (int k = 0; k < EXPR_INPUT_COUNT; k++)
         lua_pushnumber(L, inputs[k]);
-    if (!call_function(L, function, top + 1) || !is_result(L, &count))
+    if (!call_function(L, function, top + 1) || !is_result(L, function, &count))
         raise_text(L, lua_gettop(L));
     expr_evaluate(comparison->program, inputs, recorded);
     int result = lua_gettop(L);
@@ -342,7 +359,7 @@ static void begin(lua_State *L) {
         recorder->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *recorder->decisions);
     if (!recorder->answers)
         recorder->answers = mem_alloc_zero(EXPR_NODES, sizeof *recorder->answers);
-    if (!recorder->decisions || !recorder->answers)
+    if (!recorder->decisions || !recorder->answers || !record_bounds_begin(recorder))
         context_raise_no_memory(context);
     memset(recorder->answers, 0, EXPR_NODES * sizeof *recorder->answers);
     recorder->serial++;

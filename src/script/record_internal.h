@@ -53,14 +53,15 @@ struct recorded_function {
  * finish. */
 struct recorder {
     struct expr_graph graph;
-    struct decision *decisions; /* of the path, RECORD_PATHS of them */
-    uint32_t *answers;          /* of each node: 2 * path + answer, where `path` has decided it; EXPR_NODES of them */
-    uint32_t depth, taken;      /* decisions of the path, and those that the call has come to */
-    uint32_t path;              /* number of the call, from 1 */
-    uint32_t serial;            /* of the recording: symbols of others are refused */
-    bool active;                /* symbols may be used */
-    bool busy;                  /* a function is recorded or compared: no other function of gr may run */
-    bool gave_up;               /* at a limit; `error` names it and the line */
+    struct decision *decisions;   /* of the path, RECORD_PATHS of them */
+    struct path_bounds *narrowed; /* record_interval.c; of each node, EXPR_NODES of them */
+    uint32_t *answers;            /* of each node: 2 * path + answer, where `path` has decided it; EXPR_NODES of them */
+    uint32_t depth, taken;        /* decisions of the path, and those that the call has come to */
+    uint32_t path;                /* number of the call, from 1 */
+    uint32_t serial;              /* of the recording: symbols of others are refused */
+    bool active;                  /* symbols may be used */
+    bool busy;                    /* a function is recorded or compared: no other function of gr may run */
+    bool gave_up;                 /* at a limit; `error` names it and the line */
     char error[RECORD_ERROR];
     const void *symbol_metatable, *vector_metatable;
     struct recorded_function *functions; /* the newest first */
@@ -108,6 +109,14 @@ int make_keys(lua_State *L); /* gr.keys */
 
 /* Compares a function with its recording at points within its bounds. Raises the error. Expects the function on top. */
 void record_compare_in_bounds(lua_State *L, const struct recorded_function *function);
+
+/* record_interval.c. False: no memory. */
+bool record_bounds_begin(struct recorder *recorder);
+void record_bounds_end(struct recorder *recorder);
+/* 1 or 0 where the condition holds for all points of the path, or for none; -1: for some, or not known. */
+int record_bounds_prove(const struct recorder *recorder, uint32_t condition);
+/* The path goes on where the condition has this answer. */
+void record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer);
 
 /* record_bounds.c */
 /* Remembers the function at an absolute index. Raises an error: no memory. */

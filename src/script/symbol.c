@@ -76,7 +76,7 @@ uint32_t record_node(lua_State *L, uint32_t node) {
     }
     record_give_up(L,
                    "the function has more than %d operations; gr.where, gr.step, gr.min and gr.max need one where "
-                   "branches need many",
+                   "branches need many, and gr.loop(n, state, f) records each of its n steps",
                    EXPR_NODES);
 }
 
@@ -166,6 +166,12 @@ bool record_decide(lua_State *L, uint32_t condition) {
     int answer = known_answer(recorder, condition);
     if (answer < 0)
         answer = implied_answer(L, condition);
+    bool is_repeated = recorder->taken < recorder->depth && recorder->decisions[recorder->taken].condition == condition;
+    if (answer < 0 && !is_repeated) {
+        answer = record_bounds_prove(recorder, condition);
+        if (answer >= 0)
+            recorder->answers[condition] = 2 * recorder->path + (uint32_t)answer;
+    }
     if (answer >= 0)
         return answer == 1;
     if (recorder->taken == RECORD_PATHS)
@@ -181,6 +187,7 @@ bool record_decide(lua_State *L, uint32_t condition) {
         record_give_up(L, "the function is not pure: called again with the same arguments it went another way");
     }
     recorder->answers[condition] = 2 * recorder->path + (decision->answer ? 1 : 0);
+    record_bounds_narrow(recorder, condition, decision->answer);
     return decision->answer;
 }
 

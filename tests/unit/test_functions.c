@@ -60,6 +60,20 @@ TEST(branches_and_loops_are_recorded_as_selections) {
          " if p.y < p.x then n = n + 2 end if p.y <= p.x then n = n + 3 end end return n end)");
 }
 
+TEST(paths_that_no_point_takes_are_dropped) {
+    runs("fn(function(p) local n = 0 for i = 1, 13 do if p.x > i then n = n + 2 ^ i end"
+         " if p.y * p.x > i then n = n - 3 ^ i end end return n end)");
+    runs("fn(function(p) for i = 1, 500 do if p:length() < i / 10 then return i end end return 0 end)");
+    runs("fn(function(p) if p.x < 1 then if p.x * 2 + 5 > 8 then error('empty') end return 1 end return 2 end)");
+    runs("fn(function(p) local x = math.sin(p.x) if x > 1.5 then while true do end end return x end)");
+    runs("fn(function(p, s) if s.normal.x + s.normal.y > 3 then while true do end end return 1 end)");
+    runs("fn(function(p) if p.y <= 3 then if p.x < p.y then if p.x > 3.5 then while true do end end end end"
+         " return 0 end)");
+    runs("fn(function(p) if p.x / p.x < 2 then return 1 elseif p.x / p.x > 1 then return 2 else return 3 end end)");
+    runs("fn(function(p) if math.floor(p.x) <= 3 then if math.floor(p.x) > 3 then while true do end end end"
+         " return 1 end)");
+}
+
 TEST(an_error_on_a_path_counts_only_where_a_point_gets) {
     runs("fn(function(p) if p.x > 1000 then error('far') end return p.x end)");
     fails("fn(function(p) if p.x > 0 then error('far') end return p.x end)", "scene.lua:1: far");
@@ -173,13 +187,29 @@ TEST(errors_of_recording_name_the_line_and_the_remedy) {
     fails("fn(function(p) for i = 1, p.x do end return 1 end)", "'for' limit");
     fails("fn(function(p) return p.x + '1' end)", "a number is needed");
     fails("local kept fn(function(p) kept = kept or p.x return 1 end) print(kept + 1)", "is used outside of it");
+    fails("local t = {1, 2} fn(\nfunction(p) return t[floor(p.x)] end)",
+          "scene.lua:2: the function must return a number or");
+    fails("local t = {1, 2} fn(function(p) return t[floor(p.x)] end)", "gr.lookup(t, i) can");
+    fails("fn(\n\nfunction(p) return 'red' end)", "scene.lua:3: the function must return");
+    fails("fn(\n\nfunction(p) return 1, 2 end)", "scene.lua:3: the function returns 2 values");
+    fails("fn(function(p) for i = 1, p.x do end return 1 end)", "gr.loop(n, state, f) may end earlier");
+    fails("fn(function(p)\n return p.w * 2 end)",
+          "scene.lua:2: attempt to perform arithmetic on a nil value (field 'w')");
+    fails("fn(function(p)\n return p.x.y end)", "scene.lua:2: attempt to index a recorded number value (field 'x')");
+    fails("fn(function(p, s, t) return t.x end)", "scene.lua:1: attempt to index a nil value (local 't')");
+    fails("fn(function(p)\n return math.sin(p) end)",
+          "scene.lua:2: bad argument #1 to 'sin' (number expected, got vector)");
+    fails(
+        "fn(function(p)\n return gr.loop(10000, p.x, p.y, p.z, function(i, a, b, c) return a*b+c, b*c+a, sin(c)+a end) "
+        "end)",
+        "scene.lua:2: the function has more than 100000 operations; gr.where, gr.step, gr.min and gr.max need one where"
+        " branches need many, and gr.loop(n, state, f) records each of its n steps");
     fails("fn(7, 8, 9) fn('x')", "");
     fails("fn(function(p) error{} end)", "the function raised a table");
 }
 
 TEST(recordings_beyond_the_limits_end_with_one_line) {
-    fails("fn(function(p) local n = 0 for i = 1, 13 do if p.x > i then n = n + 2 ^ i end"
-          " if p.y * p.x > i then n = n - 3 ^ i end end return n end)",
+    fails("fn(function(p) local n = 0 for i = 1, 13 do if gr.noise(p * i) > 0 then n = n + 2 ^ i end end return n end)",
           "the function has more than 4096 paths; gr.where(x, a, b)");
     fails("fn(function(p) local x = p.x while x > 0 do x = x - 1 end return x end)",
           "a call of the function decides more than 4096 times");

@@ -56,6 +56,10 @@ TEST(library_patterns_have_their_closed_forms_and_no_seams_at_the_lattice) {
     claims_hold("claims_patterns");
 }
 
+TEST(library_functions_and_those_of_users_are_recorded_with_the_bits_of_lua) {
+    claims_hold("claims_functions");
+}
+
 TEST(library_solids_of_functions_are_distances_or_bounds_of_them) {
     claims_hold("claims_sdf");
 }

@@ -1,0 +1,133 @@
+/* Decisions that bounds make: a condition that holds for all points of a path, or for none, is no branch. Nodes are
+ * bounded by interval arithmetic (expr/expr_interval.h) from inputs of any finite size; each decision of the path
+ * narrows the bounds of the two sides of its comparison. So `if r < 1 ... elseif r < 2` after `r < 1` has no path that
+ * no point takes. The bounds depend on the decisions of the path alone, so that every call of it comes to the same
+ * ones. */
+#include "script/record_internal.h"
+
+#include "base/mem.h"
+#include "expr/expr_interval.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Nodes that are visited for the bounds of one condition; what lies deeper is not known. */
+enum { MAX_VISITS = 200 };
+
+/* Of nodes: bounds on one path of one recording. */
+struct path_bounds {
+    struct expr_interval bounds;
+    uint32_t serial, path; /* serials begin with 1 */
+};
+
+bool record_bounds_begin(struct recorder *recorder) {
+    if (!recorder->narrowed)
+        recorder->narrowed = mem_alloc_zero(EXPR_NODES, sizeof *recorder->narrowed);
+    return recorder->narrowed != NULL;
+}
+
+void record_bounds_end(struct recorder *recorder) {
+    mem_free(recorder->narrowed);
+    recorder->narrowed = NULL;
+}
+
+static struct expr_interval unknown(enum expr_type type) {
+    switch (type) {
+    case EXPR_TYPE_F:
+        return (struct expr_interval){-(double)INFINITY, (double)INFINITY, true};
+    case EXPR_TYPE_I:
+        return (struct expr_interval){-0x1p63, 0x1p63, false};
+    case EXPR_TYPE_B:
+    case EXPR_TYPE_N:
+        break;
+    }
+    return (struct expr_interval){0, 1, false};
+}
+
+/* Unit vectors may be a little too long. */
+static struct expr_interval of_input(enum expr_input input) {
+    bool is_unit = input >= EXPR_NORMAL_X && input <= EXPR_VIEW_Z;
+    double size = is_unit ? 1.0001 : DBL_MAX;
+    return (struct expr_interval){-size, size, false};
+}
+
+static struct expr_interval of_constant(const struct expr_node *node) {
+    struct expr_interval any = unknown(node->type);
+    double i = (double)node->constant.i;
+    switch (node->type) {
+    case EXPR_TYPE_F:
+        return isnan(node->constant.f) ? any : (struct expr_interval){node->constant.f, node->constant.f, false};
+    case EXPR_TYPE_I:
+        return fabs(i) <= 0x1p53 ? (struct expr_interval){i, i, false} : any;
+    case EXPR_TYPE_B:
+        return (struct expr_interval){node->constant.i != 0, node->constant.i != 0, false};
+    case EXPR_TYPE_N:
+        break;
+    }
+    return any;
+}
+
+static struct expr_interval meet(struct expr_interval a, struct expr_interval b) {
+    struct expr_interval out = {fmax(a.low, b.low), fmin(a.high, b.high), a.may_be_nan && b.may_be_nan};
+    return out.low <= out.high ? out : a; /* nothing in common: no point comes here */
+}
+
+/* visits: how many are left. A texel has an address among its operands, which is exact as a constant. */
+static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t at, int *visits) {
+    const struct expr_node *node = &recorder->graph.nodes[at];
+    struct expr_interval operands[3] = {{0, 1, false}, {0, 1, false}, {0, 1, false}}, out;
+    if (--*visits < 0)
+        return unknown(node->type);
+    if (node->operation == EXPR_CONSTANT)
+        return of_constant(node);
+    if (node->operation == EXPR_INPUT) {
+        out = of_input((enum expr_input)node->operands[0]);
+    } else {
+        int count = expr_operand_count(node->operation);
+        for (int k = 0; k < count; k++)
+            operands[k] = bounds_of(recorder, node->operands[k], visits);
+        bool is_unread = node->operation == EXPR_TEXEL && *visits < 0;
+        out = is_unread ? unknown(node->type)
+                        : expr_interval_apply(node->operation, operands[0], operands[1], operands[2]);
+    }
+    const struct path_bounds *narrowed = &recorder->narrowed[at];
+    bool is_here = narrowed->path == recorder->path && narrowed->serial == recorder->serial;
+    return is_here ? meet(out, narrowed->bounds) : out;
+}
+
+int record_bounds_prove(const struct recorder *recorder, uint32_t condition) {
+    int visits = MAX_VISITS;
+    struct expr_interval truth = bounds_of(recorder, condition, &visits);
+    return truth.low > 0 ? 1 : truth.high > 0 ? -1 : 0;
+}
+
+static void narrow(struct recorder *recorder, uint32_t node, struct expr_interval bounds) {
+    if (recorder->graph.nodes[node].operation != EXPR_CONSTANT)
+        recorder->narrowed[node] = (struct path_bounds){bounds, recorder->serial, recorder->path};
+}
+
+/* Of a comparison of a with b. Where it does not hold, b is less, or one of them is NaN. */
+void record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer) {
+    const struct expr_node node = recorder->graph.nodes[condition];
+    bool is_order = node.operation == EXPR_LESS || node.operation == EXPR_LESS_EQUAL ||
+                    node.operation == EXPR_INTEGER_LESS || node.operation == EXPR_INTEGER_LESS_EQUAL;
+    bool is_equal = answer && (node.operation == EXPR_EQUAL || node.operation == EXPR_INTEGER_EQUAL);
+    if (!is_order && !is_equal)
+        return;
+    int visits_a = MAX_VISITS, visits_b = MAX_VISITS;
+    uint32_t less = node.operands[0], more = node.operands[1];
+    struct expr_interval a = bounds_of(recorder, less, &visits_a), b = bounds_of(recorder, more, &visits_b);
+    if (!answer && (a.may_be_nan || b.may_be_nan))
+        return;
+    if (!answer) {
+        struct expr_interval swapped = a;
+        a = b;
+        b = swapped;
+        less = node.operands[1];
+        more = node.operands[0];
+    }
+    const struct expr_interval below = {is_equal ? b.low : -(double)INFINITY, b.high, false};
+    const struct expr_interval above = {a.low, is_equal ? a.high : (double)INFINITY, false};
+    narrow(recorder, less, meet(a, below));
+    narrow(recorder, more, meet(b, above));
+}
