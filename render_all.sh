@@ -12,7 +12,8 @@ failed=""
 # The plan: lines "[title]" and "SCRIPT SECONDS". Scenes that data/gallery.txt does not name come before its last part.
 plan() {
     unlisted=""
-    for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.lua \
+    for script in data/*demo.lua data/path/*.lua data/csg/*.lua data/functions/*.lua data/animation/*.lua \
+        data/library/show_*.lua \
         data/classic/*.lua; do
         case $script in */make_*) continue ;; esac # writes models, is not a scene
         [ ! -f "$script" ] || grep -q "^$script " data/gallery.txt || unlisted="$unlisted$script 10
@@ -43,7 +44,7 @@ echo "rendering $scenes scenes takes $building$(about_time "$total") with $proce
 tools/setup.sh || exit 1
 make -s -j2 || { echo "render_all.sh: the build failed" >&2; exit 1; }
 mkdir -p "$gallery" || exit 1
-rm -f "$gallery"/*.png "$gallery"/*.txt "$gallery"/index.html
+rm -f "$gallery"/*.png "$gallery"/*.apng "$gallery"/*.txt "$gallery"/index.html
 
 # The rest of the first comment line that begins with the word.
 about() { # about SCRIPT WORD
@@ -54,7 +55,8 @@ as_html() {
     sed -e 's/&/\&amp;/g' -e 's/</\&lt;/g' -e 's/>/\&gt;/g' -e 's/"/\&quot;/g'
 }
 
-# Renders a scene into gallery/NAME-01.png ...; a single picture is called gallery/NAME.png.
+# Renders a scene into gallery/NAME-01.png ...; a single picture is called gallery/NAME.png, and an animation
+# gallery/NAME.apng.
 render() { # render SCRIPT NAME
     script=$1
     name=$2
@@ -62,11 +64,13 @@ render() { # render SCRIPT NAME
     case $name in
     10demo | 14demo) options="$options --size 1280x960 -ss 4 -al-samples 8" ;;
     esac
+    output="$gallery/$name-%02d.png"
+    case $script in data/animation/*) output="$gallery/$name.apng" ;; esac
     # shellcheck disable=SC2086
     echo "scene $number of $scenes: $script" $options
     begun=$(date +%s%N)
     # shellcheck disable=SC2086
-    timeout "$limit" ./gray $options -o "$gallery/$name-%02d.png" -- "$script" >"$gallery/$name.txt"
+    timeout "$limit" ./gray $options -o "$output" -- "$script" >"$gallery/$name.txt"
     status=$?
     ended=$(date +%s%N)
     seconds=$(awk "BEGIN { printf \"%.1f\", ($ended - $begun) / 1e9 }")
@@ -83,7 +87,7 @@ render() { # render SCRIPT NAME
 describe() { # describe SCRIPT NAME SECONDS
     title=$(about "$1" TITLE)
     title=$(printf '%s' "${title:-$2}" | as_html)
-    set -- "$1" "$2" "$3" "$gallery/$2.png" "$gallery/$2"-[0-9]*.png "$gallery"/?*"$2"-[0-9]*.png
+    set -- "$1" "$2" "$3" "$gallery/$2.png" "$gallery/$2.apng" "$gallery/$2"-[0-9]*.png "$gallery"/?*"$2"-[0-9]*.png
     script=$1
     name=$2
     taken=$3

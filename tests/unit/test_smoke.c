@@ -65,7 +65,8 @@ static void check_pictures(const char *scene, int number) {
         test_fail(__FILE__, __LINE__, "%s: no picture", scene);
 }
 
-static void smoke(const char *folder, const char *end, bool heavy) {
+/* options: more words of the command line. */
+static void smoke_with(const char *options, const char *folder, const char *end, bool heavy) {
     char root[2048], *names[SCENES];
     if (!getcwd(root, sizeof root))
         test_fail(__FILE__, __LINE__, "no working directory");
@@ -74,8 +75,9 @@ static void smoke(const char *folder, const char *end, bool heavy) {
     for (int k = 0; k < count; k++) {
         char arguments[8192];
         (void)snprintf(arguments, sizeof arguments,
-                       "-q -D quick=true --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s/%s/%s",
-                       root, k, root, folder, names[k]);
+                       "-q -D quick=true --allow-read %s --size 64x48 -ss 1 -al-samples 1 -o %d-%%02d.png %s "
+                       "%s/%s/%s",
+                       root, k, options, root, folder, names[k]);
         if (heavy == is_heavy(names[k]) && !is_maker(names[k]) && !is_module(names[k])) {
             struct test_result result = test_gray(NULL, arguments);
             if (result.status != 0)
@@ -87,6 +89,10 @@ static void smoke(const char *folder, const char *end, bool heavy) {
         }
         free(names[k]);
     }
+}
+
+static void smoke(const char *folder, const char *end, bool heavy) {
+    smoke_with("", folder, end, heavy);
 }
 
 TEST(smoke_every_demo_renders_in_small) {
@@ -142,6 +148,11 @@ TEST(smoke_scenes_of_shapes_meshes_and_bump_maps_render_in_small) {
 TEST(smoke_scenes_of_combined_solids_render_in_small) {
     smoke("data/csg", ".lua", false);
     smoke("data/functions", ".lua", false);
+}
+
+TEST(smoke_animations_and_drawn_pictures_render_in_small) {
+    smoke_with("--frames 1-25/8", "data/animation", ".lua", false);
+    smoke("data", "styles.lua", false);
 }
 
 TEST(smoke_scenes_of_light_and_air_render_in_small) {

@@ -1,0 +1,75 @@
+-- TITLE: Functions: a planet
+-- One function is the height of the ground: it displaces an icosahedron, and the colours follow it. Clouds are a shell whose
+-- opacity is another function; so are the stars, the sky.
+-- Author: gray project
+
+local function fbm(p, octaves)
+    local sum, size = 0, 1
+    for _ = 1, octaves do
+        sum = sum + gr.noise(p / size) * size
+        p, size = p + 7.3, size / 2
+    end
+    return sum
+end
+
+-- Of a direction: above 0 is land.
+local function height(d)
+    local warped = d * 1.6 + 0.35 * gr.vec(gr.noise(d * 2 + 3), gr.noise(d * 2 + 11), gr.noise(d * 2 + 19))
+    local land = fbm(warped, 6) + 0.06
+    local ridge = 1 - 2 * math.abs(gr.noise(d * 5 + 2)) - math.abs(gr.noise(d * 11 + 5))
+    return land + 0.45 * gr.clamp(land, 0, 0.5) * gr.max(ridge, 0)
+end
+
+local g = (1 + math.sqrt(5)) / 2
+local globe = gr.mesh {
+    verts = {
+        { -1, g, 0 }, { 1, g, 0 }, { -1, -g, 0 }, { 1, -g, 0 }, { 0, -1, g }, { 0, 1, g }, { 0, -1, -g }, { 0, 1, -g }, { g, 0, -1 }, { g, 0, 1 },
+        { -g, 0, -1 }, { -g, 0, 1 },
+    },
+    faces = {
+        { 0, 11, 5 }, { 0, 5, 1 }, { 0, 1, 7 }, { 0, 7, 10 }, { 0, 10, 11 }, { 1, 5, 9 }, { 5, 11, 4 }, { 11, 10, 2 }, { 10, 7, 6 }, { 7, 1, 8 },
+        { 3, 9, 4 }, { 3, 4, 2 }, { 3, 2, 6 }, { 3, 6, 8 }, { 3, 8, 9 }, { 4, 9, 5 }, { 2, 4, 11 }, { 6, 2, 10 }, { 8, 6, 7 }, { 9, 8, 1 },
+    },
+}
+globe:displace {
+    f = function(p)
+        local d = p:normalize()
+        return d * (1 + 0.06 * gr.max(height(d), 0)) - p
+    end,
+    level = quick and 4 or 7, -- -D quick=true makes a draft
+}
+
+local function ground(p)
+    local d = p:normalize()
+    local h, cold = height(d), math.abs(d.y) + 0.10 * gr.noise(d * 7)
+    local sea = gr.mix({ 0.02, 0.09, 0.22 }, { 0.07, 0.32, 0.44 }, gr.smoothstep(-0.25, 0, h))
+    local green = gr.mix({ 0.47, 0.44, 0.24 }, { 0.14, 0.32, 0.10 }, gr.smoothstep(-0.2, 0.25, gr.noise(d * 3 + 4) + 0.9 * cold - 0.2))
+    local land = gr.mix({ 0.72, 0.64, 0.44 }, green, gr.smoothstep(0.0, 0.05, h))
+    land = gr.mix(land, { 0.42, 0.36, 0.31 }, gr.smoothstep(0.22, 0.42, h))
+    land = gr.mix(land, { 0.95, 0.96, 0.98 }, gr.max(gr.smoothstep(0.45, 0.6, h), gr.smoothstep(0.78, 0.86, cold)))
+    return gr.mix(gr.mix(sea, { 0.90, 0.94, 0.97 }, gr.smoothstep(0.86, 0.92, cold)), land, gr.step(0, h))
+end
+local function shine(p) return 0.45 * gr.step(height(p:normalize()), 0) * gr.vec(1, 1, 0.95) end
+globe:set_material(gr.material { kd = ground, ks = shine, shininess = 35 })
+
+-- The far side of the shell is not seen through the near one.
+local function clouds(p, s)
+    local d = p:normalize()
+    local swirl = d * 2.2 + 0.8 * gr.vec(gr.noise(d * 1.5), gr.noise(d * 1.5 + 5), gr.noise(d * 1.5 + 9))
+    return 0.92 * gr.smoothstep(0.08, 0.62, fbm(gr.vec(swirl.x, swirl.y * 1.7, swirl.z), 6) + 0.1) * gr.step(0, s.normal:dot(s.view))
+end
+local sky = gr.sphere { radius = 1.08, material = gr.material { kd = { 0.96, 0.97, 1 }, opacity = clouds } }
+
+local function stars(d)
+    local near, _, id = gr.cells(d * 45)
+    local glow = gr.smoothstep(0.11, 0.0, near) * id ^ 4
+    return gr.vec(0.004, 0.005, 0.010) + glow * gr.mix({ 1, 0.85, 0.7 }, { 0.75, 0.85, 1 }, id)
+end
+
+local scene = gr.node 'space'
+scene:add_child(globe)
+scene:add_child(sky)
+gr.render {
+    node = scene, file = 'planet.png', width = 360, height = 270, eye = { 1.2, 0.85, 3.1 }, target = { 0.03, 0, 0 }, fov = 40, ambient = { 0.03, 0.035, 0.05 },
+    background = stars, lights = { gr.directional_light { direction = { -0.75, -0.35, -0.8 }, colour = { 1.05, 1.0, 0.92 } } },
+}
