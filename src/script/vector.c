@@ -433,10 +433,8 @@ static int loop(lua_State *L) {
             }
         }
         int first = states + 3;
-        if (is_symbol(L, first)) {
-            uint32_t goes_on = is_positive(L, first);
-            alive = alive == EXPR_NONE ? goes_on : record_operation(L, EXPR_TRUTH_SELECT, alive, goes_on, alive);
-        }
+        if (is_symbol(L, first)) /* of a point that has ended, the first state stays and is not above 0 */
+            alive = is_positive(L, first);
         bool ends = lua_type(L, first) == LUA_TNUMBER && !(lua_tonumber(L, first) > 0);
         for (int k = states; k-- > 0;)
             lua_replace(L, 2 + k);
