@@ -127,9 +127,12 @@ static bool displace_all(const struct displacing *d, const struct node *root, st
             continue;
         /* Nodes are of the script, which may change them; the traversal only reads. */
         struct node *node = (struct node *)(uintptr_t)scene_traversal_node(&t);
-        if (node->kind != NODE_GEOMETRY || done[node->index])
-            continue;
+        bool is_done = done[node->index] != 0;
         done[node->index] = 1;
+        if (is_done)
+            scene_traversal_skip(&t);
+        if (is_done || node->kind != NODE_GEOMETRY)
+            continue;
         count++;
         ok = displace_node(d, node, error);
     }

@@ -3,6 +3,7 @@
  * +-100. A function is compared before a picture is rendered, again only if its bounds have grown since. */
 #include "script/record_internal.h"
 
+#include "base/mem.h"
 #include "scene/traversal.h"
 
 #include <lauxlib.h>
@@ -97,14 +98,24 @@ static void use_node(struct script_context *context, const struct scene_traversa
         use_texture(context, node->bump->texture.authored, &bounds);
 }
 
+/* Every node once: instances may be on millions of paths. */
 static bool use_nodes(struct script_context *context, const struct node *root, struct error *error) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
-    enum scene_event event;
+    uint8_t *seen = mem_alloc_zero((size_t)context->scene.node_total + 1, sizeof *seen);
+    enum scene_event event = SCENE_NO_MEMORY;
     scene_traversal_begin(&t, root);
-    while ((event = scene_traversal_next(&t)) != SCENE_END && event != SCENE_NO_MEMORY)
-        if (event == SCENE_ENTER && scene_traversal_node(&t)->kind == NODE_GEOMETRY)
+    while (seen && (event = scene_traversal_next(&t)) != SCENE_END && event != SCENE_NO_MEMORY) {
+        const struct node *node = scene_traversal_node(&t);
+        if (event != SCENE_ENTER)
+            continue;
+        if (seen[node->index])
+            scene_traversal_skip(&t);
+        else if (node->kind == NODE_GEOMETRY)
             use_node(context, &t);
+        seen[node->index] = 1;
+    }
     scene_traversal_end(&t);
+    mem_free(seen);
     return event == SCENE_END || error_no_memory(error, "the bounds of functions");
 }
 
