@@ -283,7 +283,9 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     }
     if (!output->plays && !check_files(output, picture, error))
         return false;
-    if (!request->in_window && picture_files_is_own(&output->files, written)) {
+    /* With --watch, and after a crash in a farm, scripts make their pictures again. */
+    bool again = request->in_window || output->options->watch || output->farm;
+    if (!again && picture_files_is_own(&output->files, written)) {
         char notice[NAME_LIMIT + 128];
         (void)snprintf(notice, sizeof notice,
                        "gray: notice: %s replaces the picture of this name that was rendered before", written);

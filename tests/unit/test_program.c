@@ -913,7 +913,8 @@ TEST(names_with_line_ends_and_control_characters_cannot_speak_for_the_program) {
                         "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.err,
-               "scene.lua: warning: node 'a?gray: notice: b?[2J?2J?' has no material and is shown in plain gray\n");
+               "scene.lua: warning: node 'a?gray: notice: b?[2J?2J?' has no material and is shown in plain gray "
+               "(made at scene.lua:1)\n");
     free(result.out);
     free(result.err);
     result = test_gray_scene("gr.superellipsoid{name = 'a\\n  b\\ngray: c', e = 0}\n", "scene.lua", NULL);
