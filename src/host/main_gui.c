@@ -19,6 +19,7 @@ struct sdl {
     double unit;       /* pixels per unit of the desktop, in which SDL reports the mouse */
     double density;    /* pixels per dot of a letter */
     bool full, size_sent;
+    int given_width, given_height; /* of the window in units of the desktop, as this program has set it */
 };
 
 static void close_window(void *context) {
@@ -75,25 +76,45 @@ static bool fit_texture(SDL_Renderer *renderer, struct screen_texture *texture, 
     return texture->pixels != NULL;
 }
 
+/* A size for the window: no larger than nine tenths of the screen, and not too small to use. */
+static void choose_size(int *w, int *h) {
+    SDL_DisplayMode screen;
+    if (SDL_GetDesktopDisplayMode(0, &screen) == 0) {
+        double fit = SDL_min(0.9 * screen.w / *w, 0.9 * screen.h / *h);
+        if (fit < 1) {
+            *w = (int)(*w * fit);
+            *h = (int)(*h * fit);
+        }
+    }
+    *w = SDL_max(*w, 160);
+    *h = SDL_max(*h, 120);
+}
+
+/* The window gets the size of another picture, if it still has the size that this program has given it. */
+static void fit_window(struct sdl *sdl, uint32_t width, uint32_t height) {
+    int w = (int)width, h = (int)height, now_width, now_height;
+    SDL_GetWindowSize(sdl->window, &now_width, &now_height);
+    if (sdl->full || now_width != sdl->given_width || now_height != sdl->given_height)
+        return;
+    choose_size(&w, &h);
+    SDL_SetWindowSize(sdl->window, w, h);
+    sdl->given_width = w;
+    sdl->given_height = h;
+}
+
 static bool open_window(void *context, uint32_t width, uint32_t height, const char *title, struct error *error) {
     struct sdl *sdl = context;
-    SDL_DisplayMode screen;
     int w = (int)width, h = (int)height;
     *sdl = (struct sdl){0};
     (void)SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     (void)SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "nearest");
     if (SDL_Init(SDL_INIT_VIDEO) == 0) {
-        /* No larger than nine tenths of the screen, and not too small to use. */
-        if (SDL_GetDesktopDisplayMode(0, &screen) == 0) {
-            double fit = SDL_min(0.9 * screen.w / w, 0.9 * screen.h / h);
-            if (fit < 1) {
-                w = (int)SDL_max(1, w * fit);
-                h = (int)SDL_max(1, h * fit);
-            }
-        }
-        sdl->window = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, SDL_max(w, 160),
-                                       SDL_max(h, 120), SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
+        choose_size(&w, &h);
+        sdl->window = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, w, h,
+                                       SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
     }
+    sdl->given_width = w;
+    sdl->given_height = h;
     if (sdl->window)
         sdl->renderer = SDL_CreateRenderer(sdl->window, -1, 0);
     bool ignored;
@@ -109,6 +130,8 @@ static void show_frame(void *context, const struct window_content *frame) {
     struct sdl *sdl = context;
     SDL_Rect target = {frame->left, frame->top, frame->shown_width, frame->shown_height};
     bool other;
+    if (frame->fit_width > 0)
+        fit_window(sdl, frame->fit_width, frame->fit_height);
     bool has_picture =
         fit_texture(sdl->renderer, &sdl->picture, SDL_PIXELFORMAT_RGB24, frame->width, frame->height, &other);
     if (has_picture && (frame->picture_changed || other))

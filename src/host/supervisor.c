@@ -124,6 +124,7 @@ static void talk_to_child(struct supervisor *supervisor) {
 /* An existing child continues; without one, a new one is started. */
 static void run_children(struct supervisor *supervisor) {
     struct error error;
+    supervisor->viewer.script_began = progress_clock();
     bool there = supervisor->child > 0;
     while (supervisor->next_script < supervisor->options->script_count && !supervisor->stop) {
         supervisor->broken = false;
@@ -152,6 +153,8 @@ static bool wait_for_change(struct supervisor *supervisor) {
         output_report(&supervisor->output, LINE_NOTICE, "gray: notice: waiting for changes (Ctrl-C ends)");
     supervisor->stop = false;
     supervisor->deadline = 0;
+    if (supervisor->status != 0)
+        supervisor_open_window(supervisor); /* for the error */
     while (!supervisor->ended && !supervisor->restarts) {
         struct pollfd watched[2] = {{.fd = supervisor->watch.descriptor, .events = POLLIN},
                                     {.fd = supervisor->signals, .events = POLLIN}};

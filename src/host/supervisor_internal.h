@@ -52,17 +52,18 @@ struct supervisor {
     int signals;    /* descriptor, or -1 */
     sigset_t signals_before;
     struct standard_streams streams;
-    int status;       /* worst so far */
-    int next_script;  /* the one that runs, or comes next */
-    bool stop;        /* no further script */
-    bool broken;      /* the child did not keep to the rules of the channel */
-    bool finishing;   /* tiles under way are awaited, no others are begun */
-    double deadline;  /* when the cancelled child is killed; 0: not cancelled */
-    bool waits;       /* the child has run all scripts and waits for a change */
-    bool restarts;    /* the scripts are cancelled because they will run again */
-    double quit_at;   /* when the window was closed, or 0 */
-    bool ended;       /* by Ctrl-C, or the window was closed */
-    bool all_written; /* in a farm: only other ranks are waited for */
+    int status;         /* worst so far */
+    int next_script;    /* the one that runs, or comes next */
+    bool stop;          /* no further script */
+    bool broken;        /* the child did not keep to the rules of the channel */
+    bool finishing;     /* tiles under way are awaited, no others are begun */
+    double deadline;    /* when the cancelled child is killed; 0: not cancelled */
+    bool waits;         /* the child has run all scripts and waits for a change */
+    bool restarts;      /* the scripts are cancelled because they will run again */
+    bool early_refused; /* no window could be opened before the first picture */
+    double quit_at;     /* when the window was closed, or 0 */
+    bool ended;         /* by Ctrl-C, or the window was closed */
+    bool all_written;   /* in a farm: only other ranks are waited for */
     struct script_clock script;
     struct stall_check stall;
     struct script_retry retry;
@@ -106,6 +107,8 @@ void supervisor_take_message(struct supervisor *supervisor, const struct message
 void supervisor_send_answer(struct supervisor *supervisor, enum message_kind kind, bool ok, bool already,
                             const struct error *error, int descriptor);
 void supervisor_step_window(struct supervisor *supervisor);
+/* The window without a picture. */
+void supervisor_open_window(struct supervisor *supervisor);
 /* The scripts are ended, to run again. */
 void supervisor_restart(struct supervisor *supervisor);
 

@@ -9,6 +9,8 @@
 
 /* Seconds that a child has to give up when the window is closed, which is to be over within 50 milliseconds. */
 static const double patience_quit = 0.01;
+/* Seconds that the scripts run before the window opens without a picture. */
+static const double patience_open = 0.4;
 /* Seconds for the scripts to end before they run again; afterwards the process is started again. */
 static const double patience_again = 0.3;
 
@@ -185,7 +187,22 @@ static void write_from_window(struct supervisor *supervisor) {
     viewer_show_notice(&supervisor->viewer, line, !ok);
 }
 
+void supervisor_open_window(struct supervisor *supervisor) {
+    const struct options *options = supervisor->options;
+    const char *script =
+        options->scripts[supervisor->next_script < options->script_count ? supervisor->next_script : 0];
+    struct error ignored; /* the first picture tries it again, and reports the error */
+    if (!supervisor->window || supervisor->viewer.open || supervisor->deadline > 0 || supervisor->early_refused)
+        return;
+    supervisor->early_refused =
+        !viewer_open(&supervisor->viewer, supervisor->window, script, options->width ? (uint32_t)options->width : 640,
+                     options->height ? (uint32_t)options->height : 480, &ignored);
+}
+
 void supervisor_step_window(struct supervisor *supervisor) {
+    if (!supervisor->waits && progress_clock() - supervisor->viewer.script_began > patience_open)
+        supervisor_open_window(supervisor);
+    supervisor->viewer.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;
     int nothing = CANCEL_NOTHING;
     if (viewer->player.seeking) /* it may have changed */

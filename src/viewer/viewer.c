@@ -68,6 +68,8 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->logs_notes = before->logs_notes;
     viewer->frames = before->frames;
     viewer->sends_memory = before->sends_memory;
+    viewer->waits = before->waits;
+    viewer->script_began = before->script_began;
     viewer->display.image = before->display.image;
     viewer->display.light = before->display.light;
     viewer->display.drawn = before->display.drawn;
@@ -79,20 +81,56 @@ static void keep_window(struct viewer *viewer, const struct viewer *before) {
     viewer->large = before->large;
     viewer->large.shown = false;
     viewer->large.refused_width = 0;
-    viewer->overlay.kind = before->open ? before->overlay.kind : viewer->overlay.kind;
+    viewer->overlay.kind = before->open && before->name[0] != '\0' ? before->overlay.kind : viewer->overlay.kind;
     viewer->open = before->open;
 }
 
-static bool open_window(struct viewer *viewer, struct error *error) {
+/* Images for the size of the request. */
+static bool make_images(struct viewer *viewer, struct error *error) {
     const struct picture_request *request = &viewer->request;
     size_t pixels = (size_t)request->width * request->height;
+    mem_free(viewer->display.image);
+    mem_free(viewer->display.light);
+    mem_free(viewer->display.drawn);
     viewer->display.image = mem_alloc_zero(pixels, 3);
     viewer->display.light = mem_alloc_zero(pixels, 3 * sizeof(float));
     viewer->display.drawn = mem_alloc_zero(viewer->display.tiles, 1);
-    if (!viewer->display.image || !viewer->display.light || !viewer->display.drawn)
-        return error_no_memory(error, "the window");
-    viewer->open = viewer->driver->open(viewer->driver->context, request->width, request->height, viewer->name, error);
+    bool ok = viewer->display.image && viewer->display.light && viewer->display.drawn;
+    return ok || error_no_memory(error, "the window");
+}
+
+/* The window stays open for a picture of another size. */
+static bool fit_images(struct viewer *viewer, struct error *error) {
+    const struct window_layout layout = viewer->display.layout;
+    if (!make_images(viewer, error)) {
+        close_window(viewer);
+        return false;
+    }
+    viewer->display.fits_window = viewer->display.dirty = true;
+    if (!viewer_resize(viewer, layout.width, layout.height, layout.density))
+        viewer_show_message(viewer, "gray: out of memory for a window of this size");
+    return true;
+}
+
+static bool open_window(struct viewer *viewer, const char *title, struct error *error) {
+    if (!make_images(viewer, error))
+        return false;
+    viewer->open =
+        viewer->driver->open(viewer->driver->context, viewer->request.width, viewer->request.height, title, error);
     return viewer->open;
+}
+
+bool viewer_open(struct viewer *viewer, const struct window_driver *driver, const char *title, uint32_t width,
+                 uint32_t height, struct error *error) {
+    const struct box unknown = box_empty();
+    const struct camera camera = {.view = {0, 0, -1}, .up = {0, 1, 0}, .fov = 50};
+    viewer->driver = driver;
+    viewer->request = (struct picture_request){
+        .full_width = width, .full_height = height, .width = width, .height = height, .camera = camera};
+    (void)snprintf(viewer->request.file, sizeof viewer->request.file, "%s", title);
+    viewer->display.tiles = 1;
+    fly_camera_begin(&viewer->fly_camera, &camera, &unknown);
+    return open_window(viewer, title, error);
 }
 
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
@@ -101,8 +139,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     struct film whole = pass_film(request, picture->block, 1);
     const struct box unknown = box_empty();
     bool kept = (viewer->keep && viewer->open) || viewer_player_continues(viewer, request);
-    if (viewer->open && (viewer->request.width != request->width || viewer->request.height != request->height))
-        close_window(viewer);
+    bool resized = viewer->request.width != request->width || viewer->request.height != request->height;
     viewer_destroy_overlay(viewer);
     struct viewer before = *viewer;
     *viewer = (struct viewer){.driver = driver,
@@ -124,7 +161,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     else
         forget_work(&before);
     viewer_player_begin(viewer, &before);
-    if (!viewer->open && !open_window(viewer, error))
+    if (viewer->open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
         return false;
     memset(viewer->display.drawn, 0, viewer->display.tiles);
     return true;

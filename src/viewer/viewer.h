@@ -140,6 +140,7 @@ struct viewer_display {
     bool dirty;         /* the image was changed since it was shown */
     bool hud_dirty;     /* the drawing over it is out of date */
     double shown_at, figures_at;
+    bool fits_window; /* the window is to get the size of the picture */
 };
 
 /* The mouse. */
@@ -191,6 +192,8 @@ struct viewer {
     const struct control *control; /* or NULL; set by the caller, not owned */
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
+    bool waits;                    /* no script runs; set by the caller */
+    double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether memory is sent with a larger pass; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
     bool open;
@@ -235,6 +238,9 @@ struct viewer_picture {
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
                   double now, struct error *error);
 void viewer_end(struct viewer *viewer);
+/* Opens it before the first picture, whose size may be this one: it shows how long the script has run. */
+bool viewer_open(struct viewer *viewer, const struct window_driver *driver, const char *title, uint32_t width,
+                 uint32_t height, struct error *error);
 /* The film is removed: the last image remains visible. */
 void viewer_detach(struct viewer *viewer);
 /* The scripts will run again for the picture in the window. */

@@ -154,6 +154,7 @@ static void describe_pass(const struct viewer *viewer, struct figures *figures, 
 }
 
 static void describe_state(const struct viewer *viewer, struct figures *figures, double now) {
+    char time[48];
     uint32_t step = building_step(viewer);
     uint32_t done = viewer->block ? film_tiles_in(&viewer->pass.film, FILM_TILE_DONE) : 0;
     uint32_t count = viewer->block ? film_tile_count(&viewer->pass.film) : 0;
@@ -169,7 +170,9 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
         figures->share = 0.001 * atomic_load_explicit(&viewer->control->build_done, memory_order_relaxed);
         (void)snprintf(figures->state, sizeof figures->state, "building, step %u: %.0f %%", step, 100 * figures->share);
     } else if (!viewer->block) {
-        (void)snprintf(figures->state, sizeof figures->state, "waiting for a change");
+        text_duration(viewer->script_began > 0 ? now - viewer->script_began : 0, time, sizeof time);
+        (void)snprintf(figures->state, sizeof figures->state,
+                       viewer->waits ? "waiting for a change" : "the script runs, %s", time);
     } else if (viewer->pass.report.threads == 0 && done == 0) {
         (void)snprintf(figures->state, sizeof figures->state, "building");
     } else if (viewer->pass.result == RESULT_COMPLETE) {
@@ -259,7 +262,12 @@ void viewer_show(struct viewer *viewer, double now) {
                                    .window_width = (uint32_t)layout->width,
                                    .window_height = (uint32_t)layout->height,
                                    .overlay_changed = over};
+    if (viewer->display.fits_window) {
+        frame.fit_width = viewer->request.width;
+        frame.fit_height = viewer->request.height;
+    }
     driver->show(driver->context, &frame);
+    viewer->display.fits_window = false;
     /* The picture on the screen now, even a coarse one, shows the new world. */
     if (viewer->built > 0 && viewer->pass.report.threads > 0) {
         (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: on the screen %.1f ms after its world was built",

@@ -61,6 +61,8 @@ static void draw_menu(struct viewer *viewer) {
     viewer->quit = viewer->quit || used[MENU_QUIT];
     if (used[MENU_STOP])
         viewer_halt(viewer, !viewer->pass.halted);
+    if (viewer->name[0] == '\0') /* no picture yet */
+        used[MENU_SAVE_PICTURE] = used[MENU_SAVE_CHANGES] = false;
     if (used[MENU_SAVE_PICTURE])
         viewer->action = VIEWER_SAVE_IMAGE;
     else if (used[MENU_SAVE_VIEW] && viewer->block)

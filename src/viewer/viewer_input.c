@@ -117,10 +117,9 @@ static bool handle_plain_key(struct viewer *viewer, int key) {
         viewer->quit = true;
         return true;
     case 's':
-        viewer->action = VIEWER_SAVE_IMAGE;
-        return true;
     case 'c':
-        viewer->action = VIEWER_SAVE_EDITS;
+        if (viewer->name[0] != '\0') /* there was a picture */
+            viewer->action = key == 's' ? VIEWER_SAVE_IMAGE : VIEWER_SAVE_EDITS;
         return true;
     case '+':
     case '=':

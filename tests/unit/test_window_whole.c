@@ -335,3 +335,20 @@ TEST(window_larger_than_the_picture_shows_it_with_the_pixels_of_the_window) {
     free(result.out);
     free(result.err);
 }
+
+TEST(window_opens_while_the_script_runs_and_ends_it) {
+    const struct deed quits[] = {{"scene.lua  640x480  the script runs", KEY('s'), 0}, {"runs", KEY('q'), 0}};
+    const struct deed waits[] = {{"the script runs", KEY('b'), 0}, {"64x48  ready", KEY('q'), 0}};
+    CHECK_EQ_INT(viewer_that(quits, &(struct setting){.scene = "while true do end\n"}, NULL), 130);
+    const struct setting slow = {.scene =
+                                     "local t = os.clock()\nwhile os.clock() - t < 0.9 do end\n" ANIMATION("0.5", "f")};
+    CHECK_EQ_INT(viewer_that(waits, &slow, NULL), 0);
+}
+
+TEST(window_that_watches_opens_for_an_error_before_the_first_picture) {
+    const struct deed deeds[] = {{"scene.lua:1", {.kind = WINDOW_LEAVE}, 0}, {"64x48  ready", KEY('q'), 0}};
+    const struct setting setting = {
+        .scene = "gr.no_such_thing()\n", .option = "--watch", .other_scene = ANIMATION("0.5", "f")};
+    CHECK(freopen("/dev/null", "w", stderr) != NULL);
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+}
