@@ -31,10 +31,17 @@ struct lenient {
 
 /* lenient.c */
 bool lenient_begin(struct script_context *context); /* false without memory */
-void lenient_open(lua_State *L);                    /* after dispatch_open */
 /* The call of a function of gr: never an error of the scene. */
 int lenient_call(lua_State *L, struct script_context *context, const struct script_function *function);
 void lenient_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Pushes the original function of gr, even if the script has replaced it. */
+void lenient_push_function(lua_State *L, const char *name);
+
+/* A node that the script has made. */
+void lenient_note_node(struct script_context *context, struct node *node);
+
+/* lenient_handles.c */
+void lenient_open(lua_State *L); /* after dispatch_open */
 void lenient_push_ghost(lua_State *L, const char *name, bool is_method);
 /* The node of the ghost, or NULL; if `make` is set, a missing node is created. */
 void *lenient_ghost_as(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
@@ -42,8 +49,8 @@ void *lenient_ghost_as(struct script_context *context, const struct handle *ghos
 bool lenient_own_field(lua_State *L);
 /* __index of handles without methods: fields that do not exist are ignored with a warning. */
 int lenient_handle_index(lua_State *L);
-/* Pushes the original function of gr, even if the script has replaced it. */
-void lenient_push_function(lua_State *L, const char *name);
+/* Adds the arguments `first` to `last`, and the entries of tables among them, to the ghost at stack index `at`. */
+void lenient_ghost_take(struct script_context *context, int at, int first, int last);
 
 /* lenient_values.c: pushes the value at `index` in the form that the parameter wants, or nil. */
 void lenient_convert(struct script_context *context, int index, const struct script_function *function,

@@ -1,0 +1,242 @@
+/* Handles with --lenient. A ghost is the result of a function that does not exist: it accepts every call, index and
+ * operator. Other handles ignore fields and operators that they do not have, with a warning; fields that a script sets
+ * are kept in a table of their own. */
+#include "script/lenient_internal.h"
+
+#include <assert.h>
+#include <lauxlib.h>
+#include <string.h>
+
+static struct ghost *ghost_of(const struct handle *handle) {
+    return handle && handle->type == HANDLE_GHOST ? handle->pointer : NULL;
+}
+
+void lenient_push_ghost(lua_State *L, const char *name, bool is_method) {
+    struct script_context *c = context_of(L);
+    struct ghost *ghost = arena_alloc(&c->keep, sizeof *ghost);
+    const char *copy = ghost ? arena_copy_text(&c->keep, name, strlen(name)) : NULL;
+    if (!copy) {
+        struct error error;
+        error_no_memory(&error, "the script");
+        context_raise_error(c, &error);
+    }
+    *ghost = (struct ghost){.name = copy, .is_method = is_method};
+    handle_push(L, HANDLE_GHOST, ghost);
+}
+
+void *lenient_ghost_as(struct script_context *c, const struct handle *handle, enum handle_type type, bool make) {
+    struct ghost *ghost = ghost_of(handle);
+    struct error error;
+    assert(ghost);
+    if (type == HANDLE_MATERIAL)
+        return (void *)(uintptr_t)ghost->material;
+    if (type != HANDLE_NODE)
+        return NULL;
+    if (!ghost->node && make) {
+        ghost->node = scene_node(&c->scene, NODE_GROUP, ghost->name, &error);
+        if (!ghost->node)
+            context_raise_error(c, &error);
+        lenient_note_node(c, ghost->node);
+    }
+    return ghost->node;
+}
+
+/* Adds the node at `index`, if it is one, to the ghost at `at` as a child. */
+static void ghost_take(struct script_context *c, int at, int index) {
+    const struct handle *given = handle_at(c->lua, index), *holder = handle_at(c->lua, at);
+    struct ghost *ghost = ghost_of(holder);
+    struct error ignored = {0};
+    void *node = NULL;
+    if (!given || given == holder)
+        return;
+    if (given->type == HANDLE_NODE)
+        node = given->pointer;
+    else if (given->type == HANDLE_GHOST)
+        node = lenient_ghost_as(c, given, HANDLE_NODE, false);
+    if (node)
+        (void)node_add_child(&c->scene, lenient_ghost_as(c, holder, HANDLE_NODE, true), node, &ignored);
+    if (given->type == HANDLE_MATERIAL && !ghost->material)
+        ghost->material = given->pointer;
+    if (given->type == HANDLE_GHOST && !ghost->material)
+        ghost->material = lenient_ghost_as(c, given, HANDLE_MATERIAL, false);
+}
+
+void lenient_ghost_take(struct script_context *c, int at, int first, int last) {
+    lua_State *L = c->lua;
+    for (int i = first; i <= last; i++) {
+        ghost_take(c, at, i);
+        if (!lua_istable(L, i))
+            continue;
+        lua_Integer length = (lua_Integer)lua_rawlen(L, i);
+        for (lua_Integer k = 1; k <= length && k <= 100000; k++) {
+            lua_rawgeti(L, i, k);
+            ghost_take(c, at, lua_gettop(L));
+            lua_pop(L, 1);
+        }
+    }
+}
+
+/* gr.shiny_material({1, 0, 0}, ...) has a colour: the result is a plain material of that colour. */
+static void ghost_take_colour(struct script_context *c, struct ghost *ghost, int first, int last) {
+    lua_State *L = c->lua;
+    if (ghost->material || !(strstr(ghost->name, "aterial") || strstr(ghost->name, "MATERIAL")))
+        return;
+    for (int i = first; i <= last && !ghost->material; i++) {
+        bool is_colour = lua_istable(L, i) && lua_rawlen(L, i) == 3 && lua_rawgeti(L, i, 1) == LUA_TNUMBER;
+        if (is_colour) {
+            lenient_push_function(L, "material");
+            lua_createtable(L, 0, 1);
+            lua_pushvalue(L, i);
+            lua_setfield(L, -2, "kd");
+            lua_call(L, 1, 1);
+            const struct handle *made = handle_at(L, -1);
+            ghost->material = made && made->type == HANDLE_MATERIAL ? made->pointer : NULL;
+        }
+        lua_settop(L, last + 1); /* the ghost of the result */
+    }
+}
+
+/* A call of the ghost at index 1. A method returns the object before the colon. */
+static int ghost_call(lua_State *L) {
+    struct script_context *c = context_of(L);
+    const struct handle *handle = handle_at(L, 1);
+    const struct ghost *ghost = ghost_of(handle);
+    int last = lua_gettop(L);
+    c->lua = L;
+    c->function = NULL;
+    c->subject = NULL;
+    assert(ghost);
+    if (ghost->is_method && last >= 2 && handle_at(L, 2)) {
+        if (ghost_of(handle_at(L, 2)))
+            lenient_ghost_take(c, 2, 3, last);
+        lua_pushvalue(L, 2);
+        return 1;
+    }
+    luaL_checkstack(L, 20, NULL);
+    lenient_push_ghost(L, ghost->name, false);
+    lenient_ghost_take(c, last + 1, 2, last);
+    ghost_take_colour(c, ghost_of(handle_at(L, last + 1)), 2, last);
+    return 1;
+}
+
+/* Fields of ghosts and handles that the script has set: the table is in the registry under this address. */
+static const char fields = 0;
+
+/* Pushes the field at index 2 of the value at index 1 if the script has set it. */
+bool lenient_own_field(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &fields);
+    lua_pushvalue(L, 1);
+    bool has = lua_rawget(L, -2) == LUA_TTABLE;
+    if (has) {
+        lua_pushvalue(L, 2);
+        has = lua_rawget(L, -2) != LUA_TNIL;
+    }
+    return has;
+}
+
+static int ghost_index(lua_State *L) {
+    lua_settop(L, 2);
+    if (lenient_own_field(L))
+        return 1;
+    if (lua_type(L, 2) == LUA_TNUMBER) /* a loop over its entries ends */
+        return 0;
+    lenient_push_ghost(L, lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "ghost", true);
+    return 1;
+}
+
+/* A field of a material, a light or another handle without methods. */
+int lenient_handle_index(lua_State *L) {
+    struct script_context *c = context_of(L);
+    lua_settop(L, 2);
+    if (lenient_own_field(L))
+        return 1;
+    c->lua = L;
+    c->function = NULL;
+    c->subject = NULL;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return 0;
+    const struct handle *handle = handle_at(L, 1);
+    lenient_warn(c, "%s has no field '%.100s', which is ignored", handle_words(handle->type), lua_tostring(L, 2));
+    lenient_push_ghost(L, lua_tostring(L, 2), true);
+    return 1;
+}
+
+static int handle_newindex(lua_State *L) {
+    struct script_context *c = context_of(L);
+    const struct handle *handle = handle_at(L, 1);
+    lua_settop(L, 3);
+    c->lua = L;
+    c->function = NULL;
+    c->subject = NULL;
+    if (lua_isnil(L, 2))
+        return 0;
+    if (handle->type != HANDLE_GHOST)
+        lenient_warn(c, "%s has no field '%.100s', which is ignored", handle_words(handle->type),
+                     lua_isstring(L, 2) ? luaL_tolstring(L, 2, NULL) : "?");
+    lua_settop(L, 3);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &fields);
+    lua_pushvalue(L, 1);
+    if (lua_rawget(L, 4) != LUA_TTABLE) {
+        lua_settop(L, 4);
+        lua_newtable(L);
+        lua_pushvalue(L, 1);
+        lua_pushvalue(L, 5);
+        lua_rawset(L, 4);
+    }
+    lua_pushvalue(L, 2);
+    lua_pushvalue(L, 3);
+    lua_rawset(L, 5);
+    return 0;
+}
+
+/* Arithmetic with a ghost is a ghost; comparisons are false, its length is 0. */
+static int ghost_arithmetic(lua_State *L) {
+    lenient_push_ghost(L, "ghost", false);
+    return 1;
+}
+
+static int ghost_comparison(lua_State *L) {
+    lua_pushboolean(L, 0);
+    return 1;
+}
+
+static int ghost_length(lua_State *L) {
+    lua_pushinteger(L, 0);
+    return 1;
+}
+
+static int ghost_concat(lua_State *L) {
+    luaL_tolstring(L, 1, NULL);
+    luaL_tolstring(L, 2, NULL);
+    lua_concat(L, 2);
+    return 1;
+}
+
+void lenient_open(lua_State *L) {
+    static const luaL_Reg methods[] = {
+        {"__call", ghost_call},          {"__index", ghost_index},
+        {"__newindex", handle_newindex}, {"__add", ghost_arithmetic},
+        {"__sub", ghost_arithmetic},     {"__mul", ghost_arithmetic},
+        {"__div", ghost_arithmetic},     {"__mod", ghost_arithmetic},
+        {"__pow", ghost_arithmetic},     {"__unm", ghost_arithmetic},
+        {"__idiv", ghost_arithmetic},    {"__lt", ghost_comparison},
+        {"__le", ghost_comparison},      {"__len", ghost_length},
+        {"__concat", ghost_concat},      {NULL, NULL},
+    };
+    if (!context_of(L)->lenient)
+        return;
+    lua_newtable(L);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &fields);
+    for (int type = 0; type < HANDLE_TYPES; type++) {
+        lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key((enum handle_type)type));
+        lua_pushcfunction(L, handle_newindex);
+        lua_setfield(L, -2, "__newindex");
+        if (type == HANDLE_GHOST)
+            luaL_setfuncs(L, methods, 0);
+        else if (type != HANDLE_NODE) {
+            lua_pushcfunction(L, lenient_handle_index);
+            lua_setfield(L, -2, "__index");
+        }
+        lua_pop(L, 1);
+    }
+}
