@@ -10,7 +10,6 @@
 #include "base/hash.h"
 #include "script/bindings_internal.h"
 
-#include <assert.h>
 #include <lauxlib.h>
 #include <stdarg.h>
 #include <string.h>

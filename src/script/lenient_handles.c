@@ -212,16 +212,81 @@ static int ghost_concat(lua_State *L) {
     return 1;
 }
 
+/* Operators on other handles: the result is the handle, the first one of two. */
+
+static int handle_operand(lua_State *L) {
+    int index = handle_at(L, 1) ? 1 : 2;
+    lua_settop(L, 2);
+    lua_pushvalue(L, index);
+    return 1;
+}
+
+static int warn_of_operator(lua_State *L, const char *what) {
+    struct script_context *c = context_of(L);
+    const struct handle *handle = handle_at(L, handle_at(L, 1) ? 1 : 2);
+    assert(handle); /* one operand has this metatable */
+    c->lua = L;
+    c->function = NULL;
+    c->subject = NULL;
+    lenient_warn(c, "%s has no %s, which is ignored", handle_words(handle->type), what);
+    return handle_operand(L);
+}
+
+static int handle_arithmetic(lua_State *L) {
+    return warn_of_operator(L, "arithmetic");
+}
+
+static int handle_call(lua_State *L) {
+    return warn_of_operator(L, "call");
+}
+
+static int handle_comparison(lua_State *L) {
+    (void)warn_of_operator(L, "order");
+    return ghost_comparison(L);
+}
+
+static int handle_length(lua_State *L) {
+    (void)warn_of_operator(L, "length");
+    return ghost_length(L);
+}
+
+/* No entries: pairs(handle) is an empty loop. */
+static int no_entry(lua_State *L) {
+    (void)L;
+    return 0;
+}
+
+static int handle_pairs(lua_State *L) {
+    lua_pushcfunction(L, no_entry);
+    return 1;
+}
+
 void lenient_open(lua_State *L) {
     static const luaL_Reg methods[] = {
-        {"__call", ghost_call},          {"__index", ghost_index},
-        {"__newindex", handle_newindex}, {"__add", ghost_arithmetic},
-        {"__sub", ghost_arithmetic},     {"__mul", ghost_arithmetic},
-        {"__div", ghost_arithmetic},     {"__mod", ghost_arithmetic},
-        {"__pow", ghost_arithmetic},     {"__unm", ghost_arithmetic},
-        {"__idiv", ghost_arithmetic},    {"__lt", ghost_comparison},
-        {"__le", ghost_comparison},      {"__len", ghost_length},
-        {"__concat", ghost_concat},      {NULL, NULL},
+        {"__call", ghost_call},
+        {"__index", ghost_index},
+        {"__newindex", handle_newindex},
+        {"__add", ghost_arithmetic},
+        {"__sub", ghost_arithmetic},
+        {"__mul", ghost_arithmetic},
+        {"__div", ghost_arithmetic},
+        {"__mod", ghost_arithmetic},
+        {"__pow", ghost_arithmetic},
+        {"__unm", ghost_arithmetic},
+        {"__idiv", ghost_arithmetic},
+        {"__lt", ghost_comparison},
+        {"__le", ghost_comparison},
+        {"__len", ghost_length},
+        {"__concat", ghost_concat},
+        {"__pairs", handle_pairs},
+        {NULL, NULL},
+    };
+    static const luaL_Reg operators[] = {
+        {"__add", handle_arithmetic}, {"__sub", handle_arithmetic},  {"__mul", handle_arithmetic},
+        {"__div", handle_arithmetic}, {"__mod", handle_arithmetic},  {"__pow", handle_arithmetic},
+        {"__unm", handle_arithmetic}, {"__idiv", handle_arithmetic}, {"__call", handle_call},
+        {"__lt", handle_comparison},  {"__le", handle_comparison},   {"__len", handle_length},
+        {"__concat", ghost_concat},   {"__pairs", handle_pairs},     {NULL, NULL},
     };
     if (!context_of(L)->lenient)
         return;
@@ -233,7 +298,9 @@ void lenient_open(lua_State *L) {
         lua_setfield(L, -2, "__newindex");
         if (type == HANDLE_GHOST)
             luaL_setfuncs(L, methods, 0);
-        else if (type != HANDLE_NODE) {
+        else
+            luaL_setfuncs(L, operators, 0);
+        if (type != HANDLE_GHOST && type != HANDLE_NODE) {
             lua_pushcfunction(L, lenient_handle_index);
             lua_setfield(L, -2, "__index");
         }

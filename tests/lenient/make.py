@@ -305,6 +305,8 @@ assert(io.open('nowhere.txt'))
 local t = gr.texture('nowhere.png') t:rotate(3) t.scale = 2 gr.render(root, 'NAME.png', 16, 16, {0, 0, 6})
 gr.render{world = root, filename = 'NAME.png', width = 16, height = 16, camera = {0, 0, 6}, lamps = {lamp}}
 root:add_child(gr.sphere('head', red)) gr.render(root, 'NAME.png', 16, 16, {0, 0, 6})
+local both = root + ball gr.render(both * 2 - #ball, 'NAME.png', 16, 16, {0, 0, 6}) red(3) print(red .. '', red < red, -lamp)
+for k, v in pairs(ball) do root:add_child(v) end for k, v in pairs(gr.primitives) do root:add_child(v) end gr.render(root, 'NAME.png', 16, 16)
 """.strip().split("\n")
 
 count = 0

@@ -1,0 +1,7 @@
+local red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 30)
+local root = gr.node('root')
+local ball = gr.sphere('ball')
+ball:set_material(red)
+root:add_child(ball)
+local lamp = gr.light({3, 5, 8}, {0.9, 0.9, 0.9}, {1, 0, 0})
+local both = root + ball gr.render(both * 2 - #ball, '289.png', 16, 16, {0, 0, 6}) red(3) print(red .. '', red < red, -lamp)

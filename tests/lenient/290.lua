@@ -1,0 +1,7 @@
+local red = gr.material({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 30)
+local root = gr.node('root')
+local ball = gr.sphere('ball')
+ball:set_material(red)
+root:add_child(ball)
+local lamp = gr.light({3, 5, 8}, {0.9, 0.9, 0.9}, {1, 0, 0})
+for k, v in pairs(ball) do root:add_child(v) end for k, v in pairs(gr.primitives) do root:add_child(v) end gr.render(root, '290.png', 16, 16)
