@@ -10,6 +10,7 @@ for name in "$@"; do
     esac
     size=480x270
     [ "$name" = shapes ] && size=720x480
+    [ "$name" = sdf ] && size=720x405
     ./gray -q --size $size -ss 3 -o "docs/library/$name.png" "$scene" || exit 1
     command -v convert >/dev/null && convert "docs/library/$name.png" -dither FloydSteinberg -colors 128 -strip "PNG8:docs/library/$name.png"
 done
