@@ -111,6 +111,16 @@ static enum ending ending_of(const char *name) {
     return digits ? ENDING_NONE : ENDING_OTHER;
 }
 
+/* The ending of a format that is not written, as in -o x.jpg. */
+static bool is_foreign_picture(const char *name) {
+    static const char *const endings[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".tga", ".ppm"};
+    const char *dot = strrchr(last_part(name), '.');
+    for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
+        if (strcasecmp(dot, endings[i]) == 0)
+            return true;
+    return false;
+}
+
 static bool name_is_too_long(struct error *error) {
     return error_set(error, ERROR_SCENE, "the name of the picture is longer than %d bytes", NAME_LIMIT - 1);
 }
@@ -183,8 +193,17 @@ bool picture_files_name(struct picture_files *files, const struct picture_label 
     notice[0] = '\0';
     if (output && files->options->animation != ANIMATION_NONE)
         return name_in_folder(output, label->number, name, error);
-    if (output)
-        return output_name(output, label->number, name, NAME_LIMIT) || name_is_too_long(error);
+    if (output) {
+        if (!output_name(output, label->number, name, NAME_LIMIT))
+            return name_is_too_long(error);
+        char extensions[PICTURE_EXTENSIONS_SIZE];
+        if (is_foreign_picture(name) && !files->ending_noticed) {
+            files->ending_noticed = true;
+            (void)snprintf(notice, NAME_LIMIT + 128, "gray: notice: %.3000s will be a PNG file; gray writes %s", name,
+                           picture_extensions(extensions));
+        }
+        return true;
+    }
     if (files->folders_error.kind != ERROR_NONE) {
         *error = files->folders_error;
         return false;

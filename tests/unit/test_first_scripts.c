@@ -106,6 +106,16 @@ TEST(a_picture_that_replaces_another_of_the_run_is_a_notice) {
     notes_not(RENDER(""), "replaces"); /* that of an earlier run */
 }
 
+TEST(an_ending_that_is_not_written_is_named) {
+    struct test_result result = test_gray_scene(RENDER(""), "-o x.JPG scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.err, "gray: notice: x.JPG will be a PNG file; gray writes .png, "));
+    free(result.out);
+    free(result.err);
+    says("gr.render(gr.sphere(gr.material({1, 1, 1})), 'x.jpg', 4, 4, {0, 0, 5}, {0, 0, -1}, {0, 1, 0}, 50)",
+         "gr.render: x.jpg: the name of a picture ends in .png, ");
+}
+
 TEST(a_script_that_computes_long_says_so_on_a_terminal) {
     struct progress progress = {.mode = PROGRESS_BAR};
     char line[200] = "";
