@@ -277,6 +277,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     picture->request = *request;
     picture->request.deep = request->deep && output->options->animation == ANIMATION_NONE;
     picture->written = output->plays;
+    picture->write_seconds = picture->write_processor_seconds = 0;
     if (request->check) {
         picture->open = check_only(output, picture, error);
         return picture->open;
@@ -357,6 +358,14 @@ static bool write_picture(struct output_session *output, const struct picture *p
            checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, name, error);
 }
 
+static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
+    double begun = progress_clock(), worked = progress_processor_clock();
+    bool ok = write_picture(output, picture, error);
+    picture->write_seconds = progress_clock() - begun;
+    picture->write_processor_seconds = progress_processor_clock() - worked;
+    return ok;
+}
+
 /* --partial: what is there of a picture that ends early, under a name of its own. */
 static void write_partial(struct output_session *output) {
     struct picture *picture = &output->current;
@@ -395,19 +404,22 @@ void output_abandon(struct output_session *output) {
     close_picture(&output->current);
 }
 
-static void report_statistics(struct output_session *output, const struct picture_report *report) {
-    const struct picture *picture = &output->current;
+static void report_statistics(struct output_session *output, const struct picture *picture,
+                              const struct picture_report *of_render) {
+    struct picture_report report = *of_render;
+    report.write_seconds = picture->write_seconds;
+    report.write_processor_seconds = picture->write_processor_seconds;
     switch (output->options->statistics) {
     case STATISTICS_NONE:
         return;
     case STATISTICS_TEXT:
         if (begin_report(output)) {
-            statistics_print_text(stderr, picture->name, &picture->request, report);
+            statistics_print_text(stderr, picture->name, &picture->request, &report);
             end_report(output);
         }
         return;
     case STATISTICS_JSON:
-        statistics_print_json(stdout, picture->name, &picture->request, report);
+        statistics_print_json(stdout, picture->name, &picture->request, &report);
         return;
     }
 }
@@ -430,7 +442,7 @@ static bool leave_to_first_rank(struct output_session *output) {
 }
 
 bool output_write(struct output_session *output, struct error *error) {
-    output->current.written = write_picture(output, &output->current, error);
+    output->current.written = write_timed(output, &output->current, error);
     progress_end(&output->progress, output->current.written ? PROGRESS_WRITTEN : PROGRESS_GIVEN_UP);
     return output->current.written;
 }
@@ -458,26 +470,22 @@ bool output_done(struct output_session *output, const struct picture_report *rep
     report_display(output, display_end(&output->display, &gone), &gone);
     warn_of_clamped(output, report);
     if (output->current.written) {
-        report_statistics(output, report);
+        report_statistics(output, &output->current, report);
         close_picture(&output->current);
         return true;
     }
     if (one_name_for_all(output) && !animation_streams(&output->animation, &output->current.request)) {
-        /* Names of progress point into the picture, so it is reported before the picture moves. */
+        /* Names of progress point into the picture, so it ends before the picture moves. */
         progress_end(&output->progress, PROGRESS_WRITTEN);
-        report_statistics(output, report);
+        output->held_report = *report;
         output->held = output->current;
         output->current = (struct picture){0};
         return true;
     }
-    struct picture_report whole = *report;
-    double begun = progress_clock(), worked = progress_processor_clock();
-    bool ok = write_picture(output, &output->current, error);
-    whole.write_seconds = progress_clock() - begun;
-    whole.write_processor_seconds = progress_processor_clock() - worked;
+    bool ok = write_timed(output, &output->current, error);
     progress_end(&output->progress, ok ? PROGRESS_WRITTEN : PROGRESS_GIVEN_UP);
     if (ok)
-        report_statistics(output, &whole);
+        report_statistics(output, &output->current, report);
     close_picture(&output->current);
     return ok;
 }
@@ -549,7 +557,9 @@ void output_set_interrupt(struct output_session *output, const struct file_inter
 bool output_write_held(struct output_session *output, struct error *error) {
     bool ok = true;
     if (output->held.open && !output->several_under_one_name)
-        ok = write_picture(output, &output->held, error);
+        ok = write_timed(output, &output->held, error);
+    if (output->held.open && ok)
+        report_statistics(output, &output->held, &output->held_report);
     close_picture(&output->held);
     return ok;
 }

@@ -31,6 +31,7 @@ struct output_session {
     unsigned pictures;            /* begun so far, those under --check too */
     struct picture current;       /* being made */
     struct picture held;          /* finished under -o without %d: written when no second picture came */
+    struct picture_report held_report;
     bool several_under_one_name;
     bool plays; /* the last picture was a frame in a window */
 };

@@ -16,8 +16,9 @@ struct picture {
     bool open;
     char name[NAME_LIMIT];
     struct picture_request request;
-    bool written;              /* before it is complete, for a window */
-    struct tile_picture tiles; /* the key of its tiles in a tile file */
+    bool written;                                  /* before it is complete, for a window */
+    double write_seconds, write_processor_seconds; /* of its files; 0: not written yet */
+    struct tile_picture tiles;                     /* the key of its tiles in a tile file */
     struct share memory;
     struct film film;
     const float (*display)[3]; /* or NULL: of a part that is shown, its finished numbers for PNG files; borrowed */

@@ -435,6 +435,18 @@ TEST(figures_of_the_statistics_agree_with_one_another) {
     }
 }
 
+/* Under one name the picture is written after the script. */
+TEST(statistics_have_the_time_of_writing) {
+    static const char *const names[] = {"-o one.png ", "-o each%d.png ", ""};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char arguments[64];
+        (void)snprintf(arguments, sizeof arguments, "%s--stats=json scene.lua", names[i]);
+        struct test_result result = test_gray_scene(BALL "picture('s.png', 200, 200)\n", arguments, NULL);
+        CHECK(figure_of(result.out, "write_seconds") > 0);
+        ends(result, 0);
+    }
+}
+
 TEST(names_with_blanks_dashes_and_signs_work) {
     static const char *const words[] = {"-o", "-out put/\xc3\xa9 100%% 'x'.png", "--", "-my scene.lua", NULL};
     write_in_folder("-my scene.lua", SMALL);
