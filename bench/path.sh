@@ -7,7 +7,7 @@
 #            REFERENCE samples (default 16384) of the same program, which are kept in OUT
 #   embree   samples a second against `pathtracer --max-path-length 8` on its Cornell box
 #   denoise  the error of 64 denoised samples against that of 512 raw ones (bench/denoise.sh); seconds for 1280 x 960
-#   threads  the speed of two threads over that of one
+#   threads  the speed of two threads over that of one, and what processor time and idle threads leave of 2 (on any machine)
 #   memory   bytes a pixel beyond Whitted's, at 1280 x 960
 # Both programs: box filter, all caustics, no clamps, no adaptive sampling; Cycles as bench/path/cycles.py sets it.
 # Errors are scaled to exactly that time, since they fall with the number of samples.
@@ -173,11 +173,17 @@ threads() {
         run=$((run + 1))
         for j in 1 2; do
             large --integrator path --spp 4 -j $j |
-                awk '{ printf "%f ", substr($0, index($0, "\"render_seconds\":") + 17) + 0 }'
+                awk 'function figure(key) { return substr($0, index($0, "\"" key "\":") + length(key) + 3) + 0 }
+                     { printf "%f %f %f ", figure("render_seconds"), figure("render_processor_seconds"), figure("idle_seconds") }'
         done >>"$out/threads"
         echo >>"$out/threads"
     done
-    echo "two threads: $(awk '{ print $1 / $2 }' "$out/threads" | median) times the speed of one (elapsed time: needs an idle machine)"
+    echo "two threads: $(awk '{ print $1 / $4 }' "$out/threads" | median) times the speed of one (elapsed time: needs an idle machine)"
+    work=$(awk '{ print $5 / $2 }' "$out/threads" | median) idle=$(awk '{ print $6 / $4 / 2 }' "$out/threads" | median)
+    awk -v work="$work" -v idle="$idle" 'BEGIN {
+        printf "processor time of two over that of one: %.3f; idle at the end: %.1f %%; expected on an idle machine: %.2f\n",
+               work, 100 * idle, 2 * (1 - idle) / work
+    }'
 }
 
 memory() {

@@ -140,6 +140,15 @@ static void share_direct(const struct path_vertex *vertex, struct vec3 wi, struc
     shares[SCATTERING_SPECULAR] = vec3_add(shares[SCATTERING_SPECULAR], vec3_sub(vec3_all(1), all));
 }
 
+/* The part of a light to sample. Mostly there is one light with a place, which is chosen without a call. */
+static inline struct light_part choose_part(const struct light_sampler *sampler, const struct light_receiver *receiver,
+                                            double choice, double *pmf) {
+    *pmf = 1;
+    if (sampler->choice == LIGHT_CHOICE_TREE && sampler->infinite_count == 0 && sampler->node_count == 1)
+        return sampler->nodes[0].part;
+    return light_sampler_sample(sampler, receiver->point, receiver->normal, choice, pmf);
+}
+
 struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
                         const struct path_vertex *vertex, const struct path_light_draw *draw) {
     const struct world_lights *lights = &tracer->lights;
@@ -147,8 +156,7 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
     const struct light_receiver *receiver = &vertex->receiver;
     struct world_light_sample sample;
     double pmf;
-    struct light_part part =
-        light_sampler_sample(&lights->sampler, receiver->point, receiver->normal, draw->choice, &pmf);
+    struct light_part part = choose_part(&lights->sampler, receiver, draw->choice, &pmf);
     if (part.light == LIGHT_NONE)
         return none;
     struct sample2 xi = {0, 0};

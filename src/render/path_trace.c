@@ -312,7 +312,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         meet_features(path, hit, &bsdf);
     if (path->sight)
         add_light(path, bsdf.emission);
-    else
+    else if (tracer->lights.met)
         add_light(path,
                   path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown},
                                 hit, bsdf.emission));
@@ -373,7 +373,7 @@ static struct vec3 quotient(struct vec3 a, struct vec3 b) {
 static void observe_next(struct observed_path *observed, const struct integrator_state *state, const struct path *path,
                          const struct hit *hit) {
     enum { LIMIT = sizeof observed->weights / sizeof *observed->weights };
-    if (!state->observer || observed->count == LIMIT)
+    if (observed->count == LIMIT)
         return;
     double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
     if (observed->count > 0)
@@ -400,14 +400,16 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
                           struct sampler *sampler, struct hit *hit, bool met) {
     struct observed_path observed;
     observed.count = 0;
-    observe_next(&observed, state, path, met ? hit : NULL);
+    if (state->observer)
+        observe_next(&observed, state, path, met ? hit : NULL);
     while (travel(tracer, state, path, met ? hit : NULL)) {
         if (!met)
             leave_scene(tracer, state, path);
         if (!met || !meet_surface(tracer, state, path, sampler, hit) || integrator_cancelled(state))
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
-        observe_next(&observed, state, path, met ? hit : NULL);
+        if (state->observer)
+            observe_next(&observed, state, path, met ? hit : NULL);
     }
     struct vec3 found = clamp_light(state, path->light), light = limited(found, tracer->clamp);
     if (path->parts)

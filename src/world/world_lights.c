@@ -463,7 +463,7 @@ static bool sample_point_light(const struct light *light, struct vec3 point, str
         return false;
     out->direction = arrival.direction;
     out->target = arrival.middle;
-    out->radiance = vec3_scale(vec3_scale(light->colour, arrival.strength), radiance_of(1));
+    out->radiance = vec3_scale(vec3_scale(arrival.colour, arrival.strength), radiance_of(1));
     out->pdf = 1;
     out->is_delta = true;
     out->decided = false;
@@ -472,16 +472,14 @@ static bool sample_point_light(const struct light *light, struct vec3 point, str
     return !is_dark(out->radiance);
 }
 
-bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver,
-                         struct light_part part, struct sample2 xi, struct world_light_sample *out) {
+/* Separate, so that lights without extent need not prepare for it. */
+static __attribute__((noinline)) bool sample_extended_light(const struct world_lights *lights,
+                                                            const struct light_receiver *receiver,
+                                                            struct light_part part, struct sample2 xi,
+                                                            struct world_light_sample *out) {
     uint32_t number = part.light;
     const struct emitter *emitter = &lights->emitters[number];
     struct view view;
-    out->light = number;
-    if (!world_lights_illuminate(lights, number, receiver->primitive))
-        return false;
-    if (light_is_point(&lights->lights[number]))
-        return sample_point_light(&lights->lights[number], receiver->point, out);
     if (!view_make(lights, receiver, number, &view))
         return false;
     struct light_sample sample = view_sample(&view, part.triangle, receiver, xi);
@@ -498,6 +496,17 @@ bool world_lights_sample(const struct world_lights *lights, const struct light_r
     bool single = emitter->shown && !emitter->by_triangle && !out->decided;
     out->skip_primitive = single ? emitter->primitive + 1 : 0;
     return out->decided || !is_dark(out->radiance);
+}
+
+bool world_lights_sample(const struct world_lights *lights, const struct light_receiver *receiver,
+                         struct light_part part, struct sample2 xi, struct world_light_sample *out) {
+    const struct light *light = &lights->lights[part.light];
+    out->light = part.light;
+    if (!world_lights_illuminate(lights, part.light, receiver->primitive))
+        return false;
+    if (light_is_point(light))
+        return sample_point_light(light, receiver->point, out);
+    return sample_extended_light(lights, receiver, part, xi, out);
 }
 
 static uint32_t triangle_of_hit(const struct world_lights *lights, uint32_t light, const struct hit *hit) {
