@@ -1,11 +1,14 @@
 /* Crossings of a line and an implicit solid. The line passes the regions (implicit_regions.c) in order. In a region
- * where the sign may change, the function's values at the ends of the stretch and bounds of its slope along the line
- * decide: a stretch on which the slope cannot have made a crossing has none; one with different signs and a slope of
- * one sign has one, which Chandrupatla's method finds; anything else is divided into eight, whose bounds are computed
- * at once. So nothing is lost however thin it is, until stretches are as short as the resolution.
+ * where the sign may change, the values of the function at both ends of the stretch and bounds of its slope along the
+ * line decide:
+ * - A stretch whose ends have one sign has no crossing if the slope is too small for one.
+ * - A stretch whose ends have different signs has one crossing if the slope has one sign. It is found by the method of
+ *   Chandrupatla.
+ * - Every other stretch is divided into eight parts, whose bounds are computed at once.
+ * Thin walls are found down to the resolution.
  *
- * The sign is carried along the line, so crossings always alternate. Every region is searched from end to end, also for
- * rays that begin or end in it: the nearest hit and the list of all crossings have the same bits.
+ * The search keeps track of the side of the surface, so entries and exits alternate. It searches every region from end
+ * to end, also for rays that begin or end in it. So the nearest hit has the bits of the first crossing of the list.
  *
  * R. E. Moore, "Interval Analysis", 1966; J. Snyder, "Interval Analysis for Computer Graphics", SIGGRAPH 1992;
  * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997. */
@@ -13,12 +16,14 @@
 
 #include <math.h>
 
-/* Shares of the size: two crossings closer than this may be missed together; where a crossing's bracket ends. */
+/* Shares of the size. Two crossings closer than the resolution may be missed together. The bracket of a crossing ends
+ * at the accuracy. */
 static const double resolution = 0x1p-25, accuracy = 0x1p-46;
-/* The work on one line, in instructions of the function (those over intervals count tenfold), after which halves are no
- * longer searched for pairs. */
+/* WORK: the limit of instructions of the function for one line; one over intervals counts as ten. Beyond it, stretches
+ * are not divided further. GUESS: room for crossings in the scratch memory. */
 enum { WORK = 4000000, GUESS = 64 };
-/* Parts of crossings: the axis on the bounds, of a ball, and between regions. Below them the number of the region. */
+/* Parts of crossings: on a side of the bounds its axis, on a ball, between regions. All others are numbers of regions.
+ */
 enum { PART_WHOLE = 0x7fffffe0, PART_BOX = 0x7ffffff0, PART_BALL = PART_BOX + 3 };
 
 struct search {
@@ -30,10 +35,10 @@ struct search {
     bool inside;                   /* before the current place */
     double at, value;              /* of the function, where it was evaluated last */
     uint64_t work;
-    struct crossing waiting; /* not given out yet: the next one may cancel it */
+    struct crossing waiting; /* not given out yet; the next one may cancel it */
     bool has_waiting, has_found, is_done, is_full;
     bool is_any;           /* any crossing does */
-    bool is_unknown;       /* what `inside` is: the stretches before were left out */
+    bool is_unknown;       /* `inside` is not valid, because the stretches before were skipped */
     const struct ray *ray; /* of a nearest hit: its interval; then `found` */
     struct crossing *found;
     struct geom_scratch *scratch; /* of a list */
@@ -103,7 +108,7 @@ static void give_out(struct search *search) {
     }
 }
 
-/* The line changes sides at s. Two changes at one t are none. */
+/* The line changes sides at s. Two changes at one t cancel each other. */
 static void cross(struct search *search, double s, uint32_t part) {
     double t = line_t(&search->line, s);
     search->inside = !search->inside;
@@ -129,7 +134,8 @@ static double evaluate(struct search *search, const struct expr_program *program
     return outputs[0];
 }
 
-/* Bounds of the function and of its slope over the eighths of the stretch from a to b, or in the cases of all of it. */
+/* Bounds of the function and of its slope over each of the eight parts; or over all of them in each case of its jumps.
+ */
 static void bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
                           bool are_cases, struct expr_lane_range *out) {
     unsigned char memory[expr_lanes_size(program) + IMPLICIT_ALIGNMENT];
@@ -252,7 +258,7 @@ static void settle(struct search *search, bool inside, double s, uint32_t number
         cross(search, s, s > search->begin ? number : first_number);
 }
 
-/* A part with one crossing, or with an odd number that are next to each other. */
+/* A part with one crossing, or with an odd number of crossings close to each other. */
 static void pass_change(struct search *search, uint32_t number, const struct part *part) {
     const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
     double t = line_t(&search->line, part->a);
@@ -316,8 +322,8 @@ struct node_box {
     double lo[3], hi[3];
 };
 
-/* By the value in the middle of the region and the slopes: they bound the function by the least of some linear
- * functions and by the largest of others, which are extreme at the ends of the stretch. */
+/* The side by the value in the middle of the region and the slopes. They bound the function by linear functions, whose
+ * extremes are at the ends of the stretch. */
 static enum side side_by_slopes(const struct search *search, const struct implicit_region *region,
                                 const struct node_box *box, double s0, double s1) {
     double lows[2], highs[2];
@@ -353,7 +359,7 @@ static void pass_surface(struct search *search, uint32_t number, double s0, doub
     search->value = value;
 }
 
-/* A ray that begins later needs of a stretch only on which side the next one begins. */
+/* Whether the ray begins after s. Of such a stretch it needs only the side at its end. */
 static bool is_before(const struct search *search, double s) {
     return search->ray && line_t(&search->line, s) <= search->ray->t_min;
 }
@@ -388,7 +394,7 @@ static void pass_node(struct search *search, uint32_t node, const struct node_bo
         pass_region(search, node, box, s0, s1);
         return;
     }
-    /* Through the parts in order: the line changes to the other half of an axis where it meets the middle. */
+    /* Visits the parts in order. The line changes to the other half of an axis where it meets the middle. */
     double middles[3], meets[3];
     for (int k = 0; k < 3; k++) {
         middles[k] = region_middle(box->lo[k], box->hi[k]);
@@ -525,8 +531,8 @@ static double gradient_at(const struct expr_program *program, struct vec3 point,
     return outputs[0];
 }
 
-/* A normal that agrees with the way in which the line crosses: next to contours it may be off by rounding; where the
- * function jumps it says nothing. */
+/* The normal, on the side from which the line crosses. Near contours rounding may have put it on the other side. Where
+ * the function jumps there is no gradient, and the direction of the ray takes its place. */
 static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
     struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
     double length = vec3_length(normal);
@@ -565,7 +571,7 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
         struct vec3 point = ray_at(ray, crossing->t), gradient;
         double off = gradient_at(&solid->programs[program], point, &gradient);
         double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
-        /* One step along the gradient takes off what the ray's rounding left, unless the function jumps here. */
+        /* One step along the gradient removes the rounding error of the ray, unless the function jumps here. */
         double error = solid->size * 2 * accuracy;
         if (square > 0 && fabs(off) < room * sqrt(square))
             point = vec3_add_scaled(point, gradient, -off / square);
@@ -576,7 +582,7 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
     surface_mapping_sphere(middle_of(solid), out);
 }
 
-/* --- all of it --- */
+/* --- the solid --- */
 
 const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error) {
     struct implicit *solid = arena_alloc(arena, sizeof *solid);

@@ -1,6 +1,6 @@
-/* Implicit solids: where a function of a point is below 0, within a box or a ball. A value of NaN is outside, a jump of
- * sign is a surface. The function is a recorded expression; nothing is guessed of it: bounds of its values and slopes
- * over regions and stretches of a line prove where there is no crossing, or one. */
+/* Implicit solids: where a function of a point is below 0, within a box or a ball. A value of NaN is outside. A jump of
+ * sign is a surface. The function is a recorded expression. Bounds of its values and slopes prove where a line has no
+ * crossing, or one; no gradient has to be given. */
 #ifndef GRAY_SHAPE_IMPLICIT_H
 #define GRAY_SHAPE_IMPLICIT_H
 
@@ -24,13 +24,12 @@ struct implicit;
 const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error);
 struct box implicit_bounds(const struct implicit *solid);
 bool implicit_is_closed(const struct implicit *solid);
-/* As shape_crossings and shape_nearest, which says what of the list is first in the ray's interval. A crossing is
- * within 1e-9 of the size of the solid of where the sign changes; two that are closer than 1e-7 of it may be missing.
- */
+/* The same as shape_crossings and shape_nearest. A crossing is within 1e-9 of the size of the solid from where the sign
+ * changes. Two crossings that are closer than 1e-7 of the size may be missing together. */
 bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
                         struct crossing_list *out);
 bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out);
-/* Whether there is a crossing in the ray's interval; faster, since it need not be known where. */
+/* Whether there is a crossing in the ray's interval. Faster than implicit_nearest: it does not locate the crossing. */
 bool implicit_any(const struct implicit *solid, const struct ray *ray);
 bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,

@@ -5,9 +5,9 @@
 #include "expr/expr_derivative.h"
 #include "shape/implicit.h"
 
-/* A node of the octree over the bounds; its halves meet at region_middle. Kind in the lowest two bits, above them of a
- * split the number of the first of its eight parts (bit k of a part: the upper half on axis k), of a region in which
- * the sign may change its number. */
+/* A node of the octree over the bounds is a number. Its lowest two bits are the kind. The bits above are, for
+ * REGION_SPLIT, the number of the first of its eight parts, and for REGION_SURFACE the number of the region. Bit k of a
+ * part is set in the upper half of axis k; the halves meet at region_middle. */
 enum region_kind { REGION_OUTSIDE, REGION_INSIDE, REGION_SURFACE, REGION_SPLIT };
 
 /* A region in which the sign may change. Slopes bound the derivatives along the axes, rounded outwards. */

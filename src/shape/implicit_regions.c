@@ -1,7 +1,8 @@
-/* The regions of an implicit solid: an octree, level by level. Bounds of the function over a region (interval
- * arithmetic) prove it outside or inside; what is left is split until the surface is nearly flat in it, which bounds of
- * the slopes show, since then one evaluation at each end of a line's stretch decides it. What min, max and selections
- * decide over a region is left out of its program; the programs of divided nodes are dropped at the end.
+/* The regions of an implicit solid: the leaves of an octree, which is built level by level. Bounds of the function over
+ * a node (interval arithmetic) may prove it outside or inside. Other nodes are divided until bounds of the slopes show
+ * that the surface is nearly flat in them. Then the values at both ends of a line's stretch decide it. The program of a
+ * node leaves out the operands that min, max and selections never take there. Programs of divided nodes are freed at
+ * the end.
  *
  * T. Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid geometry",
  * SIGGRAPH 1992; M. Keeter, "Massively parallel rendering of complex closed-form implicit surfaces", SIGGRAPH 2020. */
@@ -19,7 +20,7 @@ enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_
 /* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
 static const double slope_spread = 0.4;
 
-/* A node while it waits. */
+/* A node that is not decided yet. */
 struct pending {
     struct box box;
     uint32_t candidate; /* the program of the node that was divided */
@@ -164,7 +165,7 @@ static bool add_nodes(struct building *b, uint32_t count) {
            reserve((void **)&b->pending, &b->node_capacity, b->node_count, count, sizeof *b->pending);
 }
 
-/* Splits a node; its parts wait. */
+/* Divides a node. */
 static bool add_parts(struct building *b, uint32_t node) {
     uint32_t first = b->node_count;
     if (!add_nodes(b, 8))
@@ -216,7 +217,7 @@ static void evaluate_boxes(struct building *b, const struct expr_program *progra
     *out = outputs[0];
 }
 
-/* Where the function may jump within a region, its sign may be the same on both sides. */
+/* The function may jump within a region and have one sign on both sides. */
 static enum region_kind kind_of_cases(struct building *b, const struct expr_program *program, const struct box *box) {
     struct expr_lane_range range;
     evaluate_boxes(b, program, box, true, &range);
@@ -226,7 +227,7 @@ static enum region_kind kind_of_cases(struct building *b, const struct expr_prog
     return kind;
 }
 
-/* Decides what a node is, from bounds over its box in one lane. */
+/* Decides the kind of a node by the bounds over its box in one lane. */
 static bool decide(struct building *b, uint32_t node, const struct box *box, const struct expr_lane_range *range,
                    int lane) {
     struct implicit *solid = b->solid;
