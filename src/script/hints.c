@@ -347,13 +347,37 @@ static bool read_culprit(const char *message, const char *kind, char name[NAME_S
     return true;
 }
 
+/* A variable that is nil and was set at the beginning of the file, as in `local execute = os.execute`. */
+static const char *alias_words(struct script_context *c, const struct running *running, const char *name) {
+    struct running file = {.L = running->L, .at = {.currentline = 1}};
+    struct token w[5] = {{0}};
+    char library[NAME_SIZE], field[NAME_SIZE];
+    if (c->options->no_sandbox || !read_text(c, &file, running->at.source + 1))
+        return "";
+    struct lexer lexer = {file.text, file.text + file.size, 1};
+    do {
+        for (int k = 0; k < 4; k++)
+            w[k] = w[k + 1];
+        w[4] = lexer_next(&lexer);
+        if (token_is(&w[0], TOKEN_NAME, name) && token_is_symbol(&w[1], '=') && token_is_symbol(&w[3], '.') &&
+            copy_name(&w[2], library) && copy_name(&w[4], field) && sandbox_removes(library, field)) {
+            const char *words = arena_format(&c->call, "; the sandbox has no %s.%s (docs/security.md)", library, field);
+            return words ? words : "";
+        }
+    } while (w[4].kind != TOKEN_END && w[4].line <= running->at.currentline);
+    return "";
+}
+
 const char *hint_of_lua_error(lua_State *L, const char *message) {
     struct script_context *c = context_of(L);
     struct running running;
     char name[NAME_SIZE];
     bool field = read_culprit(message, "field", name), global = !field && read_culprit(message, "global", name);
-    if ((!field && !global) || !find_running(c, L, &running))
+    bool local = !field && !global && (read_culprit(message, "local", name) || read_culprit(message, "upvalue", name));
+    if ((!field && !global && !local) || !find_running(c, L, &running))
         return "";
+    if (local)
+        return alias_words(c, &running, name);
     if (field)
         return field_words(c, &running, name);
     const char *meant = nearest_variable(c, &running, name);

@@ -205,6 +205,10 @@ TEST(a_material_that_may_be_nil_is_no_error) {
 TEST(errors_of_lua_suggest_names_and_name_the_sandbox) {
     says("os.execute('ls')", "(field 'execute'); the sandbox has no os.execute (docs/security.md)");
     says("io.popen('ls')", "the sandbox has no io.popen (docs/security.md)");
+    says("local execute = os.execute\nlocal t = {}\nexecute('ls')", "(local 'execute'); the sandbox has no os.execute");
+    says("local run = io.popen function list() return run('ls') end list()",
+         "(upvalue 'run'); the sandbox has no io.popen");
+    says("local t = {} local x = t.execute x()", "attempt to call a nil value (local 'x')\n");
     says("os.tiem()", "(field 'tiem'); did you mean 'os.time'?");
     says("local m = require 'lathe' m.trun()", "(field 'trun'); did you mean 'm.turn'?");
     says("pirnt(1)", "(global 'pirnt'); did you mean 'print'?");
