@@ -239,6 +239,32 @@ TEST(lights_without_a_body_have_the_colour_of_their_direction) {
     arena_destroy(&arena);
 }
 
+/* A lamp whose light falls with the cosine of its direction. */
+TEST(paths_find_lights_without_a_body_in_the_colour_of_their_direction) {
+    struct arena arena = {0};
+    struct stage s;
+    struct error error;
+    double light[2];
+    stage_floor(&s);
+    s.camera = (struct camera){{0, 4, 0}, {0, -1, 0}, {0, 0, -1}, 40};
+    s.lights[0] = (struct light){.kind = LIGHT_POINT, .colour = {1, 1, 1}, .falloff = {1, 0, 0}, .position = {0, 2, 0}};
+    CHECK(light_set_profile(&s.lights[0], lobe(&arena, 1, -1, 1), &error));
+    s.settings.full = true;
+    s.settings.path_samples = 16;
+    s.settings.max_depth = 1;
+    for (int i = 0; i < 2; i++) {
+        s.settings.integrator = i ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+        CHECK(stage_render(&s, 9, 9));
+        light[i] = 0;
+        for (uint32_t k = 0; k < 81; k++)
+            light[i] += stage_pixel(&s, k % 9, k / 9).x / 81;
+    }
+    CHECK(light[0] > 0.1 && light[0] < 0.9);
+    CHECK_NEAR(light[1], light[0], 0.01 * light[0]);
+    stage_end(&s);
+    arena_destroy(&arena);
+}
+
 /* --- the language --- */
 
 static void runs(const char *text) {
