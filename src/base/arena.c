@@ -90,6 +90,23 @@ char *arena_format(struct arena *arena, const char *format, ...) {
     return text;
 }
 
+struct arena_mark arena_mark(const struct arena *arena) {
+    return (struct arena_mark){arena->head, arena->head ? arena->head->used : 0, arena->total};
+}
+
+void arena_rewind(struct arena *arena, struct arena_mark mark) {
+    while (arena->head != mark.head) {
+        struct arena_block *next = arena->head->next;
+        mem_free(arena->head);
+        arena->head = next;
+    }
+    if (arena->head) {
+        memset(arena->head->data + mark.used, 0, arena->head->used - mark.used);
+        arena->head->used = mark.used;
+    }
+    arena->total = mark.total;
+}
+
 void arena_reset(struct arena *arena) {
     struct arena_block *largest = NULL;
     for (struct arena_block *block = arena->head; block; block = block->next) {

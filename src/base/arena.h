@@ -15,6 +15,13 @@ void *arena_alloc(struct arena *arena, size_t size);
 void *arena_alloc_array(struct arena *arena, size_t count, size_t size);
 char *arena_copy_text(struct arena *arena, const char *text, size_t length); /* adds the final NUL */
 char *arena_format(struct arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* The state of an arena, and the way back to it: everything handed out since then is freed. */
+struct arena_mark {
+    struct arena_block *head;
+    size_t used, total;
+};
+struct arena_mark arena_mark(const struct arena *arena);
+void arena_rewind(struct arena *arena, struct arena_mark mark);
 void arena_reset(struct arena *arena);   /* forgets everything, keeps the largest block for reuse */
 void arena_destroy(struct arena *arena); /* frees everything; the arena may be used again */
 

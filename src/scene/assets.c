@@ -61,6 +61,21 @@ struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, 
     return mesh && keep_mesh(assets, mesh, key, error) ? mesh : NULL;
 }
 
+void assets_drop_meshes(struct assets *assets, const struct asset_mesh *until) {
+    struct asset_mesh **link = &assets->meshes;
+    while (*link != until) {
+        struct asset_mesh *entry = *link;
+        if (entry->key == 0) {
+            link = &entry->next;
+            continue;
+        }
+        *link = entry->next;
+        mesh_release(entry->mesh);
+        mem_free(entry);
+        assets->mesh_count--;
+    }
+}
+
 void *assets_find_object(struct assets *assets, const char *key) {
     for (struct asset_object *entry = assets->objects; entry; entry = entry->next) {
         if (strcmp(entry->key, key) == 0)

@@ -15,6 +15,30 @@ void scene_destroy(struct scene *scene) {
     arena_destroy(&scene->arena);
 }
 
+struct scene_snapshot scene_snapshot(struct scene *scene) {
+    scene->kept_nodes = scene->node_total;
+    scene->escaped = false;
+    memset(scene->names, 0, sizeof scene->names); /* names of newer nodes are freed with them */
+    return (struct scene_snapshot){.arena = arena_mark(&scene->arena),
+                                   .node_total = scene->node_total,
+                                   .warned_room = scene->warned_room,
+                                   .warned = scene->warned,
+                                   .last_material = scene->last_material,
+                                   .meshes = scene->assets->meshes};
+}
+
+void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot) {
+    memset(scene->names, 0, sizeof scene->names);
+    scene->node_total = snapshot->node_total;
+    scene->warned_room = snapshot->warned_room;
+    scene->warned = snapshot->warned;
+    scene->last_material = snapshot->last_material;
+    scene->file = NULL;
+    scene->line = 0;
+    assets_drop_meshes(scene->assets, snapshot->meshes);
+    arena_rewind(&scene->arena, snapshot->arena);
+}
+
 static size_t node_size(enum node_kind kind) {
     switch (kind) {
     case NODE_GROUP:
@@ -88,6 +112,7 @@ bool node_add_child(struct scene *scene, struct node *parent, struct node *child
     if (!link)
         return error_no_memory(error, "a child of a node");
     link->node = child;
+    scene_note_reference(scene, parent->index);
     if (parent->last_child)
         parent->last_child->next = link;
     else
@@ -104,6 +129,7 @@ static bool compose_separately(struct scene *scene, struct node *node, enum node
         node->separate = arena_alloc_array(&scene->arena, NODE_STEPS, sizeof *node->separate);
         if (!node->separate)
             return false;
+        scene_note_reference(scene, node->index);
         for (int i = 0; i < NODE_STEPS; i++)
             node->separate[i] = transform_identity();
         /* Transforms composed before the order was chosen stay innermost. */

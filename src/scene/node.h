@@ -134,6 +134,8 @@ struct image *assets_image(struct assets *assets, const char *path, struct error
 void *assets_find_object(struct assets *assets, const char *key);
 bool assets_add_object(struct assets *assets, const char *key, void *object, void (*destroy)(void *object),
                        struct error *error);
+/* Releases the meshes of tables that were added since `until` was the newest. */
+void assets_drop_meshes(struct assets *assets, const struct asset_mesh *until);
 /* A mesh that something in the store owns is counted with the others. The store becomes one more owner. */
 bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error);
 
@@ -168,6 +170,8 @@ struct scene {
     struct added_node *added;
     struct own_material *own;
     struct material *last_material; /* they are linked from the newest to the oldest */
+    uint32_t kept_nodes;            /* of a snapshot: nodes with a smaller index were made before it */
+    bool escaped;                   /* something older refers to what was made since then */
     enum transform_order order;
     const char *file; /* of the script: nodes that are made get them; line 0: unknown */
     uint32_t line;
@@ -177,6 +181,25 @@ void scene_destroy(struct scene *scene);
 
 /* A copy of the text in the scene's arena, shared with the last equal one; NULL without memory. */
 const char *scene_keep_text(struct scene *scene, const char *text);
+
+/* What a frame of an animation makes is freed after it if nothing refers to it: scene_snapshot before the frame, then
+ * scene_rewind. What scripts hold is known to their side; scene->escaped says whether older parts of the scene refer to
+ * newer ones. Serial numbers are not used again, indices are. */
+struct scene_snapshot {
+    struct arena_mark arena;
+    uint32_t node_total, warned_room;
+    uint8_t *warned;
+    struct material *last_material;
+    struct asset_mesh *meshes;
+};
+struct scene_snapshot scene_snapshot(struct scene *scene);
+/* Meshes of tables that were added since then leave the store, too; those of files stay. */
+void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot);
+/* To be called when a node gets a reference, or memory of its own. */
+static inline void scene_note_reference(struct scene *scene, uint32_t node_index) {
+    scene->escaped = scene->escaped || node_index < scene->kept_nodes;
+}
+
 struct node *scene_node(struct scene *scene, enum node_kind kind, const char *name, struct error *error);
 bool node_add_child(struct scene *scene, struct node *parent, struct node *child, struct error *error);
 /* Whether `part` is the node or below it. It stops after `budget` steps (at most a thousand, since it recurses), with

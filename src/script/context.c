@@ -187,6 +187,8 @@ void handle_push(lua_State *L, enum handle_type type, void *pointer) {
     *handle = (struct handle){.type = type, .serial = context->handle_count++, .pointer = pointer};
     lua_rawgetp(L, LUA_REGISTRYINDEX, type_names[type]);
     lua_setmetatable(L, -2);
+    if (context->lists_handles)
+        frames_list_handle(L, handle->serial);
 }
 
 const struct handle *handle_at(lua_State *L, int index) {

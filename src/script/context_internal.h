@@ -113,6 +113,7 @@ struct script_context {
     struct frame frame;           /* the one that is drawn; number 0: none */
     struct shutter frame_shutter; /* in frames: of gr.frames */
     bool animates;                /* in gr.frames */
+    bool lists_handles;           /* new handles are listed for gr_frames.c */
     char raised[1536];            /* the last error of a function of gr, without its position */
     bool unforgivable;            /* --lenient would not get over it */
     struct error fatal;
@@ -193,7 +194,9 @@ void dispatch_push(lua_State *L, const struct script_function *function);
 void dispatch_push_methods(lua_State *L); /* the table of the methods of nodes, by name */
 int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result);
 
-/* gr_frames.c: calls `draw` of gr.frames for its frames and renders them; may raise. */
+/* gr_frames.c: a handle on top of the stack that was made in a frame. */
+void frames_list_handle(lua_State *L, uint32_t serial);
+/* Calls `draw` of gr.frames for its frames and renders them; may raise. */
 int frames_run(lua_State *L, const struct script_result *result);
 void frames_open(lua_State *L); /* gr.time and its like */
 

@@ -109,7 +109,8 @@ static void seed_frame(lua_State *L, uint32_t number) {
 /* The picture outside of the animation, also after an error that the script has caught. */
 static int leave_frames(lua_State *L) {
     struct script_context *context = context_of(L);
-    context->animates = false;
+    context->animates = context->lists_handles = false;
+    context->scene.kept_nodes = 0;
     set_frame(L, &context->host->frame);
     return 0;
 }
@@ -162,14 +163,72 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool r
     lua_settop(L, top);
 }
 
+/* --- the memory of frames --- */
+
+/* Nodes, materials and other objects are in one arena of the script. After a frame, the arena goes back to where it was
+ * before if Lua holds no handle that was made since, found by a weak table of them after a garbage collection, and if
+ * nothing older refers to the new objects. It is tried when the arena has grown by a half, so that collections cost
+ * little. */
+
+static const char handles_key; /* of the weak table, in the registry */
+
+enum { GROWTH_MIN = 1 << 20 };
+
+void frames_list_handle(lua_State *L, uint32_t serial) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &handles_key);
+    lua_pushvalue(L, -2);
+    lua_rawseti(L, -2, (lua_Integer)serial + 1);
+    lua_pop(L, 1);
+}
+
+static struct scene_snapshot begin_list(lua_State *L) {
+    struct script_context *context = context_of(L);
+    lua_newtable(L);
+    lua_newtable(L);
+    lua_pushliteral(L, "v");
+    lua_setfield(L, -2, "__mode");
+    lua_setmetatable(L, -2);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &handles_key);
+    context->lists_handles = true;
+    return scene_snapshot(&context->scene);
+}
+
+static bool holds_handles(lua_State *L) {
+    (void)lua_gc(L, LUA_GCCOLLECT);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &handles_key);
+    lua_pushnil(L);
+    bool holds = lua_next(L, -2) != 0;
+    lua_pop(L, holds ? 3 : 1);
+    return holds;
+}
+
+/* Between two frames. */
+static void free_frames(lua_State *L, struct scene_snapshot *snapshot) {
+    struct script_context *context = context_of(L);
+    struct scene *scene = &context->scene;
+    size_t grown = scene->arena.total - snapshot->arena.total;
+    if (grown < GROWTH_MIN || grown < snapshot->arena.total / 2)
+        return;
+    bool edited = context->change_count > 0 || scene->added || scene->own;
+    if (!scene->escaped && !edited && !context->lenient && !holds_handles(L))
+        scene_rewind(scene, snapshot);
+    context->subject = NULL; /* it may be the name of a node that is freed */
+    context->line_source = NULL;
+    *snapshot = begin_list(L);
+}
+
+/* --- all frames --- */
+
 static void draw_selected(lua_State *L, int draw, const struct frame_plan *plan) {
     const struct frame_selection *selection = &context_of(L)->options->frames.selection;
     struct frame frame = plan->frame;
     uint32_t last = selection->step > 0 ? selection->last : frame.count;
+    struct scene_snapshot snapshot = begin_list(L);
     for (frame.number = 1; frame.number <= last; frame.number++) {
         bool renders = frame_is_selected(selection, frame.number);
         if (!plan->pure || renders)
             draw_frame(L, draw, &frame, renders);
+        free_frames(L, &snapshot);
     }
 }
 

@@ -40,6 +40,7 @@ bool gr_set_material(struct script_context *context, const struct script_value *
     if (!is_shape(context, args[SELF].node, "material", error))
         return unless_warned(error);
     args[SELF].node->material = args[SET_MATERIAL].material;
+    scene_note_reference(&context->scene, args[SELF].node->index);
     return true;
 }
 
@@ -53,6 +54,7 @@ bool gr_set_texture(struct script_context *context, const struct script_value *a
     if (node->kind == NODE_CSG)
         return error_set(error, ERROR_SCENE, "a combined solid has no texture; set those of its operands");
     node->texture = gr_image(context, &args[SET_TEXTURE], error);
+    scene_note_reference(&context->scene, node->index);
     return node->texture != NULL;
 }
 
@@ -66,6 +68,7 @@ bool gr_set_bump(struct script_context *context, const struct script_value *args
     if (node->kind == NODE_CSG)
         return error_set(error, ERROR_SCENE, "a combined solid has no bump map; set those of its operands");
     node->bump = read_bump_values(context, &args[SET_BUMP], error);
+    scene_note_reference(&context->scene, node->index);
     return node->bump != NULL;
 }
 
@@ -102,6 +105,7 @@ bool gr_spin(struct script_context *context, const struct script_value *args, st
     if (!spin)
         return error_no_memory(error, "a motion");
     *spin = (struct node_spin){about, args[SPIN_DEGREES].number};
+    scene_note_reference(&context->scene, args[SELF].node->index);
     args[SELF].node->spin = spin;
     return true;
 }
@@ -116,8 +120,9 @@ bool gr_reset(struct script_context *context, const struct script_value *args, s
 /* Only the transforms of the other node itself are used, with their values at the time of rendering. */
 bool gr_moves_to(struct script_context *context, const struct script_value *args, struct script_result *result,
                  struct error *error) {
-    (void)context, (void)result, (void)error;
+    (void)result, (void)error;
     args[SELF].node->moves_to = args[MOVES_TO_NODE].node;
+    scene_note_reference(&context->scene, args[SELF].node->index);
     return true;
 }
 

@@ -17,6 +17,7 @@ void record_remember(struct script_context *context, int index, const struct exp
     struct recorded_function *function = arena_alloc(&context->keep, sizeof *function);
     if (!function)
         context_raise_no_memory(context);
+    context->scene.escaped = true; /* the list is older than the program */
     lua_pushvalue(L, index);
     *function = (struct recorded_function){.program = program,
                                            .reference = luaL_ref(L, LUA_REGISTRYINDEX),

@@ -565,8 +565,10 @@ static const struct image_function *image_function_at(lua_State *L, int index) {
     context->lua = L;
     if (!image)
         luaL_error(L, "img:at(u, v) needs a picture, a result of gr.texture, not %s", value_words(L, index));
-    if (!texture->function)
+    if (!texture->function) {
         texture->function = make_image_function(context, image);
+        context->scene.escaped = true; /* the texture may be older */
+    }
     return texture->function;
 }
 

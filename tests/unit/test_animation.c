@@ -468,6 +468,17 @@ TEST(any_division_of_an_animation_gives_the_bytes_of_one_run) {
           0, "");
 }
 
+/* As a scheduler of job arrays: four jobs at once, and every third is killed and queued again. */
+TEST(a_job_array_makes_an_animation_with_the_bytes_of_one_run) {
+    test_write_text(test_path("job.sh"),
+                    "run=\"$gray -q -j 1 scene.lua -o x.apng --shard-pictures $1/6 --resume --checkpoint-every 0\"\n"
+                    "if [ $(($1 % 3)) = 0 ]; then $run & p=$!; sleep 0.1; kill -9 $p; wait $p; fi\n"
+                    "exec $run\n");
+    gives("export gray; seq 6 | xargs -P 4 -n 1 sh job.sh && $gray merge -q --loop -o x.apng x.apng.frames/*.png && "
+          "$gray -q scene.lua -o one.apng && cmp x.apng one.apng",
+          0, "");
+}
+
 TEST(ranks_make_an_animation_with_the_bytes_of_one_run) {
     if (system("test -x $(dirname ${GRAY_TEST_BINARY:-build/release/gray})/gray-mpi && command -v mpirun >/dev/null"))
         test_skip("there is no gray-mpi beside the program, or no mpirun");

@@ -206,3 +206,78 @@ TEST(the_command_line_limits_and_raises_the_number_of_frames) {
     free(result.err);
     free(test_read_file(test_path("x.0003.png"), NULL));
 }
+
+/* Each frame makes 2000 nodes, more than a megabyte. With KEEP the script holds all of them to its end, so that nothing
+ * is freed; USE is what older objects do with newer ones. */
+#define CROWD                                                                                                          \
+    "local red, held, kept = gr.material({0.9, 0.4, 0.2}, {0, 0, 0}, 1), nil, {}\n"                                    \
+    "local root, old, target = gr.node('root'), gr.sphere(red), gr.node('target')\nroot:add_child(old)\n"              \
+    "gr.frames{count = 15, draw = function(t, k)\n"                                                                    \
+    "  local group, last = gr.node('group' .. k)\n"                                                                    \
+    "  for i = 1, 2000 do\n"                                                                                           \
+    "    local ball = gr.sphere{material = red, radius = 0.02, name = 'ball' .. i}\n"                                  \
+    "    if i % 200 == 0 then group:add_child(ball:translate(math.random() * 4 - 2, math.random() * 4 - 2, 1)) end\n"  \
+    "    if KEEP then kept[#kept + 1] = ball end\n"                                                                    \
+    "    last = ball\n"                                                                                                \
+    "  end\n"                                                                                                          \
+    "  if KEEP then kept[#kept + 1] = group end\n"                                                                     \
+    "  local new = gr.material({t, 1 - t, 0.5}, {0, 0, 0}, 1)\n"                                                       \
+    "  local mesh = gr.mesh{verts = {{0, 0, 2}, {t, 0, 2}, {0, 1, 2}}, faces = {{0, 1, 2}}}\n"                         \
+    "  local show = gr.node('show', {root, group, mesh})\n"                                                            \
+    "  USE\n"                                                                                                          \
+    "  return {node = show, width = 32, height = 24, eye = {0, 0, 9}, view = {0, 0, -1}, fov = 40,\n"                  \
+    "          lights = {gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0})}} end}\n"
+
+static struct test_result run_crowd(const char *use, const char *options) {
+    char text[4096], line[256];
+    const char *at = strstr(CROWD, "USE\n");
+    (void)snprintf(text, sizeof text, "%.*s%s%s", (int)(at - CROWD), CROWD, use, at + 3);
+    (void)snprintf(line, sizeof line, "-q -j 2 %s -o out.y4m scene.lua", options);
+    return test_gray_scene(text, line, NULL);
+}
+
+static char *stream_of(const char *use, const char *options) {
+    struct test_result result = run_crowd(use, options);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s: %s", use, result.err);
+    free(result.out);
+    free(result.err);
+    return test_read_file(test_path("out.y4m"), NULL);
+}
+
+TEST(memory_of_frames_is_freed_and_what_older_objects_use_stays) {
+    enum { SIZE = 15 * (6 + 3 * 32 * 24) };
+    static const char *const uses[] = {
+        "",
+        "held = last",
+        "if k % 7 == 0 then root:add_child(last:translate(k / 20, 0, 2)) end",
+        "old:set_material(new)",
+        "if k == 9 then old:set_texture(gr.texture('t.png')) end",
+        "if k == 9 then old:moves_to(last) end",
+        "old:spin('y', k)",
+        "if k == 9 then old:set_material(gr.material(function(p) return {p.x, p.y, 0.5} end, {0, 0, 0}, 1)) end",
+        "if k == 9 then held = gr.node('held', {last}) elseif held and k > 9 then group:add_child(held) end",
+        "if k == 5 then gr.transform_order('separate') end old:translate(0.01, 0, 0)",
+        "if k == 9 then held = coroutine.wrap(function() local a = last coroutine.yield() group:add_child(a) end) "
+        "held() "
+        "end",
+    };
+    struct test_result result =
+        test_gray_scene("gr.render{node = gr.node('n'), file = 't.png', width = 4, height = 4, eye = {0, 0, 1}, "
+                        "view = {0, 0, -1}, lights = {}}",
+                        "-q -o t.png scene.lua", NULL);
+    free(result.out);
+    free(result.err);
+    for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
+        char *freed = stream_of(uses[i], "-D KEEP=false"), *kept = stream_of(uses[i], "-D KEEP=true");
+        if (!freed || !kept || memcmp(freed, kept, SIZE) != 0)
+            test_fail(__FILE__, __LINE__, "%s: other pictures", uses[i]);
+        free(freed);
+        free(kept);
+    }
+    free(stream_of("", "-D KEEP=false --script-memory 16M"));
+    result = run_crowd("", "-D KEEP=true --script-memory 16M");
+    CHECK(result.status != 0 && strstr(result.err, "--script-memory") != NULL);
+    free(result.out);
+    free(result.err);
+}
