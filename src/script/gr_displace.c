@@ -41,23 +41,21 @@ static bool displace_mesh(const struct displacing *d, struct node *node, struct 
 static void grid_inputs(const void *context, size_t i, double inputs[EXPR_INPUT_COUNT]) {
     const struct height_field_input *grid = context;
     double x = (double)(i % grid->columns) / (grid->columns - 1), z = (double)(i / grid->columns) / (grid->rows - 1);
-    inputs[EXPR_POINT_X] = inputs[EXPR_U] = x;
+    inputs[EXPR_POINT_X] = x;
     inputs[EXPR_POINT_Y] = grid->heights ? grid->heights[i] : 0;
     inputs[EXPR_POINT_Z] = z;
-    inputs[EXPR_V] = 1 - z;
 }
 
 /* The heights of the grid, or 0 where there are none, plus those of the function: in the arena of the call. */
 const double *gr_function_heights(struct script_context *context, const struct height_field_input *grid,
                                   const struct expr_program *program, struct error *error) {
     size_t count = (size_t)grid->columns * grid->rows;
-    const unsigned readable = EXPR_POINT_INPUTS | 1U << EXPR_U | 1U << EXPR_V;
     const struct expr_points points = {count, grid_inputs, grid};
     if (program->output_count != 1) {
         (void)error_set(error, ERROR_SCENE, "the height of a height field is a number, not a vector");
         return NULL;
     }
-    if (!expr_field_reads_only(program, readable, "a height is a function of p, s.u and s.v", error))
+    if (!expr_field_reads_only(program, EXPR_POINT_INPUTS, "a height is a function of the point alone", error))
         return NULL;
     if (2 * (uint64_t)(grid->columns - 1) * (grid->rows - 1) > DISPLACED_TRIANGLES) {
         (void)error_set(error, ERROR_SCENE, "%u columns and %u rows are more than %d triangles", grid->columns,

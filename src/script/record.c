@@ -359,7 +359,7 @@ static void begin(lua_State *L) {
         recorder->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *recorder->decisions);
     if (!recorder->answers)
         recorder->answers = mem_alloc_zero(EXPR_NODES, sizeof *recorder->answers);
-    if (!recorder->decisions || !recorder->answers || !record_bounds_begin(recorder))
+    if (!recorder->decisions || !recorder->answers)
         context_raise_no_memory(context);
     memset(recorder->answers, 0, EXPR_NODES * sizeof *recorder->answers);
     recorder->serial++;

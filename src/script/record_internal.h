@@ -110,13 +110,12 @@ int make_keys(lua_State *L); /* gr.keys */
 /* Compares a function with its recording at points within its bounds. Raises the error. Expects the function on top. */
 void record_compare_in_bounds(lua_State *L, const struct recorded_function *function);
 
-/* record_interval.c. False: no memory. */
-bool record_bounds_begin(struct recorder *recorder);
+/* record_interval.c */
 void record_bounds_end(struct recorder *recorder);
 /* 1 or 0 where the condition holds for all points of the path, or for none; -1: for some, or not known. */
 int record_bounds_prove(const struct recorder *recorder, uint32_t condition);
-/* The path goes on where the condition has this answer. */
-void record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer);
+/* The path goes on where the condition has this answer. False: no memory. */
+bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer);
 
 /* record_bounds.c */
 /* Remembers the function at an absolute index. Raises an error: no memory. */

@@ -20,12 +20,6 @@ struct path_bounds {
     uint32_t serial, path; /* serials begin with 1 */
 };
 
-bool record_bounds_begin(struct recorder *recorder) {
-    if (!recorder->narrowed)
-        recorder->narrowed = mem_alloc_zero(EXPR_NODES, sizeof *recorder->narrowed);
-    return recorder->narrowed != NULL;
-}
-
 void record_bounds_end(struct recorder *recorder) {
     mem_free(recorder->narrowed);
     recorder->narrowed = NULL;
@@ -90,7 +84,8 @@ static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t 
         out = is_unread ? unknown(node->type)
                         : expr_interval_apply(node->operation, operands[0], operands[1], operands[2]);
     }
-    const struct path_bounds *narrowed = &recorder->narrowed[at];
+    const struct path_bounds none = {{0, 0, false}, 0, 0},
+                             *narrowed = recorder->narrowed ? &recorder->narrowed[at] : &none;
     bool is_here = narrowed->path == recorder->path && narrowed->serial == recorder->serial;
     return is_here ? meet(out, narrowed->bounds) : out;
 }
@@ -107,18 +102,22 @@ static void narrow(struct recorder *recorder, uint32_t node, struct expr_interva
 }
 
 /* Of a comparison of a with b. Where it does not hold, b is less, or one of them is NaN. */
-void record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer) {
+bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer) {
     const struct expr_node node = recorder->graph.nodes[condition];
     bool is_order = node.operation == EXPR_LESS || node.operation == EXPR_LESS_EQUAL ||
                     node.operation == EXPR_INTEGER_LESS || node.operation == EXPR_INTEGER_LESS_EQUAL;
     bool is_equal = answer && (node.operation == EXPR_EQUAL || node.operation == EXPR_INTEGER_EQUAL);
     if (!is_order && !is_equal)
-        return;
+        return true;
+    if (!recorder->narrowed)
+        recorder->narrowed = mem_alloc_zero(EXPR_NODES, sizeof *recorder->narrowed);
+    if (!recorder->narrowed)
+        return false;
     int visits_a = MAX_VISITS, visits_b = MAX_VISITS;
     uint32_t less = node.operands[0], more = node.operands[1];
     struct expr_interval a = bounds_of(recorder, less, &visits_a), b = bounds_of(recorder, more, &visits_b);
     if (!answer && (a.may_be_nan || b.may_be_nan))
-        return;
+        return true;
     if (!answer) {
         struct expr_interval swapped = a;
         a = b;
@@ -130,4 +129,5 @@ void record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool an
     const struct expr_interval above = {a.low, is_equal ? a.high : (double)INFINITY, false};
     narrow(recorder, less, meet(a, below));
     narrow(recorder, more, meet(b, above));
+    return true;
 }

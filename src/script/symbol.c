@@ -187,7 +187,10 @@ bool record_decide(lua_State *L, uint32_t condition) {
         record_give_up(L, "the function is not pure: called again with the same arguments it went another way");
     }
     recorder->answers[condition] = 2 * recorder->path + (decision->answer ? 1 : 0);
-    record_bounds_narrow(recorder, condition, decision->answer);
+    if (!record_bounds_narrow(recorder, condition, decision->answer)) {
+        context_of(L)->lua = L;
+        context_raise_no_memory(context_of(L));
+    }
     return decision->answer;
 }
 

@@ -159,10 +159,11 @@ static inline void right_text(const struct script_parameter *p, char *out, size_
 }
 
 static inline void begin_call(const struct script_function *function, char call[CALL_SIZE]) {
+    bool is_of_mesh = function->result == RESULT_FACES || strcmp(function->name, "displace") == 0;
     (void)snprintf(call, CALL_SIZE, "%s%s",
-                   function->owner == OWNER_GR        ? "gr."
-                   : function->result == RESULT_FACES ? "sheet:"
-                                                      : "ball:",
+                   function->owner == OWNER_GR ? "gr."
+                   : is_of_mesh                ? "sheet:"
+                                               : "ball:",
                    function->name);
 }
 
@@ -228,6 +229,8 @@ static inline bool goes_with_the_others(const struct script_function *function, 
     excludes = excludes || strcmp(name, "image") == 0;
     if (strcmp(function->name, "implicit") == 0 && (strcmp(name, "radius") == 0 || strcmp(name, "centre") == 0))
         return false; /* in place of bounds */
+    if (strcmp(function->name, "height_field") == 0 && (strcmp(name, "columns") == 0 || strcmp(name, "rows") == 0))
+        return false; /* without heights */
     if (strcmp(function->name, "frames") == 0 && strcmp(name, "seconds") == 0)
         return false; /* in place of count */
     return !(excludes && (strstr(function->name, "mesh") || strstr(function->name, "height"))) &&

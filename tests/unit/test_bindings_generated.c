@@ -70,7 +70,8 @@ static const char *wrong_text(const struct script_parameter *p, int which, char 
         list[count++] = "{{0, 1, 1, 0 / 0}}";
     }
     if (p->kind == KIND_FUNCTION) {
-        list[count++] = p->flags & OR_PROFILE ? "function(d) return d.w.x end" : "function(p) return {p.x, 0, 0} end";
+        bool takes_vectors = p->flags & OR_PROFILE || strstr(p->help, "an offset");
+        list[count++] = takes_vectors ? "function(d) return d.w.x end" : "function(p) return {p.x, 0, 0} end";
         list[count++] = "function(p, s) return s.u end";
         list[count++] = "function(p) end";
         list[count++] = "math.random";

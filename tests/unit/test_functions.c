@@ -422,7 +422,7 @@ TEST(displaced_nodes_are_errors_where_they_cannot_be) {
          "assert(#select(2, m:faces()) == 48)",
          NULL},
         {"gr.height_field{heights = {{0, 0}, {1, 0}}}:displace(f, 0.1)", NULL},
-        {"gr.height_field{f = function(p, s) return p.x * s.v end, columns = 5, rows = 3}", NULL},
+        {"gr.height_field{f = function(p) return p.x * p.z end, columns = 5, rows = 3}", NULL},
         {"gr.height_field{f = f, heights = {{0, 0}, {1, 0}}}", NULL},
         {"mesh():displace{f = f}", "edge is missing, the largest length of edges (or level)"},
         {"mesh():displace{edge = 1}", "f is missing, a function of a vertex"},
