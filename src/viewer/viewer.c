@@ -219,10 +219,19 @@ void viewer_note_stop(struct viewer *viewer, double seconds) {
                    1000 * seconds);
 }
 
+/* No request of the user is open. */
+static bool is_served(const struct viewer *viewer) {
+    return !viewer->pass.outdated && !viewer->edit.click_waits && !viewer->trace.wanted &&
+           viewer->edit.pending.count == 0 && !viewer_needs_overlay(viewer);
+}
+
 bool viewer_is_idle(const struct viewer *viewer) {
-    return viewer->pass.state == PASS_WAITING && viewer->pass.result == RESULT_COMPLETE && !viewer->pass.outdated &&
-           !viewer->edit.click_waits && !viewer->trace.wanted && viewer->edit.pending.count == 0 &&
-           !viewer_needs_overlay(viewer) && !viewer_wants_large(viewer) && !viewer_large_is_outdated(viewer);
+    return viewer->pass.state == PASS_WAITING && viewer->pass.result == RESULT_COMPLETE && is_served(viewer) &&
+           !viewer_wants_large(viewer) && !viewer_large_is_outdated(viewer);
+}
+
+bool viewer_is_enlarging(const struct viewer *viewer) {
+    return is_served(viewer) && !viewer_is_idle(viewer) && (viewer->pass.view.width > 0 || viewer_wants_large(viewer));
 }
 
 static void end_pass(struct viewer *viewer, const struct picture_report *report, double now) {
@@ -440,7 +449,9 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
         viewer_handle_event(viewer, &event);
-    if ((viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING) && !viewer_plays(viewer))
+    /* A fine pass of a view that has changed is being stopped: it would show the view before. */
+    bool stale = viewer->pass.outdated && !viewer->pass.view.plain;
+    if ((viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING) && !viewer_plays(viewer) && !stale)
         viewer_draw_tiles(viewer);
     viewer_show(viewer, now);
     enum viewer_action action = viewer->action;

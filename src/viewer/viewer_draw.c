@@ -175,6 +175,8 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
                        viewer->waits ? "waiting for a change" : "the script runs, %s", time);
     } else if (viewer->pass.report.threads == 0 && done == 0) {
         (void)snprintf(figures->state, sizeof figures->state, "building");
+    } else if (viewer_is_enlarging(viewer)) {
+        (void)snprintf(figures->state, sizeof figures->state, "ready, enlarging: %.0f %%", 100 * figures->share);
     } else if (viewer->pass.result == RESULT_COMPLETE) {
         (void)snprintf(figures->state, sizeof figures->state, viewer_is_idle(viewer) ? "ready" : "working");
     } else {

@@ -7,6 +7,7 @@
 
 /* viewer.c: the picture is complete, and there is nothing to do. */
 bool viewer_is_idle(const struct viewer *viewer);
+bool viewer_is_enlarging(const struct viewer *viewer); /* the same, but for the pixels of a larger window */
 void viewer_note_stop(struct viewer *viewer, double seconds);
 
 /* viewer_input.c */

@@ -304,6 +304,57 @@ TEST(window_makes_passes_as_coarse_as_thirty_a_second_need) {
     end(&t);
 }
 
+/* The render process has finished a pass over this tile with this light, or all of it. */
+static void render_tile(struct table *t, uint32_t tile, float light, uint8_t state) {
+    const struct film *film = &t->viewer.pass.film;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    for (uint32_t y = r.y0; y < r.y1; y++)
+        for (uint32_t x = r.x0; x < r.x1; x++)
+            for (int c = 0; c < 3; c++)
+                film->pixels[(size_t)y * film->width + x].rgb[c] = light;
+    atomic_store(&film->tiles[tile], state);
+}
+
+static int pixels_with(const struct table *t, uint8_t level) {
+    int count = 0;
+    for (int i = 0; i < 100 * 70; i++)
+        count += t->viewer.display.image[3 * i] == level;
+    return count;
+}
+
+TEST(window_shows_passes_over_a_view_and_nothing_of_it_once_another_one_begins) {
+    struct table t;
+    begin(&t);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(!t.viewer.pass.view.plain);
+    /* A tile is shown again after each pass. */
+    render_tile(&t, 0, 1, FILM_TILE_PASSED + 1);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    int whole = pixels_with(&t, 255);
+    CHECK(whole > 0);
+    render_tile(&t, 0, 0.2f, FILM_TILE_PASSED + 2);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(pixels_with(&t, 255) == 0 && pixels_with(&t, 51) == whole);
+    /* The view changes: tiles that are finished until the pass has stopped are not shown. */
+    t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_WHEEL, .y = 2};
+    CHECK_EQ_INT(step(&t), VIEWER_STOP_PASS);
+    render_tile(&t, 0, 1, FILM_TILE_PASSED + 3);
+    render_tile(&t, 1, 1, FILM_TILE_PASSED + 3);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    finish_pass(&t, 0.001, true);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(pixels_with(&t, 255) == 0);
+    /* When the first pass of the new view is finished, all pixels are of it. */
+    for (uint32_t tile = 0; tile < film_tile_count(&t.viewer.pass.film); tile++)
+        render_tile(&t, tile, 0.6f, FILM_TILE_DONE);
+    finish_pass(&t, 0.01, false);
+    CHECK_EQ_INT(pixels_with(&t, 153), 100 * 70);
+    end(&t);
+}
+
 /* A window that plays 60 frames at 30 frames per second, with a simulated script that takes 8 ms for each one, and
  * passes that would take 0.8 s with a sample for each pixel. */
 TEST(window_plays_frames_when_they_are_due_by_passes_as_coarse_as_necessary) {

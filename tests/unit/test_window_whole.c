@@ -317,7 +317,7 @@ TEST(window_goes_on_after_an_animation_and_plays_turntables_and_scripts_of_one_f
 /* At the size of the picture the pixels of the window are squares of 10 x 10. */
 TEST(window_larger_than_the_picture_shows_it_with_the_pixels_of_the_window) {
     static uint8_t large[3 * WIDE * HIGH];
-    const struct deed deeds[] = {{"ready", KEY('s'), 0}, {"ready", KEY('q'), 0}};
+    const struct deed deeds[] = {{"ready", KEY('s'), 0}, {"ready  ", KEY('q'), 0}};
     const struct setting setting = {
         .scene = "local r = gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.1}, {0.4, 0.4, 0.4}, 20)))\n"
                  "gr.render{node = r, file = 'out.png', width = 64, height = 48, eye = {0, 0, 3}, view = {0, 0, -1}}\n",
