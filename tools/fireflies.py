@@ -3,12 +3,22 @@
 median of the eight by more than four of their standard deviations plus 8 levels.
 
 tools/fireflies.py PICTURE [REFERENCE]
+tools/fireflies.py --scene SCRIPT...
 
 A pixel that stands out of the reference, too (a picture of many samples of the same size), belongs there.
-Prints each that does not, and exits with 1 if there is one."""
+With --scene, renders each path-traced scene with the OPTIONS of its first lines, and the surroundings of the pixels
+that stand out without denoising, by SPP samples (default 4096). GRAY: the program (default ./gray); OPTIONS: more
+options for all of it.
+Prints each pixel that does not belong there, and exits with 1 if there is one."""
+import os
+import re
 import struct
+import subprocess
 import sys
+import tempfile
 import zlib
+
+CELL = 12  # pixels that share a reference
 
 
 def read_png(name):
@@ -65,18 +75,62 @@ def is_outlier(rows, x, y):
     return False
 
 
+def outliers(width, height, rows):
+    return [(x, y) for y in range(1, height - 1) for x in range(1, width - 1) if is_outlier(rows, x, y)]
+
+
+def report(name, found):
+    for x, y in found:
+        print(f'{name}: pixel {x},{y} stands out')
+    return bool(found)
+
+
+def compare(picture, reference):
+    width, height, rows = read_png(picture)
+    found = outliers(width, height, rows)
+    if reference:
+        size, truth = read_png(reference)[:2], read_png(reference)[2]
+        if size != (width, height):
+            sys.exit(f'{reference}: is not of {width} x {height} pixels')
+        found = [(x, y) for x, y in found if not is_outlier(truth, x, y)]
+    return report(picture, found)
+
+
+def render(script, output, options):
+    command = [os.environ.get('GRAY', './gray'), '-q', *options, *os.environ.get('OPTIONS', '').split(), '-o', output,
+               script]
+    if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode != 0:
+        sys.exit(f'{script}: not rendered')
+
+
+def check_scene(script, folder):
+    """Whether pixels stand out that do not in the reference."""
+    with open(script, encoding='utf-8') as file:
+        own = re.search(r'^-- *OPTIONS: *(.*)$', file.read(), re.M)
+    picture, part, cells, left = folder + '/picture.png', folder + '/part.png', {}, []
+    render(script, picture, own.group(1).split() if own else [])
+    found = outliers(*read_png(picture))
+    for x, y in found:
+        cells.setdefault((x // CELL, y // CELL), []).append((x, y))
+    for pixels in cells.values():
+        x0, y0 = min(x for x, _ in pixels) - 1, min(y for _, y in pixels) - 1
+        size = max(x for x, _ in pixels) + 2 - x0, max(y for _, y in pixels) + 2 - y0
+        render(script, part, ['--denoise=none', '--spp', os.environ.get('SPP', '4096'), '--seed', '1', '--crop',
+                              f'{x0},{y0},{size[0]},{size[1]}'])
+        truth = read_png(part)[2]
+        left += [(x, y) for x, y in pixels if not is_outlier(truth, x - x0, y - y0)]
+    print(f'{script}: {len(found)} pixels stand out, {len(left)} of them not in the reference', flush=True)
+    return report(script, left)
+
+
 def main():
+    if len(sys.argv) > 2 and sys.argv[1] == '--scene':
+        with tempfile.TemporaryDirectory() as folder:
+            bad = [script for script in sys.argv[2:] if check_scene(script, folder)]
+        sys.exit(1 if bad else 0)
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    width, height, rows = read_png(sys.argv[1])
-    reference = read_png(sys.argv[2]) if len(sys.argv) == 3 else None
-    if reference and reference[:2] != (width, height):
-        sys.exit(f'{sys.argv[2]}: is not of {width} x {height} pixels')
-    found = [(x, y) for y in range(1, height - 1) for x in range(1, width - 1) if is_outlier(rows, x, y)]
-    found = [(x, y) for x, y in found if not (reference and is_outlier(reference[2], x, y))]
-    for x, y in found:
-        print(f'{sys.argv[1]}: pixel {x},{y} stands out')
-    sys.exit(1 if found else 0)
+    sys.exit(1 if compare(sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None) else 0)
 
 
 main()

@@ -163,6 +163,7 @@ struct settings {
     double clamp;          /* --clamp: the largest component that a sample of a path may have; 0: any */
     bool passes;           /* paths: the picture is looked at while it is made, so its samples come in passes */
     enum denoiser denoise; /* of path-traced pictures */
+    bool keeps_noise;      /* --denoise=none: scenes cannot request a denoiser */
     uint64_t seed;
     bool view_is_target;         /* --view target */
     bool pixel_corner;           /* --pixel-sample corner */

@@ -99,7 +99,8 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->clamp = args[RENDER_CLAMP].number;
     if (args[RENDER_FILTER].given)
         settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
-    if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE)
+    if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE &&
+        !settings->keeps_noise)
         settings->denoise = DENOISER_GRAY;
     if (args[RENDER_COLOUR].given)
         settings->colour = (enum colour_pipeline)args[RENDER_COLOUR].choice;

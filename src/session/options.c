@@ -405,8 +405,11 @@ static bool apply_option(const struct option *option, const char *text, struct o
         ok = aov_parse(text, &options->settings.aov);
         break;
     case OPTION_DENOISE:
-        ok = strcmp(text, "gray") == 0 || strcmp(text, "oidn") == 0;
-        options->settings.denoise = strcmp(text, "oidn") == 0 ? DENOISER_OIDN : DENOISER_GRAY;
+        options->settings.keeps_noise = strcmp(text, "none") == 0;
+        options->settings.denoise = strcmp(text, "oidn") == 0   ? DENOISER_OIDN
+                                    : strcmp(text, "gray") == 0 ? DENOISER_GRAY
+                                                                : DENOISER_NONE;
+        ok = options->settings.keeps_noise || options->settings.denoise != DENOISER_NONE;
         break;
     case OPTION_STATS:
         ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
@@ -506,6 +509,8 @@ struct digest options_digest(const struct options *options) {
     /* Films are the same for all denoisers. */
     if (settings->denoise != DENOISER_NONE)
         digest = digest_bytes("denoise", sizeof "denoise", digest);
+    if (settings->keeps_noise)
+        digest = digest_bytes("raw", sizeof "raw", digest);
     const int64_t numbers[] = {options->width,          options->height,
                                (int64_t)settings->seed, settings->cropped,
                                settings->crop_x,        settings->crop_y,

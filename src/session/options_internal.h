@@ -22,7 +22,7 @@ enum option_kind {
     OPTION_FRAMES,  /* --frames: a struct frame_selection */
     OPTION_LAYERS,  /* --aov */
     OPTION_STATS,   /* --stats, --stats=text, --stats=json */
-    OPTION_DENOISE, /* --denoise, --denoise=gray, --denoise=oidn */
+    OPTION_DENOISE, /* --denoise, --denoise=gray, --denoise=oidn, --denoise=none */
 };
 
 enum option_group {

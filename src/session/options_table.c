@@ -75,9 +75,9 @@ const struct option option_table[] = {
      "samples of marked pixels; rotated: on a rotated grid, pixels are marked by colours, surfaces and thin "
      "primitives; "
      "grid: at the centres of N x N cells, pixels are marked by colours alone"},
-    {OPTION_GROUP_PICTURE, "--denoise", OPTION_DENOISE, "=gray|oidn", NO_RANGE, NO_FIELD, NULL,
+    {OPTION_GROUP_PICTURE, "--denoise", OPTION_DENOISE, "=gray|oidn|none", NO_RANGE, NO_FIELD, NULL,
      "remove noise, with --integrator path; oidn: by the program oidnDenoise of Open Image Denoise, which must be on "
-     "PATH"},
+     "PATH; none: also where scenes request it, none is removed"},
     {OPTION_GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "seed of all random numbers, including math.random in scripts"},
 

@@ -91,6 +91,14 @@ TEST(a_crop_is_denoised_as_the_whole_picture) {
           0, NULL);
 }
 
+TEST(denoise_none_leaves_the_noise_of_a_scene_that_asks_for_denoising) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    test_write_text(test_path("asks.lua"), DENOISED);
+    gives("$gray -q scene.lua -o raw.pfm && $gray -q asks.lua -o denoised.pfm && ! cmp -s raw.pfm denoised.pfm && "
+          "$gray -q asks.lua --denoise=none -o none.pfm && cmp raw.pfm none.pfm",
+          0, NULL);
+}
+
 /* The stand-in looks at its arguments and its files, and answers with the albedo. */
 TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
     test_write_text(test_path("scene.lua"), PLAIN);
@@ -107,7 +115,7 @@ TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
           "denoised.pfm");
     gives("PATH=$PWD/none $gray -q scene.lua --denoise=oidn", 3,
           "--denoise=oidn: there is no program oidnDenoise on PATH\n");
-    gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of gray|oidn, not 'other'");
+    gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of gray|oidn|none, not 'other'");
 }
 
 TEST(layers_of_light_belong_to_the_path_tracer) {
