@@ -472,9 +472,12 @@ static void image_row(void *context, uint32_t y, uint8_t *line) {
 bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name,
                        struct error *error) {
     const struct file_target target = {.path = name, .rules = picture->rules};
-    return free_name(picture->path, "-view", "png", name, error) &&
-           png_write(&target, viewer->request.width, viewer->request.height, image_row, (void *)(uintptr_t)viewer,
-                     error);
+    const struct png_source source = {.width = viewer->request.width,
+                                      .height = viewer->request.height,
+                                      .bytes = image_row,
+                                      .context = (void *)(uintptr_t)viewer,
+                                      .srgb = viewer->request.srgb != 0};
+    return free_name(picture->path, "-view", "png", name, error) && png_write_from(&target, &source, NULL, error);
 }
 
 struct lua_file {

@@ -352,3 +352,24 @@ TEST(window_that_watches_opens_for_an_error_before_the_first_picture) {
     CHECK(freopen("/dev/null", "w", stderr) != NULL);
     CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
 }
+
+TEST(window_ends_with_the_denoised_picture_of_paths_also_after_a_restart) {
+    const struct deed deeds[] = {{"out.png is written", KEY(WINDOW_ARROW_UP), 0},
+                                 {NULL, {.kind = WINDOW_KEY, .key = WINDOW_ARROW_UP}, 10},
+                                 {NULL, KEY(WINDOW_HOME), 5},
+                                 {NULL, KEY('r'), 5},
+                                 {"ready", KEY('s'), 0},
+                                 {NULL, KEY('q'), 0}};
+    const struct setting setting = {
+        .scene = "local r = gr.geometry('ball', gr.sphere(gr.material({0.8, 0.3, 0.1}, {0.4, 0.4, 0.4}, 20)))\n"
+                 "gr.render{node = r, file = 'out.png', width = 64, height = 48, eye = {0, 0, 3}, view = {0, 0, -1},\n"
+                 "  integrator = 'path', background = {0.5, 0.6, 0.7}}\n",
+        .option = "--denoise"};
+    CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
+    struct test_result result = test_gray(NULL, "-q --progress=none scene.lua --denoise -o whole.png");
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(same_files("out.png", "whole.png"));
+    CHECK(same_files("out-view1.png", "whole.png"));
+    free(result.out);
+    free(result.err);
+}
