@@ -478,6 +478,14 @@ TEST(one_to_four_ranks_give_the_bytes_of_one_run) {
     }
 }
 
+TEST(ranks_draw_and_finish_a_picture_with_the_bytes_of_one_run) {
+    need_mpi();
+    put("scene.lua", SCENE "picture('a.png', 330, 250)\n");
+    gives("o='scene.lua --style toon --bloom .5 --vignette .4 --fxaa --dither blue'; $gray -q $o -o whole.png && "
+          "export gray; sh farm.sh 3 $o && cmp a.png whole.png",
+          0, "");
+}
+
 TEST(ranks_trace_paths_to_the_bytes_of_one_run) {
     need_mpi();
     put("scene.lua", ONE);
