@@ -271,7 +271,7 @@ void viewer_show(struct viewer *viewer, double now) {
     driver->show(driver->context, &frame);
     viewer->display.fits_window = false;
     /* The picture on the screen now, even a coarse one, shows the new world. */
-    if (viewer->built > 0 && viewer->pass.report.threads > 0) {
+    if (viewer->built > 0 && viewer->pass.report.threads > 0 && !viewer_plays(viewer) && viewer->note[0] == '\0') {
         (void)snprintf(viewer->note, sizeof viewer->note, "%.100s: on the screen %.1f ms after its world was built",
                        viewer->request.file, 1000 * (progress_clock() - viewer->built));
         viewer->built = 0;
