@@ -225,7 +225,8 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
 }
 
 /* A function of random statements: locals, branches, loops, tables, closures. What is rounded is limited before:
- * integers beyond 64 bits are a limit of recordings (docs/functions.md). */
+ * integers beyond 64 bits are a limit of recordings (docs/functions.md). Zeros are floats: Lua computes x - 0 as x + 0,
+ * which is another zero for x = -0. */
 static const char generator[] =
     "local function pick(...) return (select(math.random(select('#', ...)), ...)) end\n"
     "local function generate()\n"
@@ -233,7 +234,8 @@ static const char generator[] =
     "  local lines, count = {}, 0\n"
     "  local function value(depth)\n"
     "    if depth == 0 or math.random() < 0.2 then\n"
-    "      return pick(names[math.random(#names)], names[math.random(#names)], tostring(math.random(-4, 4)),\n"
+    "      return pick(names[math.random(#names)], names[math.random(#names)], pick(tostring(math.random(-4, -1)), "
+    "'0.0', tostring(math.random(1, 4))),\n"
     "        string.format('%.3f', math.random() * 4 - 2))\n"
     "    end\n"
     "    local a, b = value(depth - 1), value(depth - 1)\n"
