@@ -1093,3 +1093,22 @@ TEST(window_on_a_screen_of_high_density_has_larger_letters) {
           "xdotool key q; wait $pid; done'",
           0);
 }
+
+TEST(window_of_the_program_plays_pauses_and_grows) {
+    need_display();
+    gives("{ sed /gr.render/,\\$d scene.lua; echo \"gr.frames{count = 9, loop = true, pure = true, draw = function(t) "
+          "return "
+          "{node = r, file = 'f.##.png', width = 200, height = 150, eye = {t, 0, 6}, view = {0, 0, -1}} end}\"; } "
+          ">anim.lua; "
+          "xvfb-run -a -s '-screen 0 900x700x24' sh -c '$gray -gui --progress=none anim.lua & pid=$!; "
+          "sh wait.sh \"xdotool search --name playing\" || exit 20; xdotool key k; "
+          "sh wait.sh \"xdotool search --name ready..frame\" || exit 19; xdotool key h; "
+          "sh wait.sh \"xdotool search --name ready..frame\" || exit 18; "
+          "xdotool search --name ready windowsize 600 450; sh wait.sh \"xdotool search --name enlarging\\\\|ready\" || "
+          "exit 17; "
+          "xdotool key s; sh wait.sh \"ls f.*-view1.png\" || exit 16; xdotool key q; wait $pid'",
+          0);
+    gives("name=$(ls f.*-view1.png) && number=${name#f.} && number=${number%-view1.png} && "
+          "$gray -q anim.lua --frames $number-$number -o whole.png && cmp whole.png $name && ! ls f.??.png",
+          0);
+}
