@@ -269,4 +269,4 @@ clean:
 
 force:
 .PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
--include $(ALL_OBJECTS:.o=.d)
+-include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)

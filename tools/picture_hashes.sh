@@ -45,7 +45,7 @@ render() { # render NAME SCENE OPTION...
     [ -s "$folder/$name.txt" ] || rm -f "$folder/$name.txt"
 }
 
-scenes=$(ls data/*.lua data/csg/*.lua data/library/show_*.lua data/classic/*.lua docs/first.lua tests/pictures/*.lua 2>/dev/null |
+scenes=$(ls data/*.lua data/csg/*.lua data/functions/*.lua data/library/show_*.lua data/classic/*.lua docs/first.lua tests/pictures/*.lua 2>/dev/null |
     grep -vE '/(make_[^/]*|room|stage)\.lua$')
 for scene in $scenes; do
     wanted "$scene" || continue

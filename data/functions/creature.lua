@@ -33,7 +33,7 @@ scene:add_child(gr.implicit { f = eyes, bounds = { { -0.3, 1.2, 1.1 }, { 0.3, 1.
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, distance = -0.04, material = gr.material { kd = grass } })
 
 gr.render {
-    node = scene, file = 'creature.png', width = 300, height = 200, eye = { 4.2, 2.2, 4.6 }, target = { 0, 0.85, 0.1 }, fov = 27,
+    node = scene, file = 'creature.png', width = 600, height = 400, eye = { 4.2, 2.2, 4.6 }, target = { 0, 0.85, 0.1 }, fov = 27,
     ambient = { 0.28, 0.30, 0.34 }, background = { 0.62, 0.76, 0.92 },
     lights = { gr.light({ 4, 8, 6 }, { 0.8, 0.76, 0.68 }, { 1, 0, 0 }) },
 }

@@ -49,7 +49,7 @@ scene:add_child(land)
 -- The lake in the middle of the valley.
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, distance = 0.25, material = gr.rr_material({ 0.03, 0.10, 0.12 }, { 0.7, 0.7, 0.7 }, 200, 0.6, 0, 1.33) })
 gr.render {
-    node = scene, file = 'landscape.png', width = 400, height = 240, eye = { 0.35, 1.35, 0.0 }, target = { -0.15, 0.75, -5 }, fov = 46,
+    node = scene, file = 'landscape.png', width = 640, height = 384, eye = { 0.35, 1.35, 0.0 }, target = { -0.15, 0.75, -5 }, fov = 46,
     ambient = { 0.30, 0.34, 0.42 }, background = sky,
     lights = { gr.directional_light { direction = { 0.45, -0.58, -0.68 }, colour = { 1.0, 0.93, 0.80 } } },
     fog = gr.height_fog { density = 0.035, base = 0, scale = 1.5, colour = { 0.74, 0.81, 0.89 } },

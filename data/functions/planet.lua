@@ -70,6 +70,6 @@ local scene = gr.node 'space'
 scene:add_child(globe)
 scene:add_child(sky)
 gr.render {
-    node = scene, file = 'planet.png', width = 360, height = 270, eye = { 1.2, 0.85, 3.1 }, target = { 0.03, 0, 0 }, fov = 40, ambient = { 0.03, 0.035, 0.05 },
+    node = scene, file = 'planet.png', width = 640, height = 480, eye = { 1.2, 0.85, 3.1 }, target = { 0.03, 0, 0 }, fov = 40, ambient = { 0.03, 0.035, 0.05 },
     background = stars, lights = { gr.directional_light { direction = { -0.75, -0.35, -0.8 }, colour = { 1.05, 1.0, 0.92 } } },
 }
