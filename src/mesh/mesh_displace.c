@@ -261,7 +261,7 @@ static bool division_init(struct division *d, const struct mesh *mesh) {
         d->colours.width = 3;
         ok = rows_grow(&d->colours, mesh->vertex_count);
         for (size_t i = 0; ok && i < (size_t)mesh->vertex_count * 3; i++)
-            d->colours.numbers[i] = (double)mesh->colours[0][i];
+            d->colours.numbers[i] = (double)mesh->colours[i / 3][i % 3];
         d->colours.count = mesh->vertex_count;
     }
     for (uint32_t f = 0; ok && f < mesh->triangle_count; f++) {
@@ -426,7 +426,7 @@ static bool write_tables(struct division *d, const struct mesh *mesh, struct mes
         own->colours = mem_alloc((size_t)d->colours.count * sizeof *own->colours);
         ok = own->colours != NULL;
         for (size_t i = 0; ok && i < 3 * (size_t)d->colours.count; i++)
-            own->colours[0][i] = (float)d->colours.numbers[i];
+            own->colours[i / 3][i % 3] = (float)d->colours.numbers[i];
         input->colours = (const float(*)[3])own->colours;
     }
     return ok;
