@@ -31,7 +31,7 @@ scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material { kd = b
 scene:add_child(gr.plane { normal = { 0, 0, 1 }, distance = -2.5, material = gr.material { kd = { 0.46, 0.42, 0.40 } } })
 
 gr.render {
-    node = scene, file = 'lamp.png', width = 240, height = 240, eye = { 2.2, 2.9, 6.4 }, target = { 0, 1.35, 0 }, fov = 32,
+    node = scene, file = 'lamp.png', width = 400, height = 400, eye = { 2.2, 2.9, 6.4 }, target = { 0, 1.35, 0 }, fov = 32,
     ambient = { 0.16, 0.16, 0.19 }, background = { 0.02, 0.02, 0.03 },
     lights = { gr.light({ 0, 2.15, 0.1 }, { 1.0, 0.84, 0.58 }, { 1, 0, 0.02 }), gr.light({ 5, 6, 7 }, { 0.60, 0.62, 0.68 }, { 1, 0, 0 }) },
 }

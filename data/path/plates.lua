@@ -11,7 +11,7 @@ scene:add_child(gr.rectangle { material = wall, corner = { -14, -4, 8 }, along =
 scene:add_child(gr.rectangle { material = wall, corner = { -14, -4, -6 }, along = { 28, 0, 0 }, up = { 0, 18, 0 } })
 
 -- Each plate is tilted so that its middle shows the middle of the row of lamps.
-local eye, lamps = { 0, 2.2, 13.5 }, { 0, 4.6, -3 }
+local eye, lamps = { 0, 2.16, 13.5 }, { 0, 4.6, -3 }
 local function unit(v)
     local length = math.sqrt(v[1] ^ 2 + v[2] ^ 2 + v[3] ^ 2)
     return { v[1] / length, v[2] / length, v[3] / length }
