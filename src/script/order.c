@@ -13,12 +13,14 @@
 #include "script/lexer_internal.h"
 #include "script/search_internal.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
 enum {
     PATHS = 4096,
     SCENE_LIMIT = 1 << 26,
+    SELF_LIMIT = 1 << 28, /* of the scene itself, as where it is run */
     SIBLING_LIMIT = 1 << 20,
     SIBLINGS = 300,
     DEPTH = 8,
@@ -190,7 +192,8 @@ struct search {
     int visited_count;
     struct evidence evidence;
     struct file_search files; /* for those that are not at the path in the script */
-    bool no_memory;
+    bool no_memory, unread;   /* unread: the scene itself, with the error */
+    struct error error;
 };
 
 static void scan_file(struct search *search, const char *path, int depth);
@@ -250,8 +253,13 @@ static void scan_text(struct search *search, const char *text, size_t size, int 
 
 static void scan_file(struct search *search, const char *path, int depth) {
     char canonical[PATHS];
-    if (search->visited_count == FILES || !file_canonical(path, canonical, sizeof canonical))
+    if (search->visited_count == FILES)
         return;
+    if (!file_canonical(path, canonical, sizeof canonical)) {
+        if (depth == 0 && errno != ENOENT)
+            search->unread = !error_set(&search->error, ERROR_SCENE, "%s: cannot be found: %s", path, strerror(errno));
+        return;
+    }
     size_t library = strlen(search->library);
     if (library > 0 && strncmp(canonical, search->library, library) == 0 && canonical[library] == '/')
         return;
@@ -265,10 +273,17 @@ static void scan_file(struct search *search, const char *path, int depth) {
     }
     search->visited[search->visited_count++] = copy;
     struct file_bytes bytes;
-    struct error ignored;
-    /* The user named the scene itself; it may be a link to any file. */
-    if (!path_policy_map(depth > 0 ? search->path_policy : NULL, path, SCENE_LIMIT, &bytes, &ignored))
+    struct error error;
+    /* The user named the scene itself; it may be a link to any file. Its text decides how it is shown, so it must be
+     * read; other files may be missing. */
+    if (!path_policy_map(depth > 0 ? search->path_policy : NULL, path, depth > 0 ? SCENE_LIMIT : SELF_LIMIT, &bytes,
+                         &error)) {
+        if (depth == 0) {
+            search->unread = true;
+            search->error = error;
+        }
         return;
+    }
     scan_text(search, (const char *)bytes.data, bytes.size, depth);
     file_unmap(&bytes);
 }
@@ -354,7 +369,11 @@ bool order_detect(const char *path, const char *library_folder, const struct pat
     }
     arena_destroy(&search.arena);
     arena_destroy(&search.files.arena);
-    return search.no_memory ? error_no_memory(error, "the order of transforms") : true;
+    if (search.unread)
+        *error = search.error;
+    if (search.no_memory)
+        return error_no_memory(error, "the order of transforms");
+    return !search.unread;
 }
 
 void order_of_text(const char *text, size_t size, struct order_finding *finding) {
