@@ -656,6 +656,8 @@ bool file_output_remove(const struct file_target *target, struct file_identity i
             ok = MAY_FAIL(unlinkat(file.folder, moved ? file.temporary : file.leaf, 0)) == 0 || errno == ENOENT ||
                  error_set(error, file_refusal_kind(errno), "%.600s: cannot be removed: %s", file.target,
                            strerror(errno));
+            if (!ok && moved) /* a file that stays keeps its name */
+                (void)renameat2(file.folder, file.temporary, file.folder, file.leaf, RENAME_NOREPLACE);
         }
     }
     close_all(&file);
