@@ -305,7 +305,8 @@ TEST(files_that_a_script_names_are_looked_at_for_the_order_wherever_they_are) {
             bool ok = order_detect(path, "lua", NULL, &finding, &error);
             fault_at((enum fault_kind)kind, 0);
             over = fault_count((enum fault_kind)kind) - before < k;
-            CHECK(ok || error.kind == ERROR_MACHINE);
+            /* a call that fails while the scene itself is read is an error that names it */
+            CHECK(ok || error.kind == ERROR_MACHINE || (kind > 0 && strstr(error.text, "main.lua")));
         }
 #endif
 }
