@@ -38,8 +38,8 @@ plan=$(plan)
 scenes=$(echo "$plan" | grep -c '^data/')
 total=$(echo "$plan" | awk -v n="$processors" '/^data/ { s += $2 / n + 0.1 } END { print s }')
 building=""
-[ -x build/release/gray ] || building="after the build, "
-echo "rendering $scenes scenes takes $building$(about_time "$total") with $processors processors"
+[ -x build/release/gray ] || building=", plus the build"
+echo "rendering $scenes scenes takes $(about_time "$total") with $processors processors$building"
 
 tools/setup.sh || exit 1
 make -s -j2 || { echo "render_all.sh: the build failed" >&2; exit 1; }
