@@ -62,7 +62,7 @@ enum {
 #define INDEX(name, otherwise, help)                                                                                   \
     { name, KIND_NUMBER, OPTIONAL | OR_TEXTURE | LOW_OPEN, ABOVE(0), NULL, otherwise, help }
 #define LATER(name, kind, otherwise)                                                                                   \
-    { name, kind, OPTIONAL, ABOVE(0), NULL, otherwise, "Not there yet." }
+    { name, kind, OPTIONAL, ABOVE(0), NULL, otherwise, "Not implemented." }
 #define SAMPLES                                                                                                        \
     {                                                                                                                  \
         "glossy_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "4",                                            \
@@ -92,7 +92,7 @@ static const struct script_parameter openpbr_parameters[] = {
         {"transmission_depth", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
          "Distance inside the solid after which white light has transmission_color; 0: at the surface."},
     [TRANSMISSION_SCATTER] = {"transmission_scatter", KIND_COLOUR, OPTIONAL, ABOVE(0), NULL, "{0, 0, 0}",
-                              "Scattering inside the solid. Not there yet: must be black."},
+                              "Scattering inside the solid. Not implemented: must be black."},
     [TRANSMISSION_SCATTER_ANISOTROPY] = {"transmission_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1),
                                          NULL, "0", "No effect, because transmission_scatter is black."},
     [TRANSMISSION_DISPERSION_SCALE] = LATER("transmission_dispersion_scale", KIND_NUMBER, "0"),
@@ -102,7 +102,7 @@ static const struct script_parameter openpbr_parameters[] = {
     [SUBSURFACE_RADIUS] = LATER("subsurface_radius", KIND_NUMBER, "1"),
     [SUBSURFACE_RADIUS_SCALE] = LATER("subsurface_radius_scale", KIND_COLOUR, "{1, 0.5, 0.25}"),
     [SUBSURFACE_SCATTER_ANISOTROPY] = {"subsurface_scatter_anisotropy", KIND_NUMBER, OPTIONAL, IN_RANGE(-1, 1), NULL,
-                                       "0", "Not there yet."},
+                                       "0", "Not implemented."},
     [COAT_WEIGHT] = SHARE("coat_weight", "0", "Share of the surface with a clear coat."),
     [COAT_COLOUR] = TINT("coat_color", "{1, 1, 1}", "Colour of light that passed the coat twice."),
     [COAT_ROUGHNESS] = SHARE("coat_roughness", "0", "Roughness of the coat; 0 is polished."),
@@ -125,7 +125,7 @@ static const struct script_parameter openpbr_parameters[] = {
     [GEOMETRY_NORMAL] = {"geometry_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none", NORMAL_HELP},
     [GEOMETRY_TANGENT] = {"geometry_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u", TANGENT_HELP},
     [GEOMETRY_COAT_NORMAL] = {"geometry_coat_normal", KIND_IMAGE, OPTIONAL | OR_TEXTURE, ANY, NULL, "none",
-                              "Not there yet."},
+                              "Not implemented."},
     [GEOMETRY_COAT_TANGENT] = {"geometry_coat_tangent", KIND_DIRECTION, OPTIONAL, ANY, NULL, "along u",
                                "The same for the coat."},
     [OPENPBR_GLOSSY_SAMPLES] = SAMPLES,
@@ -153,7 +153,7 @@ static bool is_there(const struct script_value *args, struct error *error) {
         const struct script_value *value = &args[later[i].parameter];
         bool used = later[i].colour ? vec3_max_abs(value->vector) > 0 : value->number != 0;
         if (value->given && (used || later[i].parameter == GEOMETRY_COAT_NORMAL))
-            return error_set(error, ERROR_SCENE, "%s is not there yet", openpbr_parameters[later[i].parameter].name);
+            return error_set(error, ERROR_SCENE, "%s is not implemented", openpbr_parameters[later[i].parameter].name);
     }
     return true;
 }

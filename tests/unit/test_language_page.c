@@ -64,6 +64,22 @@ TEST(language_page_lists_every_function_with_all_its_arguments) {
     free(page);
 }
 
+TEST(language_page_lists_every_function_of_numbers_and_vectors) {
+    char *page = test_read_file("docs/language.md", NULL);
+    CHECK(page != NULL);
+    const struct value_function *function;
+    for (size_t i = 0; page && (function = value_function_at(i)) != NULL; i++) {
+        char call[64];
+        (void)snprintf(call, sizeof call, "gr.%s", function->name);
+        const char *at = strstr(page, call);
+        while (at && strchr("({", at[strlen(call)]) == NULL)
+            at = strstr(at + 1, call);
+        if (!at)
+            test_fail(__FILE__, __LINE__, "%s is not in docs/language.md", call);
+    }
+    free(page);
+}
+
 static void copy_into_test_folder(const char *folder, const char *name) {
     char from[256], to[1024];
     size_t size = 0;
