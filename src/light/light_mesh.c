@@ -1,9 +1,10 @@
-/* See light_mesh.h. The light of a sample is its radiance over the density of samples by area. */
+/* See light_mesh.h. The light of a sample is its radiance over the density of samples. */
 #include "light/light_mesh.h"
 
 #include "base/arena.h"
 #include "light/light_internal.h"
 #include "math/frame.h"
+#include "math/spherical_triangle.h"
 
 #include <math.h>
 
@@ -170,14 +171,30 @@ static double triangle_area(const struct light_triangle *t) {
     return vec3_length(vec3_cross(t->edge1, t->edge2)) / 2;
 }
 
+/* Whether a triangle appears so large that samples by solid angle have less noise than those by area, and how. Edges of
+ * a third of the distance already have samples of nearly the same weight. */
+static bool is_large(const struct light_triangle *t, struct vec3 from, struct spherical_triangle *seen) {
+    double squared = vec3_length_squared(vec3_sub(t->corner, from));
+    double edges = vec3_length_squared(t->edge1) + vec3_length_squared(t->edge2);
+    return 8 * edges > squared && spherical_triangle_make(t->corner, t->edge1, t->edge2, from, seen);
+}
+
 struct light_sample light_triangle_sample(const struct light_mesh *mesh, uint32_t triangle, struct vec3 point,
                                           struct vec3 from, struct sample2 xi) {
     const struct light_triangle *t = &mesh->triangles[triangle];
-    return sample_at(mesh, t, triangle_point(t, xi.x, xi.y), point, from, 1 / triangle_area(t));
+    struct spherical_triangle seen;
+    if (!is_large(t, from, &seen))
+        return sample_at(mesh, t, triangle_point(t, xi.x, xi.y), point, from, 1 / triangle_area(t));
+    struct light_sample sample = sample_at(mesh, t, spherical_triangle_point(&seen, xi), point, from, 1);
+    sample.pdf = sample.pdf > 0 ? 1 / seen.angle : 0;
+    return sample;
 }
 
 double light_triangle_pdf(const struct light_mesh *mesh, struct vec3 from, const struct light_hit *hit) {
-    return pdf_at(mesh, from, hit, 1 / triangle_area(&mesh->triangles[hit->triangle]));
+    const struct light_triangle *t = &mesh->triangles[hit->triangle];
+    struct spherical_triangle seen;
+    double by_area = pdf_at(mesh, from, hit, 1 / triangle_area(t));
+    return by_area > 0 && is_large(t, from, &seen) ? 1 / seen.angle : by_area;
 }
 
 void light_triangle_bounds(const struct light_mesh *mesh, uint32_t triangle, struct light_bounds *out) {

@@ -6,6 +6,7 @@
 #include "math/sampling.h"
 
 #include "math/elementary.h"
+#include "math/spherical_triangle.h"
 
 #include <math.h>
 
@@ -135,6 +136,63 @@ struct vec3 spherical_rectangle_point(const struct spherical_rectangle *seen, st
     double y = h * h < 1 ? limited(h * d / sqrt(1 - h * h), seen->y0, seen->y1) : h > 0 ? seen->y1 : seen->y0;
     struct vec3 point = vec3_add_scaled(seen->from, seen->x, x);
     return vec3_add_scaled(vec3_add_scaled(point, seen->y, y), seen->z, seen->z0);
+}
+
+/* A triangle sampled by its solid angle (spherical_triangle.h): Arvo, "Stratified Sampling of Spherical Triangles",
+ * SIGGRAPH 1995. The first number of a sample selects the triangle of a, b and a point of the arc from a to c, by its
+ * area; the second one the distance from b on the arc to that point. The solid angle is that of Van Oosterom and
+ * Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical Engineering 1983, which keeps its
+ * digits for small triangles. */
+
+/* Near a half-space the corners of the spherical triangle lie on one great circle. */
+static const double max_angle = 6.2;
+
+bool spherical_triangle_make(struct vec3 corner, struct vec3 edge1, struct vec3 edge2, struct vec3 from,
+                             struct spherical_triangle *out) {
+    struct vec3 to_corner = vec3_sub(corner, from);
+    struct vec3 a = vec3_normalize(to_corner), b = vec3_normalize(vec3_add(to_corner, edge1));
+    struct vec3 c = vec3_normalize(vec3_add(to_corner, edge2));
+    struct vec3 across_ab = vec3_cross(a, b), across_ac = vec3_cross(a, c);
+    double cos_ab = vec3_dot(a, b), cos_ac = vec3_dot(a, c), volume = fabs(vec3_dot(c, across_ab));
+    out->angle = 2 * el_atan2(volume, 1 + cos_ab + cos_ac + vec3_dot(b, c));
+    double sines = sqrt(vec3_length_squared(across_ab) * vec3_length_squared(across_ac));
+    if (!(out->angle > min_angle && out->angle < max_angle && sines > 0))
+        return false;
+    out->from = from;
+    out->corner = corner;
+    out->edge1 = edge1;
+    out->edge2 = edge2;
+    out->a = a;
+    out->b = b;
+    out->across = vec3_normalize(vec3_add_scaled(c, a, -cos_ac));
+    out->cos_ab = cos_ab;
+    out->cos_ac = cos_ac;
+    out->cos_alpha = vec3_dot(across_ab, across_ac) / sines;
+    out->sin_alpha = volume / sines;
+    return true;
+}
+
+/* The point in a direction (Moeller and Trumbore 1997). Rounding does not lead out of the triangle. */
+static struct vec3 triangle_in_direction(const struct spherical_triangle *seen, struct vec3 direction) {
+    struct vec3 p = vec3_cross(direction, seen->edge2), off = vec3_sub(seen->from, seen->corner);
+    double scale = 1 / vec3_dot(seen->edge1, p);
+    double u = limited(vec3_dot(off, p) * scale, 0, 1);
+    double v = limited(vec3_dot(direction, vec3_cross(off, seen->edge1)) * scale, 0, 1 - u);
+    return vec3_add_scaled(vec3_add_scaled(seen->corner, seen->edge1, u), seen->edge2, v);
+}
+
+struct vec3 spherical_triangle_point(const struct spherical_triangle *seen, struct sample2 xi) {
+    double sine, cosine, cos_alpha = seen->cos_alpha, sin_alpha = seen->sin_alpha;
+    el_sincos(xi.x * seen->angle, &sine, &cosine);
+    double s = sine * cos_alpha - cosine * sin_alpha, t = cosine * cos_alpha + sine * sin_alpha;
+    double u = t - cos_alpha, v = s + sin_alpha * seen->cos_ab;
+    double q = ((v * t - u * s) * cos_alpha - v) / ((v * s + u * t) * sin_alpha);
+    q = q < 1 ? limited(q, seen->cos_ac, 1) : 1; /* on the arc; at its end a, where q may be 0 / 0 */
+    struct vec3 end = vec3_add_scaled(vec3_scale(seen->a, q), seen->across, sqrt(fmax(0, (1 - q) * (1 + q))));
+    double cos_end = vec3_dot(end, seen->b), z = 1 - xi.y * (1 - cos_end);
+    struct vec3 aside = vec3_add_scaled(end, seen->b, -cos_end);
+    double length = vec3_length(aside), along = length > 0 ? sqrt(fmax(0, (1 - z) * (1 + z))) / length : 0;
+    return triangle_in_direction(seen, vec3_add_scaled(vec3_scale(seen->b, z), aside, along));
 }
 
 /* See sampling.h. The line from the point enters the box through the face whose plane it crosses last (Kay and Kajiya,

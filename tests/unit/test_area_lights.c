@@ -4,6 +4,7 @@
 #include "light/light_mesh.h"
 #include "light/sky_light_internal.h"
 #include "math/sampling.h"
+#include "math/spherical_triangle.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
@@ -70,6 +71,86 @@ TEST(a_rectangle_is_sampled_by_the_solid_angle_of_its_parts) {
     CHECK(!spherical_rectangle_make(corner, vec3_make(1, 0, 0), vec3_make(1, 0, 1), from, &seen));
     CHECK(!spherical_rectangle_make(corner, vec3_make(1e-3, 0, 0), vec3_make(0, 0, 1e-3), from, &seen));
     CHECK(!spherical_rectangle_make(from, vec3_make(1, 0, 0), vec3_make(0, 0, 1), from, &seen));
+}
+
+/* --- triangles by solid angle --- */
+
+/* From the sides of the spherical triangle (L'Huilier). */
+static double triangle_angle(const struct vec3 at[3], struct vec3 from) {
+    double sides[3], half = 0;
+    for (int i = 0; i < 3; i++) {
+        struct vec3 p = vec3_sub(at[(i + 1) % 3], from), q = vec3_sub(at[(i + 2) % 3], from);
+        sides[i] = atan2(vec3_length(vec3_cross(p, q)), vec3_dot(p, q));
+        half += sides[i] / 2;
+    }
+    double product = tan(half / 2);
+    for (int i = 0; i < 3; i++)
+        product *= tan(fmax(0, half - sides[i]) / 2);
+    return 4 * atan(sqrt(fmax(0, product)));
+}
+
+static double triangle_area(struct vec3 a, struct vec3 b, struct vec3 c) {
+    return vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a))) / 2;
+}
+
+/* The corners of triangles, and the point that sees them. */
+TEST(a_triangle_is_sampled_by_the_solid_angle_of_its_parts) {
+    enum { N = 200 };
+    static const struct vec3 cases[][4] = {{{0, 1, 0}, {2, 1, 0}, {0, 1, 1}, {0.5, 0, 0.25}},
+                                           {{0, 0.01, 0}, {2, 0.01, 0}, {0, 0.01, 1}, {0.5, 0, 0.25}},
+                                           {{0, 1, 0}, {2, 1, 0}, {0, 1, 1}, {5, 0, -3}},
+                                           {{0, 1, 0}, {2, 1, 0}, {0, 1, 1}, {-0.001, 0.999, 0.5}},
+                                           {{0, 1, 0}, {5, 1, 0}, {0, 1, 0.01}, {0.5, 0.5, 0.25}},
+                                           {{0, 1, 0}, {2, 1, 0}, {1, 1, 0.002}, {1, 0.9, 0}},
+                                           {{0, 1, 0}, {2, 1, 0}, {0, 1, 1}, {-20, 9, 5}},
+                                           {{-9, 1, -9}, {9, 1, -9}, {0, 1, 9}, {0, 0.7, 0}},
+                                           {{0, 1, 0}, {2, 1, 0}, {0, 1, 1}, {1.001, 1.001, 0.501}},
+                                           {{1, 1, 1}, {0, 2, 0}, {1e5, 3, 2}, {0.5, 0, 0.25}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct vec3 *at = cases[i], from = at[3];
+        struct vec3 edge1 = vec3_sub(at[1], at[0]), edge2 = vec3_sub(at[2], at[0]);
+        struct spherical_triangle seen;
+        CHECK(spherical_triangle_make(at[0], edge1, edge2, from, &seen));
+        CHECK_NEAR(seen.angle / triangle_angle(at, from), 1, 1e-6);
+        /* Parts: at the three corners, between the centres of two sides and the corner, and the rest. */
+        const struct vec3 middle[3] = {vec3_scale(vec3_add(at[1], at[2]), 0.5), vec3_scale(vec3_add(at[2], at[0]), 0.5),
+                                       vec3_scale(vec3_add(at[0], at[1]), 0.5)};
+        int counted[3] = {0, 0, 0};
+        double all = triangle_area(at[0], at[1], at[2]);
+        for (int k = 0; k < N * N; k++) {
+            struct sample2 xi = {(k % N + 0.5) / N, ((k - k % N) / N + 0.5) / N};
+            struct vec3 p = spherical_triangle_point(&seen, xi);
+            const double share[3] = {triangle_area(p, at[1], at[2]) / all, triangle_area(p, at[2], at[0]) / all,
+                                     triangle_area(p, at[0], at[1]) / all};
+            CHECK_NEAR(share[0] + share[1] + share[2], 1, 1e-9); /* it is in the triangle */
+            for (int c = 0; c < 3; c++)
+                counted[c] += share[c] > 0.5;
+        }
+        for (int c = 0; c < 3; c++) {
+            const struct vec3 part[3] = {at[c], middle[(c + 1) % 3], middle[(c + 2) % 3]};
+            CHECK_NEAR((double)counted[c] / (N * N), triangle_angle(part, from) / seen.angle, 0.006);
+        }
+    }
+}
+
+/* Edges of the unit square of a sample are edges of the triangle, and nothing is NaN there. */
+TEST(triangles_that_have_no_solid_angle_worth_it_are_not_sampled_by_it) {
+    static const struct vec3 corner = {0, 1, 0}, x = {1, 0, 0}, z = {0, 0, 1};
+    struct spherical_triangle seen;
+    CHECK(!spherical_triangle_make(corner, vec3_scale(x, 1e-3), vec3_scale(z, 1e-3), vec3_make(0, 0, 0), &seen));
+    CHECK(!spherical_triangle_make(corner, x, z, corner, &seen));                        /* at a corner, */
+    CHECK(!spherical_triangle_make(corner, x, z, vec3_make(0.5, 1, 0), &seen));          /* on an edge, */
+    CHECK(!spherical_triangle_make(corner, x, z, vec3_make(0.2, 1, 0.2), &seen));        /* inside, */
+    CHECK(!spherical_triangle_make(corner, x, z, vec3_make(3, 1, 0.2), &seen));          /* in its plane, */
+    CHECK(!spherical_triangle_make(corner, x, z, vec3_make(0.2, 1 - 1e-6, 0.2), &seen)); /* almost inside */
+    CHECK(!spherical_triangle_make(corner, x, vec3_make(2, 0, 0), vec3_make(0, 0, 0), &seen));
+    CHECK(!spherical_triangle_make(corner, x, z, vec3_make(NAN, 0, 0), &seen));
+    CHECK(spherical_triangle_make(corner, x, z, vec3_make(0, 0, 0), &seen));
+    for (int i = 0; i < 9; i++) {
+        struct vec3 p = spherical_triangle_point(&seen, (struct sample2){i % 3 / 2.0, (i - i % 3) / 6.0});
+        CHECK(p.x >= -1e-12 && p.z >= -1e-12 && p.x + p.z <= 1 + 1e-12);
+        CHECK_NEAR(p.y, 1, 1e-12);
+    }
 }
 
 /* Sixteen shadow rays to a lamp close above. One whose edges are a little off the right angle is sampled by area: the

@@ -128,14 +128,31 @@ static int meet(const struct light *light, const struct ray *ray, struct light_h
     return light_properties(light) & LIGHT_IS_ENVIRONMENT || light_meets_ray(light, ray, &hits[0]);
 }
 
-static double density(const struct light *light, const struct light_context *context, struct vec3 direction) {
-    struct ray ray = {.origin = context->from, .direction = direction, .t_max = INFINITY};
+/* A light as a point sees it, or one triangle of it alone. */
+struct sampled {
+    const struct light *light;
+    const struct light_context *context;
+    uint32_t triangle; /* LIGHT_NONE: all of the light */
+};
+
+static double density(const struct sampled *s, struct vec3 direction) {
+    struct ray ray = {.origin = s->context->from, .direction = direction, .t_max = INFINITY};
     struct light_hit hits[8];
     double sum = 0;
-    int count = meet(light, &ray, hits);
-    for (int i = 0; i < count; i++)
-        sum += light_pdf(light, context, direction, &hits[i]);
+    int count = meet(s->light, &ray, hits);
+    for (int i = 0; i < count; i++) {
+        if (s->triangle == LIGHT_NONE)
+            sum += light_pdf(s->light, s->context, direction, &hits[i]);
+        else if (s->triangle == hits[i].triangle)
+            sum += light_triangle_pdf(s->light->mesh, s->context->from, &hits[i]);
+    }
     return sum;
+}
+
+static struct light_sample sample_of(const struct sampled *s, struct sample2 xi) {
+    if (s->triangle == LIGHT_NONE)
+        return light_sample(s->light, s->context, xi);
+    return light_triangle_sample(s->light->mesh, s->triangle, s->context->point, s->context->from, xi);
 }
 
 /* The hit nearest to the target of a sample. */
@@ -191,47 +208,67 @@ static int cell_of(struct vec3 d) {
     return (row < ROWS ? row : ROWS - 1) * COLUMNS + (column < COLUMNS ? column : COLUMNS - 1);
 }
 
-static double share_of_cell(const struct light *light, const struct light_context *context, int cell) {
+static double share_of_cell(const struct sampled *s, int cell) {
     double sum = 0;
     for (int k = 0; k < FINE * FINE; k++) {
         double row = cell / COLUMNS + (k / FINE + 0.5) / FINE, column = cell % COLUMNS + (k % FINE + 0.5) / FINE;
-        sum += density(light, context, grid_direction(row, column));
+        sum += density(s, grid_direction(row, column));
     }
     return sum * 4 * pi / ((double)CELLS * FINE * FINE);
 }
 
-TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
+static void check_density(const char *name, const struct sampled *s) {
     enum { N = 40000 };
+    static int counted[CELLS];
+    int lost = 0, used = 0;
+    double chi = 0, all = 0, rest = 0, rest_counted = 0;
+    memset(counted, 0, sizeof counted);
+    for (uint64_t i = 0; i < N; i++) {
+        struct light_sample sample = sample_of(s, xi_of(77, i));
+        bool on = vec3_max_abs(sample.intensity) > 0;
+        lost += !on;
+        counted[cell_of(sample.direction)] += on;
+    }
+    for (int cell = 0; cell < CELLS; cell++) {
+        double share = share_of_cell(s, cell), expected = share * N;
+        all += share;
+        if (expected < 20) { /* too few for the normal approximation: joined into one cell */
+            rest += expected;
+            rest_counted += counted[cell];
+            continue;
+        }
+        chi += (counted[cell] - expected) * (counted[cell] - expected) / expected;
+        used++;
+    }
+    if (rest > 20)
+        chi += (rest_counted - rest) * (rest_counted - rest) / rest;
+    /* Samples that miss the light are not in the integral. */
+    CHECK_NEAR(all, 1 - (double)lost / N, 0.01);
+    if (chi > used + 1 + 5 * sqrt(2.0 * (used + 1)))
+        test_fail(__FILE__, __LINE__, "%s: chi-square %g in %d cells", name, chi, used);
+}
+
+TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
     struct example e;
     struct light_context context;
-    FOR_EVERY_AREA_LIGHT(e, context) {
-        static int counted[CELLS];
-        int lost = 0, used = 0;
-        double chi = 0, all = 0, rest = 0, rest_counted = 0;
-        memset(counted, 0, sizeof counted);
-        for (uint64_t i = 0; i < N; i++) {
-            struct light_sample sample = light_sample(&e.light, &context, xi_of(77, i));
-            bool on = vec3_max_abs(sample.intensity) > 0;
-            lost += !on;
-            counted[cell_of(sample.direction)] += on;
+    FOR_EVERY_AREA_LIGHT(e, context)
+    check_density(light_kind_name(e.light.kind), &(struct sampled){&e.light, &context, LIGHT_NONE});
+}
+
+/* From near and far, from above the middle and from the side: by solid angle and by area. */
+TEST(samples_of_single_triangles_have_the_density_that_pdf_states) {
+    static const struct vec3 points[] = {{0.3, 1.6, 0.4}, {0.5, 1.1, 0.2}, {0.3, 0.6, -0.2},
+                                         {1.1, 1.2, 0.9}, {0.3, -2.5, 0.2},  {0.31, 2.8, 0.19}};
+    for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
+        struct example e;
+        example_begin(&e, LIGHT_MESH, true, 1.5);
+        e.mesh.one_sided = false;
+        for (uint32_t triangle = 0; triangle < e.mesh.count; triangle++) {
+            struct light_context context;
+            CHECK(light_context_make(&e.light, points[i], points[i], &context));
+            check_density("triangle", &(struct sampled){&e.light, &context, triangle});
         }
-        for (int cell = 0; cell < CELLS; cell++) {
-            double share = share_of_cell(&e.light, &context, cell), expected = share * N;
-            all += share;
-            if (expected < 20) { /* too few for the normal approximation: joined into one cell */
-                rest += expected;
-                rest_counted += counted[cell];
-                continue;
-            }
-            chi += (counted[cell] - expected) * (counted[cell] - expected) / expected;
-            used++;
-        }
-        if (rest > 20)
-            chi += (rest_counted - rest) * (rest_counted - rest) / rest;
-        /* Samples that miss the light are not in the integral. */
-        CHECK_NEAR(all, 1 - (double)lost / N, 0.01);
-        if (chi > used + 1 + 5 * sqrt(2.0 * (used + 1)))
-            test_fail(__FILE__, __LINE__, "%s: chi-square %g in %d cells", light_kind_name(e.light.kind), chi, used);
+        example_end(&e);
     }
 }
 
