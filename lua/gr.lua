@@ -1719,7 +1719,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x from 0 on, the same for red, green and blue; the option has priority over a function.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
@@ -1802,7 +1802,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x from 0 on, the same for red, green and blue; the option has priority over a function.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
@@ -1997,7 +1997,7 @@ function node:translate(x, y, z) end
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic' tone ('none'|'reinhard'|'filmic'; default --tone): Tone curve that maps bright light into the range of a PNG file.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x from 0 on, the same for red, green and blue; the option has priority over a function.
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.

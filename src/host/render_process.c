@@ -408,12 +408,15 @@ static bool reserve_memory(struct render_process *process, const struct picture_
 
 static struct picture_request picture_request_of(const struct options *options, const struct render_job *job,
                                                  struct frame frame) {
+    static const struct tone_table no_table = {{0}};
     const struct finish *finish = &job->settings.finish;
+    const struct tone *tone = &job->settings.tone;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
-                                    .exposure = job->settings.tone.exposure,
-                                    .curve = (uint32_t)job->settings.tone.curve,
-                                    .srgb = job->settings.tone.srgb,
+                                    .exposure = tone->exposure,
+                                    .curve = (uint32_t)tone->curve,
+                                    .srgb = tone->srgb,
+                                    .tone_table = tone->table ? *tone->table : no_table,
                                     .deep = job->settings.deep,
                                     .bloom = finish->bloom,
                                     .vignette = finish->vignette,

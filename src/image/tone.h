@@ -12,12 +12,26 @@
     X(TONE_NONE, "none")                                                                                               \
     X(TONE_REINHARD, "reinhard")                                                                                       \
     X(TONE_FILMIC, "filmic")
-enum tone_curve { TONE_CURVES(LIST_MEMBER) };
+enum tone_curve {
+    TONE_CURVES(LIST_MEMBER) TONE_FUNCTION /* of a script: a table */
+};
+
+/* A function at TONE_ENTRIES lights: 0, then steps of 2^-22 to 2^-15, then 128 steps for each doubling, to 65280. All
+ * are exact floats, so the table of f(x) = x is f. Between them it is linear: the error is h^2/8 max |f''|, for smooth
+ * curves less than 1e-5 of the value. Above the last light the last value holds, below 0 the first. */
+enum { TONE_ENTRIES = 4096 };
+struct tone_table {
+    float values[TONE_ENTRIES]; /* finite */
+};
+double tone_table_light(int entry);
+/* The largest slope of the function between two lights, its sign ignored. */
+double tone_table_slope(const struct tone_table *table);
 
 struct tone {
     double exposure; /* stops: light is multiplied by 2^exposure */
     enum tone_curve curve;
-    bool srgb; /* the transfer function of IEC 61966-2-1; else values stay linear */
+    bool srgb;                      /* the transfer function of IEC 61966-2-1; else values stay linear */
+    const struct tone_table *table; /* of TONE_FUNCTION; borrowed */
 };
 
 static inline bool tone_is_plain(const struct tone *tone) {

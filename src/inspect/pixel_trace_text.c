@@ -359,7 +359,7 @@ static void print_sum(struct text_state *t) {
     const struct pixel_trace *pixel_trace = t->report->pixel_trace;
     const struct settings *settings = &t->report->picture->job->settings;
     const struct tone *tone = &settings->tone;
-    static const char *const curves[] = {TONE_CURVES(LIST_WORD)};
+    static const char *const curves[] = {TONE_CURVES(LIST_WORD)[TONE_FUNCTION] = "function"};
     unsigned count = 0;
     double toned[3];
     for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next)

@@ -132,7 +132,8 @@ static bool merge_picture(struct output_session *output, const struct part *part
                                       .edges = first->finish.edges,
                                       .fxaa = first->finish.fxaa,
                                       .dither = (uint32_t)first->finish.dither,
-                                      .record = first->record};
+                                      .record = first->record,
+                                      .tone_table = first->tone_table};
     memcpy(request.file, first->name, sizeof request.file);
     bool already = false;
     if (!check_parts(parts, count, error) || !output_begin(output, &request, &already, error))

@@ -140,6 +140,8 @@ static void describe_tiles(const struct output_session *output, struct picture *
                                    .record = request->record,
                                    .shard = options->shards ? options->shard : 1,
                                    .shards = options->shards ? options->shards : 1};
+    tiles->tone.table = NULL;
+    tiles->tone_table = request->tone_table;
     memcpy(tiles->name, picture->name, sizeof tiles->name);
 }
 

@@ -16,10 +16,6 @@
 #include <time.h>
 #include <unistd.h>
 
-struct tone picture_tone(const struct picture_request *request) {
-    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
-}
-
 struct finish picture_finish(const struct picture_request *request) {
     return (struct finish){.bloom = request->bloom,
                            .vignette = request->vignette,

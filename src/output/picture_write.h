@@ -24,7 +24,6 @@ struct picture {
     const float (*display)[3]; /* or NULL: of a part that is shown, its finished numbers for PNG files; borrowed */
 };
 
-struct tone picture_tone(const struct picture_request *request);
 struct finish picture_finish(const struct picture_request *request);
 /* One file. The extension of the target selects the format; every extension but .pfm, .hdr and .exr means PNG. The tone
  * is for PNG alone: the others contain light. Views other than FILM_FINAL are not finished. pool: or NULL, for this

@@ -142,6 +142,7 @@ struct settings {
     struct shutter shutter;
     struct camera_motion motion;
     struct tone tone;                        /* of the picture file; the film stays linear */
+    bool keeps_tone;                         /* --tone: functions of scenes have no effect */
     bool deep;                               /* 16 bits a channel in PNG files */
     struct finish finish;                    /* of the picture file too */
     int samples;                             /* -ss: N x N for a marked pixel; 1..64 */

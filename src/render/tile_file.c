@@ -21,6 +21,7 @@ enum {
     FORMAT_RECORD = 2,
     FORMAT_SHOWN = 3,
     FORMAT_FINISHED = 4,
+    FORMAT_TONE = 5,
     RECORD_DONE = 1,
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
@@ -30,11 +31,12 @@ enum {
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
     DONE_FIXED = 4 + KEY_SIZE + 16,
     PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
-    RECORD_FIELDS = 8,  /* behind PICTURE_FIXED from FORMAT_RECORD on */
-    SHOWN_FIELDS = 16,  /* behind them from FORMAT_SHOWN on */
-    FINISH_FIELDS = 32, /* behind them in FORMAT_FINISHED */
-    PAYLOAD_LIMIT =
-        4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS + FINISH_FIELDS,
+    RECORD_FIELDS = 8,              /* behind PICTURE_FIXED from FORMAT_RECORD on */
+    SHOWN_FIELDS = 16,              /* behind them from FORMAT_SHOWN on */
+    FINISH_FIELDS = 32,             /* behind them from FORMAT_FINISHED on */
+    TONE_FIELDS = 4 * TONE_ENTRIES, /* behind them in FORMAT_TONE */
+    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS +
+                    FINISH_FIELDS + TONE_FIELDS,
     DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */
 };
 
@@ -54,6 +56,8 @@ static bool rectangles_equal(struct film_rectangle a, struct film_rectangle b) {
 }
 
 static uint32_t format_of(const struct tile_picture *picture) {
+    if (picture && picture->tone.curve == TONE_FUNCTION)
+        return FORMAT_TONE;
     if (picture && !finish_is_plain(&picture->finish))
         return FORMAT_FINISHED;
     if (picture && !rectangles_equal(shown_of(picture), whole_of(picture)))
@@ -86,6 +90,14 @@ static void put_double(struct byte_writer *output, double value) {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     put_u64(output, bits);
+}
+
+static void put_table(struct byte_writer *output, const struct tone_table *table) {
+    for (int i = 0; i < TONE_ENTRIES; i++) {
+        uint32_t bits;
+        memcpy(&bits, &table->values[i], sizeof bits);
+        put_u32(output, bits);
+    }
 }
 
 static void put_digest(struct byte_writer *output, struct digest digest) {
@@ -162,6 +174,17 @@ static bool get_finish(struct byte_reader *input, struct finish *out) {
     return is_share(out->bloom) && is_share(out->vignette) && dither <= DITHER_BLUE;
 }
 
+/* False: a number is not finite. */
+static bool get_table(struct byte_reader *input, struct tone_table *out) {
+    bool fine = true;
+    for (int i = 0; i < TONE_ENTRIES; i++) {
+        uint32_t bits = get_u32(input);
+        memcpy(&out->values[i], &bits, sizeof bits);
+        fine = fine && isfinite(out->values[i]);
+    }
+    return fine;
+}
+
 static struct film_rectangle get_rectangle(struct byte_reader *input) {
     uint32_t x0 = get_u32(input), y0 = get_u32(input), x1 = get_u32(input);
     return (struct film_rectangle){x0, y0, x1, get_u32(input)};
@@ -235,6 +258,8 @@ static bool write_picture(struct text_writer *writer, const struct tile_picture 
         put_u32(&output, picture->finish.fxaa);
         put_u32(&output, (uint32_t)picture->finish.dither);
     }
+    if (format >= FORMAT_TONE)
+        put_table(&output, &picture->tone_table);
     put(&output, picture->name, strlen(picture->name));
     return write_record(writer, RECORD_PICTURE, (size_t)(output.at - writer->buffer) - RECORD_HEAD, error);
 }
@@ -370,8 +395,9 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     struct byte_reader input = {record->payload};
     uint32_t format = reader->file->format;
     bool stated = format >= FORMAT_RECORD, cut = format >= FORMAT_SHOWN, finished = format >= FORMAT_FINISHED;
+    bool toned = format >= FORMAT_TONE;
     if (record->size < (size_t)PICTURE_FIXED + (stated ? RECORD_FIELDS : 0) + (cut ? SHOWN_FIELDS : 0) +
-                           (finished ? FINISH_FIELDS : 0))
+                           (finished ? FINISH_FIELDS : 0) + (toned ? TONE_FIELDS : 0))
         return wrong(reader, error, "the description of the picture is too short");
     out->number = get_u32(&input);
     out->key = get_key(&input);
@@ -392,14 +418,15 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->record = stated ? get_film_record(&input) : format_1;
     out->shown = cut ? get_rectangle(&input) : whole_of(out);
     bool finish_fits = !finished || get_finish(&input, &out->finish);
+    bool tone_fits = (curve == TONE_FUNCTION) == toned && (!toned || get_table(&input, &out->tone_table));
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
                 out->y0 < out->full_height && out->width <= out->full_width - out->x0 &&
                 out->height <= out->full_height - out->y0 && film_record_valid(out->record) &&
                 is_part(&out->shown, out) && film_size(out->width, out->height, out->record, &bytes, &size_error);
-    if (!fits || !finish_fits || curve > TONE_FILMIC || !isfinite(out->tone.exposure) || out->number == 0 ||
-        out->shard == 0 || out->shard > out->shards)
+    if (!fits || !finish_fits || !tone_fits || curve > TONE_FUNCTION || !isfinite(out->tone.exposure) ||
+        out->number == 0 || out->shard == 0 || out->shard > out->shards)
         return wrong(reader, error, "the description of the picture is invalid");
     return get_name(&input, record->payload + record->size, out->name) ||
            wrong(reader, error, "the picture has an invalid name");
@@ -496,7 +523,7 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
         return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
     input.at += sizeof magic;
     out->format = get_u32(&input);
-    if (out->format < FORMAT || out->format > FORMAT_FINISHED || get_u32(&input) != FILM_TILE)
+    if (out->format < FORMAT || out->format > FORMAT_TONE || get_u32(&input) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;
@@ -574,7 +601,8 @@ const char *tile_picture_difference(const struct tile_picture *have, const struc
     if (have->shards != want->shards)
         return "the picture was divided differently";
     if (have->tone.exposure != want->tone.exposure || have->tone.curve != want->tone.curve ||
-        have->tone.srgb != want->tone.srgb || have->deep != want->deep)
+        have->tone.srgb != want->tone.srgb || have->deep != want->deep ||
+        memcmp(&have->tone_table, &want->tone_table, sizeof have->tone_table) != 0)
         return "its tone settings differ";
     if (!finish_equal(&have->finish, &want->finish))
         return "it is finished differently";

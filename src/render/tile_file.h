@@ -25,12 +25,13 @@ struct tile_picture {
     struct tile_key key;
     uint32_t full_width, full_height, x0, y0, width, height;
     struct film_rectangle shown; /* the part of it that is written; zero: all */
-    struct tone tone;
+    struct tone tone;            /* without its table */
     bool deep;
     struct finish finish;
     struct film_record record;
-    uint32_t shard, shards; /* 1 of 1: all tiles; both from 1 */
-    bool whole;             /* all tiles of the shard are there */
+    struct tone_table tone_table; /* of TONE_FUNCTION */
+    uint32_t shard, shards;       /* 1 of 1: all tiles; both from 1 */
+    bool whole;                   /* all tiles of the shard are there */
     char name[TILE_FILE_NAME];
 };
 

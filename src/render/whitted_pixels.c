@@ -47,6 +47,8 @@ static double cutoff_weight(const struct render_job *job) {
         return 0;
     if (tone->exposure > 0)
         cutoff /= el_exp2(tone->exposure);
+    if (tone->curve == TONE_FUNCTION)
+        cutoff /= fmax(tone_table_slope(tone->table), 1);
     if (tone->srgb)
         cutoff /= 12.92; /* the slope of the transfer function in the dark */
     return brightest > 1 ? cutoff / brightest : cutoff;

@@ -528,8 +528,12 @@ static bool read_value(struct script_context *c, int index, const struct script_
         return true;
     case KIND_CHOICE:
     case KIND_AXIS:
+        if ((p->flags & OR_CURVE) && lua_type(L, index) != LUA_TSTRING && !lua_isfunction(L, index))
+            wrong_type(c, &argument_path, "a word or a function", index);
         if ((p->flags & OR_NUMBER) && lua_type(L, index) == LUA_TNUMBER)
             value->number = read_number(c, index, &argument_path);
+        else if ((p->flags & OR_CURVE) && lua_isfunction(L, index))
+            value->curve = record_tone_curve(c, index, p->name);
         else
             value->choice = read_choice(c, index, &argument_path);
         return true;

@@ -293,8 +293,9 @@ bool argument_resembles(lua_State *L, int index, enum kind kind, unsigned flags)
         [KIND_CALLBACK] = LIKE_FUNCTION,
     };
     assert(wanted[kind]); /* every kind has a case */
-    int accepted =
-        wanted[kind] | (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0);
+    int accepted = wanted[kind] |
+                   (flags & (OR_TEXTURE | OR_PROFILE | OR_FUNCTION) ? 1 << HANDLE_TEXTURE | LIKE_FUNCTION : 0) |
+                   (flags & OR_CURVE ? LIKE_FUNCTION : 0);
     return (kinds_of(L, index) & accepted) != 0;
 }
 

@@ -102,7 +102,9 @@ static void describe_parameter(const struct script_parameter *p, char out[LINE_S
     bool or_texture = p->flags & OR_TEXTURE && p->kind != KIND_IMAGE;
     size_t used =
         (size_t)snprintf(out, LINE_SIZE, "%s (%s%s", p->name, p->kind == KIND_CHOICE ? choices : kind_words(p->kind),
-                         or_texture ? " or a texture" : "");
+                         or_texture            ? " or a texture"
+                         : p->flags & OR_CURVE ? " or a function"
+                                               : "");
     if (range[0])
         used += (size_t)snprintf(out + used, LINE_SIZE - used, ", %s", range);
     if (p->unit)
@@ -179,6 +181,8 @@ static const char *annotation_kind(const struct script_parameter *p, char out[CH
         choices_words(p, "|", out, CHOICES_SIZE);
         if (p->flags & OR_NUMBER)
             (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|number");
+        if (p->flags & OR_CURVE)
+            (void)snprintf(out + strlen(out), CHOICES_SIZE - strlen(out), "|fun(x: number): number");
         return out;
     case KIND_COLOUR:
         return p->flags & (OR_PROFILE | OR_FUNCTION) ? "gr.triple|string|gr.texture|function" : "gr.triple|string";

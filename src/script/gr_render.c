@@ -59,8 +59,13 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->view_is_target = true;
     if (args[RENDER_EXPOSURE].given)
         settings->tone.exposure = args[RENDER_EXPOSURE].number;
-    if (args[RENDER_TONE].given)
-        settings->tone.curve = (enum tone_curve)args[RENDER_TONE].choice;
+    const struct script_value *tone = &args[RENDER_TONE];
+    if (tone->curve && !settings->keeps_tone) { /* here the option wins */
+        settings->tone.curve = TONE_FUNCTION;
+        settings->tone.table = tone->curve;
+    } else if (tone->given && !tone->curve) {
+        settings->tone.curve = (enum tone_curve)tone->choice;
+    }
     if (args[RENDER_SRGB].given)
         settings->tone.srgb = args[RENDER_SRGB].boolean;
     if (args[RENDER_DEEP].given)

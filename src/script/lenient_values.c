@@ -310,6 +310,10 @@ static void push_choice(lua_State *L, int index, const struct script_parameter *
         lua_pushlstring(L, &"xyz"[axis], 1);
         return;
     }
+    if ((p->flags & OR_CURVE) && lua_isfunction(L, index)) {
+        lua_pushvalue(L, index);
+        return;
+    }
     if (lua_type(L, index) == LUA_TNUMBER) {
         lua_Integer which = (lua_Integer)fmax(-1, fmin(100, lua_tonumber(L, index)));
         const char *word = p->choices;

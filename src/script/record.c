@@ -11,6 +11,7 @@
 #include "math/exact.h"
 
 #include <assert.h>
+#include <float.h>
 #include <lauxlib.h>
 #include <math.h>
 #include <stdio.h>
@@ -94,11 +95,14 @@ static int add_position(lua_State *L) {
     return 1;
 }
 
-/* Replaces the sentence on top by "scene.lua:12: SENTENCE" with the line where the function begins. */
+/* Replaces the sentence on top by "scene.lua:12: SENTENCE" with the line where the function begins; not if it is one of
+ * C, as math.log. */
 static void name_function(lua_State *L, int function) {
     lua_Debug where;
     lua_pushvalue(L, function);
     (void)lua_getinfo(L, ">S", &where);
+    if (where.linedefined < 0)
+        return;
     lua_pushfstring(L, "%s:%d: %s", where.short_src, where.linedefined, lua_tostring(L, -1));
     lua_replace(L, -2);
 }
@@ -439,14 +443,15 @@ static struct texture texture_of(const struct recording *recording) {
     return out;
 }
 
-/* Raises every error. */
-static void record(struct script_context *context, int index, const char *name, struct recording *recording) {
+/* Calls `run` with the function at an absolute index and `data`. Raises every error, with the name of the argument in
+ * front. */
+static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
     lua_State *L = context->lua;
     struct recorder *recorder = context->recorder;
     recorder->busy = true;
-    lua_pushcfunction(L, record_protected);
+    lua_pushcfunction(L, run);
     lua_pushvalue(L, index);
-    lua_pushlightuserdata(L, recording);
+    lua_pushlightuserdata(L, data);
     int status = lua_pcall(L, 2, 0, 0);
     recorder->active = recorder->busy = false;
     expr_graph_destroy(&recorder->graph);
@@ -455,6 +460,10 @@ static void record(struct script_context *context, int index, const char *name, 
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
         lua_error(L); /* a fatal error, which the context has recorded */
+}
+
+static void record(struct script_context *context, int index, const char *name, struct recording *recording) {
+    run_protected(context, record_protected, index, recording, name);
     record_remember(context, index, recording->program, recording->domain);
 }
 
@@ -483,4 +492,62 @@ const struct script_texture *record_texture(struct script_context *context, int 
     if (!kept)
         context_raise_error(context, &error);
     return kept;
+}
+
+/* --- tone curves --- */
+
+/* Raises the sentence on top with the place of the function at index 1. */
+static int raise_of_curve(lua_State *L) {
+    name_function(L, 1);
+    return lua_error(L);
+}
+
+/* One call at each light of the table, without the work of a protected call. Arguments: the function, the table. */
+static int sample_curve(lua_State *L) {
+    struct tone_table *table = lua_touserdata(L, 2);
+    for (int i = 0; i < TONE_ENTRIES; i++) {
+        lua_settop(L, 2);
+        lua_pushvalue(L, 1);
+        lua_pushnumber(L, tone_table_light(i));
+        lua_call(L, 1, LUA_MULTRET);
+        int results = lua_gettop(L) - 2;
+        if (results != 1) {
+            lua_pushfstring(L, "the function returns %d values, not a number", results);
+            return raise_of_curve(L);
+        }
+        if (lua_type(L, 3) != LUA_TNUMBER) {
+            lua_pushfstring(L, "the function must return a number, not %s", value_words(L, 3));
+            return raise_of_curve(L);
+        }
+        double value = lua_tonumber(L, 3);
+        if (!(fabs(value) <= (double)FLT_MAX)) {
+            char words[128];
+            (void)snprintf(words, sizeof words, "the function must return finite numbers; at x = %.9g it returns %s",
+                           tone_table_light(i), value != value ? "NaN (not a number)" : "a number that is too large");
+            lua_pushstring(L, words);
+            return raise_of_curve(L);
+        }
+        table->values[i] = (float)value;
+    }
+    return 0;
+}
+
+/* Errors in the function get their position while the stack still exists. */
+static int sample_protected(lua_State *L) {
+    lua_settop(L, 2);
+    lua_pushcfunction(L, add_position);
+    lua_pushcfunction(L, sample_curve);
+    lua_pushvalue(L, 1);
+    lua_pushvalue(L, 2);
+    if (lua_pcall(L, 2, 0, 3) != LUA_OK)
+        lua_error(L);
+    return 0;
+}
+
+const struct tone_table *record_tone_curve(struct script_context *context, int index, const char *name) {
+    struct tone_table *table = arena_alloc(&context->call, sizeof *table);
+    if (!table)
+        context_raise_no_memory(context);
+    run_protected(context, sample_protected, index, table, name);
+    return table;
 }

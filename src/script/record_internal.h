@@ -103,6 +103,9 @@ const struct script_texture *record_texture(struct script_context *context, int 
 /* The program of such a function, or of gr.fn of one; NULL of anything else. source: "scene.lua:12". */
 const struct expr_program *record_function(struct script_context *context, int index, const char *name,
                                            enum record_domain domain, const char **source);
+/* The values of a tone curve, a function at an absolute index that is called and not recorded. They live as long as the
+ * call. Raises every error, likewise. */
+const struct tone_table *record_tone_curve(struct script_context *context, int index, const char *name);
 
 /* keys.c */
 int make_keys(lua_State *L); /* gr.keys */

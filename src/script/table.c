@@ -717,8 +717,10 @@ static const struct script_parameter render_parameters[] = {
                         "Whether integrator path removes noise; the option has priority."},
     [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, IN_RANGE(-100, 100), "stops", "--exposure",
                          "Light is multiplied by 2^exposure when a PNG file is written."},
-    [RENDER_TONE] = {"tone", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
-                     "Tone curve that maps bright light into the range of a PNG file."},
+    [RENDER_TONE] =
+        {"tone", KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
+         "Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x "
+         "from 0 on, the same for red, green and blue; the option has priority over a function."},
     [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
                      "Whether PNG files are encoded with the sRGB transfer function."},
     [RENDER_COLOUR] = {"colour", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(COLOUR_PIPELINES), NULL, "--colour",

@@ -5,6 +5,7 @@
 #define GRAY_SCRIPT_TABLE_INTERNAL_H
 
 #include "base/error.h"
+#include "image/tone.h"
 #include "light/light.h"
 #include "light/sky.h"
 #include "material/material.h"
@@ -89,6 +90,7 @@ struct script_value {
     const double (*stops)[4];
     const struct fog *fog;
     const struct sky *sky;
+    const struct tone_table *curve;
     const uint32_t *starts, *indices;
     const double *numbers;
     bool display; /* `vector` is a colour of the screen */
@@ -102,6 +104,7 @@ enum {
     NOT_ZERO = 8,
     OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
     OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
+    OR_CURVE = 2048, /* of KIND_CHOICE: a function of the light is accepted: `curve` is set */
     /* Of KIND_COLOUR: a function of the direction is accepted: `program` is set, vector is 1. Of KIND_FUNCTION: it is
      * one of the direction. */
     OR_PROFILE = 512,

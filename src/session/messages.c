@@ -44,6 +44,13 @@ static bool is_share(double x) {
     return x >= 0 && x <= 1;
 }
 
+static bool tone_is_valid(const struct picture_request *request) {
+    bool fine = request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FUNCTION;
+    for (int i = 0; i < TONE_ENTRIES && fine && request->curve == TONE_FUNCTION; i++)
+        fine = isfinite(request->tone_table.values[i]);
+    return fine;
+}
+
 bool message_is_valid(const struct message *message) {
     size_t before_text = offsetof(struct message_line, text);
     const struct picture_request *request = &message->body.request;
@@ -58,10 +65,10 @@ bool message_is_valid(const struct message *message) {
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && shown_is_valid(request) &&
-               request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FILMIC &&
-               is_share(request->bloom) && is_share(request->vignette) && request->dither <= DITHER_BLUE &&
-               frame_is_valid(&request->frame) && film_record_valid(request->record) &&
-               request->overlay <= OVERLAY_OF_GRID && (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
+               tone_is_valid(request) && is_share(request->bloom) && is_share(request->vignette) &&
+               request->dither <= DITHER_BLUE && frame_is_valid(&request->frame) &&
+               film_record_valid(request->record) && request->overlay <= OVERLAY_OF_GRID &&
+               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
                (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
     case MESSAGE_DONE:
         return message->size == sizeof message->body.report;
@@ -84,6 +91,11 @@ bool message_is_valid(const struct message *message) {
                ends_with_zero(message->body.answer.error.text, sizeof message->body.answer.error.text);
     }
     return false;
+}
+
+struct tone picture_tone(const struct picture_request *request) {
+    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0,
+                         request->curve == TONE_FUNCTION ? &request->tone_table : NULL};
 }
 
 bool picture_request_enlarge(const struct picture_request *request, uint32_t width, uint32_t height,

@@ -106,6 +106,7 @@ struct picture_request {
     struct film_rectangle shown;      /* the part of that which is written: less where it is denoised with a rim */
     double exposure;                  /* of its file, as in struct tone */
     uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
+    struct tone_table tone_table;     /* the same, of TONE_FUNCTION */
     uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
     double bloom, vignette;           /* as in struct finish */
     uint32_t gray, edges, fxaa;       /* the same, not 0: true */
@@ -247,6 +248,9 @@ struct message {
 
 /* Whether sizes, texts and numbers are such that later code can rely on them: texts end in NUL, enums are known. */
 bool message_is_valid(const struct message *message);
+
+/* The tone of the files of a picture. Its table is that of the request. */
+struct tone picture_tone(const struct picture_request *request);
 
 /* The same picture in another size, at least its own: only its film. False: it is too large. */
 bool picture_request_enlarge(const struct picture_request *request, uint32_t width, uint32_t height,

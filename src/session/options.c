@@ -294,6 +294,7 @@ static bool value_error(const struct option *option, const char *text, struct er
         return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
                          shown, option->names, text);
     case OPTION_CHOICE:
+    case OPTION_TONE:
     case OPTION_STATS:
     case OPTION_DENOISE:
         return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
@@ -368,6 +369,10 @@ static bool apply_option(const struct option *option, const char *text, struct o
         break;
     case OPTION_CHOICE:
         ok = read_choice(option, field, text);
+        break;
+    case OPTION_TONE:
+        ok = read_choice(option, field, text);
+        options->settings.keeps_tone = true;
         break;
     case OPTION_TEXT:
         ok = text[0] != '\0';
@@ -511,6 +516,8 @@ struct digest options_digest(const struct options *options) {
         digest = digest_bytes("denoise", sizeof "denoise", digest);
     if (settings->keeps_noise)
         digest = digest_bytes("raw", sizeof "raw", digest);
+    if (settings->keeps_tone && settings->tone.curve == TONE_NONE)
+        digest = digest_bytes("tone", sizeof "tone", digest);
     const int64_t numbers[] = {options->width,          options->height,
                                (int64_t)settings->seed, settings->cropped,
                                settings->crop_x,        settings->crop_y,

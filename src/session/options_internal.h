@@ -10,6 +10,7 @@ enum option_kind {
     OPTION_NUMBER,  /* double in low..high */
     OPTION_BYTES,   /* uint64_t in low..high: a size with its unit, in MiB without one */
     OPTION_CHOICE,  /* enum or bool: the position of the word in `value`, words separated by '|' */
+    OPTION_TONE,    /* --tone: as OPTION_CHOICE */
     OPTION_TEXT,    /* const char *, not empty */
     OPTION_ACTION,  /* options.action; `low` is the action */
     OPTION_SIZE,    /* --size */

@@ -98,8 +98,8 @@ const struct option option_table[] = {
 
     {OPTION_GROUP_SHADING, "--exposure", OPTION_NUMBER, "STOPS", -100, 100, FIELD(settings.tone.exposure), "0",
      "multiply light by 2^STOPS when a PNG file is written"},
-    {OPTION_GROUP_SHADING, "--tone", OPTION_CHOICE, LIST_BARS(TONE_CURVES), NO_RANGE, FIELD(settings.tone.curve),
-     "none", "tone curve that maps bright light into the range of a PNG file"},
+    {OPTION_GROUP_SHADING, "--tone", OPTION_TONE, LIST_BARS(TONE_CURVES), NO_RANGE, FIELD(settings.tone.curve), "none",
+     "tone curve that maps bright light into the range of a PNG file; has priority over functions of scenes"},
     {OPTION_GROUP_SHADING, "--srgb", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.tone.srgb), NULL,
      "encode PNG files with the sRGB transfer function; without it, values are linear"},
     {OPTION_GROUP_SHADING, "--colour", OPTION_CHOICE, LIST_BARS(COLOUR_PIPELINES), NO_RANGE, FIELD(settings.colour),

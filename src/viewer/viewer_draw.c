@@ -53,18 +53,13 @@ static void tone_pixel(const struct viewer *viewer, const struct tone *tone, siz
         viewer->display.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
-static struct tone tone_of(const struct viewer *viewer) {
-    const struct picture_request *request = &viewer->request;
-    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
-}
-
 void viewer_draw_again(struct viewer *viewer, size_t pixel) {
-    struct tone tone = tone_of(viewer);
+    struct tone tone = picture_tone(&viewer->request);
     tone_pixel(viewer, &tone, pixel);
 }
 
 void viewer_redraw(struct viewer *viewer) {
-    struct tone tone = tone_of(viewer);
+    struct tone tone = picture_tone(&viewer->request);
     for (size_t i = 0; i < (size_t)viewer->request.width * viewer->request.height; i++)
         tone_pixel(viewer, &tone, i);
     viewer->display.dirty = true;
@@ -106,7 +101,7 @@ void viewer_draw_tiles(struct viewer *viewer) {
         return;
     }
     const struct film *film = &viewer->pass.film;
-    struct tone tone = tone_of(viewer);
+    struct tone tone = picture_tone(&viewer->request);
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
         bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;

@@ -124,8 +124,7 @@ void viewer_draw_large(struct viewer *viewer) {
     static const uint8_t marked_colour[3] = {255, 0, 0};
     struct viewer_large *large = &viewer->large;
     const struct film *film = &viewer->pass.film;
-    const struct picture_request *request = &viewer->request;
-    struct tone tone = {request->exposure, (enum tone_curve)request->curve, request->srgb != 0};
+    struct tone tone = picture_tone(&viewer->request);
     if (large->stale) {
         copy_picture(viewer);
         memset(large->drawn, 0, large->tiles);

@@ -137,6 +137,12 @@ TEST(requests_for_impossible_pictures_are_refused) {
     request = sound_request();
     request.curve = 1000;
     broken_request(request);
+    for (int i = 0; i < 3; i++) {
+        request = sound_request();
+        request.curve = TONE_FUNCTION;
+        request.tone_table.values[i == 0 ? 0 : i == 1 ? 77 : TONE_ENTRIES - 1] = i == 1 ? (float)NAN : (float)INFINITY;
+        broken_request(request);
+    }
     request = sound_request();
     request.lens.projection = (enum projection)1000;
     broken_request(request);

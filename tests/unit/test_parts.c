@@ -486,6 +486,33 @@ TEST(ranks_draw_and_finish_a_picture_with_the_bytes_of_one_run) {
           0, "");
 }
 
+/* The picture through a tone curve that is a function. */
+#define TONED                                                                                                          \
+    SCENE "gr.render{node = r, file = 'out.png', width = 330, height = 250, eye = {0, 0, 6}, lights = {l},\n"          \
+          "  ambient = {.2, .2, .2}, tone = function(x) return x < .3 and 3 * x ^ 2 or 1 - .73 * math.exp(.3 - x) "    \
+          "end}\n"
+
+TEST(pictures_through_a_tone_function_have_the_same_bytes_for_threads_shards_and_kills) {
+    put("scene.lua", TONED);
+    gives("$gray scene.lua -q -j 1 -o whole.png && $gray scene.lua -q -j 5 && cmp out.png whole.png && "
+          "$gray scene.lua -q --tone none -o none.png && ! cmp -s none.png whole.png",
+          0, NULL);
+    gives("for i in 1 2 3; do $gray scene.lua -q -o new.png --shard $i/3 || exit; done; "
+          "$gray merge new.png.*.part && cmp new.png whole.png",
+          0, NULL);
+    gives("rm out.png; $gray scene.lua -q --shard 1/2 && $gray scene.lua -q --tone none --shard 2/2; "
+          "$gray merge out.png.[12]-of-2.part",
+          1, "it was made with different options");
+    resume_until_done("-full -ss 3", 20, 0.02, 0.01);
+    gives("$gray scene.lua -q -full -ss 3 -o whole.png && cmp out.png whole.png", 0, NULL);
+}
+
+TEST(ranks_make_a_picture_through_a_tone_function_with_the_bytes_of_one_run) {
+    need_mpi();
+    put("scene.lua", TONED);
+    gives("$gray scene.lua -q -o whole.png && export gray; sh farm.sh 3 scene.lua && cmp out.png whole.png", 0, "");
+}
+
 TEST(ranks_trace_paths_to_the_bytes_of_one_run) {
     need_mpi();
     put("scene.lua", ONE);
@@ -572,6 +599,11 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         struct tile_picture picture = picture_of(&film);
         if (round % 2)
             picture.finish = (struct finish){0.25, 0.75, round % 4 == 1, round % 4 == 3, true, DITHER_BLUE};
+        if (round % 3 == 0) {
+            picture.tone.curve = TONE_FUNCTION;
+            for (int i = 0; i < TONE_ENTRIES; i++)
+                picture.tone_table.values[i] = (float)test_uniform(&random, -1, 2);
+        }
         struct tile_done done = {1, picture.key, {5, 6}, "first.png"};
         struct tile_file file;
         struct error error;

@@ -250,7 +250,7 @@ TEST(a_file_of_tiles_with_a_wrong_end_is_refused) {
     m.bytes[24] = 9;
     refused(&m, "it ends too early");
     begin(&m);
-    m.bytes[8] = 5;
+    m.bytes[8] = 6;
     refused(&m, "is a file of tiles in another format");
     begin(&m);
     m.bytes[12] = 1;
@@ -299,6 +299,7 @@ TEST(pictures_that_do_not_belong_together_differ_in_their_keys) {
     DIFFERS(tone.exposure = 9, "its tone settings differ");
     DIFFERS(tone.curve = TONE_FILMIC, "its tone settings differ");
     DIFFERS(tone.srgb = true, "its tone settings differ");
+    DIFFERS(tone_table.values[9] = 1, "its tone settings differ");
     DIFFERS(deep = true, "its tone settings differ");
     DIFFERS(finish.bloom = 1, "it is finished differently");
     DIFFERS(finish.vignette = 1, "it is finished differently");

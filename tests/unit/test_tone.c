@@ -41,6 +41,152 @@ TEST(tone_curves_rise_and_stay_below_their_limit) {
     }
 }
 
+/* --- tone curves by functions --- */
+
+static double gamma_curve(double x) {
+    return pow(x, 1 / 2.4);
+}
+static double reinhard_curve(double x) {
+    return tone_apply(&(struct tone){.curve = TONE_REINHARD}, x);
+}
+static double filmic_curve(double x) {
+    return tone_apply(&(struct tone){.curve = TONE_FILMIC}, x);
+}
+static double same_curve(double x) {
+    return x;
+}
+
+static void fill_table(struct tone_table *table, double (*curve)(double x)) {
+    for (int i = 0; i < TONE_ENTRIES; i++)
+        table->values[i] = (float)curve(tone_table_light(i));
+}
+
+TEST(lights_of_a_table_rise_from_0_to_65280_by_at_most_a_128th) {
+    CHECK(tone_table_light(0) == 0 && tone_table_light(1) == 0x1p-22 && tone_table_light(128) == 0x1p-15);
+    CHECK(tone_table_light(TONE_ENTRIES - 1) == 65280);
+    for (int i = 1; i < TONE_ENTRIES; i++) {
+        double light = tone_table_light(i), before = tone_table_light(i - 1);
+        CHECK(light > before && (double)(float)light == light);
+        CHECK(i <= 128 ? light - before == 0x1p-22 : light - before <= before / 128);
+    }
+}
+
+TEST(the_table_of_the_identity_changes_no_float) {
+    static struct tone_table table;
+    const struct tone tone = {.curve = TONE_FUNCTION, .table = &table};
+    struct test_random random = {18};
+    fill_table(&table, same_curve);
+    for (int i = 0; i < 1000000; i++) {
+        double light = (double)(float)exp(test_uniform(&random, -30, log(65280)));
+        if (tone_apply(&tone, light) != light)
+            test_fail(__FILE__, __LINE__, "%.17g becomes %.17g", light, tone_apply(&tone, light));
+    }
+    for (int i = 0; i < TONE_ENTRIES; i++)
+        CHECK(tone_apply(&tone, tone_table_light(i)) == tone_table_light(i));
+    CHECK_NEAR(tone_table_slope(&table), 1, 0);
+}
+
+TEST(tables_of_usual_curves_are_within_half_a_level_of_them) {
+    static struct tone_table table;
+    const struct tone tone = {.curve = TONE_FUNCTION, .table = &table};
+    static double (*const curves[])(double x) = {reinhard_curve, filmic_curve, gamma_curve};
+    for (int k = 0; k < 3; k++) {
+        double levels = curves[k] == gamma_curve ? 255 : 65535;
+        fill_table(&table, curves[k]);
+        for (double light = 0; light < 60000; light = light * 1.0007 + 1e-9)
+            CHECK_NEAR(tone_apply(&tone, light), curves[k](light), 0.5 / levels);
+    }
+}
+
+TEST(a_table_holds_beside_its_lights_and_leaves_nan) {
+    static struct tone_table table;
+    const struct tone tone = {.exposure = 1, .curve = TONE_FUNCTION, .table = &table};
+    for (int i = 0; i < TONE_ENTRIES; i++)
+        table.values[i] = (float)(i + 1);
+    CHECK(tone_apply(&tone, -1) == 1 && tone_apply(&tone, -INFINITY) == 1 && tone_apply(&tone, 0) == 1);
+    CHECK(tone_apply(&tone, 32640) == 4096 && tone_apply(&tone, 1e300) == 4096 && tone_apply(&tone, INFINITY) == 4096);
+    CHECK(isnan(tone_apply(&tone, NAN)));
+    CHECK_NEAR(tone_apply(&tone, 0x1p-24), 1.5, 0); /* exposure comes first */
+    CHECK_NEAR(tone_table_slope(&table), 0x1p22, 0);
+    CHECK(!tone_is_plain(&tone));
+}
+
+/* Light of all strengths up to 6: a lamp seen from near, a bright sky, shadows. */
+#define LIT_SCENE                                                                                                      \
+    "local r, m = gr.node('root'), gr.material({.8, .5, .3}, {.6, .6, .6}, 20)\n"                                      \
+    "r:add_child(gr.geometry('ball', gr.sphere(m)))\n"                                                                 \
+    "r:add_child(gr.box{min = {-3, -1.3, -3}, max = {3, -1, 3}, material = m})\n"                                      \
+    "local l = gr.light({2, 3, 2}, {6, 5, 4}, {.2, 0, .1})\n"                                                          \
+    "local function picture(file, tone)\n"                                                                             \
+    "  gr.render{node = r, file = file, width = 150, height = 100, eye = {0, 1, 5}, target = {0, 0, 0}, lights = "     \
+    "{l},\n"                                                                                                           \
+    "    ambient = {.2, .2, .2}, background = {.3, 2, 6}, exposure = .3, tone = tone}\n"                               \
+    "end\n"
+
+static void run_scene(const char *script, const char *options) {
+    struct test_result result = test_gray_scene(script, options, NULL);
+    if (result.status != 0)
+        test_fail(__FILE__, __LINE__, "%s", result.err);
+    free(result.out);
+    free(result.err);
+}
+
+/* The largest difference of bytes. */
+static int largest_difference(const char *one, const char *other) {
+    struct test_picture a = test_read_picture(test_path(one)), b = test_read_picture(test_path(other));
+    int max = 0;
+    CHECK(a.width == b.width && a.height == b.height);
+    for (size_t i = 0; i < (size_t)3 * a.width * a.height; i++)
+        max = abs(a.rgb[i] - b.rgb[i]) > max ? abs(a.rgb[i] - b.rgb[i]) : max;
+    free(a.rgb);
+    free(b.rgb);
+    return max;
+}
+
+TEST(pictures_through_a_function_are_those_of_the_same_curve) {
+    run_scene(LIT_SCENE "picture('none.png', 'none')\n"
+                        "picture('same.png', function(x) return x end)\n"
+                        "picture('reinhard.png', 'reinhard')\n"
+                        "picture('by_hand.png', function(x) return x / (1 + x) end)\n"
+                        "local calls = 0\n"
+                        "picture('half.png', function(x) calls = calls + 1 return math.min(x, 1) / 2 end)\n"
+                        "assert(calls == 4096)\n",
+              "-q scene.lua");
+    CHECK_EQ_INT(largest_difference("none.png", "same.png"), 0);
+    CHECK(largest_difference("reinhard.png", "by_hand.png") <= 1);
+    CHECK(largest_difference("none.png", "reinhard.png") > 50);
+    struct test_picture half = test_read_picture(test_path("half.png"));
+    uint8_t max = 0;
+    for (size_t i = 0; i < (size_t)3 * half.width * half.height; i++)
+        max = half.rgb[i] > max ? half.rgb[i] : max;
+    CHECK_EQ_INT(max, 128);
+    free(half.rgb);
+}
+
+TEST(tone_on_the_command_line_wins_over_a_function_and_not_over_a_word) {
+    static const char script[] = LIT_SCENE "picture('function.png', function(x) return x * x end)\n"
+                                           "picture('word.png', 'filmic')\n"
+                                           "picture('option.png')\n";
+    run_scene(script, "-q --tone none scene.lua");
+    CHECK_EQ_INT(largest_difference("function.png", "option.png"), 0);
+    run_scene(script, "-q --tone reinhard scene.lua");
+    CHECK_EQ_INT(largest_difference("function.png", "option.png"), 0);
+    CHECK(largest_difference("word.png", "option.png") > 10);
+}
+
+TEST(a_steep_tone_function_traces_the_rays_that_it_shows) {
+    static const char script[] =
+        LIT_SCENE "local mirror = gr.material{kd = {0, 0, 0}, ks = {1, 1, 1}, shininess = 9, reflect = REFLECT}\n"
+                  "r:add_child(gr.sphere{centre = {-1.5, 0, 1}, radius = .8, material = mirror})\n"
+                  "picture('all.png', function(x) return 2e4 * x end)\n";
+    run_scene(script, "-q -D REFLECT=0.00001 --cutoff 0 scene.lua");
+    CHECK(rename(test_path("all.png"), test_path("every.png")) == 0);
+    run_scene(script, "-q -D REFLECT=0 --cutoff 0 scene.lua");
+    CHECK(largest_difference("all.png", "every.png") > 20);
+    run_scene(script, "-q -D REFLECT=0.00001 scene.lua");
+    CHECK(largest_difference("all.png", "every.png") <= 1);
+}
+
 enum { W = 300, H = 7 };
 
 static float light(uint32_t x, uint32_t y, int channel) {

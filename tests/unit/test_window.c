@@ -995,6 +995,24 @@ TEST(window_shows_the_trace_of_the_pixel_under_the_mouse) {
     end(&t);
 }
 
+TEST(window_shows_light_through_the_tone_function_of_the_script) {
+    struct table t;
+    begin(&t);
+    struct picture_request *request = &t.viewer.request;
+    request->curve = TONE_FUNCTION;
+    for (int i = 0; i < TONE_ENTRIES; i++)
+        request->tone_table.values[i] = (float)fmin(1, tone_table_light(i) / 2);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    finish_pass(&t, 0.02, false);
+    CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
+    CHECK(pixels_with(&t, 51) == 0);
+    render_tile(&t, 0, 0.4f, FILM_TILE_PASSED + 1);
+    CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
+    CHECK(pixels_with(&t, 51) > 0);
+    end(&t);
+}
+
 TEST(window_makes_the_picture_anew_in_another_exposure_and_does_not_write_it_as_the_scripts) {
     struct table t;
     begin(&t);
