@@ -9,10 +9,10 @@ local GRAVITY = 12
 
 local function rubber(r, g, b) return gr.material { kd = { r, g, b }, ks = { 0.35, 0.35, 0.35 }, shininess = 50 } end
 
--- radius, flights in a loop, phase, place
+-- radius, flights in a loop, phase, place. No frame is at the very moment when a ball touches the floor or leaves it.
 local balls = {
-    { 0.62, 1, 0.10, { -1.9, 0.3 }, rubber(0.83, 0.22, 0.18) }, { 0.44, 2, 0.45, { -0.15, -0.5 }, rubber(0.95, 0.72, 0.18) },
-    { 0.50, 1, 0.62, { 1.25, 0.5 }, rubber(0.20, 0.52, 0.78) }, { 0.33, 2, 0.20, { 2.45, -0.2 }, rubber(0.38, 0.66, 0.30) },
+    { 0.62, 1, 0.12, { -1.9, 0.3 }, rubber(0.83, 0.22, 0.18) }, { 0.44, 2, 0.45, { -0.15, -0.5 }, rubber(0.95, 0.72, 0.18) },
+    { 0.50, 1, 0.62, { 1.25, 0.5 }, rubber(0.20, 0.52, 0.78) }, { 0.33, 2, 0.22, { 2.45, -0.2 }, rubber(0.38, 0.66, 0.30) },
 }
 local scene = gr.node 'scene'
 for _, b in ipairs(balls) do
@@ -51,7 +51,7 @@ gr.frames {
             b.node:reset():scale(wide, tall, wide):translate(b[4][1], low + b[1] * tall, b[4][2]):velocity(0, v, 0)
         end
         return {
-            node = scene, width = 280, height = 200, eye = { 0.4, 2.5, 9.5 }, target = { 0.2, 1.55, 0 }, fov = 32, area_samples = 2,
+            node = scene, width = 280, height = 200, eye = { 0.4, 2.5, 9.5 }, target = { 0.2, 1.55, 0 }, fov = 32, samples = 4, area_samples = 2,
             ambient = { 0.25, 0.26, 0.29 }, lights = { lamp, gr.light({ 6, 5, 9 }, { 0.22, 0.23, 0.27 }, { 1, 0, 0 }) },
         }
     end,

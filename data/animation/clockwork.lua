@@ -1,6 +1,7 @@
 -- TITLE: Animation: clockwork
 -- Two layers of involute wheels. In one loop the first pair moves on by 10 teeth and the second by 15: every wheel ends
--- at a multiple of the angle between its spokes, so the last frame leads to the first.
+-- at a multiple of the angle between its spokes, so the last frame leads to the first. In a frame no wheel turns by more
+-- than a third of a tooth: at half a tooth its direction could no longer be seen.
 -- Author: gray project
 
 local gear = require 'gear'
@@ -19,7 +20,7 @@ local function wheel(g, spokes, material, x, y, z, angle, turn)
     local bore, rim = 0.22, g.root - 0.14
     local inner, half, holes = bore + 0.16, math.pi / spokes, {}
     for k = 0, spokes - 1 do
-        local hole, steps = {}, 8
+        local hole, steps = {}, 16
         local function arc(radius, from, to)
             for i = 0, steps do
                 local a = 2 * half * k + (half - 0.10 / radius) * (from + (to - from) * i / steps)
@@ -34,7 +35,7 @@ local function wheel(g, spokes, material, x, y, z, angle, turn)
     for _, q in ipairs(outline) do q[2] = -q[2] end -- the prism stands on y, turned onto z
     local node = gr.node 'wheel'
     node:add_child(gr.prism { outline = outline, holes = holes, from = -0.13, to = 0.13, material = material }:rotate('x', 90))
-    node:add_child(gr.cylinder { from = { 0, 0, -0.5 }, to = { 0, 0, 0.24 }, radius = bore, material = steel })
+    node:add_child(gr.cylinder { from = { 0, 0, -0.75 - z }, to = { 0, 0, 0.24 }, radius = bore, material = steel })
     scene:add_child(node)
     wheels[#wheels + 1] = { node = node, x = x, y = y, z = z, angle = angle, turn = turn }
 end
@@ -58,8 +59,8 @@ local tx, ty, ta = beside(slow, third, 7, -38, px, py)
 wheel(third, 3, brass, tx, ty, -0.36, ta, 120)
 
 local pendulum = gr.node 'pendulum'
-pendulum:add_child(gr.cylinder { from = { 0, 0, 0 }, to = { 0, -2.4, 0 }, radius = 0.05, material = steel })
-pendulum:add_child(gr.cylinder { from = { 0, -2.4, -0.10 }, to = { 0, -2.4, 0.10 }, radius = 0.45, material = brass })
+pendulum:add_child(gr.cylinder { from = { 0, 0, 0 }, to = { 0, -2.1, 0 }, radius = 0.05, material = steel })
+pendulum:add_child(gr.cylinder { from = { 0, -2.1, -0.10 }, to = { 0, -2.1, 0.10 }, radius = 0.45, material = brass })
 pendulum:add_child(gr.sphere { radius = 0.16, material = steel })
 scene:add_child(pendulum)
 scene:add_child(gr.box { min = { -9, -9, -1.1 }, max = { 9, 9, -0.75 }, material = plate })
@@ -71,7 +72,7 @@ local lights = {
     gr.light({ -5, 8, 9 }, { 0.86, 0.82, 0.74 }, { 1, 0, 0 }), gr.light({ 7, 2, 10 }, { 0.28, 0.31, 0.37 }, { 1, 0, 0 }),
 }
 gr.frames {
-    count = 36, loop = true, fps = 25,
+    count = 48, loop = true, fps = 30,
     draw = function(t)
         for _, w in ipairs(wheels) do w.node:reset():rotate('z', w.angle + w.turn * t):translate(w.x, w.y, w.z) end
         pendulum:reset():rotate('z', 15 * math.sin(2 * math.pi * t)):translate(2.5, 4.1, -0.3)

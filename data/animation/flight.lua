@@ -34,7 +34,7 @@ scene:add_child(gr.vn_mesh { material = gr.material { kd = gr.fn(ground, 1) }, v
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.rr_material({ 0.03, 0.16, 0.21 }, { 0.62, 0.68, 0.72 }, 300, 0.55, 0, 1.33) })
 
 -- Once around in SECONDS; three keys before and after the loop make the spline closed.
-local FPS, SECONDS, KEYS = 12, 4, 8
+local FPS, SECONDS, KEYS = 20, 4, 8
 local keys = { curve = 'catmull' }
 for k = -2, KEYS + 2 do
     local a = 2 * math.pi * k / KEYS

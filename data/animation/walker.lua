@@ -9,7 +9,8 @@ local function paint(r, g, b) return gr.material({ r, g, b }, { 0, 0, 0 }, 1) en
 local skin, shirt, trousers, shoe, hat = paint(0.93, 0.70, 0.52), paint(0.86, 0.30, 0.24), paint(0.25, 0.34, 0.58), paint(0.28, 0.20, 0.16),
     paint(0.95, 0.78, 0.25)
 
-local THIGH, SHIN, FOOT, HIPS = 0.95, 0.95, 0.14, 0.26
+-- The body leans forwards by LEAN degrees, and the legs with it.
+local THIGH, SHIN, FOOT, HIPS, LEAN = 0.95, 0.95, 0.15, 0.26, 4
 
 -- Angles of a leg in degrees, forwards, at phase 0..1 of its own step.
 local function leg(phase)
@@ -23,7 +24,7 @@ end
 -- The sole of a leg, seen from the hip: forwards and down.
 local function sole(phase)
     local hip, knee = leg(phase)
-    local h, k = rad(hip), rad(hip - knee)
+    local h, k = rad(hip - LEAN), rad(hip - LEAN - knee)
     return THIGH * sin(h) + SHIN * sin(k), THIGH * cos(h) + SHIN * cos(k) + FOOT
 end
 
@@ -89,7 +90,7 @@ end
 local ground = gr.node 'ground'
 local board = total / 2
 local greens = { paint(0.52, 0.72, 0.40), paint(0.46, 0.66, 0.36) }
-for k = -8, 11 do
+for k = -12, 11 do
     ground:add_child(gr.box { min = { k * board, -0.3, -2.2 }, max = { (k + 1) * board, 0, 2.2 }, material = greens[k % 2 + 1] })
     if k % 2 == 0 then
         ground:add_child(gr.cylinder { from = { k * board, 0, -1.7 }, to = { k * board, 0.9, -1.7 }, radius = 0.09, material = paint(0.60, 0.44, 0.30) })
@@ -109,12 +110,12 @@ gr.frames {
             low = math.max(low, down)
             s.hip(hip)
             s.knee(-knee)
-            s.ankle(knee - hip + (phase >= 0.5 and 10 * sin(2 * pi * phase) or 0))
+            s.ankle(knee - hip + LEAN + (phase >= 0.5 and 10 * sin(2 * pi * phase) or 0))
             s.shoulder(-30 * cos(2 * pi * phase))
             s.elbow(22 - 12 * cos(2 * pi * phase))
         end
         turn_head(3 * sin(4 * pi * t))
-        body:reset():rotate('z', -4):translate(0, low, 0)
+        body:reset():rotate('z', -LEAN):translate(0, low, 0)
         ground:reset():translate(-way[math.floor(t * N + 0.5)], 0, 0)
         return {
             node = scene, width = 280, height = 280, eye = { 4.2, 2.6, 9 }, target = { 0, 1.78, 0 }, fov = 29.5, style = 'toon', line_width = 1.5,

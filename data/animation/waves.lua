@@ -1,5 +1,6 @@
 -- TITLE: Animation: waves of columns
--- A loop without an end: rings run outwards over a field of columns, which turn as they rise. Seen without perspective.
+-- A loop without an end: rings run outwards over a field of columns, which turn as they rise and are narrow enough not
+-- to touch their neighbours. Seen without perspective.
 -- Author: gray project
 
 local colour = require 'colour'
@@ -14,7 +15,7 @@ for j = 1, SIDE do
             local r, g, b = table.unpack(far < 3.6 and colour.blend({ 1.0, 0.76, 0.26 }, { 0.93, 0.34, 0.36 }, far / 3.6) or
                 colour.blend({ 0.93, 0.34, 0.36 }, { 0.27, 0.30, 0.72 }, math.min(1, far / 3.6 - 1)))
             local node = gr.node 'column'
-            node:add_child(gr.box { min = { -0.42, 0, -0.42 }, max = { 0.42, 1, 0.42 },
+            node:add_child(gr.box { min = { -0.35, 0, -0.35 }, max = { 0.35, 1, 0.35 },
                 material = gr.material({ r, g, b }, { 0.25, 0.25, 0.25 }, 30) })
             scene:add_child(node)
             columns[#columns + 1] = { node = node, x = x, z = z, far = far }
