@@ -83,6 +83,8 @@ static bool make_light(const struct picture *picture, enum denoiser denoiser, st
         memcpy(out, film->pixels, (size_t)film->width * film->height * sizeof *out);
     else if (!denoise_film(film, denoiser, pool, out, error))
         return false;
+    else
+        path_film_draw_lines(film, out);
     return finish_light(&finish, picture->request.exposure, &area, out, error);
 }
 

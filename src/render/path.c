@@ -15,6 +15,8 @@ struct film_record path_tracer_record(const struct settings *settings) {
         parts |= PATH_PART_FEATURES;
     if (settings->aov & AOV_LIGHT)
         parts |= PATH_PART_LIGHT;
+    if (settings_line_width(settings) > 0)
+        parts |= PATH_PART_LINE;
     return path_film_record(parts);
 }
 
@@ -42,6 +44,20 @@ static bool make_sample_parts(struct path_tracer *tracer, struct renderer *rende
     return true;
 }
 
+static bool make_contours(struct path_tracer *tracer, struct renderer *renderer) {
+    double width = settings_line_width(&renderer->job->settings);
+    int workers = pool_workers(renderer->pool);
+    if (!(width > 0))
+        return true;
+    tracer->contours = arena_alloc_array(&tracer->arena, (size_t)workers, sizeof *tracer->contours);
+    while (tracer->contours && tracer->contour_count < workers) {
+        if (!contour_init(&tracer->contours[tracer->contour_count], width))
+            return false;
+        tracer->contour_count++;
+    }
+    return tracer->contours != NULL;
+}
+
 /* The lights that emit photons. */
 static bool find_photon_lights(struct path_tracer *tracer, const struct world *world) {
     bool *lights = arena_alloc_array(&tracer->arena, (size_t)tracer->lights.count + 1, sizeof *lights);
@@ -67,7 +83,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     renderer->sample_share = footprint_share;
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
-    if (path_film_parts(path_tracer_record(settings)) && !make_sample_parts(tracer, renderer))
+    bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
+    if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_contours(tracer, renderer))
         return error_no_memory(error, "the workers of a render");
     struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
@@ -82,6 +99,8 @@ void path_tracer_destroy(struct path_tracer *tracer) {
     if (tracer->built)
         world_lights_destroy(&tracer->lights);
     photon_map_destroy(&tracer->caustics);
+    for (int i = 0; i < tracer->contour_count; i++)
+        contour_destroy(&tracer->contours[i]);
     arena_destroy(&tracer->arena);
 }
 
@@ -103,12 +122,17 @@ static void finish_pixel(struct film *film, const struct worker *worker, int64_t
                          const struct path_pixel *pixel) {
     path_film_store(film, pixel_index(film, x, y), pixel);
     observe_pixel(worker->state.observer,
-                  &(struct observed_pixel){.colour = path_pixel_mean(pixel), .full = true, .first_counts = true});
+                  &(struct observed_pixel){.colour = path_pixel_below_line(pixel, path_pixel_mean(pixel)),
+                                           .full = true,
+                                           .first_counts = true});
 }
 
-/* The sums of the pixel before a pass: those of the film, or zero in the first pass. */
-static struct path_pixel begin_pixel(const struct film *film, int64_t x, int64_t y, uint32_t begin) {
-    return begin > 0 ? path_film_load(film, pixel_index(film, x, y)) : (struct path_pixel){0};
+/* The sums of the pixel before a pass: those of the film, or zero in the first pass. lines: of the part, or NULL. */
+static struct path_pixel begin_pixel(const struct film *film, const struct contour *lines, int64_t x, int64_t y,
+                                     uint32_t begin) {
+    if (begin > 0)
+        return path_film_load(film, pixel_index(film, x, y));
+    return (struct path_pixel){.line = lines ? (float)contour_coverage(lines, x, y) : 0};
 }
 
 /* The numbers of samples from `begin` up to, but not including, `end`. */
@@ -124,8 +148,9 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
     struct batch *batch = &worker->batch;
     struct film *film = renderer->job->film;
     uint32_t each = end - begin;
+    const struct contour *lines = tracer->contours ? &tracer->contours[worker->index] : NULL;
     uint64_t all = (uint64_t)(part->x1 - part->x0) * each, next = 0;
-    struct path_pixel pixel = begin_pixel(film, part->x0, y, begin);
+    struct path_pixel pixel = begin_pixel(film, lines, part->x0, y, begin);
     while (next < all) {
         for (batch->count = 0; batch->count < PACKET_RAYS && next < all; next++)
             batch->positions[batch->count++] = sample_position(tracer, renderer, part->x0 + (int64_t)(next / each), y,
@@ -142,7 +167,7 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
                 continue;
             finish_pixel(film, worker, x, y, &pixel);
             if (x + 1 < part->x1)
-                pixel = begin_pixel(film, x + 1, y, begin);
+                pixel = begin_pixel(film, lines, x + 1, y, begin);
         }
     }
     return true;
@@ -212,6 +237,9 @@ static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer
 
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part) {
+    if (tracer->contours && renderer->pass.begin == 0 &&
+        !contour_find(&tracer->contours[worker->index], renderer, worker, part))
+        return false;
     if (tracer->noise > 0)
         return sample_until_quiet(tracer, renderer, worker, part);
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);

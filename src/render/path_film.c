@@ -18,19 +18,20 @@ enum {
     FEATURE_FLOATS = 2 * PATH_FEATURES,
     LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* first all sums, then all remainders */
 };
-/* After RECORD_FLOATS: the features, then the groups of light. */
-_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS <= (int)FILM_RECORD_FLOATS,
+/* After RECORD_FLOATS: the features, then the groups of light, then the line. */
+_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + 1 <= (int)FILM_RECORD_FLOATS,
                "a tile cannot carry the record of a path-traced pixel");
 
 struct film_record path_film_record(unsigned parts) {
     uint32_t floats = RECORD_FLOATS;
     floats += parts & PATH_PART_FEATURES ? FEATURE_FLOATS : 0;
     floats += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
+    floats += parts & PATH_PART_LINE ? 1 : 0;
     return (struct film_record){.floats = floats, .marks = 0};
 }
 
 unsigned path_film_parts(struct film_record record) {
-    for (unsigned parts = 0; parts <= (PATH_PART_FEATURES | PATH_PART_LIGHT); parts++)
+    for (unsigned parts = 0; parts <= PATH_PARTS; parts++)
         if (film_record_equal(record, path_film_record(parts)))
             return parts;
     return 0;
@@ -79,6 +80,8 @@ struct path_pixel path_film_load(const struct film *film, size_t at) {
     }
     for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
         pixel.light[i] = load_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i);
+    if (parts & PATH_PART_LINE)
+        pixel.line = record[film->record.floats - 1];
     return pixel;
 }
 
@@ -111,7 +114,9 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
     }
     for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
         store_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i, pixel->light[i]);
-    store_colour(film->pixels[at].rgb, path_pixel_mean(pixel));
+    if (parts & PATH_PART_LINE)
+        record[film->record.floats - 1] = pixel->line;
+    store_colour(film->pixels[at].rgb, path_pixel_below_line(pixel, path_pixel_mean(pixel)));
 }
 
 /* --- sums --- */
@@ -150,6 +155,10 @@ struct vec3 path_pixel_mean(const struct path_pixel *pixel) {
 
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half) {
     return over(pixel->sums[half], pixel->weights[half]);
+}
+
+struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour) {
+    return pixel->line > 0 ? vec3_scale(colour, 1 - (double)pixel->line) : colour;
 }
 
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature) {
@@ -243,6 +252,16 @@ struct denoise_source path_film_denoise_source(struct film *film) {
     return (struct denoise_source){film->width, film->height, film->x0, film->y0, film_row, film};
 }
 
+void path_film_draw_lines(const struct film *film, float (*colours)[3]) {
+    if (!(path_film_parts(film->record) & PATH_PART_LINE))
+        return;
+    for (size_t i = 0; i < (size_t)film->width * film->height; i++) {
+        float line = film->floats[i * film->record.floats + film->record.floats - 1];
+        for (int c = 0; c < 3 && line > 0; c++)
+            colours[i][c] *= 1 - line;
+    }
+}
+
 bool path_film_show_denoised(struct film *film, struct pool *pool, struct error *error) {
     const struct denoise_source source = path_film_denoise_source(film);
     size_t count = (size_t)film->width * film->height;
@@ -250,6 +269,8 @@ bool path_film_show_denoised(struct film *film, struct pool *pool, struct error 
     if (!colours)
         return error_no_memory(error, "a picture that is denoised");
     bool ok = denoise(&source, pool, colours, error);
+    if (ok)
+        path_film_draw_lines(film, colours);
     for (size_t i = 0; ok && i < count; i++)
         memcpy(film->pixels[i].rgb, colours[i], sizeof colours[i]);
     mem_free(colours);

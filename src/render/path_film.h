@@ -22,6 +22,7 @@ struct path_pixel {
     /* Only in records with these parts (enum path_part). */
     float features[2][PATH_FEATURES];     /* of the halves: weighted sums */
     struct vec3 light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
+    float line;                           /* how much of the pixel black lines cover, 0..1 */
 };
 
 /* The record of films with these parts, a mask of enum path_part; and the mask of a record, 0 for records of other
@@ -29,7 +30,7 @@ struct path_pixel {
 struct film_record path_film_record(unsigned parts);
 unsigned path_film_parts(struct film_record record);
 
-/* at: the index of the pixel in the film. Storing also sets the colour of the pixel. */
+/* at: the index of the pixel in the film. Storing also sets the colour of the pixel, the mean below its line. */
 struct path_pixel path_film_load(const struct film *film, size_t at);
 void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel);
 
@@ -38,9 +39,10 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
 void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight);
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight);
 
-/* The mean of all samples, and that of one half (black if it has none). */
+/* The mean of all samples, and that of one half (black if it has none); and a colour below the line of the pixel. */
 struct vec3 path_pixel_mean(const struct path_pixel *pixel);
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
+struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour);
 /* The mean of a feature over one half, and that of a group of light over all samples; 0 if the record does not
  * contain them. */
 double path_pixel_feature(const struct path_pixel *pixel, int half, int feature);
@@ -68,6 +70,8 @@ uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, ui
 /* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the film.
  */
 struct denoise_source path_film_denoise_source(struct film *film);
+/* Draws the lines of the film (PATH_PART_LINE) over other colours of its pixels, for instance denoised ones. */
+void path_film_draw_lines(const struct film *film, float (*colours)[3]);
 /* Replaces the colours of the film by denoised ones, to be looked at. Its sums stay: more samples may follow, and files
  * are written from them. Errors: no memory, cancelled; then the film is unchanged. */
 bool path_film_show_denoised(struct film *film, struct pool *pool, struct error *error);

@@ -11,9 +11,10 @@
 #include "render/filter_internal.h"
 #include "render/photon_trace_internal.h"
 #include "render/render_internal.h"
+#include "render/style_internal.h"
 #include "world/world_lights.h"
 
-/* Of a run. Owns the arena. */
+/* Of a run. Owns the arena, and the contours of each worker. */
 struct path_tracer {
     uint32_t samples;   /* of a pixel, at most */
     int max_depth;      /* scattering events of a path: 0 emission, 1 direct light */
@@ -27,6 +28,8 @@ struct path_tracer {
      * traced lobes, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;
     struct photon_map caustics;
+    struct contour *contours; /* NULL: no lines */
+    int contour_count;
     struct arena arena;
     struct world_lights lights; /* immutable while the render runs */
 };

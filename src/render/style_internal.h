@@ -1,4 +1,6 @@
-/* Pictures that look drawn: how a surface shows light in a style (settings.h), and lines over Whitted's pictures. */
+/* Pictures that look drawn: how a surface shows light in a style (settings.h), and lines over pictures of any
+ * integrator.
+ */
 #ifndef GRAY_RENDER_STYLE_INTERNAL_H
 #define GRAY_RENDER_STYLE_INTERNAL_H
 

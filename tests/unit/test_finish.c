@@ -352,6 +352,38 @@ TEST(floats_have_finished_light_but_no_edges_and_no_dithering) {
           0, NULL);
 }
 
+/* The colours of a PFM file, top row first. */
+static bool read_light(const char *name, pixels out) {
+    size_t size = 0, bytes = sizeof(pixels);
+    char *file = test_read_file(test_path(name), &size);
+    bool ok = file && size > bytes;
+    for (int y = 0; ok && y < H; y++)
+        memcpy(out[(H - 1 - y) * W], file + size - bytes + (size_t)y * bytes / H, bytes / H);
+    free(file);
+    return ok;
+}
+
+TEST(finishing_of_path_traced_pictures_is_that_of_their_light) {
+    static pixels light, finished;
+    struct error error;
+    const struct finish finish = {.bloom = 0.5, .vignette = 0.4};
+    put_scenes();
+    gives(
+        "o='-q plain.lua --integrator path --spp 4 --size 90x70'; for d in '' --denoise; do $gray $o $d -o a$d.pfm && "
+        "$gray $o $d --bloom .5 --vignette .4 -o b$d.pfm || exit 1; done; $gray $o -o a.png && for f in edges fxaa "
+        "gray "
+        "'dither blue'; do $gray $o --$f -o b.png && ! cmp -s a.png b.png || exit 1; done",
+        0, NULL);
+    static const char *const names[][2] = {{"a.pfm", "b.pfm"}, {"a--denoise.pfm", "b--denoise.pfm"}};
+    for (int i = 0; i < 2; i++) {
+        CHECK(read_light(names[i][0], light) && read_light(names[i][1], finished));
+        CHECK(finish_light(&finish, 0, &all, light, &error));
+        for (int k = 0; k < W * H; k++)
+            for (int c = 0; c < 3; c++)
+                CHECK_NEAR((double)finished[k][c], (double)light[k][c], 1e-6);
+    }
+}
+
 TEST(wrong_values_of_finishing_are_refused) {
     static const struct {
         const char *field, *option, *says, *says_of_option;

@@ -224,10 +224,41 @@ static void gives(const char *line, int status, const char *says) {
     free(command);
 }
 
+/* A ball that shines in white, before white: the path tracer has no noise, and only lines are dark. */
+#define SHINING                                                                                                        \
+    "local r = gr.node('r')\n"                                                                                         \
+    "r:add_child(gr.sphere{material = gr.material{kd = {0, 0, 0}, emission = {1, 1, 1}}})\n"                           \
+    "gr.render{node = r, file = 'out.pfm', width = 160, height = 120, eye = {0, 0, 5}, projection = 'orthographic',\n" \
+    "  view_height = 3, background = {1, 1, 1}, integrator = 'path', spp = 2}\n"
+
+TEST(lines_over_path_traced_pictures_are_those_of_drawn_ones) {
+    static struct light line, below, drawn;
+    for (int width = 1; width <= 4; width++) {
+        char options[100];
+        (void)snprintf(options, sizeof options, "--line-width %d", width);
+        render(SHINING, options, &line);
+        expect_circle(&line, W / 2.0, H / 2.0, H / 3.0, width);
+    }
+    /* They cover the light, denoised or not, in few or many samples. */
+    static const char *const options_of_light[] = {"--spp 5", "--noise .2 --spp 40", "--spp 8 --denoise",
+                                                   "--spp 3 --aov diffuse_direct"};
+    for (size_t i = 0; i < sizeof options_of_light / sizeof *options_of_light; i++) {
+        char options[100];
+        (void)snprintf(options, sizeof options, "--integrator path %s", options_of_light[i]);
+        render(BALL, options, &below);
+        (void)snprintf(options, sizeof options, "--integrator path --line-width 4 %s", options_of_light[i]);
+        render(BALL, options, &drawn);
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < W; x++)
+                CHECK_NEAR((double)drawn.rgb[y][x][0], (double)below.rgb[y][x][0] * (1 - dark(&line, x, y)), 1e-6);
+    }
+}
+
 TEST(drawn_pictures_of_threads_shards_and_crops_have_the_same_bytes) {
     test_write_text(test_path("scene.lua"), BALL);
-    for (int i = 0; i < 3; i++) {
-        static const char *const styles[] = {"--style toon --line-width 7", "--style gooch", "--line-width 2.5"};
+    static const char *const styles[] = {"--style toon --line-width 7", "--style gooch", "--line-width 2.5",
+                                         "--line-width 3 --integrator path --spp 3"};
+    for (size_t i = 0; i < sizeof styles / sizeof *styles; i++) {
         char line[600];
         (void)snprintf(line, sizeof line,
                        "o='-q scene.lua %s'; $gray $o -o a.png -j 1 -write-pre-aa p- && $gray $o -o b.png -j 2 && "
@@ -250,6 +281,6 @@ TEST(wrong_values_of_styles_are_refused) {
     gives("$gray -q scene.lua --line-width 33", 2, "--line-width needs a number from 0 to 32, not '33'");
     gives("$gray -q scene.lua --toon-steps 0", 2, "--toon-steps needs a whole number from 1 to 64, not '0'");
     gives("$gray -q scene.lua --style ink --integrator path", 1,
-          "styles and lines are for the integrator 'whitted', not for 'path'");
+          "styles are for the integrator 'whitted', not for 'path'; --line-width draws lines over its pictures");
     gives("$gray -q scene.lua --style none --integrator path --spp 1", 0, NULL);
 }
