@@ -81,8 +81,11 @@ static bool choose_name(struct output_session *output, const struct picture_requ
     const struct picture_label label = {request->file, number_of(output, request), request->frame.number > 0};
     if (one_name_for_all(output) && output->pictures > 1 && !animation_streams(&output->animation, request)) {
         output->several_under_one_name = true;
-        return error_set(error, ERROR_USAGE, "-o %s: several pictures are rendered, so the name needs %%d",
-                         output->options->output);
+        return error_set(
+            error, ERROR_USAGE,
+            "-o %s: several pictures are rendered, so the name needs %%d, or an ending of animations such as "
+            ".gif or .mp4",
+            output->options->output);
     }
     if (!picture_files_name(&output->files, &label, name, notice, error))
         return false;

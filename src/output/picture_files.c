@@ -113,7 +113,8 @@ static enum ending ending_of(const char *name) {
 
 /* The ending of a format that is not written, as in -o x.jpg. */
 static bool is_foreign_picture(const char *name) {
-    static const char *const endings[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".tga", ".ppm"};
+    static const char *const endings[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".tga",
+                                          ".ppm", ".avif", ".jxl", ".mkv",  ".avi", ".mov"};
     const char *dot = strrchr(last_part(name), '.');
     for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
         if (strcasecmp(dot, endings[i]) == 0)

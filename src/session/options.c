@@ -642,6 +642,11 @@ bool output_name_numbered(const char *pattern) {
     return find_number(pattern).length > 0;
 }
 
+bool output_name_numbered_twice(const char *pattern) {
+    struct piece position = find_number(pattern);
+    return position.length > 0 && output_name_numbered(position.text + position.length);
+}
+
 bool output_name(const char *pattern, unsigned number, char *out, size_t size) {
     struct piece position = find_number(pattern);
     size_t length = 0;

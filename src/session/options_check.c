@@ -146,6 +146,11 @@ static bool check_time(const struct options *options, struct error *error) {
     return true;
 }
 
+static bool check_name(const struct options *options, struct error *error) {
+    return !options->output || !output_name_numbered_twice(options->output) ||
+           error_set(error, ERROR_USAGE, "-o %.600s: a name has one number: %%d, %%04d or ####", options->output);
+}
+
 /* By the extension; a name with a number is that of single pictures. */
 static enum animation_format animation_of(const char *output) {
     static const char *const endings[] = {ANIMATION_FORMATS(LIST_WORD)};
@@ -183,5 +188,5 @@ static bool check_animation(struct options *options, struct error *error) {
 
 bool options_check(struct options *options, struct error *error) {
     return check_together(options, error) && check_questions(options, error) && check_parts(options, error) &&
-           check_time(options, error) && check_animation(options, error);
+           check_time(options, error) && check_name(options, error) && check_animation(options, error);
 }

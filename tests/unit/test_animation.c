@@ -272,6 +272,31 @@ TEST(ffmpeg_reads_what_is_written_where_it_is_installed) {
     }
 }
 
+/* apngdis composes the frames and writes them as PNG files. */
+TEST(apngdis_finds_the_bytes_of_every_frame_where_it_is_installed) {
+    if (system("command -v apngdis >/dev/null 2>&1") != 0)
+        test_skip("apngdis is not installed");
+    static uint8_t wanted[3 * PIXELS];
+    struct animation_source sources[2] = {pictures, pictures};
+    struct error error;
+    sources[1].frame = noise_frame;
+    for (int s = 0; s < 2; s++) {
+        char line[2048];
+        CHECK(apng_write(FILE_AT(test_path("x.apng")), &sources[s], &error));
+        (void)snprintf(line, sizeof line, "cd '%s' && rm -f part* && apngdis x.apng part >log.txt", test_folder());
+        CHECK_EQ_INT(system(line), 0);
+        for (uint32_t k = 0; k < FRAMES; k++) {
+            char name[32];
+            (void)snprintf(name, sizeof name, "part%u.png", k + 1);
+            struct test_picture picture = test_read_picture(test_path(name));
+            (void)sources[s].frame(NULL, k, wanted, &error);
+            CHECK(picture.width == WIDTH && picture.height == HEIGHT);
+            CHECK(picture.rgb && memcmp(picture.rgb, wanted, sizeof wanted) == 0);
+            free(picture.rgb);
+        }
+    }
+}
+
 #ifdef HAVE_WEBP
 static void check_webp(const struct animation_source *source) {
     static uint8_t wanted[3 * PIXELS];
@@ -556,7 +581,10 @@ TEST(every_picture_of_an_old_script_is_a_frame) {
           "old.apng && $gray -q old.lua -o sheet.gif --contact-sheet --keep-frames && ls sheet.gif.frames && "
           "test -s sheet.sheet.png",
           0, "000001.png\n000002.png\n000003.png\n000004.png\n");
-    gives("$gray -q old.lua -o x.png", 2, "several pictures are rendered");
+    gives("$gray -q old.lua -o x.png", 2,
+          "several pictures are rendered, so the name needs %d, or an ending of animations such as .gif or .mp4");
+    gives("$gray -q old.lua -o x%04d%d.png", 2, "-o x%04d%d.png: a name has one number: %d, %04d or ####");
+    gives("$gray -q old.lua -o x.####.####.png; ls x*", 2, "-o x.####.####.png: a name has one number");
     gives("cat > two.lua <<'END'\n"
           "local node = gr.node('r')\nnode:add_child(gr.sphere{})\n"
           "for i = 1, 2 do gr.render(node, 'x.png', 30 + i, 20, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {1, 1, 1}, {}) "

@@ -1,5 +1,6 @@
 /* The command line: every option in its spellings, every error with its message. */
 #include "session/options.h"
+#include "session/options_internal.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>
@@ -292,6 +293,8 @@ TEST(numbered_names_take_widths_zeros_and_percent_signs) {
     named("%s%d.png", 3, "%s3.png");
     named("%999d%d.png", 3, "%999d3.png");
     CHECK(output_name_numbered("x%d") && output_name_numbered("%%%04d"));
+    CHECK(output_name_numbered_twice("x%04d%d.png") && output_name_numbered_twice("x.####.##.png"));
+    CHECK(!output_name_numbered_twice("x%04d#.png") && !output_name_numbered_twice("100%%d-%d.png"));
     CHECK(!output_name_numbered("x") && !output_name_numbered("%%d") && !output_name_numbered("%s"));
     char small[8];
     CHECK(!output_name("12345678", 1, small, sizeof small));
