@@ -81,7 +81,7 @@ function gr.instances(of, at) end
 ---@field y gr.triple y (a table of 3 numbers, in degrees): The same for y.
 ---@field children? gr.node[] children (a table of nodes; default {}): Child nodes.
 
----A node with limited angles about x and y.
+---A node that rotates about x and y, with limits of the angles.
 ---@param name string name (a string; default 'joint'): Name of the node, for messages.
 ---@param x gr.triple x (a table of 3 numbers, in degrees): Smallest, initial and largest angle about x; gray draws the initial one.
 ---@param y gr.triple y (a table of 3 numbers, in degrees): The same for y.
@@ -438,7 +438,7 @@ function gr.clipped_by(name, object, by) end
 ---@field object gr.node object (a node): The visible object: a shape or a group of shapes.
 ---@field by gr.node by (a node): A closed solid that contains the object. gray does not verify this: parts outside may or may not be visible.
 
----The object, with the hint that a solid contains it; faster where the bounding box of the object is large.
+---The object, with the hint that a solid contains it. This makes objects with a large bounding box faster.
 ---@param name string name (a string; default 'bounded'): Name of the node, for messages.
 ---@param object gr.node object (a node): The visible object: a shape or a group of shapes.
 ---@param by gr.node by (a node): A closed solid that contains the object. gray does not verify this: parts outside may or may not be visible.
@@ -741,7 +741,7 @@ function gr.sweep(material, points, radii, spline) end
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
 ---@field heights? number[][] heights (a table of tables of numbers; optional): Rows of heights, all of one length; x varies within a row, z from row to row.
 ---@field image? string|gr.texture image (the name of a picture file or a texture; optional): A picture instead of heights: black is 0, white is 1, the upper edge is z = 0.
----@field f? function|gr.texture f (a function; optional): A function of the point {x, 0, z}: its height, or what is added to heights or image.
+---@field f? function|gr.texture f (a function; optional): A function of the point {x, 0, z}: its height, or an offset that is added to heights or image.
 ---@field columns? integer columns (a whole number, 2 to 32768; default 257): Points along x at which f is evaluated, without heights and image.
 ---@field rows? integer rows (a whole number, 2 to 32768; default columns): Points along z.
 ---@field floor? number floor (a number; default a tenth of the height range below the lowest point): Height of the floor of the solid.
@@ -776,15 +776,15 @@ function gr.blob(material, spheres, cylinders, threshold) end
 ---@class gr.implicit.fields
 ---@field name? string name (a string; default 'implicit'): Name of the node, for messages.
 ---@field material? gr.material material (a material; default plain gray): Material of the surface.
----@field f function|gr.texture f (a function): A function of a point, below 0 inside.
+---@field f function|gr.texture f (a function): A function of a point that is negative inside.
 ---@field bounds? gr.triple[] bounds (a table of points {x, y, z}; default a ball, if radius is given): Two corners {min, max} of the box that bounds it.
----@field radius? number radius (a number, > 0; optional): Of the ball that bounds it, in place of bounds.
----@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Of that ball.
+---@field radius? number radius (a number, > 0; optional): Radius of a ball that bounds it, instead of bounds.
+---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre of that ball.
 ---@field open? boolean open (true or false; default false): Whether there are no caps on the bounds.
 
----An implicit solid: where a function of a point is below 0, within a box or a ball.
+---An implicit solid: the points in a box or a ball where a function is negative.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.
----@param f function|gr.texture f (a function): A function of a point, below 0 inside.
+---@param f function|gr.texture f (a function): A function of a point that is negative inside.
 ---@param bounds gr.triple[] bounds (a table of points {x, y, z}; default a ball, if radius is given): Two corners {min, max} of the box that bounds it.
 ---@return gr.node
 ---@overload fun(name: string, f: function|gr.texture, bounds: gr.triple[]): gr.node
@@ -828,24 +828,24 @@ function gr.patch(material, points, patches) end
 
 ---@class gr.node.displace.fields
 ---@field f? function|gr.texture f (a function; optional): A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}.
----@field edge? number edge (a number, > 0; default level): Length of edges above which they are halved, before vertices move.
----@field level? integer level (a whole number, 0 to 12; default 0): How often every edge is halved, in place of edge.
+---@field edge? number edge (a number, > 0; default level): Longer edges are halved, until none is longer, before vertices move.
+---@field level? integer level (a whole number, 0 to 12; default 0): Instead of edge: how often every edge is halved.
 ---@field smooth? number smooth (a number, 0 to 180, in degrees; default 60): Crease angle of the displaced mesh, as in gr.mesh; 0: all faces are flat.
 
----Divides meshes, patches and height fields finely and moves their vertices by a function.
+---Divides meshes, patches and height fields into small triangles and moves their vertices by a function.
 ---@param f function|gr.texture f (a function; optional): A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}.
----@param edge number edge (a number, > 0; default level): Length of edges above which they are halved, before vertices move.
+---@param edge number edge (a number, > 0; default level): Longer edges are halved, until none is longer, before vertices move.
 ---@return gr.node
 ---@overload fun(self: gr.node, fields: gr.node.displace.fields): gr.node
 function node:displace(f, edge) end
 
 ---@class gr.fn.fields
 ---@field f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.
----@field points? integer points (a whole number, 1 to 16; default 16): Points of a pixel's footprint at most over which the function is averaged: 1, 2, 4, 8 or 16.
+---@field points? integer points (a whole number, 1 to 16; default 16): Maximum number of points of a pixel's footprint over which the function is averaged: 1, 2, 4, 8 or 16.
 
----A Lua function as a texture; wherever a texture is taken, one may stand.
+---A Lua function as a texture. Every argument that accepts a texture also accepts a function.
 ---@param f number|gr.triple|gr.texture|function f (a number or a table of 3 numbers or a texture): A Lua function f(p, s) of the point, or anything else that is a texture.
----@param points? integer points (a whole number, 1 to 16; default 16): Points of a pixel's footprint at most over which the function is averaged: 1, 2, 4, 8 or 16.
+---@param points? integer points (a whole number, 1 to 16; default 16): Maximum number of points of a pixel's footprint over which the function is averaged: 1, 2, 4, 8 or 16.
 ---@return gr.texture
 ---@overload fun(fields: gr.fn.fields): gr.texture
 function gr.fn(f, points) end
@@ -1046,7 +1046,7 @@ function gr.difresneld_material(material) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 bits; a number is a gamma.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 
 ---An image texture for node:set_texture and for inputs of gr.material.
@@ -1062,7 +1062,7 @@ function gr.texture(file) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 bits; a number is a gamma.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
@@ -1082,7 +1082,7 @@ function gr.bump(file, height) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 bits; a number is a gamma.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 ---@field channel? 'kd'|'ks'|'emission'|'opacity' channel ('kd'|'ks'|'emission'|'opacity'; default 'kd'): The input that the image replaces; where opacity is below 1, the surface has holes.
 
@@ -1101,7 +1101,7 @@ function gr.image_material(material, image) end
 ---@field flip_u? boolean flip_u (true or false; default false): Whether the image is mirrored from left to right.
 ---@field tiles? number|number[] tiles (a number or a table of 2 numbers; default 1): Number of repetitions: one number, or {across, up}.
 ---@field offset? number|number[] offset (a number or a table of 2 numbers; default 0): Shift in units of the image: one number, or {across, up}.
----@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma.
+---@field encoding? 'auto'|'srgb'|'linear'|number encoding ('auto'|'srgb'|'linear', > 0 and <= 10; default 'auto'): Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 bits; a number is a gamma.
 ---@field mapping? 'classic'|'outside' mapping ('classic'|'outside'; default 'classic'): On spheres: classic is mirrored, seen from outside; outside is not.
 ---@field height? number height (a number; default 1/50 of the picture's size; 1 for normals): Height of white above black, in units of the object; for normals, a factor of the slopes.
 ---@field kind? 'bump'|'normal' kind ('bump'|'normal'; default 'bump'): Contents: heights, or normals as colours (x right, y up, z outwards).
@@ -1150,7 +1150,7 @@ function gr.glyphs(font, text) end
 ---@field coat_weight? number|gr.texture|function coat_weight (a number or a texture, 0 to 1; default 0): Share of the surface with a clear coat.
 ---@field coat_color? gr.triple|string|gr.texture|function coat_color (a colour {r, g, b} or a texture, >= 0; default {1, 1, 1}): Colour of light that passed the coat twice.
 ---@field coat_roughness? number|gr.texture|function coat_roughness (a number or a texture, 0 to 1; default 0): Roughness of the coat; 0 is polished.
----@field coat_roughness_anisotropy? number|gr.texture|function coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): Likewise for the coat.
+---@field coat_roughness_anisotropy? number|gr.texture|function coat_roughness_anisotropy (a number or a texture, 0 to 1; default 0): The same for the coat.
 ---@field coat_ior? number|gr.texture|function coat_ior (a number or a texture, > 0; default 1.6): Index of refraction of the coat.
 ---@field coat_darkening? number|gr.texture|function coat_darkening (a number or a texture, 0 to 1; default 1): How much internal reflections of the coat darken the base.
 ---@field fuzz_weight? number|gr.texture|function fuzz_weight (a number or a texture, 0 to 1; default 0): Share of the surface with fuzz.
@@ -1349,7 +1349,7 @@ function gr.sky_light(sky) end
 ---@field serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.
 ---@field matrix number|number[] matrix (a number or a table of numbers): Three rows of a matrix, 12 numbers, applied after its own transforms, in the space of its parent.
 
----Transforms a node in all later pictures. The window saves edits as a file of such calls for require.
+---Transforms a node in all later pictures. The window saves edits as a file of such calls; require loads it.
 ---@param name string name (a string): Name of the node; gray ignores a node with another name.
 ---@param serial integer serial (a whole number, 0 to 4294967295): Its number in order of creation, from 0; nodes added in the window count down from 4294967295.
 ---@param matrix number|number[] matrix (a number or a table of numbers): Three rows of a matrix, 12 numbers, applied after its own transforms, in the space of its parent.
@@ -1695,7 +1695,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1723,11 +1723,11 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
----@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted.
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
----@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Steps of light of style toon, beside shadow.
----@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
----@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Weight of the light above white that spreads around it.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; with 1 they have a quarter of their light.
 ---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
 ---@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
 ---@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
@@ -1778,7 +1778,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -1806,11 +1806,11 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
----@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted.
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
----@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Steps of light of style toon, beside shadow.
----@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
----@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Weight of the light above white that spreads around it.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; with 1 they have a quarter of their light.
 ---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
 ---@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
 ---@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
@@ -1921,7 +1921,7 @@ function node:moves_to(node) end
 ---@overload fun(self: gr.node, direction: gr.triple, degrees: number): gr.node
 function node:spin(axis, degrees) end
 
----Forgets the transforms of this node, so that an animation can set new ones in each frame.
+---Removes the transforms of this node, so that an animation can set new ones in each frame.
 ---@return gr.node
 function node:reset() end
 
@@ -1973,7 +1973,7 @@ function node:translate(x, y, z) end
 ---@field ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@field lights? gr.light[] lights (a table of lights; default {}): The lights.
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
----@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of the script have the form gr.render{...} without background.
+---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
 ---@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
@@ -2001,11 +2001,11 @@ function node:translate(x, y, z) end
 ---@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
 ---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
 ---@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
----@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted.
 ---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
----@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Steps of light of style toon, beside shadow.
----@field bloom? number bloom (a number, 0 to 1; default --bloom): Share of the light above white that spreads around it.
----@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; 1: to a quarter of their light.
+---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Weight of the light above white that spreads around it.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; with 1 they have a quarter of their light.
 ---@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
 ---@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
 ---@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
@@ -2043,21 +2043,21 @@ function node:translate(x, y, z) end
 function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
 
 ---@class gr.frames.fields
----@field count? integer count (a whole number, >= 1; optional): Number of frames; or seconds.
+---@field count? integer count (a whole number, >= 1; optional): Number of frames; give either count or seconds.
 ---@field draw function draw (a function): draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1.
 ---@field seconds? number seconds (a number, > 0, in seconds; optional): Duration: seconds times fps is the number of frames, rounded.
 ---@field fps? number fps (a number, 0.01 to 1000; default 30): Frames per second; --fps has priority.
----@field loop? boolean loop (true or false; default false): The frame after the last one is the first: t stays below 1, and files play for ever.
+---@field loop? boolean loop (true or false; default false): After the last frame comes the first: t stays below 1, and players repeat the file without end.
 ---@field shutter? number[] shutter (a table of two rising numbers, in frames; default {0, 0}): When the shutter opens and closes; {0, 0.5} is half the time of a frame, 180 degrees.
----@field pure? boolean pure (true or false; default false): draw depends on its arguments only: it is not called for frames that are not rendered.
+---@field pure? boolean pure (true or false; default false): draw depends only on its arguments, so it is called only for rendered frames.
 
 ---Renders an animation: calls draw for each frame, and renders what it returns.
----@param count integer count (a whole number, >= 1; optional): Number of frames; or seconds.
+---@param count integer count (a whole number, >= 1; optional): Number of frames; give either count or seconds.
 ---@param draw function draw (a function): draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1.
 ---@overload fun(fields: gr.frames.fields)
 function gr.frames(count, draw) end
 
----A vector: a table {x, y, z} with operators; of one number, three times that.
+---A vector: a table {x, y, z} with operators. One number becomes all three components.
 ---@return gr.vector
 function gr.vec(x, y, z) end
 
@@ -2081,7 +2081,7 @@ function gr.normalize(v) end
 ---@return any
 function gr.mix(a, b, t) end
 
----x, at least low and at most high; of vectors by components.
+---x clamped to low..high; vectors by components.
 ---@return any
 function gr.clamp(x, low, high) end
 
@@ -2093,11 +2093,11 @@ function gr.smoothstep(low, high, x) end
 ---@return any
 function gr.step(edge, x) end
 
----The least of numbers or vectors, by components.
+---The minimum of numbers or vectors, by components.
 ---@return any
 function gr.min(...) end
 
----The greatest of numbers or vectors, by components.
+---The maximum of numbers or vectors, by components.
 ---@return any
 function gr.max(...) end
 
@@ -2105,7 +2105,7 @@ function gr.max(...) end
 ---@return any
 function gr.where(x, a, b) end
 
----Entry i of a table of numbers or vectors, i rounded down and kept between 1 and #t.
+---Entry i of a table of numbers or vectors; i is rounded down and clamped to 1..#t.
 ---@return any
 function gr.lookup(t, i) end
 
@@ -2113,7 +2113,7 @@ function gr.lookup(t, i) end
 ---@return any ...
 function gr.loop(n, ...) end
 
----Perlin noise of a point, or of x, y, z: in about -1..1.
+---Perlin noise at a point, or at x, y, z: about -1..1.
 ---@return number
 function gr.noise(p) end
 
@@ -2121,7 +2121,7 @@ function gr.noise(p) end
 ---@return number
 function gr.turbulence(p, octaves) end
 
----Distances from the nearest and the second nearest of random points, and a number of the nearest.
+---Distances to the nearest and the second nearest of random points, and a number in 0..1 that identifies the nearest.
 ---@return number
 ---@return number
 ---@return number
@@ -2131,11 +2131,11 @@ function gr.cells(p) end
 ---@return number
 function gr.hash(p) end
 
----A colour of the screen: '#rrggbb', {r, g, b} or r, g, b; linear colours decode it.
+---A display colour: '#rrggbb', {r, g, b} or r, g, b; gray decodes it for linear colours.
 ---@return gr.triple
 function gr.srgb(colour) end
 
----The light of a colour of the screen, a vector of numbers, by the sRGB function.
+---The light of a display colour as a vector, decoded by the sRGB function.
 ---@return gr.vector
 function gr.linear(colour) end
 

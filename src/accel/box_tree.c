@@ -230,7 +230,8 @@ static void set_child(struct box_tree_node *node, int slot, const struct box *bo
  * count, so a tree of 2^31 items is at most DEEP + 16 deep, and a traversal's stack (3 entries a level) always
  * suffices. */
 enum { DEEP = 64 };
-_Static_assert((DEEP + 16) * (BOX_TREE_WIDTH - 1) + BOX_TREE_WIDTH <= BOX_TREE_STACK, "the walk's stack is too small");
+_Static_assert((DEEP + 16) * (BOX_TREE_WIDTH - 1) + BOX_TREE_WIDTH <= BOX_TREE_STACK,
+               "the traversal stack is too small");
 
 struct task {
     struct run run;

@@ -141,7 +141,7 @@ static int exec_variant(const char *which, const char *missing, char **argv) {
     (void)snprintf(program + length, sizeof program - length, "-%s", which);
     (void)fflush(NULL);
     (void)execv(program, argv);
-    (void)fprintf(stderr, "gray: %s: %s is not there; it is built where pkg-config finds %s\n",
+    (void)fprintf(stderr, "gray: %s: the program %s does not exist; it is built if pkg-config finds %s\n",
                   strcmp(which, "mpi") == 0 ? "--mpi" : "-gui", length ? program : "its program", missing);
     return ERROR_USAGE;
 }

@@ -696,7 +696,7 @@ static int run_once(struct render_process *process, const char *path, const stru
     int status = ok ? process->status : (int)error.kind;
     if (!ok && error.kind != ERROR_CANCELLED)
         report_error(process, &arena, &error, traceback);
-    const char *nothing = "%s: there is no picture, because the script rendered none with gr.render";
+    const char *nothing = "%s: no picture was rendered, because the script did not call gr.render";
     if (ok && process->pictures == before && (nothing = arena_format(&arena, nothing, path)) != NULL)
         message(process, SCRIPT_NOTICE, nothing);
     arena_destroy(&arena);

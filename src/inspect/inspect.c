@@ -95,7 +95,8 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
     /* How many samples the pixel has is known when its tile, or the picture, is done. */
     if (integrator_traits(job->settings.integrator).progressive &&
         (job->settings.noise > 0 || job->settings.time_limit > 0))
-        return error_set(error, ERROR_USAGE, "--pixel takes no --noise or --time-limit; --spp N gives the samples");
+        return error_set(error, ERROR_USAGE,
+                         "--pixel cannot be combined with --noise or --time-limit; --spp N sets the number of samples");
     for (uint32_t i = 0; i < count; i++) {
         if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],

@@ -118,14 +118,14 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
         text_writer_print(t->writer, ": does not light this\n");
         return;
     case PIXEL_TRACE_LIGHT_NO_EFFECT:
-        text_writer_print(t->writer, ": nothing of it is reflected this way\n");
+        text_writer_print(t->writer, ": the surface reflects none of it to the viewer\n");
         return;
     case PIXEL_TRACE_LIGHT_REACHES:
     case PIXEL_TRACE_LIGHT_BLOCKED:
         break;
     }
     if (!light->area_light && light->distance < INFINITY)
-        text_writer_print(t->writer, ": distance %.6g, fading %.6g", light->distance, light->strength);
+        text_writer_print(t->writer, ": distance %.6g, falloff %.6g", light->distance, light->strength);
     if (!light->area_light)
         triple(t, ", reflected by ", light->reflected);
     if (light->has_blocker) {
@@ -202,7 +202,7 @@ static void print_surface(struct text_state *t, const struct pixel_trace_ray *ra
     t->depth--;
     if (ray->opacity < 1) {
         indent(t, 1);
-        text_writer_print(t->writer, "opacity %.6g: the rays through the hole and this share of all the rest\n",
+        text_writer_print(t->writer, "opacity %.6g: the weight of the surface; the rest comes through the hole\n",
                           ray->opacity);
     }
 }
@@ -210,17 +210,16 @@ static void print_surface(struct text_state *t, const struct pixel_trace_ray *ra
 static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
     if (ray->cut == RAY_TOO_WEAK) {
         indent(t, 1);
-        text_writer_print(t->writer, "what it meets at distance %.6g could not change the pixel any more (--cutoff)\n",
-                          ray->distance);
+        text_writer_print(t->writer, "the hit at distance %.6g cannot change the pixel (--cutoff)\n", ray->distance);
     } else if (ray->area_light) {
         indent(t, 1);
-        text_writer_print(t->writer, "meets a %s that shows itself, at distance %.6g\n",
-                          light_kind_name(ray->area_light->kind), ray->distance);
+        text_writer_print(t->writer, "hits a visible %s at distance %.6g\n", light_kind_name(ray->area_light->kind),
+                          ray->distance);
     } else if (ray->met) {
         print_surface(t, ray);
     } else {
         indent(t, 1);
-        text_writer_print(t->writer, "meets nothing: background, %s\n",
+        text_writer_print(t->writer, "hits nothing: background, %s\n",
                           sky_kind_name(t->report->picture->job->world->sky.kind));
     }
 }
@@ -232,9 +231,9 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     if (ray->parent)
         triple(t, ", weight ", ray->weight);
     if (!ray->begun) {
-        text_writer_print(t->writer, ": not followed, %s\n",
+        text_writer_print(t->writer, ": not traced, %s\n",
                           ray->cut == RAY_OVER_LIMIT ? "the limit is reached (-reflect-limit, -refract-limit)"
-                                                     : "it could not change the pixel any more (--cutoff)");
+                                                     : "it cannot change the pixel (--cutoff)");
         return;
     }
     triple(t, ": from ", ray->origin);
@@ -266,7 +265,7 @@ static const char *direction(int x, int y) {
 
 static void print_sample(struct text_state *t, const struct pixel_trace_sample *sample) {
     text_writer_print(t->writer, "\nsample %u at %.6f, %.6f%s\n", (unsigned)sample->number, sample->x, sample->y,
-                      sample->counts ? "" : " (only to find out whether the pixel is sampled again)");
+                      sample->counts ? "" : " (only to decide whether the pixel is sampled again)");
     t->depth = 1;
     for (const struct pixel_trace_ray *ray = sample->first; ray; ray = ray->next)
         print_ray(t, ray);

@@ -49,8 +49,8 @@ bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, 
 
 bool light_set_profile(struct light *light, const struct expr_program *profile, struct error *error) {
     light->profile = profile;
-    return expr_field_reads_only(profile, EXPR_POINT_INPUTS,
-                                 "the colour of a light is a function of the direction alone", error) &&
+    return expr_field_reads_only(profile, EXPR_POINT_INPUTS, "the colour of a light may depend only on the direction",
+                                 error) &&
            (expr_field_largest(profile, &light->profile_largest) || error_no_memory(error, "a light"));
 }
 

@@ -323,7 +323,7 @@ bool sky_from_faces(struct image *const images[6], struct sky *out, struct error
 
 bool sky_from_function(const struct expr_program *program, struct sky *out, struct error *error) {
     *out = (struct sky){.kind = SKY_FUNCTION, .program = program};
-    return expr_field_reads_only(program, EXPR_POINT_INPUTS, "a sky is a function of the direction alone", error) &&
+    return expr_field_reads_only(program, EXPR_POINT_INPUTS, "a sky may depend only on the direction", error) &&
            (expr_field_largest(program, &out->largest) || error_no_memory(error, "a sky"));
 }
 

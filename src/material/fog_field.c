@@ -172,9 +172,9 @@ const struct fog_field *fog_field_build(struct arena *arena, const struct fog_fi
         (void)error_set(error, ERROR_SCENE, "the density of %s is a colour; it must be a number", in->source);
         return NULL;
     }
-    if (!reads_only(in->density, DENSITY_INPUTS, "a density is a function of the point and the time", error) ||
+    if (!reads_only(in->density, DENSITY_INPUTS, "a density may depend only on the point and the time", error) ||
         (in->colour && !reads_only(in->colour, (unsigned)DENSITY_INPUTS | VIEW_INPUTS,
-                                   "the colour of a fog is a function of the point, s.view and the time", error)))
+                                   "the colour of a fog may depend only on the point, s.view and the time", error)))
         return NULL;
     struct fog_field *field = arena_alloc(arena, sizeof *field);
     if (!field) {

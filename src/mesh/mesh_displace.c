@@ -438,7 +438,7 @@ bool mesh_input_displace(const struct mesh *mesh, const struct mesh_displacement
     const unsigned readable =
         (unsigned)EXPR_POINT_INPUTS | coordinates | 1U << EXPR_NORMAL_X | 1U << EXPR_NORMAL_Y | 1U << EXPR_NORMAL_Z;
     struct division d = {.edge = by->edge};
-    if (!expr_field_reads_only(by->program, readable, "a displacement is a function of p, s.u, s.v and s.normal",
+    if (!expr_field_reads_only(by->program, readable, "a displacement may depend only on p, s.u, s.v and s.normal",
                                error) ||
         (!mesh->uvs &&
          !expr_field_reads_only(by->program, readable & ~coordinates, "the mesh has no texture coordinates", error)))

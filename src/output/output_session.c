@@ -294,7 +294,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!again && picture_files_is_own(&output->files, written)) {
         char notice[NAME_LIMIT + 128];
         (void)snprintf(notice, sizeof notice,
-                       "gray: notice: %s replaces the picture of this name that was rendered before", written);
+                       "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
         output_report(output, LINE_NOTICE, notice);
     }
     describe_tiles(output, picture);

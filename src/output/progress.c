@@ -233,7 +233,7 @@ bool progress_script_line(struct progress *progress, const char *script, bool ru
     if (now - progress->script_since < progress->script_next)
         return false;
     text_duration(progress->script_next, elapsed, sizeof elapsed);
-    (void)snprintf(line, size, "gray: notice: %s still computes after %s (Ctrl-C ends it)", script, elapsed);
+    (void)snprintf(line, size, "gray: notice: %s is still running after %s (Ctrl-C ends it)", script, elapsed);
     progress->script_next *= 2;
     return true;
 }

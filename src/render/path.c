@@ -299,8 +299,8 @@ static void warn_of_infinite_emitter(const struct world *world, world_warning *w
             vec3_max_abs(material_emission(&world->materials[prototype->material])) == 0)
             continue;
         (void)snprintf(text, sizeof text,
-                       "--integrator path: '%.100s' emits light and has no bounds: paths find its light by scattering "
-                       "only, which makes noise",
+                       "--integrator path: '%.100s' emits light and has no bounds: only scattered rays find its light, "
+                       "which causes noise",
                        primitive_node(world, i)->name);
         warn(context, text);
         return;
@@ -312,15 +312,15 @@ void path_tracer_warn(const struct render_job *job, world_warning *warn, void *c
     char text[256];
     warn_of_infinite_emitter(world, warn, context);
     if (vec3_max_abs(job->ambient) > 0)
-        warn(context, "--integrator path ignores ambient: light goes from wall to wall instead");
+        warn(context, "--integrator path ignores ambient: it computes indirect light instead");
     for (uint32_t i = 0; i < world->material_count; i++) {
         const struct material *material = &world->materials[i];
         double albedo = material_albedo_bound(material);
         if (!(albedo > 1 + 0x1p-20))
             continue;
         (void)snprintf(text, sizeof text,
-                       "warning: --integrator path: the material of '%.100s' sends back more light than arrives (%.3g "
-                       "times): --max-depth and chance end its paths",
+                       "warning: --integrator path: the material of '%.100s' reflects more light than it receives "
+                       "(%.3g times); only --max-depth and Russian roulette end its paths",
                        material->name && material->name[0] ? material->name : user_of(world, i), albedo);
         warn(context, text);
         return;

@@ -208,7 +208,7 @@ static void push_substitute(struct script_context *c, enum owner owner, const ch
     const char *before = owner == OWNER_GR ? "gr." : "node:";
     c->function = NULL;
     if (push_alike(c->lua, owner, name)) {
-        context_warn(c, "%s%.100s does not exist, but in other letters", before, name);
+        context_warn(c, "%s%.100s exists only in another spelling", before, name);
         return;
     }
     context_warn(c, "%s%.100s does not exist and is ignored", before, name);

@@ -53,7 +53,7 @@ bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
     if (lua_type(L, index) != LUA_TSTRING || lua_tostring(L, index)[0] != '#')
         return false;
     if (!read_hexadecimal(lua_tostring(L, index), out))
-        context_raise(context_of(L), "'%.40s' is not a colour: '#rgb' and '#rrggbb' with hexadecimal digits are",
+        context_raise(context_of(L), "'%.40s' is not a colour; colours are '#rgb' or '#rrggbb' with hexadecimal digits",
                       lua_tostring(L, index));
     return true;
 }
@@ -65,7 +65,7 @@ bool display_colour_read(struct script_context *c, int index, const struct scrip
     if (!display_colour_at(c->lua, index, &colour))
         return false;
     if (!(p->flags & (OR_TEXTURE | OR_DISPLAY)) && p->kind != KIND_BACKGROUND)
-        context_raise(c, "%s must be light: gr.linear makes it of a colour of the screen", p->name);
+        context_raise(c, "%s must be light: gr.linear converts a display colour to light", p->name);
     value->vector = colour;
     value->display = true;
     if (!(p->flags & OR_TEXTURE))

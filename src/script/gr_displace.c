@@ -55,7 +55,7 @@ const double *gr_function_heights(struct script_context *context, const struct h
         (void)error_set(error, ERROR_SCENE, "the height of a height field is a number, not a vector");
         return NULL;
     }
-    if (!expr_field_reads_only(program, EXPR_POINT_INPUTS, "a height is a function of the point alone", error))
+    if (!expr_field_reads_only(program, EXPR_POINT_INPUTS, "a height may depend only on the point", error))
         return NULL;
     if (2 * (uint64_t)(grid->columns - 1) * (grid->rows - 1) > DISPLACED_TRIANGLES) {
         (void)error_set(error, ERROR_SCENE, "%u columns and %u rows are more than %d triangles", grid->columns,
@@ -135,7 +135,7 @@ static bool displace_all(const struct displacing *d, const struct node *root, st
         ok = displace_node(d, node, error);
     }
     scene_traversal_end(&t);
-    return ok && (count > 0 || error_set(error, ERROR_SCENE, "there is no shape that could be displaced"));
+    return ok && (count > 0 || error_set(error, ERROR_SCENE, "there is no shape that can be displaced"));
 }
 
 enum { DISPLACE_F = SELF + 1, DISPLACE_EDGE, DISPLACE_LEVEL, DISPLACE_SMOOTH };
@@ -144,9 +144,9 @@ static const struct script_parameter displace_parameters[] = {
     [DISPLACE_F] = {"f", KIND_FUNCTION, OPTIONAL, ANY, NULL, NULL,
                     "A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}."},
     [DISPLACE_EDGE] = {"edge", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "level",
-                       "Length of edges above which they are halved, before vertices move."},
+                       "Longer edges are halved, until none is longer, before vertices move."},
     [DISPLACE_LEVEL] = {"level", KIND_WHOLE, OPTIONAL, IN_RANGE(0, MAX_LEVEL), NULL, "0",
-                        "How often every edge is halved, in place of edge."},
+                        "Instead of edge: how often every edge is halved."},
     [DISPLACE_SMOOTH] = {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "60",
                          "Crease angle of the displaced mesh, as in gr.mesh; 0: all faces are flat."},
 };
@@ -169,6 +169,7 @@ static bool gr_displace(struct script_context *context, const struct script_valu
 
 static const struct script_function rows[] = {
     NODE("displace", displace_parameters, RESULT_SELF, gr_displace,
-         "Divides meshes, patches and height fields finely and moves their vertices by a function.", "f edge"),
+         "Divides meshes, patches and height fields into small triangles and moves their vertices by a function.",
+         "f edge"),
 };
 const struct function_rows displace_functions = {rows, COUNT(rows)};

@@ -12,7 +12,8 @@
 enum { FRAMES_COUNT, FRAMES_DRAW, FRAMES_SECONDS, FRAMES_FPS, FRAMES_LOOP, FRAMES_SHUTTER, FRAMES_PURE, FRAMES_END };
 
 static const struct script_parameter frames_parameters[] = {
-    [FRAMES_COUNT] = {"count", KIND_WHOLE, OPTIONAL, ABOVE(1), NULL, NULL, "Number of frames; or seconds."},
+    [FRAMES_COUNT] = {"count", KIND_WHOLE, OPTIONAL, ABOVE(1), NULL, NULL,
+                      "Number of frames; give either count or seconds."},
     [FRAMES_DRAW] = {"draw", KIND_CALLBACK, 0, ANY, NULL, NULL,
                      "draw(t, frame) returns the table of fields for gr.render; t is from 0 to 1, frame from 1."},
     [FRAMES_SECONDS] = {"seconds", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), "seconds", NULL,
@@ -20,11 +21,11 @@ static const struct script_parameter frames_parameters[] = {
     [FRAMES_FPS] = {"fps", KIND_NUMBER, OPTIONAL, IN_RANGE(FRAME_RATE_MIN, FRAME_RATE_MAX), NULL, "30",
                     "Frames per second; --fps has priority."},
     [FRAMES_LOOP] = {"loop", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                     "The frame after the last one is the first: t stays below 1, and files play for ever."},
+                     "After the last frame comes the first: t stays below 1, and players repeat the file without end."},
     [FRAMES_SHUTTER] = {"shutter", KIND_INTERVAL, OPTIONAL, ANY, "frames", "{0, 0}",
                         "When the shutter opens and closes; {0, 0.5} is half the time of a frame, 180 degrees."},
     [FRAMES_PURE] = {"pure", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                     "draw depends on its arguments only: it is not called for frames that are not rendered."},
+                     "draw depends only on its arguments, so it is called only for rendered frames."},
 };
 
 /* What one call of gr.frames asks for. */
@@ -51,7 +52,7 @@ static bool count_frames(struct script_context *context, const struct script_val
                          limit);
     plan->frame.count = (uint32_t)count;
     if (selection->step > 0 && selection->last > plan->frame.count)
-        return error_set(error, ERROR_SCENE, "--frames asks for frame %u, but the last one is %u", selection->last,
+        return error_set(error, ERROR_SCENE, "--frames selects frame %u, but the last frame is %u", selection->last,
                          plan->frame.count);
     return true;
 }
@@ -59,7 +60,7 @@ static bool count_frames(struct script_context *context, const struct script_val
 static bool gr_frames(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
     if (context->animates)
-        return error_set(error, ERROR_SCENE, "it is called while another one draws its frames");
+        return error_set(error, ERROR_SCENE, "it is called while another gr.frames draws its frames");
     if (context->options->frames.turntable > 0)
         return error_set(error, ERROR_SCENE, "--turntable is for scripts without gr.frames");
     struct frame_plan *plan = arena_alloc(&context->keep, sizeof *plan);

@@ -38,7 +38,7 @@ static bool keep_numbers(struct script_context *context, const struct script_val
         return error_set(error, ERROR_SCENE, "%s has %u numbers for %u places", name, given->count, placements->count);
     double *kept = arena_alloc_array(&context->scene.arena, given->count, sizeof *kept);
     if (!kept)
-        return error_no_memory(error, "the places of instances");
+        return error_no_memory(error, "the positions of instances");
     memcpy(kept, given->numbers, given->count * sizeof *kept);
     *out = kept;
     return true;
@@ -77,7 +77,7 @@ bool gr_instances(struct script_context *context, const struct script_value *arg
     size_t numbers = (size_t)at->count * (matrices ? MATRIX_NUMBERS : PLACEMENT_NUMBERS);
     double *kept = arena_alloc_array(&context->scene.arena, numbers, sizeof *kept);
     if (!node || !placements || !kept)
-        return error_no_memory(error, "the places of instances");
+        return error_no_memory(error, "the positions of instances");
     if (numbers > 0)
         memcpy(kept, at->numbers, numbers * sizeof *kept);
     placements->count = at->count;

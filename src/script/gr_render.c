@@ -225,7 +225,7 @@ static bool render_turntable(struct script_context *context, const struct render
     if (vec3_max_abs(first->camera.up) == 0)
         return error_set(error, ERROR_SCENE, "--turntable needs an up of another length than 0");
     if (options->selection.step > 0 && options->selection.last > count)
-        return error_set(error, ERROR_SCENE, "--frames asks for frame %u, but the last one is %u",
+        return error_set(error, ERROR_SCENE, "--frames selects frame %u, but the last frame is %u",
                          options->selection.last, count);
     const struct script_host *host = context->host;
     request.frame = (struct frame){0, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true};

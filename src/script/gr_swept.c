@@ -131,12 +131,12 @@ static bool gr_sweep(struct script_context *context, const struct script_value *
 enum { IMPLICIT_F = SHAPE_FIRST, IMPLICIT_BOUNDS, IMPLICIT_RADIUS, IMPLICIT_CENTRE, IMPLICIT_OPEN };
 static const struct script_parameter implicit_parameters[] = {
     SHAPE("implicit"),
-    [IMPLICIT_F] = {"f", KIND_FUNCTION, 0, ANY, NULL, NULL, "A function of a point, below 0 inside."},
+    [IMPLICIT_F] = {"f", KIND_FUNCTION, 0, ANY, NULL, NULL, "A function of a point that is negative inside."},
     [IMPLICIT_BOUNDS] = {"bounds", KIND_POINTS, OPTIONAL, ANY, NULL, "a ball, if radius is given",
                          "Two corners {min, max} of the box that bounds it."},
     [IMPLICIT_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,
-                         "Of the ball that bounds it, in place of bounds."},
-    [IMPLICIT_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Of that ball."},
+                         "Radius of a ball that bounds it, instead of bounds."},
+    [IMPLICIT_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Centre of that ball."},
     [IMPLICIT_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether there are no caps on the bounds."},
 };
 
@@ -250,7 +250,7 @@ static const struct script_parameter field_parameters[] = {
     [FIELD_IMAGE] = {"image", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                      "A picture instead of heights: black is 0, white is 1, the upper edge is z = 0."},
     [FIELD_F] = {"f", KIND_FUNCTION, OPTIONAL, ANY, NULL, NULL,
-                 "A function of the point {x, 0, z}: its height, or what is added to heights or image."},
+                 "A function of the point {x, 0, z}: its height, or an offset that is added to heights or image."},
     [FIELD_COLUMNS] = {"columns", KIND_WHOLE, OPTIONAL, IN_RANGE(2, 32768), NULL, "257",
                        "Points along x at which f is evaluated, without heights and image."},
     [FIELD_ROWS] = {"rows", KIND_WHOLE, OPTIONAL, IN_RANGE(2, 32768), NULL, "columns", "Points along z."},
@@ -418,7 +418,7 @@ static const struct script_function rows[] = {
        "A blob (metaballs): the isosurface of the fields of balls and rods.", "material spheres cylinders? threshold?",
        "name spheres cylinders? threshold?"),
     GR("implicit", implicit_parameters, RESULT_NODE, gr_implicit,
-       "An implicit solid: where a function of a point is below 0, within a box or a ball.", "material f bounds",
+       "An implicit solid: the points in a box or a ball where a function is negative.", "material f bounds",
        "name f bounds"),
     GR("curve", curve_parameters, RESULT_NODE, gr_curve, "A hair: a ribbon along a spline that faces each ray.",
        "material points widths spline?", "name points widths spline?"),

@@ -110,8 +110,9 @@ static bool multiply(struct script_context *context, const struct script_value *
 enum { FN_F, FN_POINTS };
 static const struct script_parameter fn_parameters[] = {
     [FN_F] = PART("f", "A Lua function f(p, s) of the point, or anything else that is a texture."),
-    [FN_POINTS] = {"points", KIND_WHOLE, OPTIONAL, IN_RANGE(1, FUNCTION_POINTS), NULL, "16",
-                   "Points of a pixel's footprint at most over which the function is averaged: 1, 2, 4, 8 or 16."},
+    [FN_POINTS] =
+        {"points", KIND_WHOLE, OPTIONAL, IN_RANGE(1, FUNCTION_POINTS), NULL, "16",
+         "Maximum number of points of a pixel's footprint over which the function is averaged: 1, 2, 4, 8 or 16."},
 };
 
 static bool fn(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -130,7 +131,7 @@ static bool fn(struct script_context *context, const struct script_value *args, 
 
 static const struct script_function rows[] = {
     GR("fn", fn_parameters, RESULT_TEXTURE, fn,
-       "A Lua function as a texture; wherever a texture is taken, one may stand.", "f points?"),
+       "A Lua function as a texture. Every argument that accepts a texture also accepts a function.", "f points?"),
     GR("marble_texture", marble_parameters, RESULT_TEXTURE, marble,
        "A marble pattern between 0 and 1, for inputs of gr.material.", "f multiplier vein_frequency interp?"),
     GR("wood_texture", wood_parameters, RESULT_TEXTURE, wood,

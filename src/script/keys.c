@@ -265,7 +265,7 @@ static void read_field(const struct reader *reader, const struct key_field *fiel
     if (lua_isnil(L, index))
         refuse(reader, name, "is missing");
     if (kind_of(reader, name, index) != field->kind || count_of(reader, field->kind, name, index) != field->count)
-        refuse(reader, name, "is of another kind than that of keys[1]");
+        refuse(reader, name, "is of another kind than the value of keys[1]");
     if (field->kind == FIELD_COLOUR && is_colour(L, index, &colour)) {
         out[0] = colour.x, out[1] = colour.y, out[2] = colour.z;
         return;
@@ -285,7 +285,7 @@ static void read_value(const struct reader *reader, int index, double *row) {
     const struct keys *keys = reader->keys;
     lua_State *L = reader->L;
     if (keys->named != has_names(L, index))
-        refuse(reader, NULL, "is of another kind than that of keys[1]");
+        refuse(reader, NULL, "is of another kind than the value of keys[1]");
     for (uint32_t i = 0; i < keys->field_count; i++) {
         const struct key_field *field = &keys->fields[i];
         const char *name = push_name(L, keys, reader->names, i);
@@ -304,7 +304,7 @@ static void read_value(const struct reader *reader, int index, double *row) {
     for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1))
         given++;
     if (given != keys->field_count)
-        refuse(reader, NULL, "has other fields than that of keys[1]");
+        refuse(reader, NULL, "has other fields than the value of keys[1]");
 }
 
 /* Pushes entry or field `name` of the key at an index. */
@@ -402,7 +402,7 @@ static void make_controls(struct reader *reader) {
             reader->at = "the value";
             if (field->kind == FIELD_DIRECTION && angle_of(last, value, 3) > PI - 1e-6)
                 refuse(reader, push_name(L, keys, reader->names, f),
-                       "is opposite to that of the key before: no way between them is the shortest");
+                       "is opposite to that of the previous key: there is no shortest rotation between them");
         }
         for (uint32_t key = 0; keys->curve == CURVE_CATMULL && key < keys->count; key++)
             set_tangent(keys, field, key);

@@ -20,7 +20,7 @@
 enum { RECORD_POINTS = 1000 };
 
 /* t[x] of a symbol is nil. */
-#define TABLE_HINT "; a table cannot be indexed by a number of the recorded function, gr.lookup(t, i) can"
+#define TABLE_HINT "; a number of the recorded function cannot be the index of a table; use gr.lookup(t, i)"
 #define FOR_HINT                                                                                                       \
     "; the bounds of a for loop must not depend on the arguments of the function, gr.loop(n, state, f) may end "       \
     "earlier"
@@ -134,7 +134,7 @@ static bool call_function(lua_State *L, int function, int first) {
 static bool is_result(lua_State *L, int function, int *count) {
     int top = lua_gettop(L);
     if (is_symbol(L, top) && !context_of(L)->recorder->active) {
-        lua_pushliteral(L, "a number of a recorded function is used outside of it");
+        lua_pushliteral(L, "a number of a recorded function is used outside the function");
         name_function(L, function);
         lua_replace(L, top);
         return false;
@@ -347,7 +347,7 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
     char text[RECORD_ERROR];
     (void)snprintf(text, sizeof text,
                    "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded %s; "
-                   "it must depend on its arguments alone, and x == 0 is not seen (write x >= 0 and x <= 0)",
+                   "it must depend only on its arguments, and x == 0 cannot be recorded (write x >= 0 and x <= 0)",
                    where.linedefined, inputs[0], inputs[1], inputs[2], a, b);
     lua_pushstring(L, text);
     lua_error(L);

@@ -75,8 +75,8 @@ uint32_t record_node(lua_State *L, uint32_t node) {
         context_raise_no_memory(context_of(L));
     }
     record_give_up(L,
-                   "the function has more than %d operations; gr.where, gr.step, gr.min and gr.max need one where "
-                   "branches need many, and gr.loop(n, state, f) records each of its n steps",
+                   "the function has more than %d operations; gr.where, gr.step, gr.min and gr.max need one operation "
+                   "where branches need many, and gr.loop(n, state, f) records each of its n steps",
                    EXPR_NODES);
 }
 
@@ -94,10 +94,11 @@ struct number number_at(lua_State *L, int index) {
                                EXPR_NONE};
     }
     if (!is_symbol(L, index))
-        luaL_error(L, "a number is needed with a number of the recorded function, not %s", value_words(L, index));
+        luaL_error(L, "an operator on a number of the recorded function needs another number, not %s",
+                   value_words(L, index));
     const struct symbol *symbol = lua_touserdata(L, index);
     if (!recorder->active || symbol->serial != recorder->serial)
-        luaL_error(L, "a number of a recorded function is used outside of it");
+        luaL_error(L, "a number of a recorded function is used outside the function");
     return symbol->number;
 }
 
@@ -176,15 +177,15 @@ bool record_decide(lua_State *L, uint32_t condition) {
         return answer == 1;
     if (recorder->taken == RECORD_PATHS)
         record_give_up(L,
-                       "a call of the function decides more than %d times by its arguments; a loop of a constant "
-                       "number of steps is gr.loop(n, state, f)",
+                       "a call of the function branches more than %d times on its arguments; for a loop with a "
+                       "constant number of steps use gr.loop(n, state, f)",
                        RECORD_PATHS);
     struct decision *decision = &recorder->decisions[recorder->taken++];
     if (recorder->taken > recorder->depth) {
         *decision = (struct decision){.condition = condition, .answer = true};
         recorder->depth = recorder->taken;
     } else if (decision->condition != condition) {
-        record_give_up(L, "the function is not pure: called again with the same arguments it went another way");
+        record_give_up(L, "the function is not pure: a second call with the same arguments took another branch");
     }
     recorder->answers[condition] = 2 * recorder->path + (decision->answer ? 1 : 0);
     if (!record_bounds_narrow(recorder, condition, decision->answer)) {

@@ -468,7 +468,8 @@ static const struct script_parameter image_parameters[] = {
     {                                                                                                                  \
         "encoding", KIND_CHOICE, OPTIONAL | OR_NUMBER | LOW_OPEN, 0, 10, LIST_BLANKS(TEXTURE_ENCODINGS), NULL,         \
             "'auto'",                                                                                                  \
-            "What its numbers mean with linear colours: auto by its file, else sRGB for colours of 8 bits; or gamma."  \
+            "Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 "    \
+            "bits; a number is a gamma."                                                                               \
     }
 #define LOOKUP_FIELDS(first)                                                                                           \
     [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
@@ -669,8 +670,8 @@ static const struct script_parameter render_parameters[] = {
     [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
     [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
                            "Background for rays that hit nothing: a colour, a sky, a function of the unit direction, "
-                           "or 'gradient' for {0, 0, (1 + y)/2}; without one, light and neutral if all pictures of "
-                           "the script have the form gr.render{...} without background."},
+                           "or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form "
+                           "gr.render{...} without background, the default is light and neutral."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
     [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
                         "N x N samples for a marked pixel."},
@@ -727,16 +728,17 @@ static const struct script_parameter render_parameters[] = {
                        "Whether colours are linear light or the numbers of files; auto: linear with integrator path."},
     [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep",
                      "Whether PNG files have 16 bits per channel."},
-    [RENDER_STYLE] = {"style", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STYLES), NULL, "--style",
-                      "Pictures that look drawn: ink lines, light in steps, from cool to warm; of integrator whitted."},
+    [RENDER_STYLE] =
+        {"style", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STYLES), NULL, "--style",
+         "Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted."},
     [RENDER_LINE_WIDTH] = {"line_width", KIND_NUMBER, OPTIONAL, IN_RANGE(0, LINE_WIDTH_MAX), "pixels", "--line-width",
                            "Width of lines where objects, normals and depths change."},
     [RENDER_TOON_STEPS] = {"toon_steps", KIND_WHOLE, OPTIONAL, IN_RANGE(1, TOON_STEPS_MAX), NULL, "--toon-steps",
-                           "Steps of light of style toon, beside shadow."},
+                           "Number of levels of light of style toon, not counting shadow."},
     [RENDER_BLOOM] = {"bloom", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--bloom",
-                      "Share of the light above white that spreads around it."},
+                      "Weight of the light above white that spreads around it."},
     [RENDER_VIGNETTE] = {"vignette", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--vignette",
-                         "Darkens the corners; 1: to a quarter of their light."},
+                         "Darkens the corners; with 1 they have a quarter of their light."},
     [RENDER_GRAY] = {"gray", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--gray", "Whether the picture is its luminance."},
     [RENDER_EDGES] = {"edges", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--edges",
                       "Whether PNG files show the edges of the picture, white on black."},
@@ -788,7 +790,8 @@ static const struct script_function node_rows[] = {
     GR("node", group_parameters, RESULT_NODE, gr_node, "A node with children and a transform.", "name?"),
     GR("instances", instances_parameters, RESULT_NODE, gr_instances,
        "A node at many positions; each position costs a tenth of the memory of a node.", "of at"),
-    GR("joint", joint_parameters, RESULT_NODE, gr_joint, "A node with limited angles about x and y.", "name x y"),
+    GR("joint", joint_parameters, RESULT_NODE, gr_joint,
+       "A node that rotates about x and y, with limits of the angles.", "name x y"),
     GR("sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere; by default of radius 1 at the origin.",
        "material", "name"),
     GR("cube", cube_parameters, RESULT_NODE, gr_cube, "A cube; by default from (0,0,0) to (1,1,1).", "material",
@@ -827,7 +830,7 @@ static const struct script_function node_rows[] = {
        "The part of the surfaces of an object that is inside a solid: cut open, without caps. It is not a CSG operand.",
        "name object by", "object by"),
     GR("bounded_by", bounded_parameters, RESULT_NODE, gr_bounded_by,
-       "The object, with the hint that a solid contains it; faster where the bounding box of the object is large.",
+       "The object, with the hint that a solid contains it. This makes objects with a large bounding box faster.",
        "name object by", "object by"),
 };
 
@@ -863,7 +866,7 @@ static const struct script_function material_rows[] = {
 
 static const struct script_function other_rows[] = {
     GR("change_node", change_node_parameters, RESULT_NOTHING, gr_change_node,
-       "Transforms a node in all later pictures. The window saves edits as a file of such calls for require.",
+       "Transforms a node in all later pictures. The window saves edits as a file of such calls; require loads it.",
        "name serial matrix"),
     GR("change_delete", change_delete_parameters, RESULT_NOTHING, gr_change_delete,
        "Removes a node and its children from all later pictures.", "name serial"),
@@ -947,7 +950,7 @@ static const struct script_function other_rows[] = {
          "transforms.",
          "axis degrees", "direction degrees"),
     NODE("reset", self_parameters, RESULT_SELF, gr_reset,
-         "Forgets the transforms of this node, so that an animation can set new ones in each frame.", ""),
+         "Removes the transforms of this node, so that an animation can set new ones in each frame.", ""),
     NODE("pose", pose_parameters, RESULT_SELF, gr_pose,
          "Replaces the transforms of this node by a scale, a rotation and a translation, as gr.keys interpolates them.",
          "translate rotate? scale?"),

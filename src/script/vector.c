@@ -122,7 +122,7 @@ static int vector_index(lua_State *L) {
 }
 
 static int vector_set(lua_State *L) {
-    return luaL_error(L, "a vector has no field that could be set; make another one with gr.vec(x, y, z)");
+    return luaL_error(L, "the fields of a vector cannot be set; make another vector with gr.vec(x, y, z)");
 }
 
 static int vector_equal(lua_State *L) {
@@ -642,36 +642,38 @@ static const struct {
     struct value_function function;
     lua_CFunction run;
 } functions[] = {
-    {{"vec", "x, y, z", "A vector: a table {x, y, z} with operators; of one number, three times that.", "gr.vector"},
+    {{"vec", "x, y, z", "A vector: a table {x, y, z} with operators. One number becomes all three components.",
+      "gr.vector"},
      make_vector},
     {{"dot", "a, b", "The scalar product of two vectors.", "number"}, dot},
     {{"cross", "a, b", "The vector product of two vectors.", "gr.vector"}, cross},
     {{"length", "v", "The length of a vector.", "number"}, length},
     {{"normalize", "v", "The vector divided by its length.", "gr.vector"}, normalize},
     {{"mix", "a, b, t", "a + (b - a) * t, of numbers or vectors.", "any"}, mix},
-    {{"clamp", "x, low, high", "x, at least low and at most high; of vectors by components.", "any"}, clamp},
+    {{"clamp", "x, low, high", "x clamped to low..high; vectors by components.", "any"}, clamp},
     {{"smoothstep", "low, high, x", "0 below low, 1 above high, smooth between them.", "any"}, smoothstep},
     {{"step", "edge, x", "0 where x < edge, else 1.", "any"}, step},
-    {{"min", "...", "The least of numbers or vectors, by components.", "any"}, min_of_all},
-    {{"max", "...", "The greatest of numbers or vectors, by components.", "any"}, max_of_all},
+    {{"min", "...", "The minimum of numbers or vectors, by components.", "any"}, min_of_all},
+    {{"max", "...", "The maximum of numbers or vectors, by components.", "any"}, max_of_all},
     {{"where", "x, a, b", "a where x > 0, else b: a choice without a branch.", "any"}, where},
-    {{"lookup", "t, i", "Entry i of a table of numbers or vectors, i rounded down and kept between 1 and #t.", "any"},
+    {{"lookup", "t, i", "Entry i of a table of numbers or vectors; i is rounded down and clamped to 1..#t.", "any"},
      lookup},
     {{"loop", "n, ...", "Replaces the state s1, s2, ... by f(i, s1, s2, ...) for i = 1 to n while s1 > 0; f is last.",
       "any ..."},
      loop},
-    {{"noise", "p", "Perlin noise of a point, or of x, y, z: in about -1..1.", "number"}, noise},
+    {{"noise", "p", "Perlin noise at a point, or at x, y, z: about -1..1.", "number"}, noise},
     {{"turbulence", "p, octaves", "The sum of |noise(2^k p)| / 2^k for octaves (4) values of k from 0 on.", "number"},
      turbulence},
-    {{"cells", "p", "Distances from the nearest and the second nearest of random points, and a number of the nearest.",
+    {{"cells", "p",
+      "Distances to the nearest and the second nearest of random points, and a number in 0..1 that identifies the "
+      "nearest.",
       "number, number, number"},
      cells},
     {{"hash", "p", "A random number in 0..1 for each point.", "number"}, hash},
-    {{"srgb", "colour", "A colour of the screen: '#rrggbb', {r, g, b} or r, g, b; linear colours decode it.",
+    {{"srgb", "colour", "A display colour: '#rrggbb', {r, g, b} or r, g, b; gray decodes it for linear colours.",
       "gr.triple"},
      display_colour_make},
-    {{"linear", "colour", "The light of a colour of the screen, a vector of numbers, by the sRGB function.",
-      "gr.vector"},
+    {{"linear", "colour", "The light of a display colour as a vector, decoded by the sRGB function.", "gr.vector"},
      display_colour_to_light},
     {{"keys", "keys",
       "A function of seconds (gr.time) that interpolates keys {seconds, value}; fields: curve = 'linear', 'catmull' or "

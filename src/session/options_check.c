@@ -20,9 +20,9 @@ static bool check_together(const struct options *options, struct error *error) {
         strcmp(options->targets_prefix, options->first_pass_prefix) == 0)
         return error_set(error, ERROR_USAGE, "-write-aa-targets and -write-pre-aa would write the same file");
     if (options->output && strcmp(options->output, "-") == 0 && (options->targets_prefix || options->first_pass_prefix))
-        return error_set(error, ERROR_USAGE, "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+        return error_set(error, ERROR_USAGE, "with -o - there is no file name for -write-aa-targets and -write-pre-aa");
     if (options->output && strcmp(options->output, "-") == 0 && options->settings.aov)
-        return error_set(error, ERROR_USAGE, "-o - leaves no name for --aov");
+        return error_set(error, ERROR_USAGE, "with -o - there is no file name for --aov");
     if (options->output && strcmp(options->output, "-") == 0 && options->statistics == STATISTICS_JSON)
         return error_set(error, ERROR_USAGE, "-o - and --stats=json both write to standard output");
     return true;
@@ -32,12 +32,12 @@ static bool check_together(const struct options *options, struct error *error) {
 static bool check_questions(const struct options *options, struct error *error) {
     const char *asked = options->pixel_count > 0 ? "--pixel" : options->dump_scene ? "--dump-scene" : "--dump-expr";
     if (options->pixel_count == 0 && !options->dump_scene && !options->dump_expr)
-        return !options->json || error_set(error, ERROR_USAGE, "--json is for --pixel, --dump-scene and --dump-expr");
+        return !options->json || error_set(error, ERROR_USAGE, "--json needs --pixel, --dump-scene or --dump-expr");
     if (options->window || options->check || options->shards || options->shards_of_pictures || options->mpi ||
         options->checkpoint || options->resume || options->action == ACTION_MERGE)
         return error_set(error, ERROR_USAGE,
-                         "%s renders nothing: it goes with no -gui, --check, --shard, --mpi, --checkpoint, --resume "
-                         "or merge",
+                         "%s renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint, "
+                         "--resume or merge",
                          asked);
     return true;
 }
@@ -87,7 +87,8 @@ static bool check_parts(struct options *options, struct error *error) {
     bool pipe = options->output && strcmp(options->output, "-") == 0;
     if (options->action == ACTION_MERGE &&
         (options->checkpoint || options->resume || options->shards || options->shards_of_pictures || options->check))
-        return error_set(error, ERROR_USAGE, "merge takes no --checkpoint, --resume, --shard or --check");
+        return error_set(error, ERROR_USAGE,
+                         "merge cannot be combined with --checkpoint, --resume, --shard or --check");
     struct display_choice display;
     if (options->display && !display_parse(options->display, &display))
         return error_set(error, ERROR_USAGE,
@@ -96,29 +97,34 @@ static bool check_parts(struct options *options, struct error *error) {
                          options->display);
     if (options->display && (options->window || options->check || options->shards || options->action == ACTION_MERGE ||
                              (pipe && display.kind == DISPLAY_TERMINAL)))
-        return error_set(error, ERROR_USAGE, "--display takes no -gui, --check, --shard or merge, nor term with -o -");
+        return error_set(error, ERROR_USAGE,
+                         "--display cannot be combined with -gui, --check, --shard or merge, and term not with -o -");
     if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe ||
                              options->action == ACTION_MERGE))
-        return error_set(error, ERROR_USAGE, "--partial takes no -gui, --shard, --mpi, --no-fork, merge or -o -");
+        return error_set(error, ERROR_USAGE,
+                         "--partial cannot be combined with -gui, --shard, --mpi, --no-fork, merge or -o -");
     if (options->resume && !options->checkpoint)
         options->checkpoint = "auto";
     if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
-        return error_set(error, ERROR_USAGE, "--mpi takes no --shard, --shard-pictures, --no-fork or --check");
+        return error_set(error, ERROR_USAGE,
+                         "--mpi cannot be combined with --shard, --shard-pictures, --no-fork or --check");
     if (options->window && (options->checkpoint || options->shards || options->shards_of_pictures || options->mpi ||
                             options->no_fork || options->check || options->settings.aov))
-        return error_set(error, ERROR_USAGE,
-                         "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
+        return error_set(
+            error, ERROR_USAGE,
+            "-gui cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
     if (options->watch && (options->checkpoint || options->shards || options->shards_of_pictures || options->mpi ||
                            options->no_fork || pipe))
         return error_set(error, ERROR_USAGE,
-                         "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -");
+                         "--watch cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork or -o -");
     if (options->no_fork && (options->checkpoint || options->shards))
         return error_set(error, ERROR_USAGE,
-                         "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard");
+                         "--no-fork is for debuggers: it cannot be combined with --checkpoint, --resume or --shard");
     if (pipe && options->checkpoint && strcmp(options->checkpoint, "auto") == 0)
-        return error_set(error, ERROR_USAGE, "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
+        return error_set(error, ERROR_USAGE,
+                         "with -o - there is no file name for a checkpoint; --checkpoint FILE sets one");
     if (pipe && options->shards)
-        return error_set(error, ERROR_USAGE, "-o - leaves no name for the parts of --shard");
+        return error_set(error, ERROR_USAGE, "with -o - there is no file name for the parts of --shard");
     if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
         options->settings.aov)
         return error_set(
@@ -141,8 +147,8 @@ static bool check_time(const struct options *options, struct error *error) {
     if (options->settings.time_limit > 0 &&
         (options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE))
         return error_set(error, ERROR_USAGE,
-                         "--time-limit takes no --shard, --mpi, --checkpoint, --resume or merge: their parts would "
-                         "have different numbers of samples (--spp N is for them)");
+                         "--time-limit cannot be combined with --shard, --mpi, --checkpoint, --resume or merge: their "
+                         "parts would have different numbers of samples; use --spp N");
     return true;
 }
 
@@ -170,12 +176,12 @@ static bool check_animation(struct options *options, struct error *error) {
     options->animation = animation_of(options->output);
     if (options->animation == ANIMATION_NONE) {
         const char *only = options->keep_frames ? "--keep-frames" : options->contact_sheet ? "--contact-sheet" : NULL;
-        return !only || error_set(error, ERROR_USAGE, "%s is for animations, as -o x.gif", only);
+        return !only || error_set(error, ERROR_USAGE, "%s is only for animations, such as -o x.gif", only);
     }
     if (options->window || settings->aov || options->targets_prefix || options->first_pass_prefix || options->partial)
         return error_set(error, ERROR_USAGE,
-                         "-o %.600s is an animation: it takes no -gui, --aov, -write-aa-targets, -write-pre-aa or "
-                         "--partial",
+                         "-o %.600s is an animation: it cannot be combined with -gui, --aov, -write-aa-targets, "
+                         "-write-pre-aa or --partial",
                          options->output);
     bool questions = options->pixel_count > 0 || options->dump_scene || options->dump_expr;
     if (options->checkpoint || options->no_fork || options->watch || options->check || questions ||

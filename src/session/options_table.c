@@ -63,8 +63,8 @@ const struct option option_table[] = {
      "with --integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative "
      "standard error is X"},
     {OPTION_GROUP_PICTURE, "--time-limit", OPTION_NUMBER, "SECONDS", 0.001, 1e9, FIELD(settings.time_limit), "none",
-     "with --integrator path, add samples to all pixels for SECONDS and report how many they are; the picture is that "
-     "of --spp with this number"},
+     "with --integrator path, add samples to all pixels for SECONDS and print their number; --spp with this number "
+     "makes the same picture"},
     {OPTION_GROUP_PICTURE, "--clamp", OPTION_NUMBER, "X", 0, HUGE_VAL, FIELD(settings.clamp), "0",
      "with --integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture "
      "becomes darker than it should be (bias)"},
@@ -72,12 +72,11 @@ const struct option option_table[] = {
      "reconstruction filter of a pixel"},
     {OPTION_GROUP_PICTURE, "--aa-pattern", OPTION_CHOICE, LIST_BARS(AA_PATTERNS), NO_RANGE, FIELD(settings.aa_pattern),
      "rotated",
-     "samples of marked pixels; rotated: on a rotated grid, pixels are marked by colours, surfaces and thin "
-     "primitives; "
-     "grid: at the centres of N x N cells, pixels are marked by colours alone"},
+     "which pixels are marked, and where their samples are; rotated: marked by colours, surfaces and thin primitives, "
+     "samples on a rotated grid; grid: marked by colours only, samples at the centres of N x N cells"},
     {OPTION_GROUP_PICTURE, "--denoise", OPTION_DENOISE, "=gray|oidn|none", NO_RANGE, NO_FIELD, NULL,
      "remove noise, with --integrator path; oidn: by the program oidnDenoise of Open Image Denoise, which must be on "
-     "PATH; none: also where scenes request it, none is removed"},
+     "PATH; none: do not remove noise, even if a scene requests it"},
     {OPTION_GROUP_PICTURE, "--seed", OPTION_SEED, "N", NO_RANGE, NO_FIELD, "0",
      "seed of all random numbers, including math.random in scripts"},
 
@@ -104,35 +103,35 @@ const struct option option_table[] = {
      "encode PNG files with the sRGB transfer function; without it, values are linear"},
     {OPTION_GROUP_SHADING, "--colour", OPTION_CHOICE, LIST_BARS(COLOUR_PIPELINES), NO_RANGE, FIELD(settings.colour),
      "auto",
-     "linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: numbers as they are; auto: "
+     "linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: "
      "linear with --integrator path"},
     {OPTION_GROUP_SHADING, "--deep", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.deep), NULL,
      "16 bits per channel in PNG files"},
 
     {OPTION_GROUP_FINISH, "--style", OPTION_CHOICE, LIST_BARS(STYLES), NO_RANGE, FIELD(settings.style), "none",
-     "pictures that look drawn, with lines at edges, with --integrator whitted; ink: lines on white paper; toon: light "
-     "in steps; gooch: from cool to warm colours"},
+     "pictures that look like drawings, with --integrator whitted; ink: lines on white paper; toon: a few levels of "
+     "light; gooch: cool to warm colours"},
     {OPTION_GROUP_FINISH, "--line-width", OPTION_NUMBER, "PIXELS", 0, LINE_WIDTH_MAX, FIELD(settings.line_width),
      "2 with a style, else 0", "width of the lines where objects, normals and depths change"},
     {OPTION_GROUP_FINISH, "--toon-steps", OPTION_INTEGER, "N", 1, TOON_STEPS_MAX, FIELD(settings.toon_steps), "3",
-     "steps of light of --style toon, beside shadow"},
+     "number of levels of light of --style toon, not counting shadow"},
     {OPTION_GROUP_FINISH, "--bloom", OPTION_NUMBER, "X", 0, 1, FIELD(settings.finish.bloom), "0",
-     "spread X of the light above white around it"},
+     "spread light above white to the pixels around it, with the weight X"},
     {OPTION_GROUP_FINISH, "--vignette", OPTION_NUMBER, "X", 0, 1, FIELD(settings.finish.vignette), "0",
-     "darken the corners; 1: to a quarter of their light"},
+     "darken the corners; with X = 1 they have a quarter of their light"},
     {OPTION_GROUP_FINISH, "--gray", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.finish.gray), NULL,
-     "a gray picture: its luminance"},
+     "a gray picture: the luminance"},
     {OPTION_GROUP_FINISH, "--edges", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.finish.edges), NULL,
      "a picture of the edges of the picture, white on black (Sobel); PNG files only"},
     {OPTION_GROUP_FINISH, "--fxaa", OPTION_FLAG, NULL, NO_RANGE, FIELD(settings.finish.fxaa), NULL,
      "smooth the edges of the finished picture (FXAA); PNG files only"},
     {OPTION_GROUP_FINISH, "--dither", OPTION_CHOICE, LIST_BARS(DITHERS), NO_RANGE, FIELD(settings.finish.dither),
-     "none", "round to 8 bits by a pattern, without bands: ordered, or blue noise; PNG files of 8 bits only"},
+     "none", "round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only"},
 
     {OPTION_GROUP_FILES, "-o", OPTION_TEXT, "FILE", NO_RANGE, FIELD(output), "the script's",
-     "name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; with several "
-     "pictures FILE must contain %d (or %03d, or ####), which counts from 1, or be an animation: .apng, .gif, .webp, "
-     ".y4m, .mp4 or .webm"},
+     "name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; for several "
+     "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "
+     ".webp, .y4m, .mp4 or .webm"},
     {OPTION_GROUP_FILES, "--force", OPTION_FLAG, NULL, NO_RANGE, FIELD(force), NULL,
      "let -o FILE replace a file that is not a picture"},
     {OPTION_GROUP_FILES, "-write-aa-targets", OPTION_TEXT, "X", NO_RANGE, FIELD(targets_prefix), NULL,
@@ -149,16 +148,17 @@ const struct option option_table[] = {
      "--accel)"},
 
     {OPTION_GROUP_FRAMES, "--frames", OPTION_FRAMES, "N|A-B|A-B/STEP", NO_RANGE, FIELD(script.frames.selection), "all",
-     "render the frames 1 to N, or A to B, or every STEPth of these; a script without gr.frames runs once for each of "
-     "them, with other values of gr.frame, gr.time and gr.clock"},
+     "render the frames 1 to N, or A to B, or every STEPth of these; gray runs a script without gr.frames once for "
+     "each of them, with the gr.frame, gr.time and gr.clock of the frame"},
     {OPTION_GROUP_FRAMES, "--fps", OPTION_NUMBER, "X", FRAME_RATE_MIN, FRAME_RATE_MAX, FIELD(script.frames.rate),
      "the script's, or 30", "frames per second"},
     {OPTION_GROUP_FRAMES, "--loop", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.frames.loops), NULL,
-     "the frame after the last one is the first: gr.clock stays below 1, and files of animations play for ever"},
+     "after the last frame comes the first: gr.clock stays below 1, and players repeat the file without end"},
     {OPTION_GROUP_FRAMES, "--turntable", OPTION_INTEGER, "N", 1, FRAMES_MAX, FIELD(script.frames.turntable), NULL,
-     "render every picture N times, from a camera that goes once around the scene; a loop"},
+     "render every picture N times, from a camera that moves once around the scene; implies --loop"},
     {OPTION_GROUP_FRAMES, "--palette", OPTION_CHOICE, "all|frame", NO_RANGE, FIELD(frame_palettes), "all",
-     "256 colours of a GIF file for all frames, so that still parts stay still, or for each frame"},
+     "the 256 colours of a GIF file: one palette for all frames, so that parts without motion do not flicker, or one "
+     "for each frame"},
     {OPTION_GROUP_FRAMES, "--keep-frames", OPTION_FLAG, NULL, NO_RANGE, FIELD(keep_frames), NULL,
      "keep the frames of the animation FILE as PNG files in the folder FILE.frames"},
     {OPTION_GROUP_FRAMES, "--contact-sheet", OPTION_FLAG, NULL, NO_RANGE, FIELD(contact_sheet), NULL,
@@ -166,8 +166,8 @@ const struct option option_table[] = {
 
     {OPTION_GROUP_COMPATIBILITY, "--transform-order", OPTION_CHOICE, LIST_BARS(SCRIPT_ORDERS), NO_RANGE,
      FIELD(script.transform_order), "auto",
-     "order of transforms; new: they act as written; old: the last one acts first; separate: scale, then rotate, then "
-     "translate; auto: gray decides from the text of the script"},
+     "order of transforms; new: in the order in which they are written; old: the last one acts first; separate: scale, "
+     "then rotate, then translate; auto: gray decides from the text of the script"},
     {OPTION_GROUP_COMPATIBILITY, "--view", OPTION_CHOICE, "direction|target", NO_RANGE, FIELD(settings.view_is_target),
      "direction", "meaning of the view argument: a direction, or a point to look at"},
     {OPTION_GROUP_COMPATIBILITY, "--pixel-sample", OPTION_CHOICE, "centre|corner", NO_RANGE,
@@ -177,9 +177,9 @@ const struct option option_table[] = {
     {OPTION_GROUP_COMPATIBILITY, "--ambient", OPTION_CHOICE, "kd|plain", NO_RANGE, FIELD(settings.ambient_plain), "kd",
      "multiply ambient light by kd, or add it unchanged"},
     {OPTION_GROUP_COMPATIBILITY, "--lenient", OPTION_FLAG, NULL, NO_RANGE, FIELD(script.lenient), NULL,
-     "make errors in calls of gr warnings, and render what can be shown"},
+     "turn errors in calls of gr into warnings, and render as much of the scene as possible"},
     {OPTION_GROUP_COMPATIBILITY, "--dialect", OPTION_TEXT, "NAME|FILE.lua", NO_RANGE, FIELD(script.dialect), "none",
-     "run lua/dialects/NAME.lua, or FILE.lua, before the scene: it defines the functions of another program"},
+     "before the scene, run lua/dialects/NAME.lua, or FILE.lua, which defines the functions of another program"},
 
     {OPTION_GROUP_RUN, "-j", OPTION_INTEGER, "N", 1, 1024, FIELD(threads), "one for each processor",
      "number of threads; the picture does not depend on it"},
@@ -191,8 +191,8 @@ const struct option option_table[] = {
      "let scenes read below DIR too; they always read below their own folder, its parent, the working directory and "
      "the library; may be repeated"},
     {OPTION_GROUP_SANDBOX, "--allow-write", OPTION_FOLDER, "DIR", 1, 0, NO_FIELD, NULL,
-     "let scenes write files below DIR; without it they write none, since gray itself writes the pictures; may be "
-     "repeated"},
+     "let scenes write files below DIR; without this option they cannot write files, because gray itself writes the "
+     "pictures; may be repeated"},
     {OPTION_GROUP_SANDBOX, "--script-memory", OPTION_BYTES, "SIZE", SIZES, FIELD(script.memory_limit), "4G",
      "memory limit of a script and the files that it reads, such as 512M or 2G (a plain number is in MiB); script and "
      "picture together may use 1.75 times as much"},
@@ -225,9 +225,9 @@ const struct option option_table[] = {
     {OPTION_GROUP_PARTS, "--shard", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard), NULL,
      "render part I of N of every picture into a file of tiles beside it; `gray merge PART ...` joins the parts"},
     {OPTION_GROUP_PARTS, "--shard-pictures", OPTION_SHARD, "I/N", NO_RANGE, FIELD(shard_of_pictures), NULL,
-     "of many pictures render every Nth, starting with the Ith"},
+     "render only every Nth picture, starting with the Ith"},
     {OPTION_GROUP_PARTS, "--mpi", OPTION_FLAG, NULL, NO_RANGE, FIELD(mpi), NULL,
-     "under mpirun: all processes render each picture together; the first one hands out tiles on demand"},
+     "under mpirun: all processes render each picture together; the first one assigns tiles on demand"},
     {OPTION_GROUP_PARTS, "--farm-stall", OPTION_NUMBER, "SECONDS", 0, 1e9, FIELD(farm_stall), "30",
      "with --mpi: kill a render process that could run but uses no processor time for this long; another one "
      "renders its tiles; 0: never"},
@@ -236,16 +236,16 @@ const struct option option_table[] = {
 
     {OPTION_GROUP_REPORTS, "-gui", OPTION_FLAG, NULL, NO_RANGE, FIELD(window), NULL,
      "show the picture in a window during rendering and fly through the scene: R renders, S saves the view, V saves "
-     "the camera, Space flies (W A S D Q E and the mouse, Esc stops), N is the next picture, Q quits; animations are "
-     "played: K plays and pauses, H and J go to the frame before and after, O loops"},
+     "the camera, Space flies (W A S D Q E and the mouse, Esc stops), N is the next picture, Q quits; in animations, K "
+     "plays and pauses, H and J go to the previous and the next frame, O turns the loop on or off"},
     {OPTION_GROUP_REPORTS, "--watch", OPTION_FLAG, NULL, NO_RANGE, FIELD(watch), NULL,
-     "run the scripts again when one of them, or a file that they read, changes; Ctrl-C ends"},
+     "run the scripts again when a script, or a file that it reads, changes; Ctrl-C ends gray"},
     {OPTION_GROUP_REPORTS, "-q|quiet", OPTION_FLAG, NULL, NO_RANGE, FIELD(quiet), NULL, "print errors only"},
     {OPTION_GROUP_REPORTS, "--verbose", OPTION_FLAG, NULL, NO_RANGE, FIELD(verbose), NULL, "print details and reasons"},
     {OPTION_GROUP_REPORTS, "--stats", OPTION_STATS, "=text|json", NO_RANGE, NO_FIELD, NULL,
      "statistics of each picture: a table on standard error, or one line of JSON per picture on standard output"},
     {OPTION_GROUP_REPORTS, "--progress", OPTION_CHOICE, LIST_BARS(PROGRESS_MODES), NO_RANGE, FIELD(progress), "auto",
-     "progress and time left, on standard error; auto: a bar on a terminal, else a line from time to time during long "
+     "progress and time left, on standard error; auto: a bar on a terminal, otherwise a line from time to time in long "
      "runs"},
     {OPTION_GROUP_REPORTS, "--display", OPTION_TEXT, "WHERE", NO_RANGE, FIELD(display), NULL,
      "show the picture during rendering: tev[:HOST[:PORT]] in the image viewer tev (port 14158), term in the terminal "

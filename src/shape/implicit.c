@@ -605,12 +605,12 @@ const struct implicit *implicit_build(struct arena *arena, const struct implicit
     }
     for (int k = 0; k < in->program->input_count; k++)
         if (in->program->inputs[k].input > EXPR_POINT_Z) {
-            (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid is a function of p alone",
+            (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid may depend only on p",
                             expr_input_name((enum expr_input)in->program->inputs[k].input));
             return NULL;
         }
     if (in->program->output_count != 1) {
-        (void)error_set(error, ERROR_SCENE, "the function gives a colour; a solid needs one number, below 0 inside");
+        (void)error_set(error, ERROR_SCENE, "the function returns a colour; a solid needs one number, negative inside");
         return NULL;
     }
     return implicit_regions_build(arena, solid, error) ? solid : NULL;

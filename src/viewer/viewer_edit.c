@@ -47,7 +47,7 @@ bool viewer_project(const struct viewer *viewer, const struct camera_frame *fram
 void viewer_make_edit(struct viewer *viewer, const struct change *change, bool present, bool join) {
     if (!edits_make(&viewer->edit.steps, change, present, join) ||
         !change_list_set(&viewer->edit.pending, change, true))
-        viewer_show_message(viewer, "gray: there is no room for more changes");
+        viewer_show_message(viewer, "gray: no more changes can be stored");
     viewer_halt(viewer, false);
     viewer->display.hud_dirty = true;
 }
@@ -460,7 +460,7 @@ static bool free_name(const char *picture, const char *what, const char *extensi
         if (length < NAME && !file_exists(name))
             return true;
     }
-    return error_set(error, ERROR_SCENE, "%.400s: there is no free name for what is shown", picture);
+    return error_set(error, ERROR_SCENE, "%.400s: no free file name is left for the view", picture);
 }
 
 static void image_row(void *context, uint32_t y, uint8_t *line) {

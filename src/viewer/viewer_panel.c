@@ -314,7 +314,7 @@ static void draw_inputs(struct viewer *viewer, struct column *column) {
                        numbers[0], numbers[1], numbers[2]);
         draw_text(viewer, column, row);
         if (viewer->edit.selection.picked.idle_parts >> viewer->edit.part & 1)
-            draw_text(viewer, column, "no effect here: a texture takes its place");
+            draw_text(viewer, column, "no effect here: a texture replaces it");
     }
     if (!viewer->edit.selection.picked.can_own)
         return;

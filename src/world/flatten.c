@@ -129,7 +129,7 @@ static bool instantiate_moving(struct flattening *f, const struct pose *pose, st
     struct moving *moving =
         room_for_one(world->moving, world->moving_count, &f->moving_capacity, sizeof *world->moving);
     if (!moving)
-        return error_no_memory(f->error, "what moves in the scene");
+        return error_no_memory(f->error, "the moving primitives");
     world->moving = moving;
     out->linear = LINEAR_MOVING | world->moving_count;
     moving[world->moving_count++] = (struct moving){pose->above, pose->from_node};
@@ -197,7 +197,7 @@ static bool add_prototype(struct flattening *f, const struct node *node, struct 
                                                           &f->prototype_capacity, sizeof *world->authored.nodes)
                                            : NULL;
     if (!nodes)
-        return error_no_memory(f->error, "the things of the scene");
+        return error_no_memory(f->error, "the primitives of the scene");
     world->authored.nodes = nodes;
     prototype->holes = any_holes(f, prototype);
     prototypes[world->prototype_count] = *prototype;
@@ -285,7 +285,7 @@ static bool pose_moving(struct flattening *f, const struct node *node, const str
     struct world *world = f->world;
     struct moving_link *links = room_for_one(world->links, world->link_count, &f->link_capacity, sizeof *links);
     if (!links)
-        return error_no_memory(f->error, "what moves in the scene");
+        return error_no_memory(f->error, "the moving primitives");
     world->links = links;
     struct moving_link *link = &links[world->link_count];
     struct transform parent_from_node = node_parent_from_node(node);

@@ -335,8 +335,7 @@ static bool add_clips(struct flattening *f, struct csg_draft *draft, const struc
         if (clip->pose.above != pose->above)
             return error_set(
                 f->error, ERROR_SCENE,
-                "node '%.100s' moves, or a node above it, while what clips it does not; only both together "
-                "can move",
+                "node '%.100s' or a node above it moves, but its clip does not; only both together can move",
                 node->name);
         if (!add_solid(f, draft, clip->solid, &above, false, &one) || !join(f, draft, CSG_INTERSECTION, one, content))
             return false;

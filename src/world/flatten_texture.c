@@ -212,9 +212,10 @@ static void warn_of_colours(const struct flattening *f, const struct texture *ta
     for (uint32_t i = 0; i < index; i++)
         if (table[i].kind == TEXTURE_IMAGE && strcmp(image_name(table[i].image.lookup.image), image_name(image)) == 0)
             return;
-    (void)snprintf(text, sizeof text,
-                   "warning: %s has %s, which is taken as sRGB; encoding of gr.texture names another transfer function",
-                   image_name(image), image_colours(image));
+    (void)snprintf(
+        text, sizeof text,
+        "warning: %s has %s; gray decodes it as sRGB; encoding of gr.texture selects another transfer function",
+        image_name(image), image_colours(image));
     f->warn(f->warn_context, text);
 }
 
@@ -254,8 +255,8 @@ static bool warn_of_encoding(const struct flattening *f, const struct texture *t
     for (uint32_t i = 0; is_read && i < f->world->texture_count; i++)
         found = found || (is_read[i] && table[i].kind == TEXTURE_IMAGE && image_bits(table[i].image.lookup.image) == 8);
     if (found)
-        f->warn(f->warn_context, "note: --srgb encodes pictures that were not decoded: 128 of a texture becomes 188; "
-                                 "--colour linear decodes them");
+        f->warn(f->warn_context, "note: --srgb encodes pictures that were not decoded: a texture value of 128 becomes "
+                                 "188; --colour linear decodes them");
     mem_free(is_read);
     return is_read != NULL;
 }

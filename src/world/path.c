@@ -29,7 +29,7 @@ bool world_visit_paths(const struct world *world, const struct node *root, world
         next += count;
     }
     scene_traversal_end(&t);
-    return event != SCENE_NO_MEMORY || error_no_memory(error, "the ways to the nodes");
+    return event != SCENE_NO_MEMORY || error_no_memory(error, "the paths to the nodes");
 }
 
 size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size) {
@@ -83,7 +83,7 @@ bool world_find_paths(const struct world *world, const struct node *root, struct
         return true;
     if (!world_visit_paths(world, root, keep_path, &paths, error))
         return false;
-    return !paths.failed || error_no_memory(error, "the ways to the nodes");
+    return !paths.failed || error_no_memory(error, "the paths to the nodes");
 }
 
 /* --- inside of combined solids --- */

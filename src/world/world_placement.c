@@ -167,7 +167,7 @@ bool flatten_map(struct flattening *f, const struct transform *world_from_object
     if (world->linear_count > 0 && same(&map, &world->linear_maps[out->linear]))
         return true;
     if (!grow(f))
-        return error_no_memory(f->error, "the places of the scene");
+        return error_no_memory(f->error, "the positions of the primitives");
     uint32_t *slot = find(f, &map);
     if (*slot == 0) {
         world->linear_maps[world->linear_count++] = map;

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.implicit: the function gives a colour; a solid needs one number, below 0 inside
+-- expect: SCRIPT:2: gr.implicit: the function returns a colour; a solid needs one number, negative inside
 gr.implicit{f = function(p) return {p.x, p.y, p.z} end, bounds = {{-1, -1, -1}, {1, 1, 1}}}

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: gr.light: the function reads s.u, but the colour of a light is a function of the direction alone
+-- expect: SCRIPT:2: gr.light: the function reads s.u, but the colour of a light may depend only on the direction
 gr.light{position = {0, 1, 0}, colour = function(d, s) return s.u end}

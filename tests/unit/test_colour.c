@@ -296,7 +296,8 @@ TEST(colours_of_the_screen_are_accepted_for_lights_fogs_and_skies) {
 
 TEST(errors_of_colours_of_the_screen_name_what_is_accepted) {
     static const char *const rows[][2] = {
-        {"gr.material{kd = '#12345'}", "scene.lua:1: gr.material: '#12345' is not a colour: '#rgb' and '#rrggbb'"},
+        {"gr.material{kd = '#12345'}",
+         "scene.lua:1: gr.material: '#12345' is not a colour; colours are '#rgb' or '#rrggbb'"},
         {"gr.material{kd = {1, 0, 0}, absorption = '#123456'}", "absorption must be light: gr.linear"},
         {"gr.material{kd = 'red'}", "kd must be a colour {r, g, b}"},
         {"gr.srgb(1)", "a colour is needed"},

@@ -254,7 +254,7 @@ static void check_said(const char *arguments, const char *begin) {
     struct test_result result = test_gray_scene("x = 1", arguments, NULL);
     CHECK_EQ_INT(result.status, 0);
     char *notice =
-        strstr(result.err, "scene.lua: there is no picture, because the script rendered none with gr.render\n");
+        strstr(result.err, "scene.lua: no picture was rendered, because the script did not call gr.render\n");
     CHECK((notice != NULL) != (strstr(arguments, "-q") != NULL) && (!notice || strchr(notice, '\n')[1] == '\0'));
     if (notice)
         *notice = '\0';

@@ -101,7 +101,7 @@ TEST(a_warning_about_a_missing_material_names_the_line_of_the_node) {
 }
 
 TEST(a_picture_that_replaces_another_of_the_run_is_a_notice) {
-    notes(RENDER("") " " RENDER(""), "gray: notice: x.png replaces the picture of this name that was rendered before");
+    notes(RENDER("") " " RENDER(""), "gray: notice: x.png replaces a picture that this run wrote before under the same name");
     notes_not(RENDER(""), "replaces");
     notes_not(RENDER(""), "replaces"); /* that of an earlier run */
 }
@@ -122,7 +122,7 @@ TEST(a_script_that_computes_long_says_so_on_a_terminal) {
     CHECK(!progress_script_line(&progress, "a.lua", true, line, sizeof line));
     progress.script_since -= 2.5; /* it began earlier */
     CHECK(progress_script_line(&progress, "a.lua", true, line, sizeof line));
-    CHECK(strstr(line, "a.lua still computes after 2"));
+    CHECK(strstr(line, "a.lua is still running after 2"));
     CHECK(!progress_script_line(&progress, "a.lua", true, line, sizeof line));
     progress.script_since -= 2;
     CHECK(progress_script_line(&progress, "a.lua", true, line, sizeof line));
@@ -138,7 +138,7 @@ TEST(a_script_that_computes_long_says_so_on_a_terminal) {
 TEST(a_script_without_a_picture_says_so) {
     struct test_result result = test_gray_scene("gr.sphere('ball')", "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    CHECK(strstr(result.err, "scene.lua: there is no picture, because the script rendered none with gr.render"));
+    CHECK(strstr(result.err, "scene.lua: no picture was rendered, because the script did not call gr.render"));
     free(result.out);
     free(result.err);
     says("gr.sphere('ball')", NULL); /* not with -q */

@@ -129,7 +129,7 @@ TEST(wrong_animations_are_errors_that_name_the_frame) {
         {"gr.frames{count = 9, draw = function(t, k) if k == 5 then error('no') end return show end}", "no (frame 5)"},
         {"gr.frames{count = 9, draw = function(t, k) show.fov = 60 * k return show end}", "(frame 3)"},
         {"gr.frames{count = 2, draw = function() gr.frames{count = 2, draw = print} end}",
-         "it is called while another one draws its frames"},
+         "it is called while another gr.frames draws its frames"},
         {"pcall(gr.frames, {count = 2, draw = error}) assert(gr.frame == 0) error('later')", "later"},
     };
     char text[2048];
@@ -138,7 +138,7 @@ TEST(wrong_animations_are_errors_that_name_the_frame) {
         fails(text, (struct frame_options){0}, wrong[i].words);
     }
     static const char four[] = BALL "gr.frames{count = 4, draw = function() return show end}";
-    fails(four, (struct frame_options){.selection = {3, 5, 1}}, "--frames asks for frame 5, but the last one is 4");
+    fails(four, (struct frame_options){.selection = {3, 5, 1}}, "--frames selects frame 5, but the last frame is 4");
     fails(four, (struct frame_options){.turntable = 4}, "--turntable is for scripts without gr.frames");
 }
 

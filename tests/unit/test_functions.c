@@ -101,7 +101,7 @@ TEST(functions_are_compared_in_the_bounds_of_what_they_are_put_on) {
     picture_says("gr.sphere{material = m}", unseen, NULL);
     picture_says("gr.sphere{material = m}", fails, NULL);
     picture_says(far_ball, random, "gr.render: the function of line 1 cannot be recorded: at p = {");
-    picture_says(far_ball, unseen, "x == 0 is not seen");
+    picture_says(far_ball, unseen, "x == 0 cannot be recorded");
     picture_says(far_ball, fails, "scene.lua:1: far");
     picture_says("gr.difference{gr.sphere{centre = {2000, 0, 0}}, gr.cube('c')}:set_material(m)", random, "at p = {");
     picture_says("gr.sphere{centre = {2000, 0, 0}, material = gr.material{kd = gr.mix_texture(m and"
@@ -163,16 +163,16 @@ TEST(vectors_are_numbers_by_three) {
     fails("gr.lookup({}, 1)", "a table of 1 to 10000 entries is needed");
     fails("gr.loop(20000, 1, function() end)", "a constant number of steps up to 10000 is needed");
     fails("fn(function(p) return gr.loop(3, p.x, function() end) end)", "must return 1 numbers or vectors");
-    fails("vec(1, 2, 3).w = 1", "a vector has no field that could be set");
+    fails("vec(1, 2, 3).w = 1", "the fields of a vector cannot be set");
 }
 
 TEST(a_function_that_is_not_pure_is_an_error_that_names_the_difference) {
     fails("local n = 0 fn(function(p) n = n + 1 return n end)", "the function of line 1 cannot be recorded: at p = ");
-    fails("fn(function(p) return p.x * math.random() end)", "it must depend on its arguments alone");
-    fails("fn(function(p) if floor(p.x) == 0 then return 1 end return 0 end)", "x == 0 is not seen");
+    fails("fn(function(p) return p.x * math.random() end)", "it must depend only on its arguments");
+    fails("fn(function(p) if floor(p.x) == 0 then return 1 end return 0 end)", "x == 0 cannot be recorded");
     fails("local n = 0 fn(function(p) n = n + 1 if p.x * n < 1 then return 1 end return p.y > n and 1 or 2 end)",
-          "another way");
-    fails("local kept fn(function(p) kept = kept or p.x return kept end)", "outside of it");
+          "took another branch");
+    fails("local kept fn(function(p) kept = kept or p.x return kept end)", "outside the function");
 }
 
 TEST(errors_of_recording_name_the_line_and_the_remedy) {
@@ -181,15 +181,15 @@ TEST(errors_of_recording_name_the_line_and_the_remedy) {
     fails("fn(function(p) return {1, 2} end)", "the function must return a number or a colour {r, g, b}, not a table");
     fails("fn(function(p) return 1, 2 end)", "the function returns 2 values, not a number or a colour");
     fails("fn(function(p) end)", "the function returns 0 values");
-    fails("fn(function(p) return ({1, 2})[p.x] * 2 end)", "gr.lookup(t, i) can");
+    fails("fn(function(p) return ({1, 2})[p.x] * 2 end)", "use gr.lookup(t, i)");
     fails("fn(function(p) return gr.sphere('x') end)", "gr.sphere cannot be called by a function that is recorded");
     fails("fn(function(p) return math.frexp(p.x) end)", "math.frexp cannot be recorded");
     fails("fn(function(p) for i = 1, p.x do end return 1 end)", "'for' limit");
-    fails("fn(function(p) return p.x + '1' end)", "a number is needed");
-    fails("local kept fn(function(p) kept = kept or p.x return 1 end) print(kept + 1)", "is used outside of it");
+    fails("fn(function(p) return p.x + '1' end)", "needs another number");
+    fails("local kept fn(function(p) kept = kept or p.x return 1 end) print(kept + 1)", "is used outside the function");
     fails("local t = {1, 2} fn(\nfunction(p) return t[floor(p.x)] end)",
           "scene.lua:2: the function must return a number or");
-    fails("local t = {1, 2} fn(function(p) return t[floor(p.x)] end)", "gr.lookup(t, i) can");
+    fails("local t = {1, 2} fn(function(p) return t[floor(p.x)] end)", "use gr.lookup(t, i)");
     fails("fn(\n\nfunction(p) return 'red' end)", "scene.lua:3: the function must return");
     fails("fn(\n\nfunction(p) return 1, 2 end)", "scene.lua:3: the function returns 2 values");
     fails("fn(function(p) for i = 1, p.x do end return 1 end)", "gr.loop(n, state, f) may end earlier");
@@ -202,8 +202,8 @@ TEST(errors_of_recording_name_the_line_and_the_remedy) {
     fails(
         "fn(function(p)\n return gr.loop(10000, p.x, p.y, p.z, function(i, a, b, c) return a*b+c, b*c+a, sin(c)+a end) "
         "end)",
-        "scene.lua:2: the function has more than 100000 operations; gr.where, gr.step, gr.min and gr.max need one where"
-        " branches need many, and gr.loop(n, state, f) records each of its n steps");
+        "scene.lua:2: the function has more than 100000 operations; gr.where, gr.step, gr.min and gr.max need one "
+        "operation where branches need many, and gr.loop(n, state, f) records each of its n steps");
     fails("fn(7, 8, 9) fn('x')", "");
     fails("fn(function(p) error{} end)", "the function raised a table");
 }
@@ -212,7 +212,7 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     fails("fn(function(p) local n = 0 for i = 1, 13 do if gr.noise(p * i) > 0 then n = n + 2 ^ i end end return n end)",
           "the function has more than 4096 paths; gr.where(x, a, b)");
     fails("fn(function(p) local x = p.x while x > 0 do x = x - 1 end return x end)",
-          "a call of the function decides more than 4096 times");
+          "a call of the function branches more than 4096 times");
     fails("fn(function(p) local x = p.x for i = 1, 1e6 do x = x * x + p.y end return x end)",
           "the function has more than 100000 operations");
     fails("local function f(x) return f(x + 1) end fn(function(p) return f(p.x) end)", "more than 100000 operations");
@@ -430,7 +430,7 @@ TEST(displaced_nodes_are_errors_where_they_cannot_be) {
         {"mesh():displace{edge = 1}", "f is missing, a function of a vertex"},
         {"mesh():displace{f = f, edge = 1, level = 2}", "edge and level exclude each other"},
         {"gr.sphere('x'):displace(f, 1)", "sphere 'x' has no vertices"},
-        {"gr.node('x'):displace(f, 1)", "there is no shape that could be displaced"},
+        {"gr.node('x'):displace(f, 1)", "there is no shape that can be displaced"},
         {"gr.height_field{f = f, columns = 30000}", "30000 columns and 30000 rows are more than 10000000 triangles"},
         {"gr.height_field{heights = {{0, 0}, {1, 0}}, rows = 3}", "columns and rows go with f"},
         {"gr.height_field{f = function(p) return p end}", "the height of a height field is a number, not a vector"},

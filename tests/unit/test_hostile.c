@@ -90,7 +90,7 @@ static void check_script(const char *folder, const char *name) {
         line = strchr(line, '\n') + 1;
         (void)snprintf(first, sizeof first, "%.*s", (int)strcspn(line, "\n"), line);
     }
-    if (strstr(first, ": there is no picture, because the script rendered none with gr.render"))
+    if (strstr(first, ": no picture was rendered, because the script did not call gr.render"))
         first[0] = '\0';
     char pattern[1024];
     size_t length = expect ? strlen(expect) : 0;
@@ -320,7 +320,7 @@ TEST(hostile_verbose_says_what_confines_and_no_sandbox_is_one_warning) {
         test_gray_scene("assert(os.execute and io.open('/etc/passwd'))", "--no-sandbox scene.lua", NULL);
     CHECK_EQ_INT(without.status, 0);
     CHECK_TEXT(without.err, "gray: warning: --no-sandbox: scenes may read and write all your files and start programs\n"
-                            "scene.lua: there is no picture, because the script rendered none with gr.render\n");
+                            "scene.lua: no picture was rendered, because the script did not call gr.render\n");
     free(plain.out);
     free(plain.err);
     free(without.out);

@@ -337,7 +337,7 @@ TEST(hostile_hidden_files_and_those_outside_do_not_influence_the_transform_order
                  0);
     char *after = all_of(test_path("a/s"), "scene.lua");
     CHECK_TEXT(after, before);
-    CHECK_TEXT(before, "0\n\nscene.lua: there is no picture, because the script rendered none with gr.render\n");
+    CHECK_TEXT(before, "0\n\nscene.lua: no picture was rendered, because the script did not call gr.render\n");
     free(before);
     free(after);
 }
@@ -548,13 +548,12 @@ TEST(hostile_words_of_a_scene_and_of_the_program_keep_their_order) {
                                     "gr.cube('c', 1)\n"
                                     "io.stderr:write('five\\n')\n"
                                     "io.stderr:write('gra')\n";
-    static const char *const wanted =
-        "one\n2 3.5\ngr\n"
-        "scene.lua:2: warning: gr.sphere: arguments after name are ignored (node 's')\n"
-        "een\nfour\n"
-        "scene.lua:4: warning: gr.cube: arguments after name are ignored (node 'c')\n"
-        "five\ngra\n"
-        "scene.lua: there is no picture, because the script rendered none with gr.render\n";
+    static const char *const wanted = "one\n2 3.5\ngr\n"
+                                      "scene.lua:2: warning: gr.sphere: arguments after name are ignored (node 's')\n"
+                                      "een\nfour\n"
+                                      "scene.lua:4: warning: gr.cube: arguments after name are ignored (node 'c')\n"
+                                      "five\ngra\n"
+                                      "scene.lua: no picture was rendered, because the script did not call gr.render\n";
     static const char *const arguments[] = {"scene.lua", "--no-fork scene.lua"};
     for (int i = 0; i < 20; i++) {
         struct test_result result = test_gray_scene(text, arguments[i % 2], NULL);

@@ -481,7 +481,7 @@ TEST(functions_that_are_no_solids_are_refused) {
     uint32_t u = expr_input(&m.graph, EXPR_U);
     struct implicit_input in = {.program = function_end(&m, fn_add(&m, m.p[0], u), &arena), .bounds = unit};
     CHECK(!implicit_build(&arena, &in, &error));
-    CHECK_TEXT(error.text, "the function reads s.u, but a solid is a function of p alone");
+    CHECK_TEXT(error.text, "the function reads s.u, but a solid may depend only on p");
     function_begin(&m);
     in.program = function_end(&m, m.p[0], &arena);
     in.bounds.max.y = -1;

@@ -400,7 +400,7 @@ TEST(files_count_together_and_what_is_read_again_counts_once) {
     struct test_result result =
         test_gray_scene("for k = 1, 200 do gr.texture('small.png') gr.mesh{file='grid.obj', " MATERIAL "} end",
                         "--script-memory 16 scene.lua", NULL);
-    CHECK_TEXT(result.err, "scene.lua: there is no picture, because the script rendered none with gr.render\n");
+    CHECK_TEXT(result.err, "scene.lua: no picture was rendered, because the script did not call gr.render\n");
     CHECK_EQ_INT(result.status, 0);
     forget(result);
     check_memory("read again", without, KIB_OF_LIMIT);

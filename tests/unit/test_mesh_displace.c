@@ -271,7 +271,7 @@ TEST(displacements_that_are_impossible_are_refused) {
     function_begin(&m);
     CHECK(!displaced(
         mesh, &(struct mesh_displacement){function_end(&m, expr_input(&m.graph, EXPR_TIME), &arena), 0.5, 0}, &error));
-    CHECK_TEXT(error.text, "the function reads s.time, but a displacement is a function of p, s.u, s.v and s.normal");
+    CHECK_TEXT(error.text, "the function reads s.time, but a displacement may depend only on p, s.u, s.v and s.normal");
     mesh_release(mesh);
     arena_destroy(&arena);
 }

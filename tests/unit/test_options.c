@@ -176,7 +176,8 @@ TEST(a_misspelt_option_is_answered_with_the_nearest_name) {
     refused("--reflectlimit=3 s.lua", "there is no option '--reflectlimit=3'; did you mean -reflect-limit?");
     refused("--transform_ordre old s.lua", "there is no option '--transform_ordre'; did you mean --transform-order?");
     refused("--siez 3x3 s.lua", "there is no option '--siez'; did you mean --size?");
-    refused("--gui --check s.lua", "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
+    refused("--gui --check s.lua",
+            "-gui cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov");
     refused("--zebra s.lua", "there is no option '--zebra'");
     refused("-old s.lua", "there is no option '-old'");
 }
@@ -201,10 +202,11 @@ TEST(values_outside_their_range_are_refused_with_the_range) {
     refused("--seed -1 s.lua", "--seed needs a whole number from 0 to 18446744073709551615, not '-1'");
     refused("--seed 18446744073709551616 s.lua",
             "--seed needs a whole number from 0 to 18446744073709551615, not '18446744073709551616'");
-    refused("--aov depth,dept s.lua",
-            "--aov needs names separated by commas (depth, normal, albedo, uv, node, material, "
-            "cost, samples, lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
-            "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not 'depth,dept'");
+    refused(
+        "--aov depth,dept s.lua",
+        "--aov needs names separated by commas (depth, normal, albedo, uv, node, material, "
+        "cost, samples, lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
+        "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not 'depth,dept'");
     refused("--accel octree s.lua", "--accel needs one of auto|grid|bvh|kdtree|none, not 'octree'");
     refused("--view targe s.lua", "--view needs one of direction|target, not 'targe'");
     refused("-o= s.lua", "-o needs a text");
@@ -252,7 +254,7 @@ TEST(options_that_contradict_each_other_are_refused) {
     refused("~", "the name of a script is empty");
     refused("-write-aa-targets X -write-pre-aa X s.lua",
             "-write-aa-targets and -write-pre-aa would write the same file");
-    refused("-o - -write-pre-aa X s.lua", "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    refused("-o - -write-pre-aa X s.lua", "with -o - there is no file name for -write-aa-targets and -write-pre-aa");
     refused("-o - --stats=json s.lua", "-o - and --stats=json both write to standard output");
 }
 

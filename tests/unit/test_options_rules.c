@@ -49,21 +49,21 @@ static void exclude(const char *first, const char *options, const char *sentence
 }
 
 TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
-    static const char pixel[] = "--pixel renders nothing: it goes with no -gui, --check, --shard, --mpi, --checkpoint, "
-                                "--resume or merge",
-                      merge[] = "merge takes no --checkpoint, --resume, --shard or --check",
-                      display[] = "--display takes no -gui, --check, --shard or merge, nor term with -o -",
-                      partial[] = "--partial takes no -gui, --shard, --mpi, --no-fork, merge or -o -",
-                      mpi[] = "--mpi takes no --shard, --shard-pictures, --no-fork or --check",
-                      window[] = "-gui takes no --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov",
-                      watch[] = "--watch takes no --checkpoint, --resume, --shard, --mpi, --no-fork or -o -",
-                      no_fork[] = "--no-fork is for debuggers: it takes no --checkpoint, --resume or --shard",
-                      aov[] = "--aov works only for pictures that one process renders at once: no --shard, --mpi, "
-                              "--checkpoint, --resume or merge",
-                      overlay[] =
-                          "--overlay works only for pictures that one process renders at once: no --shard, --mpi, "
-                          "--checkpoint, --resume or merge",
-                      debug[] = "--shard writes no debug pictures; give -write-... to gray merge";
+    static const char
+        pixel[] = "--pixel renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint, "
+                  "--resume or merge",
+        merge[] = "merge cannot be combined with --checkpoint, --resume, --shard or --check",
+        display[] = "--display cannot be combined with -gui, --check, --shard or merge, and term not with -o -",
+        partial[] = "--partial cannot be combined with -gui, --shard, --mpi, --no-fork, merge or -o -",
+        mpi[] = "--mpi cannot be combined with --shard, --shard-pictures, --no-fork or --check",
+        window[] = "-gui cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov",
+        watch[] = "--watch cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork or -o -",
+        no_fork[] = "--no-fork is for debuggers: it cannot be combined with --checkpoint, --resume or --shard",
+        aov[] = "--aov works only for pictures that one process renders at once: no --shard, --mpi, "
+                "--checkpoint, --resume or merge",
+        overlay[] = "--overlay works only for pictures that one process renders at once: no --shard, --mpi, "
+                    "--checkpoint, --resume or merge",
+        debug[] = "--shard writes no debug pictures; give -write-... to gray merge";
     exclude("--pixel 1,2", "-gui|--check|--shard 1/2|--shard-pictures 1/2|--mpi|--checkpoint c|--resume|merge", pixel);
     exclude("--checkpoint c", "merge", merge);
     exclude("--resume", "merge", merge);
@@ -82,16 +82,16 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
     exclude("--aov depth", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", aov);
     exclude("--overlay boxes", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", overlay);
     exclude("--shard 1/2", "-write-aa-targets t-|-write-pre-aa p-", debug);
-    exclude("--resume", "-o -", "-o - leaves no name for a checkpoint; --checkpoint FILE gives one");
+    exclude("--resume", "-o -", "with -o - there is no file name for a checkpoint; --checkpoint FILE sets one");
     expect("-o - --checkpoint c x", NULL);
-    exclude("--shard 1/2", "-o -", "-o - leaves no name for the parts of --shard");
-    exclude("-write-aa-targets t-", "-o -", "-o - leaves no name for -write-aa-targets and -write-pre-aa");
-    exclude("-write-pre-aa t-", "-o -", "-o - leaves no name for -write-aa-targets and -write-pre-aa");
+    exclude("--shard 1/2", "-o -", "with -o - there is no file name for the parts of --shard");
+    exclude("-write-aa-targets t-", "-o -", "with -o - there is no file name for -write-aa-targets and -write-pre-aa");
+    exclude("-write-pre-aa t-", "-o -", "with -o - there is no file name for -write-aa-targets and -write-pre-aa");
     exclude("-write-pre-aa t-", "-write-aa-targets t-",
             "-write-aa-targets and -write-pre-aa would write the same file");
     expect("-write-pre-aa t- -write-aa-targets u- x", NULL);
     exclude("--stats=json", "-o -", "-o - and --stats=json both write to standard output");
-    exclude("--aov uv", "-o -", "-o - leaves no name for --aov");
+    exclude("--aov uv", "-o -", "with -o - there is no file name for --aov");
 }
 
 TEST(words_at_the_borders_of_what_is_read_are_taken_or_refused) {

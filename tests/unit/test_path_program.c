@@ -93,7 +93,7 @@ TEST(a_path_traced_pixel_is_explained_by_its_mean_its_error_and_its_brightest_pa
     free(result.out);
     free(result.err);
     result = test_gray_scene(scene, "--pixel 30,38 --noise 0.1 scene.lua", NULL);
-    CHECK(result.status == 2 && strstr(result.err, "--pixel takes no --noise"));
+    CHECK(result.status == 2 && strstr(result.err, "--pixel cannot be combined with --noise"));
     free(result.out);
     free(result.err);
 }

@@ -434,7 +434,7 @@ TEST(a_pixel_trace_names_nodes_decorators_lights_and_their_occluders) {
     (void)snprintf(path, sizeof path, "%s/out.png", test_folder());
     CHECK(access(path, F_OK) != 0); /* nothing is rendered */
     result = test_gray_scene(NULL, "--pixel 0,0 --deep scene.lua", NULL);
-    says(&result, "meets nothing: background, the gradient");
+    says(&result, "hits nothing: background, the gradient");
     says(&result, "times 65535, rounded: ");
     release(result);
 }

@@ -403,7 +403,7 @@ TEST(layers_are_written_beside_the_picture_in_its_format) {
     CHECK(!exists("layers/out.uv.png"));
     free(normal.rgb);
     free(cost.rgb);
-    ends_saying(test_gray_scene(NULL, "--aov cost -o - scene.lua", NULL), 2, "leaves no name for --aov");
+    ends_saying(test_gray_scene(NULL, "--aov cost -o - scene.lua", NULL), 2, "there is no file name for --aov");
     ends_saying(test_gray_scene(NULL, "--aov cost --shard 1/2 scene.lua", NULL), 2, "one process");
 }
 

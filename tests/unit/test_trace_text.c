@@ -144,15 +144,15 @@ TEST(a_pixel_trace_of_a_scene_with_one_of_everything_has_words_for_all_of_it) {
                                          "directional light along (-0.979",
                                          "spot light at ",
                                          ": does not light this",
-                                         ": nothing of it is reflected this way",
+                                         ": the surface reflects none of it to the viewer",
                                          "shadow rays arrive",
                                          ", blocked by root",
                                          ", seen: (",
-                                         "that shows itself, at distance ",
-                                         "meets nothing: background, ",
+                                         "hits a visible ",
+                                         "hits nothing: background, ",
                                          " and fog adds (",
                                          ", time ",
-                                         "not followed, the limit is reached",
+                                         "not traced, the limit is reached",
                                          "caustics: (",
                                          "exposure 1, tone reinhard, sRGB: (",
                                          "samples, as all pixels have"};
@@ -164,8 +164,8 @@ TEST(a_pixel_trace_of_a_scene_with_one_of_everything_has_words_for_all_of_it) {
 }
 
 TEST(a_pixel_trace_of_a_draft_names_the_rays_it_left_out) {
-    static const char *const words[] = {"it could not change the pixel any more (--cutoff)", ", blinn (",
-                                        "what it meets at distance ", "one sample: no neighbour"};
+    static const char *const words[] = {"it cannot change the pixel (--cutoff)", ", blinn (", "the hit at distance ",
+                                        "one sample: no neighbour"};
     write_files();
     char *reported = print_trace("--quick --specular blinn --cutoff 0.2");
     SAYS(reported, words);
