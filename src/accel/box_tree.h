@@ -37,11 +37,11 @@ struct box_tree {
  */
 bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
                     struct error *error);
-/* Gives the items of a tree other boxes: the same items are empty as before. The nodes stay, and their boxes are those
- * of their items. */
+/* Sets new boxes for the items of a tree (a refit). The same items must be empty as before. The structure of the tree
+ * stays, and the boxes of its nodes are computed again. */
 void box_tree_refit(struct box_tree *tree, const struct box *boxes);
-/* The sum of the areas of its inner nodes, halved, those that are infinite left out: what a line visits grows with it
- * (MacDonald and Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990). */
+/* Half the sum of the areas of the inner nodes, without infinite ones. The number of nodes that a line visits grows
+ * with it (MacDonald and Booth, "Heuristics for Ray Tracing Using Space Subdivision", 1990). */
 double box_tree_cost(const struct box_tree *tree);
 void box_tree_destroy(struct box_tree *tree);
 size_t box_tree_memory(const struct box_tree *tree);

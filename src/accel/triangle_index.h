@@ -43,8 +43,8 @@ bool triangle_index_any(const struct triangle_index *index, const struct triangl
 struct triangle_run {
     uint32_t first, count;
 };
-/* The same for a ray that is known to hit no triangle of a run, such as that of its origin: they need no decision in
- * double precision. *triangle: one that the ray hits. */
+/* The same for a ray that is known to hit no triangle of a run, such as the triangle of its origin: these are not
+ * tested in double precision. *triangle: a triangle that the ray hits. */
 bool triangle_index_nearest_but(const struct triangle_index *index, const struct triangle_set *set,
                                 const struct ray *ray, struct triangle_run run, struct triangle_hit *hit,
                                 struct triangle_cost *cost);

@@ -139,8 +139,8 @@ struct search {
     triangle_visit *visit;
     void *context;
     struct triangle_cost *cost;
-    struct triangle_run run;    /* left out, by the searches without a run of triangles */
-    uint32_t occluder;          /* that ended an "any" search of them */
+    struct triangle_run run;    /* skipped, by the searches without a run of triangles */
+    uint32_t occluder;          /* skipped triangles that ended an "any" search */
     struct sheared_ray sheared; /* if it is ready */
     /* The nearest certain hit so far, with bounds of its local t; NULL: none. */
     const struct triangle_block *pending;
@@ -355,7 +355,7 @@ static __attribute__((noinline)) void keep_lanes(struct search *s, const struct 
     } while (lanes);
 }
 
-/* The lanes of a block whose triangles the search leaves out. */
+/* The lanes of a block with triangles that the search skips. */
 static inline unsigned left_out(const struct search *s, const struct triangle_block *b) {
     unsigned lanes = 0;
 #if defined(__AVX2__) && !defined(GRAY_NO_SIMD)
@@ -723,7 +723,7 @@ static __attribute__((noinline)) bool fly_camera_any_but_apart(struct search *s)
     return traversal(s, TRIANGLE_ANY, true);
 }
 
-/* An empty run begins where no triangle is. */
+/* An empty run begins after the last triangle. */
 static inline struct triangle_run run_to_leave_out(struct triangle_run run) {
     return run.count > 0 ? run : (struct triangle_run){UINT32_MAX, 1};
 }

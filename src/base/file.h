@@ -108,7 +108,7 @@ enum error_kind file_refusal_kind(int number);
 bool file_make_temporary_folder(char *out, size_t size, struct error *error);
 /* Removes it with the files in it. */
 void file_remove_temporary_folder(const char *folder);
-/* Removes a folder in which nothing is; false: it stays. */
+/* Removes an empty folder. False: it is not empty or cannot be removed. */
 bool file_remove_empty_folder(const char *folder);
 /* mkdir -p of the folder part of `path`. */
 bool file_make_folders_for(const char *path, struct error *error);

@@ -434,7 +434,7 @@ struct name_list {
     size_t count, room, limit;
 };
 
-/* Sorts, and drops what is beyond the limit. */
+/* Sorts, and drops the entries beyond the limit. */
 static void name_list_cut(struct name_list *list) {
     if (list->count > 0)
         qsort(list->entries, list->count, sizeof *list->entries, compare_entries);
@@ -463,7 +463,7 @@ static bool name_list_add(struct name_list *list, const char *name, bool is_fold
     return true;
 }
 
-/* Copied into the arena; NULL without memory. */
+/* Copied into the arena; NULL: no memory. */
 static struct path_policy_entry *read_entries(DIR *stream, size_t limit, struct arena *arena, size_t *count) {
     struct name_list list = {.limit = limit};
     bool ok = true;

@@ -54,8 +54,8 @@ struct path_policy_entry {
     const char *name;
     bool is_folder; /* links are none */
 };
-/* The entries of a folder that may be read, in byte order, without hidden ones: the first `limit` of all. The array and
- * the names are in the arena. 0: none, or it cannot be listed. */
+/* The entries of a readable folder in byte order, without hidden ones: the first `limit` of them. The array and the
+ * names are in the arena. 0: there are none, or the folder cannot be listed. */
 size_t path_policy_list(const struct path_policy *path_policy, const char *folder, size_t limit, struct arena *arena,
                         struct path_policy_entry **entries);
 /* As file_map. */

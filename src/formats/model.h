@@ -67,8 +67,9 @@ struct model_node {
     struct transform parent_from_node;
 };
 
-/* Looks for a file that is not where the file in `folder` ("" or with a final slash) names it. *path is NULL if there
- * is none; *refused: the name leads out of the readable folders, and is not looked for. False with an error. */
+/* Searches for a file that does not exist under the name that the file in `folder` ("" or with a final slash) contains.
+ * *path is NULL if there is none. *refused: the name leads out of the readable folders, so gray does not search. False
+ * with an error. */
 typedef bool model_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
                           struct error *error);
 
@@ -128,8 +129,8 @@ struct model_material *model_add_material(struct model *model, struct error *err
 struct model_node *model_add_node(struct model *model, struct error *error);         /* at the top, no mesh */
 /* Warnings beyond the limit are dropped; the first ones are kept. */
 void model_warn(struct model *model, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* A file that the model names: in its folder, by any spelling of the path; by the bare name; by the search of the
- * options. *path is NULL if there is none, model_why_missing() says why. */
+/* A file that the model names. gray tries its folder with any spelling of the path, then the bare name, then the search
+ * of the options. If *path is NULL, model_why_missing() returns the reason. */
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
 const char *model_why_missing(const struct model *model);
 

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The position of the whole primitive: anywhere; behind the tangent plane of the hit (convex shapes); in it (planar
- * shapes); anywhere, but the triangle that was hit is in it (meshes). */
+/* The position of the whole primitive relative to the tangent plane of the hit: unknown; behind it (convex shapes); in
+ * it (planar shapes); unknown, but the triangle of the hit is in it (meshes). */
 enum hit_convexity { CONVEXITY_NONE, CONVEXITY_BEHIND, CONVEXITY_PLANAR, CONVEXITY_FACETS };
 
 /* A surface point in the object space of the shape, filled by shape_describe. */
@@ -68,12 +68,12 @@ struct hit {
     double time;
 };
 
-/* What a ray is known not to hit, as ray->skip_primitive and ray->skip_part have it. */
+/* A primitive or triangle that the ray is known not to hit, as in ray->skip_primitive and ray->skip_part. */
 struct hit_skip {
     uint32_t primitive, part;
 };
-/* A ray that leaves the surface in `direction` from the side `side` (the sign of the distance of its origin along
- * normal_geometric) does not hit its primitive, or its triangle, again if no part of it is on that side. Directions
+/* A ray leaves the surface in `direction` from the side `side` (the sign of the distance of its origin along
+ * normal_geometric). It cannot hit its primitive, or its triangle, again if no part of it is on that side. Directions
  * within 2^-20 of the surface are tested, because of rounding. */
 static inline struct hit_skip hit_skip_from(const struct hit *hit, double side, struct vec3 direction) {
     double rise = vec3_dot(direction, hit->normal_geometric), min = 0x1p-20 * vec3_max_abs(direction);

@@ -45,7 +45,7 @@ static bool link_begin(void *context, const struct picture_request *request, str
     return true;
 }
 
-/* The memory of a larger pass comes with its command; it stays mapped until another one comes. */
+/* The memory of a larger pass comes with its command. It stays mapped until the next such memory comes. */
 static bool attach_large(struct channel_services *link, int descriptor, struct preview_command *command,
                          struct error *error) {
     struct picture_request request;

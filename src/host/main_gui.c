@@ -63,7 +63,7 @@ static bool measure(struct sdl *sdl) {
     return other;
 }
 
-/* The texture has this size; *other: it has no contents yet. False: there is none. */
+/* Makes sure that the texture has this size; *other: it is new and has no contents. False: it cannot be created. */
 static bool fit_texture(SDL_Renderer *renderer, struct screen_texture *texture, Uint32 format, uint32_t width,
                         uint32_t height, bool *other) {
     *other = !texture->pixels || texture->width != (int)width || texture->height != (int)height;
@@ -90,7 +90,7 @@ static void choose_size(int *w, int *h) {
     *h = SDL_max(*h, 120);
 }
 
-/* The window gets the size of another picture, if it still has the size that this program has given it. */
+/* Gives the window the size of another picture, if the window still has the size that this program has set. */
 static void fit_window(struct sdl *sdl, uint32_t width, uint32_t height) {
     int w = (int)width, h = (int)height, now_width, now_height;
     SDL_GetWindowSize(sdl->window, &now_width, &now_height);

@@ -149,7 +149,7 @@ static void warn_of_scene(void *context, const char *text) {
     warn_once(context, text, text);
 }
 
-/* After a picture: the functions that gave NaN at a hit. */
+/* After a picture: reports the functions that returned NaN at a hit. */
 static void warn_of_nan(struct render_process *process, const struct world *world) {
     char line[1024];
     for (uint32_t i = 0; i < world->texture_count; i++) {
@@ -649,7 +649,7 @@ static void begin_frame(void *context) {
         process->services->frame(process->services->context);
 }
 
-/* The frame that the window wants, of those that can be rendered. */
+/* The frame that the window requests, among those that can be rendered. */
 static uint32_t next_frame(void *context, const struct frame *frame) {
     const struct render_process *process = context;
     const struct frame_selection *selection = &process->options->script.frames.selection;
@@ -667,7 +667,7 @@ static void note_rewind(void *context) {
     begin_frame(process);
 }
 
-/* Exit status of one run of a script; frame: what it renders outside of gr.frames, or number 0. */
+/* Runs a script once; returns the exit status. frame: the frame that it renders outside of gr.frames, or number 0. */
 static int run_once(struct render_process *process, const char *path, const struct frame *frame) {
     /* Without the sandbox, in a separate process, standard output is a copy of standard error here. */
     bool sandboxed = !process->options->script.no_sandbox, in_process = process->options->no_fork;
@@ -704,8 +704,8 @@ static int run_once(struct render_process *process, const char *path, const stru
     return status;
 }
 
-/* Exit status of one script. With --frames, a script that does not call gr.frames runs for each frame again; the first
- * run shows which kind it is. */
+/* Runs a script; returns the exit status. With --frames, a script that does not call gr.frames runs again for each
+ * frame; the first run shows whether it calls gr.frames. */
 static int run_script(struct render_process *process, const char *path) {
     const struct frame_options *options = &process->options->script.frames;
     const struct frame_selection *selection = &options->selection;

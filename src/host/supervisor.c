@@ -61,7 +61,7 @@ static int poll_time(const struct supervisor *supervisor) {
     return reports && (patience < 0 || patience > 500) ? 500 : patience;
 }
 
-/* A sign of life while a script computes. */
+/* Reports that a script is still running. */
 static void report_script(struct supervisor *supervisor) {
     const struct options *options = supervisor->options;
     char line[4096 + 128];

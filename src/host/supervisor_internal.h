@@ -55,8 +55,8 @@ struct supervisor {
     int status;         /* worst so far */
     int next_script;    /* the one that runs, or comes next */
     bool stop;          /* no further script */
-    bool broken;        /* the child did not keep to the rules of the channel */
-    bool finishing;     /* tiles under way are awaited, no others are begun */
+    bool broken;        /* the render process violated the protocol of the channel */
+    bool finishing;     /* waits for tiles in progress and starts no others */
     double deadline;    /* when the cancelled child is killed; 0: not cancelled */
     bool waits;         /* the child has run all scripts and waits for a change */
     bool restarts;      /* the scripts are cancelled because they will run again */

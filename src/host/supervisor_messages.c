@@ -191,7 +191,7 @@ void supervisor_open_window(struct supervisor *supervisor) {
     const struct options *options = supervisor->options;
     const char *script =
         options->scripts[supervisor->next_script < options->script_count ? supervisor->next_script : 0];
-    struct error ignored; /* the first picture tries it again, and reports the error */
+    struct error ignored; /* the first picture tries again, and reports the error */
     if (!supervisor->window || supervisor->viewer.open || supervisor->deadline > 0 || supervisor->early_refused)
         return;
     supervisor->early_refused =
@@ -348,7 +348,7 @@ void supervisor_take_message(struct supervisor *supervisor, const struct message
     case MESSAGE_READ:
         note_read(supervisor, &message->body.read);
         return;
-    case MESSAGE_FRAME: /* more frames than pictures are allowed would be a way around the time limit */
+    case MESSAGE_FRAME: /* a script that announces more frames than allowed could avoid the time limit */
         if (current->open || !options_allow_picture(supervisor->options, ++supervisor->script.frames, &ignored))
             break;
         supervisor_stop_script_clock(supervisor);

@@ -1,6 +1,6 @@
-/* What all files of animations share: frames read from the PNG files that this program wrote, where every byte counts;
- * rates; and YUV4MPEG2, which every video encoder reads from a pipe. Y, Cb and Cr are those of BT.601 in their limited
- * ranges, 16..235 and 16..240, without subsampling: the way back is within two levels of each byte. */
+/* Common parts of animation files: frames read back exactly from the PNG files that this program wrote; frame rates;
+ * and YUV4MPEG2, which every video encoder reads from a pipe. Y, Cb and Cr are those of BT.601 in their limited ranges,
+ * 16..235 and 16..240, without subsampling: decoding gives each byte within two levels. */
 #include "image/animation.h"
 
 #include "base/file.h"

@@ -1,5 +1,5 @@
-/* Writing APNG. A frame after the first one is the smallest rectangle that contains its changes; a frame without
- * changes is one pixel. Filters and compression are those of png_write.c, in one stream for each frame. */
+/* Writes APNG. A frame after the first one is the smallest rectangle that contains all changes; a frame without changes
+ * is one pixel. Filters and compression are those of png_write.c, in one stream for each frame. */
 #include "image/animation.h"
 
 #include "base/mem.h"
@@ -18,7 +18,7 @@ struct apng {
     const struct animation_source *source;
     struct file_output output;
     z_stream stream;
-    uint8_t *frame, *before; /* this frame and the one before it */
+    uint8_t *frame, *before; /* this frame and the previous one */
     uint8_t *raw, *packed;
     size_t packed_room;
     uint32_t sequence; /* of fcTL and fdAT chunks */

@@ -19,10 +19,11 @@ bool finish_equal(const struct finish *a, const struct finish *b) {
 
 /* --- bloom --- */
 
-/* Standard deviations of the Gaussians, in heights of the picture; a box of radius r three times has about r + 1/2. */
+/* Standard deviations of the Gaussians, in heights of the picture. Three boxes of radius r have a standard deviation of
+ * about r + 1/2. */
 static const double bloom_sizes[] = {0.004, 0.012, 0.04};
 enum { BLOOM_SIZES = sizeof bloom_sizes / sizeof *bloom_sizes, BLOOM_BOXES = 3 };
-/* Light beyond so many times white counts as that. */
+/* Light above this multiple of white counts as this multiple. */
 static const double bloom_limit = 16;
 static const double bloom_unit = 0x1p24;
 
@@ -31,8 +32,8 @@ static uint32_t bloom_radius(int size, uint32_t full_height) {
     return radius < 1 ? 1 : (uint32_t)radius;
 }
 
-/* Sums of boxes of 2 * radius + 1 elements over lines of `count` elements, nothing beyond the ends; a line has three
- * channels in a row, its elements are `step` numbers apart. */
+/* Sums of boxes of 2 * radius + 1 elements over lines of `count` elements. Elements beyond the ends count as 0. A line
+ * has three interleaved channels, and its elements are `step` numbers apart. */
 static void box_line(const uint32_t *in, uint32_t *out, uint32_t count, size_t step, uint32_t radius) {
     uint64_t sums[3] = {0, 0, 0}, width = 2 * (uint64_t)radius + 1;
     for (uint32_t i = 0; i < radius && i < count; i++)
@@ -60,7 +61,7 @@ static void blur(uint32_t *a, uint32_t *b, const struct finish_area *area, uint3
     }
 }
 
-/* The light of a pixel above white, in units; true if there is any. */
+/* The light of a pixel above white, in integer units; true if there is any. */
 static bool above_white(const float rgb[3], double scale, uint32_t out[3]) {
     double light[3], max = 0;
     for (int c = 0; c < 3; c++) {
@@ -104,7 +105,7 @@ static bool add_bloom(double strength, double exposure, const struct finish_area
 
 /* --- vignette, gray, edges --- */
 
-/* The law of cos^4 of a lens whose picture has its corners at 45 degrees. */
+/* The cos^4 law of a lens whose picture has its corners at 45 degrees. */
 static double vignette_factor(double strength, const struct finish_area *area, uint32_t x, uint32_t y) {
     double w = area->full_width, h = area->full_height;
     double dx = 2 * ((double)area->x0 + x + 0.5) - w, dy = 2 * ((double)area->y0 + y + 0.5) - h;
@@ -133,8 +134,8 @@ bool finish_light(const struct finish *finish, double exposure, const struct fin
     return true;
 }
 
-/* I. Sobel's operator: the gradient of the luminance; a step from 0 to 1 along an axis is 1. Pixels beyond the border
- * have the numbers of the border. */
+/* I. Sobel's operator: the gradient of the luminance; a step from 0 to 1 along an axis gives 1. Pixels beyond the
+ * border have the values of the border. */
 static void sobel(const struct finish_area *area, const float (*in)[3], float (*out)[3]) {
     static const int weights[3] = {1, 2, 1};
     for (uint32_t y = 0; y < area->height; y++) {
@@ -179,7 +180,7 @@ uint32_t finish_rim(const struct finish *finish, uint32_t full_height) {
 
 /* --- dithering --- */
 
-/* Of 0..63: the bits of x ^ y and of y by turns, the lowest ones first. */
+/* For numbers 0..63: interleaves the bits of x ^ y and of y, lowest bits first. */
 static uint32_t bayer(uint32_t x, uint32_t y) {
     uint32_t rank = 0;
     for (int bit = 0; bit < 3; bit++)

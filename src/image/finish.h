@@ -1,9 +1,8 @@
-/* Finishing: what happens to a whole picture between its light and the numbers of a file. Bloom, vignette and gray
- * change light, before exposure and tone curve; edges and FXAA change the numbers that are shown; dithering decides
- * how these become 8 bits. The zero value changes nothing.
- *
- * Every function is safe for any number. A pixel depends only on pixels at most finish_rim away, and on its place in
- * the whole picture: a part with a rim of that width gives exactly the pixels of the whole picture. */
+/* Finishing: operations on the whole picture after rendering and before writing. Bloom, vignette and gray change light,
+ * before exposure and tone curve. Edges and FXAA change the displayed numbers. Dithering rounds these to 8 bits. The
+ * zero value changes nothing. Every function is safe for any number. A pixel depends only on pixels at most finish_rim
+ * away, and on its position in the whole picture: a part with a rim of that width gives exactly the pixels of the whole
+ * picture. */
 #ifndef GRAY_IMAGE_FINISH_H
 #define GRAY_IMAGE_FINISH_H
 
@@ -20,8 +19,8 @@
 enum dither { DITHERS(LIST_MEMBER) };
 
 struct finish {
-    double bloom;    /* 0..1: the share of light above white that spreads around it */
-    double vignette; /* 0..1: 1 leaves a quarter of the light in the corners */
+    double bloom;    /* 0..1: the weight of light above white that spreads around it */
+    double vignette; /* 0..1: with 1 the corners have a quarter of their light */
     bool gray;       /* luminance */
     bool edges;      /* Sobel's operator */
     bool fxaa;
@@ -44,20 +43,19 @@ static inline bool finish_is_plain(const struct finish *finish) {
 }
 bool finish_equal(const struct finish *a, const struct finish *b);
 
-/* Pixels around a part that its own pixels depend on. */
+/* The number of pixels around a part on which its pixels depend. */
 uint32_t finish_rim(const struct finish *finish, uint32_t full_height);
-/* rgb: width * height pixels of linear light, top row first. exposure, in stops, says what is white. False: no memory.
- */
+/* rgb: width * height pixels of linear light, top row first. exposure, in stops, defines white. False: no memory. */
 bool finish_light(const struct finish *finish, double exposure, const struct finish_area *area, float (*rgb)[3],
                   struct error *error);
 /* rgb: the numbers of the picture file, clamped to 0..1. False: no memory. */
 bool finish_display(const struct finish *finish, const struct finish_area *area, float (*rgb)[3], struct error *error);
 
-/* T. Lottes, "FXAA", NVIDIA white paper, 2009: see fxaa.c. in and out differ; numbers of 0..1. */
+/* T. Lottes, "FXAA", NVIDIA white paper, 2009: see fxaa.c. in and out are different arrays of numbers in 0..1. */
 enum { FXAA_RIM = 18 };
 void fxaa_apply(const struct finish_area *area, const float (*in)[3], float (*out)[3]);
 
-/* The byte of a number of 0..1 (others are clamped, NaN gives 0) at a pixel of the whole picture. Numbers k / 255 give
+/* The byte for a number in 0..1 (others are clamped, NaN gives 0) at a pixel of the whole picture. Numbers k / 255 give
  * k, and the mean over the mask is the number. ORDERED: B. Bayer, "An optimum method for two-level rendition of
  * continuous-tone pictures", ICC 1973, 8 x 8. BLUE: a mask of 64 x 64 by void-and-cluster (tools/blue_noise.py). NONE:
  * the nearest byte. */

@@ -1,15 +1,15 @@
 /* Anti-aliasing of a finished picture: T. Lottes, "FXAA", NVIDIA white paper, 2009. A pixel whose luma differs from its
- * four neighbours is on an edge, horizontal or vertical. The edge is followed in both directions until the luma
- * changes; the pixel is moved across the edge by as much as the line between the two ends covers it. A pixel that
- * differs from all neighbours is mixed with their mean. Constants, and edges along an axis, which have no ends, stay as
- * they are. */
+ * four neighbours is on a horizontal or vertical edge. The edge is followed in both directions until the luma changes.
+ * The pixel is moved across the edge by the fraction that the line between the two ends covers. A pixel that differs
+ * from all neighbours is mixed with their mean. Uniform areas, and edges along an axis, which have no ends, do not
+ * change. */
 #include "image/finish.h"
 
 #include <math.h>
 #include <stddef.h>
 
-/* Of the white paper: contrast that is visible; contrast in relation to the brightest neighbour; the part of the
- * contrast that ends an edge; mixing of single pixels. */
+/* From the white paper: the minimum visible contrast; the contrast relative to the brightest neighbour; the fraction of
+ * the contrast that ends an edge; the mixing of single pixels. */
 static const double edge_min = 1.0 / 32, edge_share = 1.0 / 8, search_share = 1.0 / 4, mix_trim = 1.0 / 4,
                     mix_max = 3.0 / 4;
 enum { SEARCH_STEPS = 16 };
@@ -20,7 +20,7 @@ struct source {
     const float (*rgb)[3];
 };
 
-/* Beyond the border are the pixels of the border. */
+/* Pixels beyond the border have the values of the border. */
 static const float *pixel_at(const struct source *source, int64_t x, int64_t y) {
     int64_t w = source->area->width, h = source->area->height;
     x = x < 0 ? 0 : x < w ? x : w - 1;
@@ -50,7 +50,7 @@ struct cross {
 struct edge {
     int ax, ay;      /* a step across it, to that neighbour */
     double luma;     /* its mean */
-    double gradient; /* of the mean, that ends it */
+    double gradient; /* the fraction of the mean that ends it */
 };
 
 static struct edge edge_of(const struct source *source, int64_t x, int64_t y, const struct cross *c) {
@@ -70,7 +70,8 @@ static struct edge edge_of(const struct source *source, int64_t x, int64_t y, co
                          .gradient = max_of(gradient_before, gradient_after) * search_share};
 }
 
-/* Steps to the end of the edge in one direction, at most SEARCH_STEPS; the difference of the luma there. */
+/* The number of steps to the end of the edge in one direction, at most SEARCH_STEPS, and the difference of the luma
+ * there. */
 static int search(const struct source *source, int64_t x, int64_t y, const struct edge *edge, int direction,
                   double *difference) {
     int dx = edge->ay != 0 ? direction : 0, dy = edge->ax != 0 ? direction : 0;
@@ -92,11 +93,11 @@ static double shift_of(const struct source *source, int64_t x, int64_t y, const 
     int nearer = before < after ? before : after;
     double end = differences[before < after ? 0 : 1];
     if ((m - edge->luma < 0) == (end < 0))
-        return 0; /* the other side of the edge gives way there */
+        return 0; /* the pixel on the other side of the edge is moved there */
     return 0.5 - (double)nearer / (before + after);
 }
 
-/* The part of the mean of 3 x 3 pixels in a pixel that stands alone. */
+/* The weight of the mean of 3 x 3 pixels in an isolated pixel. */
 static double mix_of(const struct cross *c, double range) {
     double mean = (c->n + c->s + c->w + c->e) / 4;
     double mix = max_of(0, fabs(mean - c->m) / range - mix_trim) / (1 - mix_trim);

@@ -1,6 +1,6 @@
-/* Writing GIF (Graphics Interchange Format version 89a, CompuServe 1990; LZW: Welch, A Technique for High-Performance
- * Data Compression, 1984). A frame after the first one is the rectangle of the pixels whose colours differ from what
- * is shown. */
+/* Writes GIF (Graphics Interchange Format version 89a, CompuServe 1990; LZW: Welch, A Technique for High-Performance
+ * Data Compression, 1984). A frame after the first one is the rectangle of pixels whose colours differ from the
+ * previous frame. */
 #include "image/animation.h"
 
 #include "base/mem.h"
@@ -19,7 +19,7 @@ enum {
     BLOCK = 255,
 };
 
-/* What is known of a string: the string before its last byte, and the byte. */
+/* A string of the table: the string before its last byte, and the byte. */
 struct lzw_slot {
     uint32_t key; /* prefix << 8 | byte, and 1 << 31; 0: free */
     uint32_t code;
@@ -80,7 +80,7 @@ static struct lzw_slot *find_string(struct gif *gif, uint32_t prefix, uint8_t by
     return slot;
 }
 
-/* The pixels of the rectangle as blocks. */
+/* Writes the pixels of the rectangle as blocks. */
 static bool write_pixels(struct gif *gif, const struct rectangle *r, struct error *error) {
     static const uint8_t depth = DEPTH, end = 0;
     uint32_t next = END + 1, size = DEPTH + 1, prefix = UINT32_MAX;

@@ -67,8 +67,8 @@ struct image_sampling {
 };
 /* Filtered, premultiplied. */
 struct rgba image_lookup(const struct image *image, struct image_point at, struct image_sampling how);
-/* The derivatives by u and v of a lookup without footprint; 0 for IMAGE_NEAREST, and beyond the edges of IMAGE_CLAMP.
- */
+/* The derivatives by u and v of a lookup with a footprint of size 0; 0 for IMAGE_NEAREST, and beyond the edges for
+ * IMAGE_CLAMP. */
 void image_lookup_slopes(const struct image *image, struct image_point at, struct image_sampling how, struct rgba *by_u,
                          struct rgba *by_v);
 /* Pictures of any format that this build reads; the first bytes select the format. */

@@ -1,7 +1,7 @@
-/* Every value of a lookup is a mean of texels with weights between 0 and 1, so it is between the least and the greatest
- * of the texels that the lookups of a box may read. Those are a rectangle, or whole rows and columns where the box
- * crosses an edge at which the image repeats. A rectangle of a few texels is read directly, a larger one from the level
- * of the pyramid at which it covers a few blocks. */
+/* Every value of a lookup is a mean of texels with weights between 0 and 1. So it is between the minimum and the
+ * maximum of the texels that the lookups of a box can read. These texels are a rectangle, or whole rows and columns if
+ * the box crosses an edge at which the image repeats. gray reads a small rectangle directly, and a larger one from the
+ * level of the pyramid at which it covers a few blocks. */
 #include "image/image_function.h"
 
 #include "base/mem.h"
@@ -24,7 +24,7 @@ struct range_level {
 
 struct image_ranges {
     int level_count;
-    bool has_nan; /* some texel has a NaN */
+    bool has_nan; /* some texel is NaN */
     struct range_level levels[MAX_LEVELS];
 };
 
@@ -72,7 +72,7 @@ static void add_blocks(const struct range_level *from, const struct range_level 
         }
 }
 
-/* One block of memory: the levels, then their blocks. */
+/* The levels and their blocks are in one block of memory. */
 bool image_make_ranges(struct image *image, struct error *error) {
     if (image->ranges)
         return true;
@@ -139,7 +139,7 @@ struct texel_span {
 /* The texels of an axis that lookups between low and high may read. */
 static struct texel_span texels_in(double low, double high, uint32_t size, struct image_sampling how, int axis) {
     const struct texel_span all = {0, size - 1};
-    const double slack = 1e-3; /* more than the rounding errors of folding */
+    const double slack = 1e-3; /* larger than the rounding errors of wrapping */
     enum image_wrap wrap = axis == 0 ? how.wrap_u : how.wrap_v;
     if (!(low >= -0x1p20 && high <= 0x1p20))
         return all;
@@ -196,7 +196,7 @@ static struct texel_span texels_of(const struct image_function *function, int ax
     return texels_in(fmin(a, b), fmax(a, b), size, function->sampling, axis);
 }
 
-/* The mixes of a lookup have errors of a few units in the last place of its texels. */
+/* Interpolation has errors of a few units in the last place of its texels. */
 struct image_interval image_function_bounds(const struct image_function *function, struct image_interval u,
                                             struct image_interval v, int channel) {
     const struct image_interval any = {-(double)INFINITY, (double)INFINITY, true};

@@ -1,5 +1,5 @@
-/* A picture as a function of two numbers, with bounds and slopes: what img:at(u, v) of a recorded function evaluates.
- * u counts from the left edge, v from the lower edge upwards, as the coordinates of hits do. The image is borrowed. */
+/* A picture as a function of two numbers, with bounds and slopes, for img:at(u, v) of a recorded function. u counts
+ * from the left edge, v upwards from the lower edge, like the coordinates of hits. The image is borrowed. */
 #ifndef GRAY_IMAGE_IMAGE_FUNCTION_H
 #define GRAY_IMAGE_IMAGE_FUNCTION_H
 
@@ -21,14 +21,14 @@ double image_function_value(const struct image_function *function, double u, dou
 /* The derivatives by u and v; 0 for IMAGE_NEAREST, and one-sided between two texels. */
 void image_function_slopes(const struct image_function *function, double u, double v, int channel, double slopes[2]);
 
-/* Values of u or v: all numbers between low and high, and NaN. */
+/* Values of u or v: all numbers between low and high, and perhaps NaN. */
 struct image_interval {
     double low, high;
     bool may_be_nan;
 };
-/* Bounds of the values. They come from a pyramid of least and greatest values of blocks (as in A. Tevs, I. Ihrke and
- * H.-P. Seidel, "Maximum mipmaps", I3D 2008), which image_make_ranges builds; without it, they are those of any image.
- */
+/* Bounds of the values. They come from a pyramid of minimum and maximum values of blocks (as in A. Tevs, I. Ihrke and
+ * H.-P. Seidel, "Maximum mipmaps", I3D 2008), which image_make_ranges builds. Without the pyramid they are the bounds
+ * of any image. */
 struct image_interval image_function_bounds(const struct image_function *function, struct image_interval u,
                                             struct image_interval v, int channel);
 /* The pyramid of the image, which owns it. The first call for an image is not thread-safe. False: no memory. */

@@ -79,7 +79,7 @@ static int by_blue(const void *a, const void *b) {
     return by_channel(a, b, 2);
 }
 
-/* Sums are whole numbers below 2^53, and so exact, for pictures with up to 10^11 pixels. */
+/* Sums are whole numbers below 2^53 for pictures with up to 10^11 pixels, and so exact. */
 static void measure(const struct colour *colours, struct cut_box *box) {
     box->spread = -1;
     for (int channel = 0; channel < 3; channel++) {
@@ -125,7 +125,7 @@ static int squared_distance(const uint8_t a[3], const uint8_t b[3]) {
     return sum;
 }
 
-/* The mean distance of a colour from the nearest other one, for one channel. */
+/* The mean distance between a colour and the nearest other one, for one channel. */
 static int spread_of(const struct palette *palette) {
     enum { SPREAD_MAX = 48 };
     double sum = 0;

@@ -24,13 +24,13 @@ void palette_count_add(struct palette_count *count, const uint8_t *rgb, size_t p
 /* The palette of the counted colours by median cut. False: no memory. */
 bool palette_make(const struct palette_count *count, struct palette *out);
 
-/* Finds colours of a palette; it keeps what it has found. */
+/* Finds colours of a palette, and caches them. */
 struct palette_search;
 struct palette_search *palette_search_create(void); /* NULL: no memory */
 void palette_search_destroy(struct palette_search *search);
 void palette_search_begin(struct palette_search *search, const struct palette *palette);
-/* The number of the colour for a byte triple at a pixel: the nearest one after ordered dithering, which depends on the
- * position only, so that still parts of an animation stay still. */
+/* The index of the colour for a byte triple at a pixel: the nearest one after ordered dithering. The dithering depends
+ * only on the position, so parts of an animation without motion do not change. */
 uint8_t palette_find(struct palette_search *search, const uint8_t rgb[3], uint32_t x, uint32_t y);
 /* The threshold of the dither at a pixel, from -127 to 127 128ths of half the spread: Bayer's matrix of 8 x 8. */
 int palette_threshold(uint32_t x, uint32_t y);

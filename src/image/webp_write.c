@@ -1,5 +1,5 @@
-/* Writing WebP animations by libwebp: lossless, with every level of every pixel kept. The library gathers the whole
- * file in memory; times are whole milliseconds, rounded each for itself, so that they do not drift. */
+/* Writes WebP animations by libwebp: lossless, with every level of every pixel kept. The library keeps the whole file
+ * in memory. Times are whole milliseconds; each is rounded separately, so the sum does not drift. */
 #include "image/animation.h"
 
 #ifndef HAVE_WEBP
@@ -25,7 +25,7 @@ bool webp_can_write(void) {
 #include <webp/encode.h>
 #include <webp/mux.h>
 
-/* libwebp searches longer with more of each, up to 6 and 100. */
+/* With larger values libwebp searches longer; the maxima are 6 and 100. */
 enum { METHOD = 2, EFFORT = 40 };
 
 const char *webp_library(void) {

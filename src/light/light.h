@@ -50,8 +50,8 @@ struct light {
     struct vec3 position; /* of a parallelogram, disc, sphere: its centre */
     struct vec3 corner, edge1, edge2;
     struct vec3 colour; /* of a lamp: its radiance */
-    /* A factor of the colour: a function of the unit direction in which light leaves, with one output or three; NULL:
-     * 1. Of lights with a position. profile_largest: a bound of its components. */
+    /* A factor of the colour of a light with a position: a function of the unit direction in which light leaves, with
+     * one output or three; NULL: 1. profile_largest: a bound of its components. */
     const struct expr_program *profile;
     double profile_largest;
     /* `colour` has this factor, a colour of the screen. light_decode makes it light and clears has_display. */
@@ -78,7 +78,7 @@ void light_decode(struct light *light);
 /* Creates data that queries of a light need (the table of a sky), in the arena. Errors: no memory. */
 bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, struct error *error);
 
-/* Gives a light with a position the factor of its colour. Errors: the function reads more than the direction, or no
+/* Sets the factor of the colour of a light with a position. Errors: the function reads more than the direction, or no
  * memory. */
 bool light_set_profile(struct light *light, const struct expr_program *profile, struct error *error);
 

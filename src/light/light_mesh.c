@@ -1,4 +1,4 @@
-/* See light_mesh.h. The light of a sample is its radiance over the density of samples. */
+/* See light_mesh.h. A light sample has the radiance divided by the density of samples. */
 #include "light/light_mesh.h"
 
 #include "base/arena.h"
@@ -171,8 +171,8 @@ static double triangle_area(const struct light_triangle *t) {
     return vec3_length(vec3_cross(t->edge1, t->edge2)) / 2;
 }
 
-/* Whether a triangle appears so large that samples by solid angle have less noise than those by area, and how. Edges of
- * a third of the distance already have samples of nearly the same weight. */
+/* Whether a triangle appears so large that samples by solid angle have less noise than samples by area, and how to
+ * sample it. If its edges are below a third of the distance, samples by area already have nearly equal weights. */
 static bool is_large(const struct light_triangle *t, struct vec3 from, struct spherical_triangle *seen) {
     double squared = vec3_length_squared(vec3_sub(t->corner, from));
     double edges = vec3_length_squared(t->edge1) + vec3_length_squared(t->edge2);

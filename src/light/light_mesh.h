@@ -64,7 +64,7 @@ struct vec3 light_mesh_colour(const struct light_mesh *mesh);
 struct vec3 light_triangle_radiance(const struct light_triangle *triangle);
 
 /* One triangle, for a point and a ray that starts at `from` next to it: uniform over its solid angle if that is large,
- * else over its area. */
+ * otherwise over its area. */
 struct light_sample light_triangle_sample(const struct light_mesh *mesh, uint32_t triangle, struct vec3 point,
                                           struct vec3 from, struct sample2 xi);
 double light_triangle_pdf(const struct light_mesh *mesh, struct vec3 from, const struct light_hit *hit);

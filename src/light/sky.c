@@ -19,9 +19,9 @@
 #include <string.h>
 
 /* The clear sky of Preetham, Shirley and Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999: luminance and
- * chromaticity each as Perez' function of the angles to the zenith and to the sun, with the coefficients of the paper's
- * appendix A.2. xyY becomes linear sRGB by the matrix of IEC 61966-2-1.
- * Luminance in kcd/m^2 is divided by 20, so that a bright blue sky comes out near 1. */
+ * chromaticity are Perez' function of the angles to the zenith and to the sun, with the coefficients of the paper's
+ * appendix A.2. xyY is converted to linear sRGB by the matrix of IEC 61966-2-1. Luminance in kcd/m^2 is divided by 20,
+ * so that a bright blue sky is near 1. */
 
 static double perez(const double c[5], double cos_zenith, double cos_sun) {
     double cosine = cos_zenith > 1e-3 ? cos_zenith : 1e-3; /* the function is singular at the horizon */

@@ -49,7 +49,7 @@ bool sky_from_cross(struct image *image, bool mirror, struct sky *out, struct er
 bool sky_from_faces(struct image *const faces[6], struct sky *out, struct error *error);
 /* Turbidity: 2 is very clear, 10 hazy. sun: unit, at or above the horizon. */
 void sky_make_clear(struct vec3 sun, double turbidity, struct vec3 ground, struct sky *out);
-/* Of a function with one output or three. Errors: it reads more than the direction, or no memory. */
+/* For a function with one output or three. Errors: it reads more than the direction, or no memory. */
 bool sky_from_function(const struct expr_program *program, struct sky *out, struct error *error);
 /* A time of the clock; it is `zone` hours ahead of Greenwich. */
 struct sky_time {

@@ -112,7 +112,7 @@ static double power_pdf(double cosine, double exponent) {
 }
 
 /* Sine and cosine of -pi/4 to pi/4 by their series, to 2^-52; without branches, for directions only. The terms are
- * added in pairs (Estrin's scheme): one after the other, each would wait for the one before. */
+ * added in pairs (Estrin's scheme), because in a single chain each addition would wait for the previous one. */
 static void short_sincos(double x, double *sine, double *cosine) {
     double z = x * x, z2 = z * z, z4 = z2 * z2;
     double s = (-1.0 / 6 + z * (1.0 / 120)) + z2 * (-1.0 / 5040 + z * (1.0 / 362880)) +
@@ -123,10 +123,10 @@ static void short_sincos(double x, double *sine, double *cosine) {
     *cosine = 1 + z * c;
 }
 
-/* In proportion to the cosine: sample_disc, raised to the hemisphere. In each eighth of the disc the angle to the next
- * axis is at most pi/4. */
+/* Density proportional to the cosine: sample_disc, raised to the hemisphere. In each eighth of the disc the angle to
+ * the next axis is at most pi/4. */
 static struct vec3 diffuse_sample(struct vec3 normal, struct sample2 u) {
-    /* Chosen by an index: no processor can predict which of them is larger. */
+    /* Selected by an index, because the larger one cannot be predicted. */
     const double at[2] = {2 * u.y - 1, 2 * u.x - 1};
     int wide = fabs(at[1]) > fabs(at[0]);
     double radius = at[wide], other = at[!wide], sine, cosine;
@@ -280,7 +280,7 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
 struct lobe_direction {
     struct vec3 direction;
     double share;
-    double pdf; /* of a lobe with f |cos| in proportion to its density; of all others 0 */
+    double pdf; /* proportional to the density of a lobe with this f |cos|; 0 for all others */
     bool delta, transmits;
 };
 
@@ -376,7 +376,7 @@ static double lobe_chance(const struct bsdf *bsdf, const struct lobe *lobe) {
     return vec3_max_abs(lobe->weight) * expected_share(bsdf, lobe);
 }
 
-/* The only lobe of a set, or NULL: there are none or several. */
+/* The only lobe of a set; NULL if there are none or several. */
 static const struct lobe *only_lobe(const struct bsdf *bsdf, uint32_t lobes) {
     lobes &= (UINT32_C(1) << bsdf->count) - 1;
     return lobes != 0 && (lobes & (lobes - 1)) == 0 ? &bsdf->lobes[__builtin_ctz(lobes)] : NULL;
@@ -407,7 +407,7 @@ static double pdf_of_chances(const struct bsdf *bsdf, const struct lobe_chances 
     return sum;
 }
 
-/* A diffuse lobe, which is the only one of most surfaces. */
+/* A single diffuse lobe, as most surfaces have. */
 static struct vec3 diffuse_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct vec3 wi) {
     double n_l = bsdf->dark ? 0 : classic_cosine(bsdf, wi);
     return n_l > 0 ? vec3_scale(lobe->weight, intensity_of(n_l)) : vec3_all(0);
@@ -440,7 +440,7 @@ double bsdf_pdf(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, struct 
     return pdf_of_chances(bsdf, &chances, wo, wi);
 }
 
-/* Chooses a lobe with u->x, whose rest is uniform again. NULL: no lobe contributes. */
+/* Selects a lobe with u->x, and rescales u->x to be uniform again. NULL: no lobe contributes. */
 static const struct lobe *choose_lobe(const struct bsdf *bsdf, const struct lobe_chances *chances, struct sample2 *u,
                                       double *chance) {
     double from = 0;

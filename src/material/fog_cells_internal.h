@@ -1,5 +1,5 @@
-/* The cells of a box that a line passes, in their order (Amanatides and Woo, "A Fast Voxel Traversal Algorithm",
- * Eurographics 1987). */
+/* The cells of a box along a line, in order (Amanatides and Woo, "A Fast Voxel Traversal Algorithm", Eurographics
+ * 1987). */
 #ifndef GRAY_MATERIAL_FOG_CELLS_INTERNAL_H
 #define GRAY_MATERIAL_FOG_CELLS_INTERNAL_H
 
@@ -38,7 +38,7 @@ static inline bool fog_cells_clip(const struct fog_cells *cells, struct vec3 o, 
     return *from < *to;
 }
 
-/* From o along d, up to t = distance. False: the line misses the box. */
+/* Starts at o along d, up to t = distance. False: the line misses the box. */
 static inline bool fog_traversal_begin(struct fog_traversal *traversal, const struct fog_cells *cells, struct vec3 o,
                                        struct vec3 d, double distance) {
     traversal->cells = cells;
@@ -59,7 +59,8 @@ static inline bool fog_traversal_begin(struct fog_traversal *traversal, const st
     return true;
 }
 
-/* The next cell, and the part of the line in it; x runs fastest in its number. False: the line has left the box. */
+/* The next cell, and the part of the line in it; x varies fastest in the index of the cell. False: the line has left
+ * the box. */
 static inline bool fog_traversal_next(struct fog_traversal *traversal, uint64_t *cell, double *from, double *to) {
     const uint32_t *count = traversal->cells->count;
     for (int axis = 0; axis < 3; axis++)

@@ -1,7 +1,7 @@
-/* See fog_field.h. A ray has a step for each `step` of optical depth that the bounds of a cell leave open, STEPS at
- * most, and a step is divided once more where its points differ by more than `part`. Steps have two points each (Gauss
- * and Legendre: exact for cubic densities). The emission of a step is that of a constant density and colour in each of
- * its halves. */
+/* See fog_field.h. The number of steps of a ray in a cell is the uncertainty of its optical depth by the bounds of the
+ * cell, divided by `step`, at most STEPS. A step is divided again if its points differ by more than `part`. Steps have
+ * two points each (Gauss-Legendre quadrature: exact for cubic densities). The emission of a step is that of a constant
+ * density and colour in each of its halves. */
 #include "material/fog_field.h"
 
 #include "base/mem.h"
@@ -29,7 +29,7 @@ static const double step = 0.2, part = 0.03, opaque = 40;
 struct fog_field {
     struct fog_cells cells;
     const struct expr_program *density, *colour;
-    float (*bounds)[2]; /* of each cell: the least density and the largest; at least 0 */
+    float (*bounds)[2]; /* of each cell: the minimum and the maximum of the density; at least 0 */
     double brightest;
 };
 
@@ -71,7 +71,8 @@ static float round_up(double x) {
     return (double)f < x ? nextafterf(f, INFINITY) : f;
 }
 
-/* Bounds of a program over all cells: of its first output in `bounds` (or NULL), and the largest of all outputs. */
+/* Computes bounds of a program over all cells: of its first output in `bounds` (or NULL), and the maximum of all
+ * outputs. */
 static bool find_bounds(const struct fog_cells *cells, const struct expr_program *program, float (*bounds)[2],
                         double *largest) {
     uint64_t count = (uint64_t)cells->count[0] * cells->count[1] * cells->count[2];
@@ -152,7 +153,7 @@ static double largest_at_points(const struct fog_field *field) {
     return largest;
 }
 
-/* Cubes, fewer where the program is long. */
+/* The cells are cubes; there are fewer if the program is long. */
 static void choose_cells(struct fog_cells *cells, const struct expr_program *program) {
     double longest = vec3_max_abs(cells->size);
     for (uint32_t n = CELLS;; n /= 2) {
@@ -205,7 +206,7 @@ double fog_field_brightest(const struct fog_field *field) {
 
 /* --- along a line --- */
 
-/* Steps of the line that wait for their evaluation, and what is known of the line before them. */
+/* Steps of the line that are not evaluated yet, and the result of the line before them. */
 struct fog_march {
     const struct fog_field *field;
     const struct fog_line *line;
@@ -275,7 +276,7 @@ static void add_step(struct fog_march *march, const struct fog_values *values, u
     }
 }
 
-/* A step where the density changes much, in `parts`. */
+/* A step in which the density changes much is divided into `parts`. */
 static void add_divided(struct fog_march *march, uint32_t number, uint32_t parts) {
     double from[PARTS], length[PARTS];
     struct fog_values values;
@@ -304,7 +305,7 @@ static void add_steps(struct fog_march *march) {
     march->count = 0;
 }
 
-/* The number of steps for a cell: an infinite bound needs the maximum. */
+/* The number of steps for a cell; an infinite bound needs the maximum. */
 static uint32_t steps_of(const float bounds[2], double length) {
     double uncertain = ((double)bounds[1] - (double)bounds[0]) * length / step;
     return uncertain < STEPS ? (uint32_t)uncertain + 1 : STEPS;

@@ -1,6 +1,7 @@
-/* Fog whose density, and perhaps colour, is a recorded function of the point, in a box. The light along a ray is an
- * integral, found by Gauss' rule at points that depend on nothing but the ray: no noise. Bounds of the density over
- * cells of the box (interval arithmetic) say which cells are empty, and how many points the others need. */
+/* Fog in a box whose density, and optionally colour, is a recorded function of the point. The light along a ray is an
+ * integral, computed by Gauss quadrature at points that depend only on the ray, so there is no noise. Bounds of the
+ * density over cells of the box (interval arithmetic) determine which cells are empty, and how many points the others
+ * need. */
 #ifndef GRAY_MATERIAL_FOG_FIELD_H
 #define GRAY_MATERIAL_FOG_FIELD_H
 
@@ -18,11 +19,11 @@ struct fog_field_input {
     struct vec3 corner, size;           /* of the box, in world space; size > 0 */
 };
 
-/* The programs must outlive it. Errors: no memory; a program reads what a fog does not have, or is too large; a density
- * is negative or not a number at one of 1,000 points of the box. */
+/* The programs must outlive it. Errors: no memory; a program reads an input that a fog does not have, or is too large;
+ * the density is negative or not a number at one of 1,000 points of the box. */
 const struct fog_field *fog_field_build(struct arena *arena, const struct fog_field_input *in, struct error *error);
-/* A bound of the colour's components, or an estimate from 1,000 points where intervals give none. Only with a colour.
- */
+/* A bound of the components of the colour, or an estimate from 1,000 points if the interval bounds are infinite. Only
+ * with a colour. */
 double fog_field_brightest(const struct fog_field *field);
 
 struct fog_line {

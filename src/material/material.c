@@ -259,7 +259,7 @@ static void set_lobes(const struct surface_inputs *inputs, const struct material
         add_lobe(bsdf, rough ? LOBE_GGX_TRANSMISSION : LOBE_REFRACTION, vec3_scale(inputs->ks, refract), 0);
 }
 
-/* Whether the surface only has a diffuse lobe, and every input is a number. */
+/* Whether the surface has only a diffuse lobe, and every input is a number. */
 static bool is_matte(const struct material *material, const struct phong *numbers) {
     return material->plain && !material->openpbr && !material->fresnel && !numbers->unlit && numbers->reflect == 0 &&
            numbers->refract == 0 && vec3_max_abs(numbers->ks) == 0;

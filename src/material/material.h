@@ -121,8 +121,8 @@ void material_inputs_observe(const struct material *material, const struct hit *
 const struct material *material_origin(const struct material *material);
 /* What a material of a chain does, in a word for descriptions: "wood", "image on ks". */
 const char *material_step_name(const struct material *link);
-/* What hits must compute for it: the footprint in pattern space; the direction of bumps and the tangents of the pattern
- * (hit->raise, along_a); the tangents alone. */
+/* Data that hits must compute for it: the footprint in pattern space; the direction of bumps and the tangents of the
+ * pattern (hit->raise, along_a); the tangents only. */
 bool material_has_image(const struct material *material);
 bool material_has_bump(const struct material *material);
 bool material_has_function(const struct material *material);

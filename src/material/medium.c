@@ -37,8 +37,8 @@ bool medium_transmittance(enum medium_ray kind, const struct fog *fog, const str
     return true;
 }
 
-/* Beer's law along a straight line with densities that can be integrated exactly: no steps, no noise. The grid is
- * walked cell by cell. */
+/* Beer's law along a straight line, for densities that can be integrated exactly: no steps, no noise. The grid is
+ * traversed cell by cell. */
 
 /* exp(-depth); NaN comes from infinity times 0 in unbounded fog: the transmittance is 0. */
 static double faded(double depth) {

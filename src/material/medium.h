@@ -70,7 +70,7 @@ struct fog_field;
 struct fog {
     enum fog_kind kind;
     struct vec3 colour; /* a bound, where the field has colours */
-    bool display;       /* `colour` is one of the screen */
+    bool display;       /* `colour` is a display colour */
     double density;
     double near, far;
     double base, scale;

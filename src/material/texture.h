@@ -154,7 +154,8 @@ union texture_ref {
 };
 #define TEXTURE_NONE UINT32_MAX
 
-/* Where a recorded function gave NaN: the least such point, so that it does not depend on the order of threads. */
+/* The point where a recorded function returned NaN. Of several points it is the smallest one, so that it does not
+ * depend on the order of threads. */
 struct texture_nan {
     atomic_flag lock;
     bool found;
@@ -163,8 +164,8 @@ struct texture_nan {
 
 struct texture {
     enum texture_kind kind;
-    bool shared;       /* several inputs of a material read it: evaluated once per hit */
-    bool has_image;    /* of the whole tree: it needs the ray's footprint */
+    bool shared;       /* several inputs of a material use it: evaluated once per hit */
+    bool has_image;    /* of the whole tree: it needs the footprint of the ray */
     bool has_function; /* of the whole tree: it needs the tangents of the pattern */
     uint32_t size;     /* of the tree */
     union {
@@ -227,8 +228,8 @@ struct texture texture_image(const struct texture_image *image, const struct tex
 struct texture texture_mix(const struct texture *a, const struct texture *b, const struct texture *ratio);
 struct texture texture_multiply(const struct texture *a, const struct texture *b);
 struct texture texture_map(const struct texture *of, enum texture_function function, double amount);
-/* A function of the inputs in EXPR_INPUTS, with one output or three. has_coordinates: it reads u or v.
- * The estimates are the results of texture_estimate. */
+/* A function of the inputs in EXPR_INPUTS, with one output or three. has_coordinates: it reads u or v. The estimates
+ * are results of texture_estimate. */
 struct texture texture_function(const struct expr_program *program, bool has_coordinates, struct vec3 average,
                                 struct vec3 largest);
 /* The number of that input of the evaluated material. */

@@ -16,7 +16,7 @@
  * need more memory on the stack have no batches, and no bounds of slopes. */
 enum { MAX_STRETCH = 64, BATCH_POINTS = 4, BATCH_REGISTERS = 253, SLOPE_MEMORY = 1 << 16 };
 
-/* How the inputs change along axes, in the form of the seeds of derivatives. */
+/* The change of the inputs along axes, as seeds of derivatives. */
 typedef double input_slopes[EXPR_INPUT_COUNT][EXPR_DIRECTIONS];
 
 /* The inputs on the footprint: at its middle, and from side to side. */
@@ -26,7 +26,7 @@ struct region {
     enum texture_mapping mapping; /* of u and v */
 };
 
-/* The plane of the hit that the tangents of the pattern span: their lengths and angle in world space. */
+/* The plane of the hit that the tangents of the pattern span: their lengths and their angle in world space. */
 struct tangents {
     struct vec3 a, b; /* pattern space, unit vectors */
     double aa, ab, bb, determinant;
@@ -72,7 +72,7 @@ static void inputs_at(const struct hit *hit, const struct texcoord *at, double o
         out[k] = inputs[k];
 }
 
-/* Writes axis `k` of the slopes: a step in world space, and in pattern space. Normal, view and time stay. */
+/* Writes axis `k` of the slopes: a step in world space, and in pattern space. Normal, view and time do not change. */
 static void slopes_along(const struct texcoord *at, int k, struct vec3 world, struct vec3 pattern, input_slopes out) {
     out[EXPR_POINT_X][k] = pattern.x;
     out[EXPR_POINT_Y][k] = pattern.y;
@@ -96,7 +96,7 @@ static const struct texcoord *coordinates_at(const struct texture *texture, cons
     return texture->has_image && texture_coordinates(&image, hit, at) ? at : NULL;
 }
 
-/* The inputs at the hit, and without a footprint no region around it. */
+/* The inputs at the hit, with a region of size 0. */
 static void region_at(const struct texture *texture, const struct hit *hit, const struct texcoord *at,
                       const struct tangents *tangents, struct region *out) {
     inputs_at(hit, at, out->inputs);
@@ -122,8 +122,8 @@ static void box_of(const struct expr_program *program, const struct region *regi
     }
 }
 
-/* So many points that the standard error of their mean is below 1/27 if the values are spread evenly between the
- * bounds, which are usually two or three times too wide; values above 1 count relative to their size. */
+/* The number of points for which the standard error of the mean is below 1/27 if the values are uniform between the
+ * bounds. The bounds are usually two or three times too wide. Values above 1 count relative to their magnitude. */
 static int points_for(struct expr_interval bounds, int max) {
     double size = fmax(fmax(fabs(bounds.low), fabs(bounds.high)), 1), width = 8 * (bounds.high - bounds.low) / size;
     int count = 1;
@@ -148,7 +148,7 @@ static int count_points(const struct texture *texture, const struct region *regi
 
 /* --- points --- */
 
-/* Where the points are along each axis, between -1/2 and 1/2. */
+/* The positions of the points along each axis, between -1/2 and 1/2. */
 struct points {
     double along[FUNCTION_POINTS], across[FUNCTION_POINTS];
     int count;
@@ -166,7 +166,7 @@ static void points_make(int count, struct points *out) {
     }
 }
 
-/* u and v stay on the ball or the face. */
+/* u and v stay within the ball or the face. */
 static double fold(const struct region *region, int input, double x) {
     if (x >= 0 && x <= 1)
         return x;
@@ -220,7 +220,7 @@ static void evaluate_each(const struct expr_program *program, const double *cons
     }
 }
 
-/* The outputs at the points, NaN as 0, summed. */
+/* The sums of the outputs at the points; NaN counts as 0. */
 static void sum_points(const struct texture *texture, const struct region *region, int count, double sums[3]) {
     const struct expr_program *program = texture->recorded.program;
     double inputs[EXPR_INPUT_COUNT][FUNCTION_POINTS], values[EXPR_OUTPUTS][FUNCTION_POINTS];
@@ -275,7 +275,7 @@ struct vec3 texture_function_colour(const struct texture *texture, const struct 
 
 /* --- slopes --- */
 
-/* The number of points for the mean slope; 0: the function may jump. */
+/* The number of points for the mean slope; 0: the function may be discontinuous. */
 static int count_slope_points(const struct texture *texture, const struct region *region,
                               const struct expr_directions *directions, double height) {
     const struct expr_program *program = texture->recorded.program;

@@ -73,7 +73,7 @@ static inline struct noise_table noise_table_make(void) {
     return table;
 }
 
-/* The words at 32 indices, of which the lower 8 bits count. */
+/* The words at 32 indices; only the lower 8 bits of an index are used. */
 static inline __m512i noise_neighbours(const struct noise_table *table, __m512i at) {
     const __m512i *words = table->words;
     __mmask32 bit_6 = _mm512_test_epi16_mask(at, _mm512_set1_epi16(64));
@@ -85,7 +85,7 @@ static inline __m512i noise_neighbours(const struct noise_table *table, __m512i 
     return _mm512_mask_blend_epi16(bit_7, low, high);
 }
 
-/* Eight ramps; bits 0 to 3 of each index count. */
+/* Eight gradients; only bits 0 to 3 of each index are used. */
 static inline __m512d noise_ramps(__m512i at, __m512d x, __m512d y, __m512d z) {
     const __m512i upper = _mm512_set1_epi64((long long)((uint64_t)0xfff << 52));
     __m512i word =

@@ -23,7 +23,7 @@ struct ray {
     struct footprint footprint;
     const struct medium_stack *media;
     uint32_t skip_primitive; /* 1 + the number of a primitive that the ray is known not to hit; 0: none */
-    uint32_t skip_part;      /* 0: it hits no part of that primitive; else 1 + the triangle that it does not hit */
+    uint32_t skip_part;      /* 0: it hits no part of that primitive; otherwise 1 + the triangle that it does not hit */
 };
 
 /* Whether the ray is known not to hit any part of a primitive. */

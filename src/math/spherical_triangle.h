@@ -1,4 +1,4 @@
-/* A triangle sampled by its solid angle, as a point sees it (sampling.c). */
+/* Sampling of a triangle by its solid angle at a point (sampling.c). */
 #ifndef GRAY_MATH_SPHERICAL_TRIANGLE_H
 #define GRAY_MATH_SPHERICAL_TRIANGLE_H
 

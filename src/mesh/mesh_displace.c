@@ -25,7 +25,7 @@ struct face {
     uint32_t material;
 };
 
-/* Numbers in rows of `width`; the middle of two rows is a new row. */
+/* Numbers in rows of `width`; the midpoint of two rows is a new row. */
 struct rows {
     double *numbers;
     uint32_t width, count, capacity;
@@ -48,7 +48,7 @@ static void division_destroy(struct division *d) {
 
 /* --- the middles of edges --- */
 
-/* From two numbers to the number of the middle: open addressing, less than half full. */
+/* Maps two indices to the index of the midpoint: open addressing, less than half full. */
 struct middles {
     struct middle {
         uint32_t a, b, middle;
@@ -78,7 +78,7 @@ static bool rows_grow(struct rows *rows, size_t more) {
     return true;
 }
 
-/* The rows have room. Both orders of a and b give the same bits. */
+/* There must be room for the rows. Both orders of a and b give the same bits. */
 static void add_mean(struct rows *rows, uint32_t a, uint32_t b) {
     const double *p = rows->numbers + (size_t)a * rows->width, *q = rows->numbers + (size_t)b * rows->width;
     double *out = rows->numbers + (size_t)rows->count++ * rows->width;
@@ -86,7 +86,7 @@ static void add_mean(struct rows *rows, uint32_t a, uint32_t b) {
         out[k] = p[k] / 2 + q[k] / 2;
 }
 
-/* The number of the middle of two rows; `also`: rows with the same numbers, or NULL. */
+/* The index of the midpoint of two rows; `also`: rows with the same indices, or NULL. */
 static uint32_t middle_of(struct middles *middles, struct rows *rows, struct rows *also, uint32_t a, uint32_t b) {
     if (a == MESH_NONE || b == MESH_NONE)
         return MESH_NONE;
@@ -116,7 +116,7 @@ static double edge_length(const struct division *d, uint32_t a, uint32_t b) {
     return vec3_length(vec3_sub(row_of(&d->vertices, a), row_of(&d->vertices, b)));
 }
 
-/* The edges of a face that are too long, as bits; edge k is from corner k to the next one. */
+/* The edges of a face that are too long, as bits; edge k leads from corner k to the next one. */
 static unsigned long_edges(const struct division *d, const struct face *face) {
     unsigned out = 0;
     for (unsigned k = 0; k < 3; k++) {
@@ -183,7 +183,8 @@ static void divide_face(struct pass *pass, const struct face *face, unsigned mar
     add_face(pass, face->material, by_a ? a : ab, bc, c);
 }
 
-/* At most `halved` edges are halved, one more time for each of their faces; `faces` is the exact number after it. */
+/* At most `halved` edges are halved, and each of their faces is divided. `faces` is the exact number of faces
+ * afterwards. */
 static bool run_pass(struct division *d, uint64_t halved, uint64_t faces) {
     struct pass pass = {.d = d, .faces = mem_alloc((size_t)faces * sizeof *pass.faces)};
     struct rows *const all[] = {&d->vertices, &d->uvs, &d->normals, &d->colours};
@@ -298,7 +299,7 @@ static struct vec3 face_normal(const struct division *d, const struct face *face
     return vec3_normalize(vec3_cross(vec3_normalize(e), vec3_normalize(f)));
 }
 
-/* The means of the shading normals, or of the faces where there are none. */
+/* The means of the shading normals, or of the face normals if there are none. */
 static void find_directions(struct movement *m) {
     const struct division *d = m->d;
     for (uint32_t f = 0; f < d->face_count; f++) {

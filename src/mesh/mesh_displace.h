@@ -8,17 +8,18 @@
 #define DISPLACED_TRIANGLES 10000000
 
 struct mesh_displacement {
-    /* Of p, s.normal, s.u and s.v, at a vertex before it moves. One output: a distance along the normal, in object
-     * units; three: an offset. */
+    /* A program of p, s.normal, s.u and s.v, at a vertex before it moves. One output: a distance along the normal, in
+     * object units; three: an offset. */
     const struct expr_program *program;
-    double edge; /* the largest length of an edge before the vertices move; 0: `level` counts */
+    double edge; /* the maximum length of an edge before the vertices move; 0: `level` applies */
     int level;   /* how often every edge is halved */
 };
 
-/* The tables of the displaced mesh, without normals. Edges are halved by their ends alone, so faces that share an edge
- * divide it alike. Vertices at equal positions move alike: by the normals of all their faces, weighted with angles, and
- * by the mean where texture coordinates differ. So a closed mesh stays closed. Errors: more than DISPLACED_TRIANGLES, a
- * result that is not finite, an argument that there is not, no memory. `own` is zero before. */
+/* The tables of the displaced mesh, without normals. The division of an edge depends only on its ends, so faces that
+ * share an edge divide it at the same points. Vertices at equal positions move together: along the mean normal of all
+ * their faces, weighted with angles, and by the mean of the values where texture coordinates differ. So a closed mesh
+ * stays closed. Errors: more than DISPLACED_TRIANGLES, a result that is not finite, an input that does not exist, no
+ * memory. `own` is zero before. */
 bool mesh_input_displace(const struct mesh *mesh, const struct mesh_displacement *by, struct mesh_input *input,
                          struct mesh_tables *own, struct error *error);
 

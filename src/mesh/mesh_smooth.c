@@ -156,7 +156,7 @@ static uint32_t previous_corner(const struct smoothing *s, uint32_t corner) {
     return corner > s->input->face_start[f] ? corner - 1 : s->input->face_start[f + 1] - 1;
 }
 
-/* Coordinates are about 1, so a face that is not higher than this is as flat as their rounding. */
+/* Coordinates are about 1, so a face with less height than this is not distinguishable from a degenerate one. */
 static const double no_height = 0x1p-46;
 
 /* The sum over a fan from the first corner: twice the area vector, for any polygon. */
