@@ -7,6 +7,7 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"
+#include "tests/unit/path_estimate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -698,6 +699,29 @@ TEST(paths_with_photons_show_the_caustic_of_a_lamp_through_a_lens_once) {
 
 TEST(paths_with_photons_show_the_light_of_rough_glass_over_diffuse_once) {
     check_energy(0.3, 1024);
+}
+
+/* The error is that of the mean of runs with different seeds. */
+static struct estimate lens_estimate(int photons, int samples, double alpha, uint64_t seed) {
+    enum { RUNS = 16 };
+    double sum = 0, squares = 0;
+    for (uint64_t run = 0; run < RUNS; run++) {
+        double light = light_under_lens(photons, samples, alpha, random_combine(seed, run)).y;
+        sum += light / RUNS;
+        squares += light * light / RUNS;
+    }
+    return (struct estimate){sum, sqrt(fmax(0, squares - sum * sum) / (RUNS - 1))};
+}
+
+TEST_LONG(paths_with_photons_show_what_paths_show_below_a_lens_for_every_seed) {
+    for (int rough = 0; rough < 2; rough++) {
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            struct estimate paths = lens_estimate(0, rough ? 3584 : 2048, 0.3 * rough, seed);
+            struct estimate both = lens_estimate(100000, rough ? 512 : 384, 0.3 * rough, seed + 10);
+            estimate_check_equal(rough ? "below a rough lens: paths, and photons" : "below a lens: paths, and photons",
+                                 paths, both, (int)seed, 0.001);
+        }
+    }
 }
 
 TEST(photons_give_paths_the_caustic_of_a_light_without_body) {

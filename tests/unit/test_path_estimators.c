@@ -2,6 +2,7 @@
  * uniform choice; the path tracer and a tracer of a page that knows neither lights nor weights. */
 #include "base/random.h"
 #include "material/material_eval.h"
+#include "math/frame.h"
 #include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/unit/path_estimate.h"
@@ -48,8 +49,8 @@ static void begin_plates(struct stage *s) {
     }
 }
 
-/* BSDFs alone rarely hit the small lamps. */
-static void check_plates(struct effort effort, double precision, double of_bsdfs) {
+/* BSDFs alone rarely hit the small lamps: they get `more` times as many samples. */
+static void check_plates(struct effort effort, int more, double precision, double of_bsdfs) {
     static const char *const claims[] = {"plates: both and lights alone", "plates: both and BSDFs alone"};
     for (int seed = 1; seed <= effort.seeds; seed++) {
         struct estimate by[3];
@@ -57,7 +58,8 @@ static void check_plates(struct effort effort, double precision, double of_bsdfs
             struct stage s;
             begin_plates(&s);
             s.settings.path_strategy = (enum path_strategy)strategy;
-            by[strategy] = estimate_render_twice(&s, &effort, 3, seed + 10 * strategy);
+            const struct effort spent = {effort.size, effort.samples * (strategy == PATH_STRATEGY_BSDF ? more : 1), 1};
+            by[strategy] = estimate_render_twice(&s, &spent, 3, seed + 10 * strategy);
             stage_end(&s);
         }
         for (int i = 0; i < 2; i++)
@@ -65,15 +67,15 @@ static void check_plates(struct effort effort, double precision, double of_bsdfs
                                  i == 0 ? precision : of_bsdfs);
         /* On plates as rough as these lights alone have about the same error. */
         CHECK(by[PATH_STRATEGY_MIS].error < 1.25 * by[PATH_STRATEGY_LIGHTS].error);
-        CHECK(by[PATH_STRATEGY_MIS].error < by[PATH_STRATEGY_BSDF].error);
+        CHECK(by[PATH_STRATEGY_MIS].error < sqrt(more) * by[PATH_STRATEGY_BSDF].error);
     }
 }
 
 TEST(sampling_lights_and_bsdfs_and_both_agree_on_the_plates) {
-    check_plates((struct effort){16, 512, 1}, 0.005, 0.02);
+    check_plates((struct effort){16, 512, 1}, 1, 0.005, 0.02);
 }
 TEST_LONG(sampling_lights_and_bsdfs_and_both_agree_on_the_plates_for_every_seed) {
-    check_plates((struct effort){16, 8192, 3}, 0.001, 0.004);
+    check_plates((struct effort){16, 12288, 3}, 8, 0.001, 0.001);
 }
 
 /* --- brute force --- */
@@ -85,7 +87,7 @@ static void begin_mixed_scene(struct stage *s) {
     struct node *floor = stage_sphere(s, s->root, stage_phong(s, vec3_all(0.7), vec3_all(0), 1));
     floor->shape = (struct shape){.kind = SHAPE_PLANAR, .planar = planar_plane(vec3_make(0, 1, 0), -1)};
     (void)ball(s, rough_metal(s, 0.7), vec3_make(-1.2, 0, 0), 1);
-    struct material *glass = stage_glass(s, 0, 1, 1.5);
+    struct material *glass = stage_glass(s, 0, 1, 2.5); /* of a low index would have brighter and rarer directions */
     glass->fresnel = true;
     glass->phong.roughness = 1;
     (void)ball(s, glass, vec3_make(1.2, 0, 0.4), 0.9);
@@ -103,15 +105,32 @@ static void begin_mixed_scene(struct stage *s) {
     s->camera = (struct camera){{0, 0.6, 6}, {0, 0, -1}, {0, 1, 0}, 50};
 }
 
-static struct vec3 random_direction(uint64_t key) {
-    double y = 1 - 2 * random_unit(random_combine(key, 1)), angle = 2 * pi * random_unit(random_combine(key, 2));
-    double level = sqrt(fmax(0, 1 - y * y));
-    return vec3_make(level * cos(angle), y, level * sin(angle));
+enum { BRUTE_DEPTH = 3, BRUTE_SETS = 64 };
+
+/* The numbers of path i of a set: each dimension is a multiple of an irrational number, modulo 1, from a random start.
+ * The numbers are powers of the root of x^7 = x + 1, so that the points fill the cube of six dimensions evenly. */
+static struct sample2 brute_numbers(const double start[2 * BRUTE_DEPTH], uint64_t i, int vertex) {
+    static const double root = 1.1127756842787054706;
+    double at[2];
+    for (int k = 0; k < 2; k++) {
+        double x = start[2 * vertex + k] + (double)i * pow(root, -(2 * vertex + k + 1));
+        at[k] = x - floor(x);
+    }
+    return (struct sample2){at[0], at[1]};
 }
 
-/* Every direction of the sphere is as likely at every vertex. */
+/* Uniform over the sphere, or over the half before an opaque surface. */
+static struct vec3 uniform_direction(struct sample2 xi, const struct vec3 *side) {
+    double y = side ? xi.x : 1 - 2 * xi.x, level = sqrt(fmax(0, 1 - y * y)), angle = 2 * pi * xi.y;
+    struct vec3 axis = side ? *side : vec3_make(0, 1, 0), right, up;
+    frame_tangents(axis, &right, &up);
+    struct vec3 across = vec3_add(vec3_scale(right, level * cos(angle)), vec3_scale(up, level * sin(angle)));
+    return vec3_add_scaled(across, axis, y);
+}
+
+/* Every direction in which a vertex may send light is as likely. */
 static double brute_force(const struct stage *s, struct world_scratch *scratch, struct ray ray, int depth,
-                          uint64_t key) {
+                          const double start[2 * BRUTE_DEPTH], uint64_t number) {
     const struct material_context context = {.total_reflection = true};
     struct medium_stack media = {.count = 0};
     struct hit hit;
@@ -125,11 +144,13 @@ static double brute_force(const struct stage *s, struct world_scratch *scratch, 
         sum += weight * bsdf.emission.x;
         if (i == depth)
             break;
-        struct vec3 wi = random_direction(random_combine(key, (uint64_t)i));
+        uint32_t transmit = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
+        struct vec3 wi = uniform_direction(brute_numbers(start, number, i), transmit ? NULL : &bsdf.geometric_side);
         bool through = !(vec3_dot(wi, bsdf.geometric_side) > 0);
-        uint32_t lobes = through ? bsdf_lobes_with(&bsdf, BSDF_TRANSMITS) : BSDF_ALL;
+        uint32_t lobes = through ? transmit : BSDF_ALL;
         lobes &= ~bsdf_lobes_with(&bsdf, BSDF_EXPONENT); /* highlights stand for what the rough mirror shows */
-        weight *= lobes ? bsdf_eval(&bsdf, lobes, BSDF_RADIANCE, hit.view, wi).x * 4 * pi : 0;
+        double angle = transmit ? 4 * pi : 2 * pi;
+        weight *= lobes ? bsdf_eval(&bsdf, lobes, BSDF_RADIANCE, hit.view, wi).x * angle : 0;
         ray = hit_ray(&hit, &ray, wi, &media);
         if (through)
             medium_stack_cross(&media, &bsdf.boundary);
@@ -137,19 +158,25 @@ static double brute_force(const struct stage *s, struct world_scratch *scratch, 
     return sum;
 }
 
+/* The error is that of independent sets of paths. */
 static struct estimate brute_force_mean(const struct stage *s, struct vec3 direction, int depth, uint64_t paths,
                                         uint64_t seed) {
     struct world_scratch scratch;
-    double sum = 0, squares = 0, n = (double)paths;
+    double sum = 0, squares = 0, start[2 * BRUTE_DEPTH];
     const struct ray ray = {.origin = s->camera.eye, .direction = direction, .t_max = INFINITY, .time = 0.5};
     CHECK(world_scratch_init(&scratch, &s->world));
-    for (uint64_t i = 0; i < paths; i++) {
-        double value = brute_force(s, &scratch, ray, depth, random_combine(seed, i));
-        sum += value;
-        squares += value * value;
+    for (uint64_t set = 0; set < BRUTE_SETS; set++) {
+        double of_set = 0, count = (double)(paths / BRUTE_SETS);
+        for (uint64_t d = 0; d < 2 * BRUTE_DEPTH; d++)
+            start[d] = random_unit(random_combine(random_combine(seed, set), d));
+        for (uint64_t i = 0; i < paths / BRUTE_SETS; i++)
+            of_set += brute_force(s, &scratch, ray, depth, start, i);
+        sum += of_set / count;
+        squares += of_set / count * (of_set / count);
     }
     world_scratch_destroy(&scratch);
-    return (struct estimate){sum / n, sqrt((squares / n - sum / n * (sum / n)) / n)};
+    double mean = sum / BRUTE_SETS;
+    return (struct estimate){mean, sqrt((squares / BRUTE_SETS - mean * mean) / (BRUTE_SETS - 1))};
 }
 
 /* At places on the floor, the metal, the glass, the sheet and near the box. */
@@ -161,15 +188,24 @@ static void turn_camera(struct stage *s, size_t i) {
 
 enum { TARGETS = 5, DEPTH = 3 };
 
+/* How much larger the effort for each target is than that for the sheet, for equal errors. */
+static const int target_effort[TARGETS] = {2, 2, 48, 1, 2};
+
+static struct effort effort_for(size_t target, struct effort effort) {
+    effort.samples *= target_effort[target];
+    return effort;
+}
+
 static void check_brute_force(struct effort effort, uint64_t paths, double precision) {
     struct stage s;
     begin_mixed_scene(&s);
     for (size_t i = 0; i < TARGETS; i++) {
+        const struct effort by_path = effort_for(i, effort);
         turn_camera(&s, i);
         for (int seed = 1; seed <= effort.seeds; seed++) {
-            struct estimate path = estimate_render(&s, &effort, DEPTH, seed);
-            struct estimate brute =
-                brute_force_mean(&s, s.camera.view, DEPTH, paths, random_combine(i, (uint64_t)seed));
+            struct estimate path = estimate_render(&s, &by_path, DEPTH, seed);
+            struct estimate brute = brute_force_mean(&s, s.camera.view, DEPTH, paths * (i == 2 ? 14 : 1),
+                                                     random_combine(i, (uint64_t)seed));
             estimate_check_equal("brute force", brute, path, seed, precision);
         }
     }
@@ -177,23 +213,24 @@ static void check_brute_force(struct effort effort, uint64_t paths, double preci
 }
 
 TEST(brute_force_agrees_where_all_lights_have_bodies_or_are_skies) {
-    check_brute_force((struct effort){8, 256, 1}, 150000, 0.1);
+    check_brute_force((struct effort){8, 64, 1}, 60000, 0.03);
 }
 TEST_LONG(brute_force_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
-    check_brute_force((struct effort){8, 1024, 3}, 2000000, 0.03);
+    check_brute_force((struct effort){16, 1024, 3}, 1280000, 0.001);
 }
 
-/* The same with directions of the BSDF, of which less have no light. */
+/* The same with directions of the BSDF, of which fewer have light. */
 static void check_bsdf_sampling(struct effort both, struct effort bsdf_effort, double precision) {
     struct stage s;
     begin_mixed_scene(&s);
     for (size_t i = 0; i < TARGETS; i++) {
+        const struct effort by_both = effort_for(i, both), by_bsdf = effort_for(i, bsdf_effort);
         turn_camera(&s, i);
         for (int seed = 1; seed <= both.seeds; seed++) {
             s.settings.path_strategy = PATH_STRATEGY_MIS;
-            struct estimate a = estimate_render(&s, &both, DEPTH, seed);
+            struct estimate a = estimate_render(&s, &by_both, DEPTH, seed);
             s.settings.path_strategy = PATH_STRATEGY_BSDF;
-            struct estimate b = estimate_render(&s, &bsdf_effort, DEPTH, seed + 10);
+            struct estimate b = estimate_render(&s, &by_bsdf, DEPTH, seed + 10);
             estimate_check_equal("sky and lamps: both and BSDFs alone", a, b, seed, precision);
         }
     }
@@ -201,10 +238,10 @@ static void check_bsdf_sampling(struct effort both, struct effort bsdf_effort, d
 }
 
 TEST(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies) {
-    check_bsdf_sampling((struct effort){8, 256, 1}, (struct effort){8, 512, 1}, 0.02);
+    check_bsdf_sampling((struct effort){8, 64, 1}, (struct effort){8, 128, 1}, 0.03);
 }
 TEST_LONG(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
-    check_bsdf_sampling((struct effort){16, 2048, 3}, (struct effort){16, 8192, 3}, 0.004);
+    check_bsdf_sampling((struct effort){16, 1024, 3}, (struct effort){16, 4096, 3}, 0.001);
 }
 
 /* --- a thousand lamps --- */
@@ -310,6 +347,6 @@ TEST(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice) {
     check_corridor(true, (struct effort){8, 256, 1}, (struct effort){8, 4096, 1}, 0.01);
 }
 TEST_LONG(the_tree_of_a_thousand_lamps_agrees_with_uniform_choice_at_ten_points_for_every_seed) {
-    check_corridor(false, (struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 0.001);
-    check_corridor(true, (struct effort){8, 4096, 3}, (struct effort){8, 32768, 3}, 0.001);
+    check_corridor(false, (struct effort){8, 2048, 3}, (struct effort){8, 16384, 3}, 0.001);
+    check_corridor(true, (struct effort){8, 2048, 3}, (struct effort){8, 16384, 3}, 0.001);
 }

@@ -2,6 +2,7 @@
 #include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
+#include "tests/unit/path_estimate.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,10 +25,11 @@ static double path_mean(struct stage *s, int samples, int depth) {
     return mean_of(s);
 }
 
-static double whitted_mean(struct stage *s) {
+static double whitted_mean(struct stage *s, int samples, int area_samples) {
     s->settings.integrator = INTEGRATOR_WHITTED;
     s->settings.full = true;
-    s->settings.samples = s->settings.area_samples = 8;
+    s->settings.samples = samples;
+    s->settings.area_samples = area_samples;
     CHECK(stage_render(s, SIZE, SIZE));
     return mean_of(s);
 }
@@ -59,16 +61,20 @@ static struct light *add_light(struct stage *s, enum light_kind kind) {
 }
 
 /* A ball casts a shadow on the floor. */
-static void check_light_as_whitted(enum light_kind kind, bool emissive, double tolerance) {
-    struct stage s;
-    (void)begin_floor(&s);
-    struct node *ball = stage_sphere(&s, s.root, stage_phong(&s, vec3_make(0.5, 0.5, 0.5), vec3_all(0), 1));
-    stage_scale(&s, ball, 0.4, 0.4, 0.4);
-    stage_move(&s, ball, 0, 1, 0);
-    struct light *light = add_light(&s, kind);
+static void begin_shadow(struct stage *s, enum light_kind kind, bool emissive) {
+    (void)begin_floor(s);
+    struct node *ball = stage_sphere(s, s->root, stage_phong(s, vec3_make(0.5, 0.5, 0.5), vec3_all(0), 1));
+    stage_scale(s, ball, 0.4, 0.4, 0.4);
+    stage_move(s, ball, 0, 1, 0);
+    struct light *light = add_light(s, kind);
     light->emissive = emissive;
     light->colour = vec3_all(emissive ? 4 : 0.8);
-    double want = whitted_mean(&s);
+}
+
+static void check_light_as_whitted(enum light_kind kind, bool emissive, double tolerance) {
+    struct stage s;
+    begin_shadow(&s, kind, emissive);
+    double want = whitted_mean(&s, 8, 8);
     CHECK(want > 0.05);
     CHECK_NEAR(path_mean(&s, 256, 1), want, tolerance * want);
     stage_end(&s);
@@ -86,6 +92,36 @@ TEST(depth_1_is_the_direct_light_of_whitted_for_every_light) {
     check_light_as_whitted(LIGHT_SPHERE, true, 0.004);
 }
 
+/* Whitted's pixels have 16 x 16 positions of 4 x 4 points of the light each. */
+TEST_LONG(depth_1_is_the_direct_light_of_whitted_to_a_thousandth_for_every_seed) {
+    static const struct {
+        const char *claim;
+        enum light_kind kind;
+        bool emissive;
+    } cases[] = {{"depth 1: path tracer / Whitted, point", LIGHT_POINT, false},
+                 {"depth 1: path tracer / Whitted, direction", LIGHT_DIRECTIONAL, false},
+                 {"depth 1: path tracer / Whitted, spot", LIGHT_SPOT, false},
+                 {"depth 1: path tracer / Whitted, classic parallelogram", LIGHT_PARALLELOGRAM, false},
+                 {"depth 1: path tracer / Whitted, classic disc", LIGHT_DISC, false},
+                 {"depth 1: path tracer / Whitted, classic ball", LIGHT_SPHERE, false},
+                 {"depth 1: path tracer / Whitted, parallelogram", LIGHT_PARALLELOGRAM, true},
+                 {"depth 1: path tracer / Whitted, disc", LIGHT_DISC, true},
+                 {"depth 1: path tracer / Whitted, ball", LIGHT_SPHERE, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        for (int seed = 1; seed <= 3; seed++) {
+            struct stage s;
+            begin_shadow(&s, cases[i].kind, cases[i].emissive);
+            s.settings.seed = (uint64_t)seed;
+            const struct estimate whitted = {whitted_mean(&s, 16, 4), 0};
+            const struct effort effort = {SIZE, 1024, 1};
+            struct estimate path = estimate_render_twice(&s, &effort, 1, seed);
+            path.error += 2e-4 * whitted.mean; /* of the edge of the shadow in Whitted's picture */
+            estimate_check_equal(cases[i].claim, whitted, path, seed, 0.001);
+            stage_end(&s);
+        }
+    }
+}
+
 TEST(highlights_of_lights_without_body_are_those_of_whitted) {
     struct stage s;
     stage_begin(&s, 1);
@@ -96,7 +132,7 @@ TEST(highlights_of_lights_without_body_are_those_of_whitted) {
     }
     s.camera = (struct camera){{0, 0, 4}, {0, 0, -1}, {0, 1, 0}, 35};
     stage_point_light(&s, vec3_make(2, 3, 5), vec3_all(0.9));
-    double want = whitted_mean(&s);
+    double want = whitted_mean(&s, 8, 8);
     CHECK_NEAR(path_mean(&s, 256, 1), want, 0.002 * want);
     stage_end(&s);
 }
@@ -448,7 +484,7 @@ TEST(fog_dims_lines_of_sight_as_in_whitted_and_nothing_else) {
     s.sky.colour = vec3_all(0); /* that does not light anything */
     s.fog = &fog;
     s.settings.reflect_limit = 1;
-    double want = whitted_mean(&s);
+    double want = whitted_mean(&s, 8, 8);
     CHECK_NEAR(path_mean(&s, 1024, 2), want, 0.01 * want);
     stage_end(&s);
 }
