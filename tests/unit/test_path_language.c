@@ -440,8 +440,8 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
         "gr.render{node=r, file='a.pfm', width=8, height=8, eye={0,0,0}, integrator='path', spp=16, max_depth=5}\n";
     struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    const char *warning = strstr(result.err, "more light than arrives");
-    CHECK(warning && !strstr(warning + 1, "more light than arrives"));
+    const char *warning = strstr(result.err, "more light than it receives");
+    CHECK(warning && !strstr(warning + 1, "more light than it receives"));
     free(result.out);
     free(result.err);
     struct stage s;
