@@ -1,4 +1,5 @@
-/* See animation.h. Frames are read again when the file is assembled, so every format has the bytes of the PNG files. */
+/* See animation.h. Frames are read back from their files when the animation is assembled, so every format has the bytes
+ * of the PNG files. */
 #include "output/animation.h"
 
 #include "base/mem.h"
@@ -32,7 +33,7 @@ static struct file_target target_of(const struct animation *animation) {
     return (struct file_target){.path = animation->files->options->output, .rules = &animation->files->animation};
 }
 
-/* All frames have one size, and their numbers rise. */
+/* All frames have the same size, and their numbers increase. */
 static bool check_frame(struct animation *animation, const struct picture_request *request, uint32_t number,
                         struct error *error) {
     uint32_t width = request->shown.x1 - request->shown.x0, height = request->shown.y1 - request->shown.y0;
@@ -141,7 +142,7 @@ static bool write_file(const struct animation *animation, const struct animation
     return true;
 }
 
-/* A contact sheet: the frames in rows, each reduced by a whole number, a mean of squares of pixels. */
+/* A contact sheet: the frames in rows, each reduced by a whole number; a pixel is the mean of a square of pixels. */
 struct sheet {
     uint32_t columns, rows, reduction, width, height; /* width, height: of a small picture */
     uint8_t *rgb;
@@ -210,7 +211,7 @@ static bool write_sheet(const struct animation *animation, struct error *error) 
     return ok;
 }
 
-/* A frame that cannot be removed stays; the animation is written. */
+/* The animation is written even if a frame cannot be removed. */
 static void remove_frames(const struct animation *animation) {
     struct error ignored;
     struct file_identity identity;

@@ -1,6 +1,6 @@
-/* See tool_internal.h and encoder_internal.h. The supervisor starts programs, never the process that runs scenes. The
- * arguments are always the same: one thread and no times or versions in the file, so that
- * its bytes can be compared. Odd sides are padded by one pixel, since both formats have half as many colours. */
+/* See tool_internal.h and encoder_internal.h. The supervisor starts the programs, never the process that runs scenes.
+ * The arguments are fixed: one thread, and no times or versions in the file, so that its bytes can be compared. Odd
+ * sides are padded by one pixel, because both formats have half the resolution for colour. */
 #define _GNU_SOURCE
 #include "output/encoder_internal.h"
 

@@ -69,7 +69,7 @@ static bool one_name_for_all(const struct output_session *output) {
     return options->output && options->animation == ANIMATION_NONE && !output_name_numbered(options->output);
 }
 
-/* The number in the name of a picture: of a frame its own, else that of the picture. */
+/* The number in the name of a picture: the number of the frame, or else of the picture. */
 static unsigned number_of(const struct output_session *output, const struct picture_request *request) {
     return request->frame.number > 0 ? request->frame.number : output->pictures;
 }
@@ -289,7 +289,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     }
     if (!output->plays && !check_files(output, picture, error))
         return false;
-    /* With --watch, and after a crash in a farm, scripts make their pictures again. */
+    /* With --watch, and after a crash in a farm, scripts render their pictures again. */
     bool again = request->in_window || output->options->watch || output->farm;
     if (!again && picture_files_is_own(&output->files, written)) {
         char notice[NAME_LIMIT + 128];
@@ -480,7 +480,7 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         return true;
     }
     if (one_name_for_all(output) && !animation_streams(&output->animation, &output->current.request)) {
-        /* Names of progress point into the picture, so it ends before the picture moves. */
+        /* The progress has pointers into the picture, so it must end before the picture moves. */
         progress_end(&output->progress, PROGRESS_WRITTEN);
         output->held_report = *report;
         output->held = output->current;
@@ -583,7 +583,7 @@ bool output_assemble(struct output_session *output, struct error *error) {
     return helps || animation_finish(&output->animation, error);
 }
 
-/* Frames of an animation that was not written stay, for --resume or gray merge. */
+/* Frames of an animation that was not written remain, for --resume or gray merge. */
 static void close_animation(struct output_session *output) {
     char line[NAME_LIMIT + 128];
     uint32_t left;

@@ -111,7 +111,7 @@ static enum ending ending_of(const char *name) {
     return digits ? ENDING_NONE : ENDING_OTHER;
 }
 
-/* The ending of a format that is not written, as in -o x.jpg. */
+/* The extension of a format that gray does not write, as in -o x.jpg. */
 static bool is_foreign_picture(const char *name) {
     static const char *const endings[] = {".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".tga",
                                           ".ppm", ".avif", ".jxl", ".mkv",  ".avi", ".mov"};
@@ -176,7 +176,7 @@ static bool name_in_folder(const char *animation, unsigned number, char name[NAM
     return fits || name_is_too_long(error);
 }
 
-/* A frame whose name, from a script, has no place for its number gets it before the extension. */
+/* If the name of a frame comes from a script and has no %d, the number is inserted before the extension. */
 static bool number_frame(unsigned number, char name[NAME_LIMIT], struct error *error) {
     char pattern[NAME_LIMIT + 8];
     const char *last = last_part(name), *dot = strrchr(last, '.');

@@ -22,7 +22,7 @@ struct picture_files {
     struct file_quota quota;         /* --picture-bytes: of all files of pictures */
     struct file_rules picture;       /* the picture itself */
     struct file_rules beside;        /* layers, -write-*, --partial: as the picture, but never written in place */
-    struct file_rules animation;     /* -o x.gif and its like */
+    struct file_rules animation;     /* an animation, such as -o x.gif */
     struct file_rules part;          /* --shard */
     struct file_rules checkpoint;    /* --checkpoint auto */
     struct file_rules named_checkpoint;
@@ -37,10 +37,10 @@ void picture_files_destroy(struct picture_files *files);
 void picture_files_keep(struct picture_files *files, struct file_identity identity, bool written);
 /* A picture that an earlier run wrote and this one does not change: treated as written by this run. */
 void picture_files_own(struct picture_files *files, const char *name);
-/* Whether the file is a picture that this run wrote before. */
+/* Whether this run wrote the file before as a picture. */
 bool picture_files_is_own(const struct picture_files *files, const char *name);
 
-/* What a picture is called by: the name that the script wrote, and its number, from 1, of a frame that of the frame. */
+/* The names of a picture: the name in the script, and its number, from 1; for a frame the number of the frame. */
 struct picture_label {
     const char *from_script;
     unsigned number;

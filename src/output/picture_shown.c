@@ -1,6 +1,7 @@
-/* The film of a crop that is denoised or finished has a rim that its files do not show (DENOISE_RIM, finish_rim). Both
- * happen here, where the picture is written, so that merged parts and resumed pictures are denoised and finished as a
- * whole. The film is shared with the render process, whose numbers are not trusted: both are safe for all numbers. */
+/* If a crop is denoised or finished, its film has a rim that its files do not contain (DENOISE_RIM, finish_rim). Both
+ * operations run here, when the picture is written, so that merged parts and resumed pictures are denoised and finished
+ * as a whole. The film is shared with the render process, whose numbers are not trusted: both operations are safe for
+ * all numbers. */
 #include "output/picture_shown_internal.h"
 
 #include "base/mem.h"
@@ -39,7 +40,7 @@ static bool is_whole(const struct film *film, const struct film_rectangle *part)
            part->y1 - part->y0 == film->height;
 }
 
-/* The arrays of the film that the part has beside its pixels: what marks tell (render/film.h), and layers. */
+/* The arrays of the film besides its pixels that the part has: values of marks (render/film.h), and layers. */
 static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
     size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
     size_t floats = film->record.marks ? film->record.floats : 0;
@@ -73,7 +74,7 @@ static struct finish_area area_of(const struct film *film) {
     return (struct finish_area){film->x0, film->y0, film->width, film->height, film->full_width, film->full_height};
 }
 
-/* The colours of the film, denoised and with what finishing does to light. */
+/* The colours of the film, denoised and finished as far as finishing changes light. */
 static bool make_light(const struct picture *picture, enum denoiser denoiser, struct pool *pool, float (*out)[3],
                        struct error *error) {
     const struct film *film = &picture->film;
@@ -88,7 +89,7 @@ static bool make_light(const struct picture *picture, enum denoiser denoiser, st
     return finish_light(&finish, picture->request.exposure, &area, out, error);
 }
 
-/* The numbers of a PNG file with what finishing does to them. */
+/* Finishes the numbers of a PNG file. */
 static bool make_display(const struct picture *picture, const float (*light)[3], float (*out)[3], struct error *error) {
     const struct finish finish = picture_finish(&picture->request);
     const struct finish_area area = area_of(&picture->film);
@@ -102,7 +103,7 @@ static bool make_display(const struct picture *picture, const float (*light)[3],
     return finish_display(&finish, &area, out, error);
 }
 
-/* The part of an array of the film, which is given up. NULL: no memory. */
+/* The part of an array of the film, which is freed. NULL: no memory. */
 static void *cut_away(void *whole, const struct film *film, const struct film_rectangle *part) {
     size_t width = part->x1 - part->x0, height = part->y1 - part->y0;
     if (is_whole(film, part))

@@ -1,4 +1,5 @@
-/* What the files of a picture show of its film: the requested part, denoised if the film has features, and finished. */
+/* The contents of the files of a picture, from its film: the requested part, denoised if the film has features, and
+ * finished. */
 #ifndef GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 #define GRAY_OUTPUT_PICTURE_SHOWN_INTERNAL_H
 
@@ -8,7 +9,7 @@
 
 #include <stdbool.h>
 
-/* A picture whose film borrows from the one that it is made of, and owns the arrays; each may be NULL. */
+/* A picture whose film borrows from the film of another one. It owns the arrays; each may be NULL. */
 struct picture_shown {
     struct picture picture;
     struct film_pixel *pixels;

@@ -113,7 +113,7 @@ static void even_row(void *context, uint32_t y, struct denoise_pixel *row) {
     memset(row, 0, source->width * sizeof *row);
 }
 
-/* Seconds of one core for denoising a pixel, which do not depend on what a picture shows; 0: no memory. */
+/* Seconds of one core for denoising a pixel, which do not depend on the picture; 0: no memory. */
 static double denoising_time(void) {
     enum { SIDE = 96 };
     static const uint32_t pixels = SIDE * SIDE;

@@ -16,31 +16,31 @@ struct picture {
     bool open;
     char name[NAME_LIMIT];
     struct picture_request request;
-    bool written;                                  /* before it is complete, for a window */
+    bool written;                                  /* an incomplete picture, for a window */
     double write_seconds, write_processor_seconds; /* of its files; 0: not written yet */
     struct tile_picture tiles;                     /* the key of its tiles in a tile file */
     struct share memory;
     struct film film;
-    const float (*display)[3]; /* or NULL: of a part that is shown, its finished numbers for PNG files; borrowed */
+    const float (*display)[3]; /* or NULL; for a part: its finished numbers for PNG files; borrowed */
 };
 
 struct finish picture_finish(const struct picture_request *request);
-/* One file. The extension of the target selects the format; every extension but .pfm, .hdr and .exr means PNG. The tone
- * is for PNG alone: the others contain light. Views other than FILM_FINAL are not finished. pool: or NULL, for this
- * thread alone. */
+/* Writes one file. The extension of the target selects the format; every extension except .pfm, .hdr and .exr means
+ * PNG. The tone applies only to PNG: the other formats contain light. Views other than FILM_FINAL are not finished.
+ * pool: or NULL, for this thread only. */
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,
                         struct pool *pool, struct error *error);
 /* All files of the picture under that name, denoised if its film has features and the options do not forbid it: itself,
  * its layers, those of -write-...; with --shard the part. */
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
                          struct error *error);
-/* The rows of its main file as bytes, 3 * width * height, as a PNG file of 8 bits per channel would hold them. */
+/* The rows of its main file as bytes, 3 * width * height, equal to those of a PNG file with 8 bits per channel. */
 bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
                          struct error *error);
 /* How many pixels gray denoises for each pixel of the file: 0, or 1 and more with the rim of a part. */
 double picture_denoised_pixels(const struct options *options, const struct picture *picture);
-/* Seconds of one core for a pixel of the file: packing some finished tiles is measured, and denoising a small picture.
- * Negative: it could not be measured. */
+/* Seconds of one core for a pixel of the file, from measuring the compression of some finished tiles and the denoising
+ * of a small picture. Negative: it could not be measured. */
 double picture_writing_time(const struct options *options, const struct picture *picture);
 
 #endif

@@ -18,7 +18,7 @@ enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 /* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on finished
  * tiles: it depends on the picture. */
 static const double usual_writing = 5e-8;
-/* The same for denoising a pixel of its film. */
+/* The same for denoising a pixel of the film. */
 static const double usual_denoising = 8e-6;
 
 double progress_clock(void) {
@@ -72,7 +72,7 @@ static struct state state_of(struct progress *progress, double now, uint32_t don
                  : state.share > 0 ? state.elapsed / state.share - state.elapsed
                                    : -1;
     if (asked && state.share > 0 && state.left >= 0) {
-        /* The picture is denoised and written by all threads, after the last tile. */
+        /* After the last tile, all threads denoise and write the picture. */
         double pixels = (double)progress->width * progress->height;
         double last = progress->writing * progress_estimate_pace(progress_estimate) * pixels / progress->threads;
         double whole = state.elapsed + state.left;

@@ -23,9 +23,9 @@ struct progress {
     bool known;          /* the start of tiles was reported */
     double share;        /* the reported share; it never decreases */
     int columns;         /* columns of the bar on the screen; 0: no bar */
-    bool elsewhere;      /* a window shows it; standard error has only the begin and the end of JSON */
-    double script_since; /* when the script began to run between pictures; 0: it does not */
-    double script_next;  /* after how many seconds its next line is due */
+    bool elsewhere;      /* a window shows it; standard error has only the beginning and the end as JSON */
+    double script_since; /* when the script began to run between pictures; 0: no script runs */
+    double script_next;  /* the time in seconds at which its next line is due */
 };
 
 enum progress_end { PROGRESS_WRITTEN, PROGRESS_GIVEN_UP };
@@ -34,7 +34,8 @@ double progress_clock(void);           /* seconds of a monotonic clock */
 double progress_processor_clock(void); /* seconds that all threads of the process have worked */
 /* AUTO becomes a bar on a terminal, else lines; nothing when quiet. */
 void progress_init(struct progress *progress, enum progress_mode mode, bool quiet, int threads);
-/* `name` must stay until progress_end. denoised: pixels that are denoised for each pixel of the file; 0: none. */
+/* `name` must be valid until progress_end. denoised: number of pixels that are denoised for each pixel of the file; 0:
+ * none. */
 void progress_begin(struct progress *progress, const char *name, uint32_t width, uint32_t height, double denoised);
 /* count 0: the scene is still being built. Reports at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
@@ -48,8 +49,9 @@ bool progress_wants_estimate(const struct progress *progress);
 /* Erases the bar, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);
-/* `runs`: the script computes, and no picture is made. On a terminal its line is due after 2 seconds, and again
- * whenever the time has doubled. Lines, no bar: the script may print at any time. False: no line is due. */
+/* `runs`: the script computes, and no picture is rendered. On a terminal its line is due after 2 seconds, and each time
+ * the duration has doubled. It is a line, not a bar, because the script may print at any time. False: no line is due.
+ * */
 bool progress_script_line(struct progress *progress, const char *script, bool runs, char *line, size_t size);
 
 #endif

@@ -1,5 +1,4 @@
-/* Programs that the supervisor starts: found on PATH, with arguments that no scene chooses, in a folder of their own.
- */
+/* Programs that the supervisor starts: found on PATH, with arguments that scenes cannot choose, in a new folder. */
 #ifndef GRAY_OUTPUT_TOOL_INTERNAL_H
 #define GRAY_OUTPUT_TOOL_INTERNAL_H
 
@@ -15,11 +14,11 @@ struct tool {
     int input;              /* its standard input; -1: empty */
 };
 
-/* What it prints is thrown away. It gets no other descriptor, and the signals as they are by default. PATH is that of
- * the user; an entry that is not absolute leads into the folder, where no program is. Errors: it is not on PATH, it
- * cannot be started. */
+/* Its output is discarded. It inherits no other descriptor, and signals have their default actions. PATH is that of the
+ * user; a relative entry refers to the new folder, which contains no program. Errors: it is not on PATH, it cannot be
+ * started. */
 bool tool_start(const struct tool *tool, pid_t *child, struct error *error);
-/* Waits for its end. Errors: it failed. */
+/* Waits until it ends. Errors: it failed. */
 bool tool_wait(const struct tool *tool, pid_t child, struct error *error);
 
 #endif

@@ -1,7 +1,7 @@
-/* Lines of a part of a tile. One sample in the middle of each pixel shows which pixels an edge crosses; these are
- * sampled again, in CELLS x CELLS places, and the edges between neighbouring places are points of the edge. A pixel is
- * covered by its distance from the nearest of them. Everything is a function of the pixel and its surroundings, so that
- * parts, tiles and crops agree. */
+/* Lines of a part of a tile. One sample in the centre of each pixel finds the pixels that an edge crosses. These are
+ * sampled again at CELLS x CELLS positions, and the edges between neighbouring positions give points of the edge. The
+ * distance of a pixel from the nearest point determines how much of it the line covers. The result is a function of the
+ * pixel and its surroundings, so parts, tiles and crops agree. */
 #include "render/style_internal.h"
 
 #include "base/mem.h"
@@ -9,10 +9,11 @@
 #include <math.h>
 
 enum { CELLS = 4, MEDIA_LIMIT = 16 };
-/* Of 30 degrees; how many pixels nearer a part of an object is that hides another. */
+/* The cosine of 30 degrees; the number of pixels by which one part of an object must be nearer than another part to
+ * give a line. */
 static const double crease_cosine = 0.86602540378443865, gap = 4;
 
-/* Pixels around the part that its lines depend on: an edge in them covers a pixel of the part. */
+/* Pixels around the part that its lines depend on, because an edge in them may cover a pixel of the part. */
 static int margin_of(double width) {
     return (int)floor(width / 2 + 1);
 }
@@ -29,7 +30,7 @@ void contour_destroy(struct contour *contour) {
     mem_free(contour->samples);
 }
 
-/* Through (x, y) of the picture. The boundaries of media are not seen. */
+/* Through (x, y) of the picture. Boundaries between media are ignored. */
 static struct contour_sample sample_at(const struct renderer *renderer, struct worker *worker, double x, double y) {
     const struct world *world = renderer->job->world;
     struct contour_sample sample = {.primitive = WORLD_NOTHING};
@@ -53,8 +54,8 @@ static struct contour_sample sample_at(const struct renderer *renderer, struct w
     return sample;
 }
 
-/* Whether an edge is between two neighbouring samples. A surface that bends away is near the tangent plane of one of
- * them. */
+/* Whether an edge is between two neighbouring samples. A surface that curves away stays near the tangent plane of one
+ * of them, and so gives no edge. */
 static bool has_edge(const struct contour_sample *a, const struct contour_sample *b) {
     if (a->second != b->second)
         return false;
@@ -67,7 +68,7 @@ static bool has_edge(const struct contour_sample *a, const struct contour_sample
     return vec3_dot(a->normal, b->normal) < crease_cosine || off > gap * fmax(a->pixel, b->pixel);
 }
 
-/* The nearest pixels of a part to an edge that crosses (x, y). */
+/* Updates the pixels of a part that are near an edge that crosses (x, y). */
 static void add_edge(struct contour *contour, double x, double y) {
     const struct rectangle *tile = &contour->tile;
     int margin = margin_of(contour->width);
@@ -84,7 +85,7 @@ static void add_edge(struct contour *contour, double x, double y) {
     }
 }
 
-/* The edges in a pixel, and those between it and the pixels to the right and below. */
+/* Finds the edges in a pixel, and those between it and the pixels to the right and below. */
 static void refine(struct contour *contour, const struct renderer *renderer, struct worker *worker, int64_t x,
                    int64_t y) {
     struct contour_sample cells[CELLS + 1][CELLS + 1];
@@ -116,7 +117,7 @@ static struct rectangle grown(const struct rectangle *tile, int rim, const struc
     return area;
 }
 
-/* Whether the pixel differs from one around it. */
+/* Whether the pixel differs from a pixel around it. */
 static bool is_crossed(const struct contour *contour, const struct rectangle *area, int64_t x, int64_t y) {
     const struct contour_sample *own = coarse_at(contour, x, y);
     for (int64_t ny = y - 1; ny <= y + 1; ny++)

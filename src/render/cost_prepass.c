@@ -1,7 +1,7 @@
 /* The cost pre-pass, if a time estimate is requested: PROBE_SIDE x PROBE_SIDE rays through each tile before the first
- * one (eight times as many with --noise), about 1 % of the work, and from then on the time estimate
- * (render/time_estimate.h) a hundred times a second, reported by the next free worker. Uses processor time, so that
- * other programs have no influence. */
+ * one (eight times as many with --noise), about 1 % of the work. After that, the next free worker updates and reports
+ * the time estimate (render/time_estimate.h) a hundred times a second. Times are processor times, so other programs
+ * have no influence. */
 #include "base/clock.h"
 #include "render/integrator_internal.h"
 

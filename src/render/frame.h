@@ -14,7 +14,7 @@ enum { FRAMES_MAX = 10000000 };
 struct frame {
     uint32_t number, count;
     double rate; /* frames per second */
-    bool loops;  /* the frame after the last one is the first */
+    bool loops;  /* after the last frame comes the first */
 };
 
 /* The frames that a run renders: first, first + step ... up to last. Zero value: all. */
@@ -22,7 +22,7 @@ struct frame_selection {
     uint32_t first, last, step;
 };
 
-/* What the command line says about animations. */
+/* The options of the command line for animations. */
 struct frame_options {
     struct frame_selection selection; /* --frames */
     double rate;                      /* --fps, or 0 */
@@ -35,7 +35,7 @@ static inline double frame_time(const struct frame *frame) {
     return frame->number > 0 ? (frame->number - 1) / frame->rate : 0;
 }
 
-/* From 0 on: below 1 in a loop, else 1 for the last frame. */
+/* From 0 on: below 1 in a loop, otherwise 1 for the last frame. */
 static inline double frame_clock(const struct frame *frame) {
     uint32_t steps = frame->loops ? frame->count : frame->count - 1;
     return frame->number > 1 ? (double)(frame->number - 1) / steps : 0;

@@ -9,9 +9,9 @@
 #include "render/render.h"
 #include "render/sampler.h"
 
-/* What a camera ray has met: neighbouring pixels are compared by it. */
+/* The hit of a camera ray, for comparisons of neighbouring pixels. */
 struct camera_hit {
-    double t;           /* infinite: nothing, or a surface that is looked through */
+    double t;           /* infinite: no hit, or a transparent boundary */
     uint32_t primitive; /* WORLD_NOTHING: none */
     uint32_t material;
     struct vec3 normal; /* unit, towards the eye; 0 without a hit */
@@ -31,7 +31,7 @@ struct integrator_state {
     const struct photon_map *caustics;           /* or NULL */
     struct observer *observer;                   /* or NULL */
     struct path_parts *parts;                    /* or NULL; of the current camera ray, zero before */
-    struct camera_hit *camera_hit;               /* or NULL; of a camera ray until its first hit is shaded */
+    struct camera_hit *camera_hit;               /* or NULL; for a camera ray until its first hit is shaded */
     uint64_t reflected_rays, refracted_rays, shadow_rays, hits;
     bool clamped; /* set after a colour that was not finite or too large */
 };

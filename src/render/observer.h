@@ -14,9 +14,9 @@ enum ray_kind { RAY_CAMERA, RAY_REFLECTED, RAY_REFRACTED, RAY_HOLE };
 /* Why a ray was not followed, or its hit not evaluated. */
 enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
 #define OBSERVER_NO_BLOCKER UINT32_MAX
-/* Why a pixel is marked: the colour of its first sample differs from a neighbour's; it differs by less from that of a
- * neighbour on another surface; from the mean of two opposite neighbours; a primitive that is narrower than a pixel may
- * be in it. */
+/* Why a pixel is marked. The colour of its first sample differs from that of a neighbour; or less, from that of a
+ * neighbour on another surface; or from the mean of two opposite neighbours; or the pixel may contain a primitive that
+ * is narrower than a pixel. */
 enum mark_reason { MARK_COLOUR, MARK_SURFACE, MARK_DETAIL, MARK_THIN };
 
 enum observation_kind {
@@ -87,7 +87,7 @@ struct observation {
         } end;
         struct observed_mark {
             enum mark_reason reason;
-            int x, y;                   /* the neighbour, or one of the two, from the pixel, -1..1; MARK_THIN: 0 */
+            int x, y; /* the neighbour, or one of the two, relative to the pixel, -1..1; MARK_THIN: 0 */
             double distance, tolerance; /* squared, of colours; MARK_THIN: 0 */
         } mark;
         struct observed_pixel {

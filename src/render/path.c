@@ -203,8 +203,8 @@ static double noise_of(const struct film *film, const struct rectangle *part) {
     return sqrt(sum / pixels);
 }
 
-/* Looks at the noise of the tile, and so at how many samples it will have. True: it is at a check, and has little
- * enough noise. */
+/* Checks the noise of the tile, and computes its expected number of samples. True: it is at a check, and its noise is
+ * small enough. */
 static bool is_quiet(const struct path_tracer *tracer, const struct film *film, struct worker *worker,
                      const struct rectangle *part, uint32_t samples) {
     double noise = noise_of(film, part);
@@ -246,7 +246,8 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
     return sample_part(tracer, renderer, worker, part, renderer->pass.begin, renderer->pass.end);
 }
 
-/* The noise of a sample from few samples of few pixels; it falls with the square root of their number. */
+/* The noise of one sample from few samples of few pixels; it is inversely proportional to the square root of the number
+ * of samples. */
 double path_tracer_resampling(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                               const struct film_rectangle *tile) {
     enum { SAMPLES = 8 };
@@ -289,7 +290,7 @@ static const char *user_of(const struct world *world, uint32_t material) {
     return "CSG";
 }
 
-/* Next-event estimation needs a bound. */
+/* Next-event estimation needs bounds. */
 static void warn_of_infinite_emitter(const struct world *world, world_warning *warn, void *context) {
     char text[256];
     for (uint32_t i = 0; i < world->primitive_count; i++) {

@@ -18,7 +18,7 @@ enum {
     FEATURE_FLOATS = 2 * PATH_FEATURES,
     LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* first all sums, then all remainders */
 };
-/* After RECORD_FLOATS: the features, then the groups of light, then the line. */
+/* After RECORD_FLOATS: the features, then the layers of light, then the line. */
 _Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + 1 <= (int)FILM_RECORD_FLOATS,
                "a tile cannot carry the record of a path-traced pixel");
 
@@ -223,14 +223,14 @@ uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, ui
 
 /* --- denoising --- */
 
-/* Features of the film are in the order of enum denoise_feature, and glow follows. */
+/* Features of the film are in the order of enum denoise_feature; glow follows them. */
 static void film_row(void *context, uint32_t y, struct denoise_pixel *row) {
     const struct film *film = context;
     for (uint32_t x = 0; x < film->width; x++) {
         struct path_pixel pixel = path_film_load(film, (size_t)y * film->width + x);
         double weight = pixel.weights[0] + pixel.weights[1];
         for (int half = 0; half < 2; half++) {
-            int from = pixel.weights[half] != 0 ? half : 1 - half; /* of one sample there is one half */
+            int from = pixel.weights[half] != 0 ? half : 1 - half; /* with one sample there is only one half */
             struct vec3 colour = path_pixel_half(&pixel, from);
             row[x].colour[half][0] = (float)colour.x;
             row[x].colour[half][1] = (float)colour.y;

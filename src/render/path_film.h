@@ -22,7 +22,7 @@ struct path_pixel {
     /* Only in records with these parts (enum path_part). */
     float features[2][PATH_FEATURES];     /* of the halves: weighted sums */
     struct vec3 light[PATH_LIGHT_GROUPS]; /* weighted sums of all samples */
-    float line;                           /* how much of the pixel black lines cover, 0..1 */
+    float line;                           /* the fraction of the pixel that black lines cover, 0..1 */
 };
 
 /* The record of films with these parts, a mask of enum path_part; and the mask of a record, 0 for records of other
@@ -39,7 +39,8 @@ void path_film_store(struct film *film, size_t at, const struct path_pixel *pixe
 void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight);
 void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight);
 
-/* The mean of all samples, and that of one half (black if it has none); and a colour below the line of the pixel. */
+/* The mean of all samples, and the mean of one half (black if it has no samples); and a colour with the line of the
+ * pixel drawn over it. */
 struct vec3 path_pixel_mean(const struct path_pixel *pixel);
 struct vec3 path_pixel_half(const struct path_pixel *pixel, int half);
 struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour);
@@ -57,14 +58,14 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
  * from the halves. The noise of a tile is the square root of the mean over its pixels: an estimate of its relative
  * error. */
 double path_pixel_noise(const struct path_pixel *pixel);
-/* The same with Var from the samples: smoother, for time estimates. */
+/* The same with Var from the samples: less noisy, for time estimates. */
 double path_pixel_noise_of_samples(const struct path_pixel *pixel);
 
-/* --noise looks at a tile after 16, 24, 32, 48, 64 ... samples: the first of these numbers above `samples`. */
+/* --noise checks a tile after 16, 24, 32, 48, 64 ... samples: returns the first of these numbers above `samples`. */
 uint32_t path_next_check(uint32_t samples);
-/* The number of samples, at most `limit`, after which a tile is expected to have the noise `wanted`, if it has `noise`
- * after `samples`: noise falls with the square root of the number, and a tile ends at a check. wanted > 0. 0: one
- * sample shows no noise. */
+/* The expected number of samples, at most `limit`, at which a tile reaches the noise `wanted`, if it has `noise` after
+ * `samples`. Noise is inversely proportional to the square root of the number, and a tile ends only at a check. wanted
+ * > 0. 0: not known, because one sample has no noise estimate. */
 uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, uint32_t limit);
 
 /* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the film.
@@ -72,8 +73,8 @@ uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, ui
 struct denoise_source path_film_denoise_source(struct film *film);
 /* Draws the lines of the film (PATH_PART_LINE) over other colours of its pixels, for instance denoised ones. */
 void path_film_draw_lines(const struct film *film, float (*colours)[3]);
-/* Replaces the colours of the film by denoised ones, to be looked at. Its sums stay: more samples may follow, and files
- * are written from them. Errors: no memory, cancelled; then the film is unchanged. */
+/* Replaces the colours of the film by denoised ones, for display. Its sums do not change: more samples may follow, and
+ * files are written from the sums. Errors: no memory, cancelled; then the film is unchanged. */
 bool path_film_show_denoised(struct film *film, struct pool *pool, struct error *error);
 
 #endif

@@ -14,7 +14,7 @@
 #include "render/style_internal.h"
 #include "world/world_lights.h"
 
-/* Of a run. Owns the arena, and the contours of each worker. */
+/* State of a run. Owns the arena, and the contours of each worker. */
 struct path_tracer {
     uint32_t samples;   /* of a pixel, at most */
     int max_depth;      /* scattering events of a path: 0 emission, 1 direct light */
@@ -78,8 +78,8 @@ struct path_segment {
     struct vec3 thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
 };
 
-/* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension a point on
- * it, if its points differ. */
+/* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension selects a
+ * point on the light, if it has an extent. */
 struct path_light_draw {
     double choice;
     const struct sampler *sampler;

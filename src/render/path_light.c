@@ -140,7 +140,7 @@ static void share_direct(const struct path_vertex *vertex, struct vec3 wi, struc
     shares[SCATTERING_SPECULAR] = vec3_add(shares[SCATTERING_SPECULAR], vec3_sub(vec3_all(1), all));
 }
 
-/* The part of a light to sample. Mostly there is one light with a place, which is chosen without a call. */
+/* The part of a light to sample. Most lights with a position have one part, which needs no call. */
 static inline struct light_part choose_part(const struct light_sampler *sampler, const struct light_receiver *receiver,
                                             double choice, double *pmf) {
     *pmf = 1;

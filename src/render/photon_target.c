@@ -266,7 +266,7 @@ static void meet_cell(struct search *s, struct target_square cell, uint32_t stro
     s->found++;
 }
 
-/* The light shines into no direction of the square, so neither into those of its parts. */
+/* The light does not shine in any direction of the square, nor of its parts. */
 static bool is_dark(const struct photon_target *target, struct target_square square) {
     double area;
     return !is_distant(target) && !target->emitter.even && !(cell_shine(target, square, &area) > 0);

@@ -93,7 +93,7 @@ static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
              make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
 }
 
-/* A tile has the samples of the pass, or little enough noise. */
+/* A tile is finished if it has the samples of the pass, or its noise is small enough. */
 static void note_pass(const struct renderer *renderer, const struct worker *worker, struct pass_tile *tile,
                       double seconds) {
     const struct sample_pass *pass = &renderer->pass;
@@ -408,8 +408,8 @@ static bool is_unfinished(const struct renderer *renderer) {
     return film_tiles_in(film, FILM_TILE_DONE) + film_tiles_in(film, FILM_TILE_ELSEWHERE) < film_tile_count(film);
 }
 
-/* A picture that is looked at is denoised when it has all samples; without memory for that it stays as it is. The part
- * of a shard lacks its neighbours. False: stopped. */
+/* A displayed picture is denoised when it has all samples; without memory for that it stays unchanged. A part of a
+ * shard is not denoised because it lacks its neighbours. False: stopped. */
 static bool show_denoised(struct renderer *renderer) {
     struct film *film = renderer->job->film;
     struct error error = {0};
@@ -541,7 +541,7 @@ static void report_progress(struct renderer *renderer, double elapsed, double no
                                  clock_nanoseconds(CLOCK_MONOTONIC));
 }
 
-/* Without memory there is no time estimate. */
+/* If there is no memory, there is no time estimate. */
 static void begin_progress(struct renderer *renderer) {
     struct progress_estimate *estimate = renderer->job->progress_estimate;
     if (!estimate)

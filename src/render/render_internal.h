@@ -34,7 +34,7 @@ struct worker {
     int index;
     double tile_ended;                /* seconds, of the last one */
     uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
-    uint32_t samples_expected;        /* of the pixels of the tile under way (--noise); 0: not known yet */
+    uint32_t samples_expected;        /* of the pixels of the current tile (--noise); 0: not known yet */
 };
 
 /* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */
@@ -49,7 +49,7 @@ struct renderer {
     struct camera_frame camera;
     struct medium_stack eye_medium_stack;
     bool timed;               /* something moves while the shutter is open */
-    bool roams;               /* the film is one pixel, which moves over the picture (render_pixels) */
+    bool roams;               /* the film is one pixel that moves over the picture (render_pixels) */
     bool together;            /* camera rays start in one place and at one moment */
     bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */
     enum sampler_kind sampler;
@@ -83,7 +83,7 @@ struct rectangle {
 /* The camera at a ray's time. */
 bool renderer_prepare_at(const struct render_job *job, double ray_time, struct camera_frame *out, char warning[256],
                          struct error *error);
-/* Through (x, y), the middle of the lens, when the shutter opens. False: nothing is visible there. */
+/* The camera ray through (x, y) and the centre of the lens, when the shutter opens. False: nothing is visible there. */
 bool renderer_middle_ray(const struct renderer *renderer, double x, double y, struct ray *out);
 /* The first sample has number 0, at the centre or the corner of the pixel. */
 struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64_t x, int64_t y);

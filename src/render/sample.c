@@ -59,7 +59,7 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
     return vec3_make(colour.x, right.y, right.z);
 }
 
-/* Where the parts of sample i of a batch go, and what its camera ray meets. */
+/* The strata of sample i of a batch, and the hit of its camera ray. */
 static void begin_records(struct worker *worker, uint32_t i) {
     struct batch *batch = &worker->batch;
     worker->state.parts = batch->parts ? &batch->parts[i] : NULL;
@@ -171,9 +171,10 @@ struct pixel_sample renderer_first_sample(const struct renderer *renderer, int64
     return (struct pixel_sample){x, y, at, at, 0, 1};
 }
 
-/* See sampler.h. Below the key of a pixel's strata are: the light's number, its order of the parts on that light; the
- * key of a ray, that on a rough surface; UINT64_MAX and the next below, those of lens and shutter; 2, the jitter on the
- * lens; from UINT64_MAX - 2 down the lights' multi-jittered sets; and 2^62, the pattern in the pixel. */
+/* See sampler.h. Keys below the key of the strata of a pixel: the number of a light, for the order of the strata on
+ * that light; the key of a ray, for the strata on a rough surface; UINT64_MAX and the next lower one, for those of lens
+ * and shutter; 2, for the jitter on the lens; from UINT64_MAX - 2 down, for the multi-jittered sets of the lights; and
+ * 2^62, for the pattern in the pixel. */
 
 static const uint64_t order_of_lens = UINT64_MAX, order_of_times = UINT64_MAX - 1, sets_of_lights = UINT64_MAX - 2;
 static const uint64_t jitter_of_times = UINT64_MAX - 1; /* below the key of the sample */
@@ -187,9 +188,9 @@ static uint32_t part_of(const struct sampler *sampler, uint64_t dimension) {
     return sample_permute(sampler->cell, sampler->side * sampler->side, random_combine(sampler->pixel_key, dimension));
 }
 
-/* Cell (i, j) has its point in column j and row side - 1 - i of its side x side parts (the canonical arrangement of
- * Kensler's memo, math/sampling.c). So edges along rows and columns have side^2 steps, not side, and those at other
- * angles at most the error of the regular grid. The points are symmetric about the centre: the mean of a linear
+/* Cell (i, j) has its point in column j and row side - 1 - i of its side x side strata (the canonical arrangement of
+ * Kensler's memo, math/sampling.c). So edges along rows and columns have side^2 steps instead of side. Edges at other
+ * angles have at most the error of the regular grid. The points are symmetric about the centre, so the mean of a linear
  * function is exact. */
 struct sample2 sampler_pixel_rotated(const struct sampler *sampler) {
     uint32_t n = sampler->side, i = sampler->cell % n, j = sampler->cell / n;

@@ -60,7 +60,7 @@ static inline uint32_t sobol_pascal(uint32_t index) {
     return index;
 }
 
-/* The point of the sequence with that seed whose index has these bits reversed. */
+/* The point of the sequence with that seed and with the index whose bits, reversed, are these. */
 static inline struct sample2 sobol_point_reversed(uint32_t reversed, uint64_t seed) {
     uint64_t more = random_mix(seed + UINT64_C(0x9e3779b97f4a7c15));
     uint32_t index = sobol_reversed(sobol_permuted(reversed, (uint32_t)seed));
@@ -122,10 +122,11 @@ static inline struct sample2 sampler_point(const struct sampler *sampler, uint32
     return sobol_point_reversed(sampler->cell, random_combine(sampler->pixel_key, dimension));
 }
 
-/* A point of the pixel for this sample: one of the side x side points of a rotated grid (every row and every column of
- * side^2 has one; for an odd side one is the centre), mirrored and transposed by pixel. With one sample: the centre. */
+/* A point of the pixel for this sample: one of the side x side points of a rotated grid, mirrored and transposed
+ * depending on the pixel. Every row and every column of side^2 has one point; for an odd side one point is the centre.
+ * With one sample: the centre. */
 struct sample2 sampler_pixel_rotated(const struct sampler *sampler);
-/* The same of a multi-jittered set: the mean over it is unbiased. */
+/* The same for a multi-jittered set: the mean over it is unbiased. */
 struct sample2 sampler_pixel_jittered(const struct sampler *sampler);
 /* A point of the unit square for the lens, and a time from 0 to 1 for the shutter: one of as many cells as the pixel
  * has samples, in an order that depends on the pixel. */

@@ -106,14 +106,14 @@ enum overlay { OVERLAYS(LIST_MEMBER) };
     X(FILTER_GAUSSIAN, "gaussian")                                                                                     \
     X(FILTER_MITCHELL, "mitchell")
 enum filter_kind { FILTERS(LIST_MEMBER) };
-/* Adaptive anti-aliasing of Whitted's integrator: which pixels get N x N samples, and where those are
- * (whitted_pixels.c). GRID: marks by colours alone, the centres of N x N cells. ROTATED: marks by surfaces and thin
- * primitives too, a rotated grid, jittered where thin primitives are. */
+/* Adaptive anti-aliasing of Whitted's integrator: which pixels get N x N samples, and where these samples are
+ * (whitted_pixels.c). GRID: marks by colours only, samples at the centres of N x N cells. ROTATED: also marks by
+ * surfaces and thin primitives; samples on a rotated grid, jittered near thin primitives. */
 #define AA_PATTERNS(X)                                                                                                 \
     X(AA_GRID, "grid")                                                                                                 \
     X(AA_ROTATED, "rotated")
 enum aa_pattern { AA_PATTERNS(LIST_MEMBER) };
-/* How surfaces show light (render/style_internal.h); of Whitted's integrator. */
+/* How surfaces reflect light (render/style_internal.h); only for Whitted's integrator. */
 #define STYLES(X)                                                                                                      \
     X(STYLE_NONE, "none")                                                                                              \
     X(STYLE_INK, "ink")                                                                                                \

@@ -11,7 +11,7 @@ static double largest(struct vec3 c) {
     return c.z > max ? c.z : max;
 }
 
-/* The light of the lights on a white matt surface. */
+/* The light of all lights on a white matt surface. */
 static struct vec3 matt_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
                               uint64_t key) {
     struct bsdf matt = *bsdf;
@@ -21,7 +21,7 @@ static struct vec3 matt_light(struct integrator_state *state, const struct hit *
     return direct_light(state, hit, &matt, key);
 }
 
-/* The highlights alone; *colour: the sum of their weights. */
+/* Only the highlights; *colour: the sum of their weights. */
 static struct vec3 highlight(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf,
                              uint64_t key, struct vec3 *colour) {
     struct bsdf shiny = *bsdf;
@@ -50,7 +50,7 @@ static struct vec3 toon_light(struct integrator_state *state, const struct hit *
     return largest(spot) > 0.5 * largest(shiny) ? vec3_add(colour, shiny) : colour;
 }
 
-/* The direction to a light, and its light at the point, as the weight. False: it has no direction. */
+/* The direction to a light, and its light at the point as the weight. False: the light has no direction. */
 static bool towards_light(const struct light *light, const struct hit *hit, struct vec3 *direction, double *weight) {
     struct light_target middle;
     struct light_arrival arrival;

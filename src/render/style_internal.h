@@ -1,6 +1,4 @@
-/* Pictures that look drawn: how a surface shows light in a style (settings.h), and lines over pictures of any
- * integrator.
- */
+/* Pictures that look like drawings: shading in a style (settings.h), and lines over pictures of any integrator. */
 #ifndef GRAY_RENDER_STYLE_INTERNAL_H
 #define GRAY_RENDER_STYLE_INTERNAL_H
 
@@ -18,10 +16,11 @@
  * INK: white. */
 struct vec3 style_light(struct integrator_state *state, const struct hit *hit, const struct bsdf *bsdf, uint64_t key);
 
-/* Lines where neighbouring camera rays meet different objects or materials, where their normals differ by more than 30
- * degrees, and where a surface is hidden by another part of its object that is more than 4 pixels nearer. They are of
- * the moment when the shutter opens, and through the middle of the lens. After B. Choudhury and S. Parker, "Ray Tracing
- * NPR-Style Feature Lines", NPAR 2009, but the crossings of pixels with edges are found first, each once. */
+/* Lines between neighbouring camera rays that hit different objects or materials, or surfaces whose normals differ by
+ * more than 30 degrees, or where another part of the object that is more than 4 pixels nearer hides a surface. They are
+ * computed for the time at which the shutter opens, and for the centre of the lens. After B. Choudhury and S. Parker,
+ * "Ray Tracing NPR-Style Feature Lines", NPAR 2009; different from the paper, the pixels that edges cross are found
+ * first, each once. */
 
 struct contour_sample {
     struct vec3 point, normal; /* normal: unit, to the viewer */
@@ -30,7 +29,7 @@ struct contour_sample {
     bool second; /* in the right picture of a pair */
 };
 
-/* Of one worker. Owns the samples. Zero: no lines. */
+/* State of one worker. Owns the samples. Zero: no lines. */
 struct contour {
     double width; /* pixels; 0: no lines */
     int rim;      /* pixels around a tile that are sampled */
@@ -45,7 +44,7 @@ void contour_destroy(struct contour *contour);
 /* Finds the lines in a part of a tile. False: stopped. */
 bool contour_find(struct contour *contour, const struct renderer *renderer, struct worker *worker,
                   const struct rectangle *tile);
-/* How much of a pixel of that part is covered by lines, 0..1. */
+/* The fraction of a pixel of that part that lines cover, 0..1. */
 double contour_coverage(const struct contour *contour, int64_t x, int64_t y);
 
 #endif

@@ -1,10 +1,8 @@
-/* Each part of a primitive (shape/shape_part.h) is a box with edges in any directions; its corners in the picture have
- * a convex hull that contains it.
- * Narrow hulls are drawn into the map; a part that is long and not narrow as a whole, because it comes near the camera
- * or is bent, is split in two. Pixels take the maximum of 1 / t, so the order of primitives does not matter.
- *
- * In a fisheye or a panorama edges are curves: a part is split until they leave their chords by little, and the hull
- * grows by that. */
+/* Each part of a primitive (shape/shape_part.h) is in a box with edges in any directions. The convex hull of the
+ * corners of the box in the picture contains the part. Narrow hulls are drawn into the map. A part that is long but not
+ * narrow as a whole, because it comes near the camera or is bent, is split in two. Pixels take the maximum of 1 / t, so
+ * the order of primitives does not matter. In a fisheye or a panorama, edges are curves: a part is split until they are
+ * close to their chords, and the hull is extended by the remaining distance. */
 #include "render/thin_map_internal.h"
 
 #include "base/mem.h"
@@ -14,16 +12,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Pixels. A line at least 1 wide is met by a first sample in every column or row that it passes, a ball at least
- * sqrt(2) wide by one; hulls are wider than what they contain: of a cylinder by up to sqrt(2), of a ball by sqrt(3). */
+/* Pixels. A line of width 1 or more is hit by a first sample in every column or row that it passes, a ball of width
+ * sqrt(2) or more by one sample. Hulls are wider than their contents: for a cylinder by up to sqrt(2), for a ball by
+ * sqrt(3). */
 static const double narrow = 1.5, small = 2.5;
-/* Hulls of this width are lines that need samples without a pattern. */
+/* Hulls below this width are lines that need samples without a regular pattern. */
 static const double line = 1.2;
-/* How far a curved edge may leave its chord. */
+/* The maximum distance of a curved edge from its chord. */
 static const double max_bend = 0.25;
 enum { SPLITS = 12, CORNERS = 8, CHUNK = 256 };
 
-/* Where the rays of one eye go; `left` and `right` are its part of the picture. */
+/* The projection of one eye; `left` and `right` are its part of the picture. */
 struct view {
     struct camera_frame camera;
     double shift, left, right; /* pixels */
@@ -39,19 +38,19 @@ struct thin_drawing {
     _Atomic bool found;
 };
 
-/* A part in the picture. */
+/* The projection of a part. */
 struct outline {
     double x[CORNERS], y[CORNERS];
     double nearness;      /* at least 1 / t */
     double length, width; /* of the hull, pixels */
     double bend;          /* how far edges leave their chords, pixels */
-    double far_width;     /* at least so wide even where it is farthest */
+    double far_width;     /* the smallest width, where it is farthest */
 };
 
 enum outline_kind {
     OUTLINE_NOWHERE, /* not in the picture */
     OUTLINE_NARROW,
-    OUTLINE_WIDE,    /* nowhere narrow, or not to be measured */
+    OUTLINE_WIDE,    /* nowhere narrow, or it cannot be measured */
     OUTLINE_TO_SPLIT /* perhaps narrow in parts */
 };
 
@@ -86,8 +85,9 @@ static int convex_corners(const struct outline *outline, int out[2 * CORNERS]) {
     return count > 0 ? count : 1;
 }
 
-/* The largest distance of two corners, and the smallest width, which is measured across one of the edges (H. Freeman
- * and R. Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve", CACM 1975). */
+/* The largest distance of two corners, and the smallest width. The smallest width is perpendicular to one of the edges
+ * (H. Freeman and R. Shapira, "Determining the minimum-area encasing rectangle for an arbitrary closed curve", CACM
+ * 1975). */
 static void measure(struct outline *outline) {
     int corners[2 * CORNERS], count = convex_corners(outline, corners);
     outline->length = 0;
@@ -108,7 +108,7 @@ static void measure(struct outline *outline) {
         outline->width = 0;
 }
 
-/* Whether it is beyond one side of the view. */
+/* Whether it is completely beyond one side of the view. */
 static bool is_outside(const struct view *view, const struct outline *outline, double margin) {
     double left = INFINITY, right = -INFINITY, top = INFINITY, bottom = -INFINITY, more = margin + outline->bend;
     for (int i = 0; i < CORNERS; i++) {
@@ -176,7 +176,7 @@ static double limited(double x, double low, double high) {
     return x < low ? low : x > high ? high : x;
 }
 
-/* Every pixel whose samples may be in the hull: those that are at most `more` from it in rows and columns. */
+/* Every pixel whose samples may be in the hull: all pixels at most `more` from it in rows and columns. */
 static void draw(struct thin_drawing *drawing, const struct view *view, const struct outline *outline) {
     const struct thin_map *map = drawing->map;
     int corners[2 * CORNERS], count = convex_corners(outline, corners);
@@ -271,7 +271,7 @@ static bool geometry_part(const struct geometry *geometry, uint32_t number, stru
     return number == 0 && oriented_box_is_finite(&out->box);
 }
 
-/* Whether it can be in a view at all. */
+/* Whether a view can contain it at all. */
 static bool is_near(const struct thin_drawing *drawing, const struct view *view, uint32_t primitive) {
     const struct affine same = affine_identity();
     struct oriented_box box = oriented_box_of(&drawing->renderer->job->world->boxes[primitive]);
@@ -301,7 +301,7 @@ static void draw_chunk(void *context, uint32_t chunk, int worker) {
 
 /* --- the map --- */
 
-/* Both eyes of a pair, displaced, with windows that are shifted so that they see the same at the screen. */
+/* For a stereo pair, both eyes: displaced, with windows shifted so that both show the same point at the screen. */
 static void add_view(struct thin_drawing *drawing, int eye) {
     struct view *view = &drawing->views[drawing->view_count++];
     const struct lens *lens = &view->camera.lens;

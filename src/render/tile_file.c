@@ -31,10 +31,10 @@ enum {
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
     DONE_FIXED = 4 + KEY_SIZE + 16,
     PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
-    RECORD_FIELDS = 8,              /* behind PICTURE_FIXED from FORMAT_RECORD on */
-    SHOWN_FIELDS = 16,              /* behind them from FORMAT_SHOWN on */
-    FINISH_FIELDS = 32,             /* behind them from FORMAT_FINISHED on */
-    TONE_FIELDS = 4 * TONE_ENTRIES, /* behind them in FORMAT_TONE */
+    RECORD_FIELDS = 8,              /* after PICTURE_FIXED, from FORMAT_RECORD on */
+    SHOWN_FIELDS = 16,              /* after these, from FORMAT_SHOWN on */
+    FINISH_FIELDS = 32,             /* after these, from FORMAT_FINISHED on */
+    TONE_FIELDS = 4 * TONE_ENTRIES, /* after these, in FORMAT_TONE */
     PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS +
                     FINISH_FIELDS + TONE_FIELDS,
     DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */

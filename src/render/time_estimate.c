@@ -1,10 +1,10 @@
-/* A linear model of a tile's cost with six terms: its pixels; the time of its rays; that time by the resampling,
- * which is the share of edges or the number of samples; the mean of the last two over the tile and its eight
- * neighbours, since few rays give little information; resampling alone. Terms are scaled to a mean of 1 over the
- * picture. Coefficients are those of least squares (a tile counts less the more it is expected to cost, as its
- * deviation grows with it), regularised towards the initial values by the weight of RIDGE tiles, so that the first few
- * tiles do not decide, and not negative: a term that would be is left out. A tile that is done changes sums only, so a
- * time estimate costs the same however many tiles there are. */
+/* A linear model of the cost of a tile with six terms: the number of its pixels; the time of its rays; that time
+ * multiplied by the resampling (the fraction of edges or the number of samples); the means of these two times over the
+ * tile and its eight neighbours, because few rays give little information; and the resampling. Terms are scaled to a
+ * mean of 1 over the picture. Coefficients come from least squares (a tile counts less if its expected cost is large,
+ * because its deviation grows with the cost). They are regularised towards the initial values with the weight of RIDGE
+ * tiles, so that the first few tiles have little influence. They are not negative: a term that would be negative is
+ * omitted. A finished tile only changes sums, so the cost of an estimate does not depend on the number of tiles. */
 #include "render/time_estimate.h"
 
 #include "base/mem.h"

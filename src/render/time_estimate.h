@@ -38,12 +38,12 @@ struct time_estimate {
 bool time_estimate_create(struct time_estimate *time_estimate, uint32_t count, uint32_t across, int workers);
 void time_estimate_destroy(struct time_estimate *time_estimate);
 
-/* pixels > 0; cost: of the rays; resampling: between how many of neighbouring rays the picture changes, 0..1, or how
- * many samples pixels will have. Tiles may be looked at by several threads at once, each tile once. */
+/* pixels > 0; cost: of the rays; resampling: the fraction of neighbouring rays with different colours, 0..1, or the
+ * number of samples per pixel. Several threads may call it, once for each tile. */
 void time_estimate_probe(struct time_estimate *time_estimate, uint32_t tile, double pixels, double cost,
                          double resampling);
-/* After the last look, before the first tile. proportional: resampling is the number of samples, so a tile is expected
- * to cost that times the cost of its rays. */
+/* After the last such call, before the first tile. proportional: resampling is the number of samples, so the expected
+ * cost of a tile is this number times the cost of its rays. */
 void time_estimate_begin_tiles(struct time_estimate *time_estimate, bool proportional);
 
 /* The worker begins a tile, or that share of it; is so far with its first or second pass; has done it. */
@@ -58,16 +58,16 @@ struct time_estimate_work {
 };
 struct time_estimate_work time_estimate_work(const struct time_estimate *time_estimate, const struct film *film);
 
-/* A tile of a picture that is made pass by pass: the seconds of its samples so far, the samples that each of its pixels
- * has, and how many it will have; 0: not known yet. */
+/* A tile of a picture that is rendered pass by pass: the seconds of its samples so far, the number of samples of each
+ * of its pixels, and their final number; 0: not known yet. */
 struct pass_tile {
     double seconds;
     uint32_t samples, expected;
 };
 
-/* Seconds until all tiles have their samples, if further samples cost what those before did. elapsed: seconds of the
- * passes so far, in which threads shared the work of the tiles; but no tile is shared, so the rest takes no less than
- * the costliest tile that is left. Negative: not known yet. */
+/* Seconds until all tiles have their samples, if further samples cost as much as the previous ones. elapsed: seconds of
+ * the passes so far, in which threads shared the tiles. A single tile is not shared, so the rest takes at least as long
+ * as the costliest remaining tile. Negative: not known yet. */
 double time_estimate_of_passes(const struct pass_tile *tiles, uint32_t count, double elapsed);
 
 /* How much of the work of a picture is done, and when it will be over: not how many tiles, but what they cost

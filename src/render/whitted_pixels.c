@@ -17,7 +17,7 @@ static double largest(struct vec3 c) {
     return c.z > max ? c.z : max;
 }
 
-/* The squared distance of two colours is never larger: with these tolerances nothing is marked. */
+/* The squared distance of two colours is never larger: with these tolerances no pixel is marked. */
 static const double tolerance_of_all = 3;
 
 /* The largest radiance that a ray can meet: the sky, a visible light, an emitting surface, the fog, or a white surface
@@ -71,7 +71,7 @@ static bool samples_again(const struct settings *settings) {
            settings->corner_tolerance < tolerance_of_all;
 }
 
-/* What is blurred is not narrow. */
+/* With blur, nothing is narrow. */
 static bool draw_thin(struct whitted *whitted, const struct renderer *renderer, struct error *error) {
     const struct settings *settings = &renderer->job->settings;
     if (settings->aa_pattern == AA_GRID || settings->samples == 1 || whitted->blurred || !samples_again(settings))
@@ -154,10 +154,10 @@ double whitted_resampling(const struct renderer *renderer, const struct vec3 *co
     return (double)edges / PAIRS;
 }
 
-/* Colours on different surfaces, and a colour between two opposite neighbours, may differ by this share of the
- * tolerances. */
+/* The fraction of the tolerances for colours on different surfaces, and for a colour compared with the mean of two
+ * opposite neighbours. */
 static const double fine_share = 1.0 / 16;
-/* Of the angle between two normals at an edge. */
+/* The cosine of the angle between two normals at an edge. */
 static const double edge_cosine = 0.8;
 
 /* A part of a tile at work. */
@@ -178,15 +178,15 @@ static struct vec3 *first_at(const struct part *part, int64_t x, int64_t y) {
     return &part->own->first[index_of(part, x, y)];
 }
 
-/* Whether two first samples are on different surfaces, on two sides of an edge, or on two sides of a shadow's. */
+/* Whether two first samples are on different surfaces, on different sides of an edge, or on different sides of the
+ * border of a shadow. */
 static bool surfaces_differ(const struct camera_hit *a, const struct camera_hit *b) {
     if (a->primitive != b->primitive || a->material != b->material || a->lights != b->lights)
         return true;
     return a->primitive != WORLD_NOTHING && vec3_dot(a->normal, b->normal) < edge_cosine;
 }
 
-/* Whether a thin primitive may be in the pixel, in front of what one of the first samples in it or around it has met.
- */
+/* Whether the pixel may contain a thin primitive in front of the hit of one of the first samples in it or around it. */
 static bool has_thin(const struct part *part, int64_t x, int64_t y) {
     const struct rectangle *area = &part->area;
     double nearness = part->whitted->fine ? (double)thin_map_at(&part->whitted->thin, x, y) : 0;
@@ -203,14 +203,14 @@ static bool has_thin(const struct part *part, int64_t x, int64_t y) {
     return false;
 }
 
-/* The reasons to mark a pixel, all from first samples. `mark` is filled where they return true. */
+/* The reasons to mark a pixel, all from first samples. If the result is true, `mark` is set. */
 
 static double tolerance_towards(const struct part *part, int dx, int dy) {
     const struct settings *settings = &part->renderer->job->settings;
     return dx == 0 || dy == 0 ? settings->side_tolerance : settings->corner_tolerance;
 }
 
-/* Fine differences count beside these tolerances. */
+/* With these tolerances, fine differences count. */
 static bool is_fine(const struct part *part, double tolerance) {
     return part->whitted->fine && tolerance < tolerance_of_all;
 }
@@ -239,8 +239,8 @@ static bool differs_from_neighbour(const struct part *part, int64_t x, int64_t y
     return false;
 }
 
-/* Whether the colour is not between those of two opposite neighbours: details of textures, noise of shadows, edges that
- * are seen in mirrors; not a gradient. */
+/* Whether the colour is not between those of two opposite neighbours. This finds details of textures, noise of shadows
+ * and edges in mirrors, but not gradients. */
 static bool has_detail(const struct part *part, int64_t x, int64_t y, struct observed_mark *mark) {
     static const int steps[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
     const struct tone *tone = &part->renderer->job->settings.tone;
@@ -276,9 +276,9 @@ static bool is_marked(const struct part *part, int64_t x, int64_t y) {
 
 /* --- samples of a pixel --- */
 
-/* The N x N samples of a pixel. Most are on a rotated grid. Where thin lines are, and where a lens or motion blurs,
- * they are jittered, so that the mean is unbiased; where small primitives are, they are on the grid without rotation,
- * whose largest gap is the smallest. */
+/* The N x N samples of a pixel. Most are on a rotated grid. Near thin lines, and with a lens or motion, they are
+ * jittered, so that the mean is unbiased. Near small primitives they are on the grid without rotation, which has the
+ * smallest maximum gap. */
 enum pixel_positions { POSITIONS_GRID, POSITIONS_ROTATED, POSITIONS_JITTERED };
 struct pixel_pattern {
     const struct whitted *whitted;
