@@ -134,7 +134,7 @@ struct image *assets_image(struct assets *assets, const char *path, struct error
 void *assets_find_object(struct assets *assets, const char *key);
 bool assets_add_object(struct assets *assets, const char *key, void *object, void (*destroy)(void *object),
                        struct error *error);
-/* Releases the meshes of tables that were added since `until` was the newest. */
+/* Releases the meshes of tables that are newer than `until`. */
 void assets_drop_meshes(struct assets *assets, const struct asset_mesh *until);
 /* A mesh that something in the store owns is counted with the others. The store becomes one more owner. */
 bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error);
@@ -170,8 +170,8 @@ struct scene {
     struct added_node *added;
     struct own_material *own;
     struct material *last_material; /* they are linked from the newest to the oldest */
-    uint32_t kept_nodes;            /* of a snapshot: nodes with a smaller index were made before it */
-    bool escaped;                   /* something older refers to what was made since then */
+    uint32_t kept_nodes;            /* of a snapshot: nodes with a smaller index are older */
+    bool escaped;                   /* an older object refers to a newer one */
     enum transform_order order;
     const char *file; /* of the script: nodes that are made get them; line 0: unknown */
     uint32_t line;
@@ -179,12 +179,12 @@ struct scene {
 void scene_init(struct scene *scene, struct assets *assets);
 void scene_destroy(struct scene *scene);
 
-/* A copy of the text in the scene's arena, shared with the last equal one; NULL without memory. */
+/* A copy of the text in the scene's arena; equal texts in succession share one copy. NULL: no memory. */
 const char *scene_keep_text(struct scene *scene, const char *text);
 
-/* What a frame of an animation makes is freed after it if nothing refers to it: scene_snapshot before the frame, then
- * scene_rewind. What scripts hold is known to their side; scene->escaped says whether older parts of the scene refer to
- * newer ones. Serial numbers are not used again, indices are. */
+/* The objects that a frame of an animation creates are freed after it if nothing refers to them: scene_snapshot before
+ * the frame, then scene_rewind. The caller knows the references that scripts hold; scene->escaped states whether older
+ * parts of the scene refer to newer ones. Serial numbers are never used again, indices are. */
 struct scene_snapshot {
     struct arena_mark arena;
     uint32_t node_total, warned_room;
@@ -193,9 +193,9 @@ struct scene_snapshot {
     struct asset_mesh *meshes;
 };
 struct scene_snapshot scene_snapshot(struct scene *scene);
-/* Meshes of tables that were added since then leave the store, too; those of files stay. */
+/* Newer meshes of tables leave the store, too; meshes of files stay. */
 void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot);
-/* To be called when a node gets a reference, or memory of its own. */
+/* Must be called when a node gets a reference, or memory of its own. */
 static inline void scene_note_reference(struct scene *scene, uint32_t node_index) {
     scene->escaped = scene->escaped || node_index < scene->kept_nodes;
 }

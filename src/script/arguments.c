@@ -479,7 +479,7 @@ static enum record_domain domain_of(const struct script_parameter *p) {
     return p->flags & OR_PROFILE || p->kind == KIND_BACKGROUND ? RECORD_DIRECTIONS : RECORD_POINTS_OF_SPACE;
 }
 
-/* A function in place of a colour. */
+/* A function instead of a colour. */
 static bool read_function(struct script_context *c, int index, const struct script_parameter *p,
                           struct script_value *value) {
     value->program = record_function(c, index, p->name, domain_of(p), &value->source);

@@ -79,16 +79,16 @@ enum {
     MESH_FACE_MATERIALS,
     MESH_COUNT
 };
-/* record_bounds.c: a recorded function is used within these bounds of p. It is compared with Lua there before the next
- * picture. Of any other program nothing happens. */
+/* record_bounds.c: registers that a recorded function is used within these bounds of p. It is compared with Lua there
+ * before the next picture. For any other program this does nothing. */
 void record_use(struct script_context *context, const struct expr_program *program, const struct box *bounds);
 /* Adds the bounds of the shapes at and below the node to the functions of their materials, and compares every function
  * whose bounds have grown. False: one differs from Lua. */
 bool record_check(struct script_context *context, const struct node *root, struct error *error);
 
 struct height_field_input;
-/* gr_displace.c: the heights of a grid, or 0 where it has none, plus those of a function; in the arena of the call.
- * NULL with an error. */
+/* gr_displace.c: the heights of a grid, or 0 if it has none, plus those of a function; in the arena of the call. NULL
+ * with an error. */
 const double *gr_function_heights(struct script_context *context, const struct height_field_input *grid,
                                   const struct expr_program *program, struct error *error);
 

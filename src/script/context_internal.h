@@ -105,7 +105,7 @@ struct script_context {
     struct change *changes;                 /* gr.change_node and its like, in order; in `keep` */
     uint32_t change_count, change_room, added, owned;
     struct changed_view *views;   /* the newest first */
-    bool changes_reported;        /* what was left out */
+    bool changes_reported;        /* warnings that were omitted */
     bool number_repaired;         /* the notice about ".0" was printed */
     struct lenient *lenient;      /* NULL without --lenient */
     bool only_named_pictures;     /* struct order_finding */
@@ -115,7 +115,7 @@ struct script_context {
     bool animates;                /* in gr.frames */
     bool lists_handles;           /* new handles are listed for gr_frames.c */
     char raised[1536];            /* the last error of a function of gr, without its position */
-    bool unforgivable;            /* --lenient would not get over it */
+    bool unforgivable;            /* --lenient would not continue after it */
     struct error fatal;
     struct recorder *recorder; /* record_internal.h */
     bool ended;                /* os.exit was called with success */
@@ -135,9 +135,9 @@ void context_warn_once(struct script_context *context, unsigned bit, const char 
     __attribute__((format(printf, 3, 4)));
 /* Warns once for a function if the colour has numbers from 0 to 255. */
 void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 colour);
-/* The nodes that are made from now on have the running line. */
+/* Nodes that are created from now on have the current line. */
 void context_note_line(struct script_context *context);
-/* False if the running line was asked about before; true at times even then, since only some lines are kept. */
+/* False if the current line was checked before. It may also be true then, because only some lines are stored. */
 bool context_is_new_line(struct script_context *context);
 /* "gr.sphere: TEXT (node 'eye')", always one line. */
 void context_compose(const struct script_context *context, const char *text, char *out, size_t size);
@@ -175,7 +175,7 @@ void limits_count_output(struct script_context *context,
 /* Pause and resume the limits during work that is not the script's. */
 void limits_pause(struct script_context *context);
 void limits_resume(struct script_context *context);
-/* The time limit counts from here. */
+/* The time limit starts here. */
 void limits_restart_time(struct script_context *context);
 
 /* context.c */
@@ -198,7 +198,7 @@ int dispatch_answer(lua_State *L, const struct script_function *function, const 
 void frames_list_handle(lua_State *L, uint32_t serial);
 /* Calls `draw` of gr.frames for its frames and renders them; may raise. */
 int frames_run(lua_State *L, const struct script_result *result);
-void frames_open(lua_State *L); /* gr.time and its like */
+void frames_open(lua_State *L); /* gr.time, gr.clock and gr.frame */
 
 /* arguments.c: reads the arguments; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
  * so the call has no effect. `first` is the stack index of the first argument. */
@@ -226,14 +226,16 @@ void files_open(lua_State *L);
 bool files_find(struct script_context *context, const char *name, char out[PATH_SIZE]);
 /* The same with the number in its name repaired, and with an error that names the folders that were searched. */
 bool files_require(struct script_context *context, const char *name, char out[PATH_SIZE], struct error *error);
-/* A file that is not where a file of the scene in `folder` names it; with a notice if it is found. A model_search. */
+/* Searches for a file that does not exist under the name in a file of the scene in `folder`; prints a notice if it is
+ * found. A model_search. */
 bool files_search(void *context, const char *folder, const char *name, const char **path, bool *refused,
                   struct error *error);
 /* The templates of package.path with `file` instead of the question marks: the first file that can be read. */
 bool files_on_path(const struct script_context *context, const char *templates, const char *file, char path[PATH_SIZE]);
 /* Drops the ".0" of whole numbers. The same pointer when there was none; NULL without memory. */
 const char *files_repair_number(struct script_context *context, const char *name);
-/* The policy for a Lua file; NULL for the scene and its dialect: the user named them, they may be links to any file. */
+/* The policy for a Lua file; NULL for the scene and its dialect: the user named them, so they may be links to any file.
+ * */
 const struct path_policy *files_policy(const struct script_context *context, const char *path);
 /* Loads a Lua file as text: pushes the chunk or a message and answers with the status. Raises what cannot be caught. */
 int files_load(lua_State *L, const char *path);
@@ -249,7 +251,7 @@ void dialect_finish(lua_State *L);                                      /* after
 /* These add functions to a new state. All run protected and may raise. */
 void sandbox_open(
     lua_State *L); /* sandbox.c: the libraries, without the functions that an untrusted script must not have */
-/* Whether the library of Lua has this function, and the sandbox has not. */
+/* Whether Lua's library has this function but the sandbox does not. */
 bool sandbox_removes(const char *library, const char *name);
 void streams_open(lua_State *L);                    /* streams.c: files and printing within what the scene was given */
 void streams_close(struct script_context *context); /* after the state */

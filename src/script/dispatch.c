@@ -141,7 +141,7 @@ static struct node *self_of(struct script_context *c, const struct script_functi
     return handle->pointer;
 }
 
-/* Whether it makes a shape that has no material yet: a warning may have to name its line. */
+/* Whether it creates a shape without a material: a warning may have to name its line. */
 static bool lacks_material(const struct script_function *function, const struct script_value *args) {
     for (int k = 0; function->result == RESULT_NODE && k < function->parameter_count; k++)
         if (function->parameters[k].kind == KIND_MATERIAL)

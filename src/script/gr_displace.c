@@ -46,7 +46,7 @@ static void grid_inputs(const void *context, size_t i, double inputs[EXPR_INPUT_
     inputs[EXPR_POINT_Z] = z;
 }
 
-/* The heights of the grid, or 0 where there are none, plus those of the function: in the arena of the call. */
+/* The heights of the grid, or 0 if there are none, plus those of the function; in the arena of the call. */
 const double *gr_function_heights(struct script_context *context, const struct height_field_input *grid,
                                   const struct expr_program *program, struct error *error) {
     size_t count = (size_t)grid->columns * grid->rows;
@@ -76,7 +76,7 @@ const double *gr_function_heights(struct script_context *context, const struct h
     return heights;
 }
 
-/* The cells become so fine that their sides and diagonals are at most `edge` on the ground. */
+/* The grid becomes so fine that the sides and diagonals of its cells on the ground are at most `edge` long. */
 static bool displace_field(const struct displacing *d, struct node *node, struct error *error) {
     struct height_field_input grid;
     uint32_t n = 1U << d->by.level;
@@ -110,7 +110,7 @@ static bool displace_node(const struct displacing *d, struct node *node, struct 
     }
 }
 
-/* Every shape at the node and below it, once. */
+/* Visits every shape at the node and below it once. */
 static bool displace_all(const struct displacing *d, const struct node *root, struct error *error) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
     struct scene *scene = &d->context->scene;
@@ -123,7 +123,7 @@ static bool displace_all(const struct displacing *d, const struct node *root, st
         ok = event != SCENE_NO_MEMORY || error_no_memory(error, "a displacement");
         if (event != SCENE_ENTER)
             continue;
-        /* Nodes are of the script, which may change them; the traversal only reads. */
+        /* Nodes belong to the script, which may change them; the traversal only reads them. */
         struct node *node = (struct node *)(uintptr_t)scene_traversal_node(&t);
         bool is_done = done[node->index] != 0;
         done[node->index] = 1;

@@ -28,7 +28,7 @@ static const struct script_parameter frames_parameters[] = {
                      "draw depends only on its arguments, so it is called only for rendered frames."},
 };
 
-/* What one call of gr.frames asks for. */
+/* The arguments of one call of gr.frames. */
 struct frame_plan {
     struct frame frame; /* its number is 0 */
     bool pure;
@@ -85,7 +85,7 @@ const struct function_rows frame_functions = {rows, COUNT(rows)};
 
 /* --- calling draw --- */
 
-/* In the registry: Lua's table gr, and math.randomseed as it was before the script. */
+/* Keys in the registry: Lua's table gr, and math.randomseed as it was before the script. */
 static const char gr_key, seed_key;
 
 static void set_frame(lua_State *L, const struct frame *frame) {
@@ -107,7 +107,7 @@ static void seed_frame(lua_State *L, uint32_t number) {
     lua_call(L, 2, 0);
 }
 
-/* The picture outside of the animation, also after an error that the script has caught. */
+/* Restores the state outside the animation, also after an error that the script has caught. */
 static int leave_frames(lua_State *L) {
     struct script_context *context = context_of(L);
     context->animates = context->lists_handles = false;
@@ -116,7 +116,7 @@ static int leave_frames(lua_State *L) {
     return 0;
 }
 
-/* The fields of the table on top, in a new table; without a file a name that follows the script's. */
+/* Copies the fields of the table on top into a new table; without a file, the name follows that of the script. */
 static void push_fields(lua_State *L) {
     struct script_context *context = context_of(L);
     int given = lua_gettop(L);
@@ -166,10 +166,10 @@ static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool r
 
 /* --- the memory of frames --- */
 
-/* Nodes, materials and other objects are in one arena of the script. After a frame, the arena goes back to where it was
- * before if Lua holds no handle that was made since, found by a weak table of them after a garbage collection, and if
- * nothing older refers to the new objects. It is tried when the arena has grown by a half, so that collections cost
- * little. */
+/* Nodes, materials and other objects are in one arena of the script. After a frame, the arena is reset to its state
+ * before the frame if Lua holds no newer handle (found by a weak table of them after a garbage collection), and if no
+ * older object refers to the new ones. This is tried only when the arena has grown by half, so that garbage collections
+ * cost little. */
 
 static const char handles_key; /* of the weak table, in the registry */
 
@@ -233,7 +233,7 @@ static void draw_selected(lua_State *L, int draw, const struct frame_plan *plan)
     }
 }
 
-/* Frames in the order that a window wants. Its wish may change while the frames before are drawn. */
+/* Draws frames in the order that a window requests. The request may change while earlier frames are drawn. */
 static void draw_wanted(lua_State *L, int draw, const struct frame_plan *plan) {
     struct script_context *context = context_of(L);
     const struct script_host *host = context->host;

@@ -170,7 +170,7 @@ bool gr_rotate_quat(struct script_context *context, const struct script_value *a
     return step(context, args, NODE_ROTATE, &by, error);
 }
 
-/* In this order in every order of transforms (gr.transform_order). */
+/* This order does not depend on the order of transforms (gr.transform_order). */
 bool gr_pose(struct script_context *context, const struct script_value *args, struct script_result *result,
              struct error *error) {
     (void)result;

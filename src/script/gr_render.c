@@ -7,7 +7,8 @@
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
-    /* Scenes in the table form alone are of today: their background is light and neutral, that of others navy. */
+    /* Scenes that use only the table form are new ones: their default background is light and neutral, that of other
+     * scenes is navy. */
     static const double neutral[][4] = {{-1, 0.62, 0.61, 0.6}, {0, 0.8, 0.81, 0.82}, {1, 0.9, 0.93, 0.96}};
     const struct script_value *background = &args[RENDER_BACKGROUND];
     *sky = (struct sky){.kind = SKY_GRADIENT};
@@ -60,7 +61,7 @@ static void apply_settings(const struct script_value *args, struct settings *set
     if (args[RENDER_EXPOSURE].given)
         settings->tone.exposure = args[RENDER_EXPOSURE].number;
     const struct script_value *tone = &args[RENDER_TONE];
-    if (tone->curve && !settings->keeps_tone) { /* here the option wins */
+    if (tone->curve && !settings->keeps_tone) { /* here the option has priority */
         settings->tone.curve = TONE_FUNCTION;
         settings->tone.table = tone->curve;
     } else if (tone->given && !tone->curve) {
@@ -181,7 +182,7 @@ static void repair_view(struct script_context *context, const struct script_valu
     }
 }
 
-/* The middle of a turntable: on the line of sight, as near to the middle of the scene as possible. */
+/* The centre of a turntable: the point of the line of sight that is nearest to the centre of the scene. */
 static struct vec3 turntable_middle(const struct render_request *request, struct vec3 view) {
     const struct camera *camera = &request->camera;
     struct box box = box_empty();
@@ -196,7 +197,7 @@ static struct vec3 turntable_middle(const struct render_request *request, struct
     return vec3_add_scaled(camera->eye, view, fmax(along, 0));
 }
 
-/* The camera and the poses that it moves to, turned about the line of `up` through the middle. */
+/* Rotates the camera, and the poses that it moves to, about the line of `up` through the centre. */
 static void turn_camera(struct render_request *request, const struct render_request *first, struct vec3 middle,
                         double degrees) {
     struct transform turn = transform_rotate_about(first->camera.up, degrees);
@@ -216,7 +217,7 @@ static void turn_camera(struct render_request *request, const struct render_requ
             vec3_add(affine_vector(&turn.forward, vec3_sub(first->settings.lens.focus_point, middle)), middle);
 }
 
-/* --turntable: the pictures of one call. Other pictures are made once, by `render` itself. */
+/* --turntable: renders the pictures of one call. Without it, `render` renders one picture. */
 static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
     const struct frame_options *options = &context->options->frames;
     struct render_request request = *first;

@@ -260,7 +260,7 @@ static const struct script_parameter field_parameters[] = {
     [FIELD_SMOOTH] = {"smooth", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether normals are interpolated."},
 };
 
-/* Heights from rows, from an image, from a function alone or added to them. */
+/* Heights from rows, from an image, or from a function, which may be added to them. */
 static bool heights_of_field(struct script_context *context, const struct script_value *args,
                              struct height_field_input *in, struct error *error) {
     const struct script_value *rows = &args[FIELD_HEIGHTS], *image = &args[FIELD_IMAGE], *f = &args[FIELD_F];

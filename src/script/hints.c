@@ -1,7 +1,7 @@
-/* What a message adds about a name that the script may have misspelt. When an argument is nil, or Lua calls or indexes
- * nil, the text of the running line is read again: names in it that are neither local nor global are likely errors, and
- * the nearest name that does have a value is what may have been meant. This happens only when a message is made, and
- * once for each line that makes a shape without a material. */
+/* Hints in messages about misspelt names. When an argument is nil, or Lua calls or indexes nil, the text of the running
+ * line is read again. Names in it that are neither local nor global are likely errors, and the nearest name that has a
+ * value is suggested. This happens only when a message is printed, and once for each line that creates a shape without
+ * a material. */
 #include "script/hints_internal.h"
 
 #include "base/file.h"
@@ -13,7 +13,7 @@
 
 enum { TEXT_LIMIT = 4096, NAMES_LIMIT = 2000, NAME_SIZE = 64 };
 
-/* The function that runs, and the text from its line on; a copy in the arena of the call. */
+/* The running function, and the text from its line on; a copy in the arena of the call. */
 struct running {
     lua_State *L;
     lua_Debug at;
@@ -49,7 +49,7 @@ static void push_variable(const struct running *running, const char *name, bool 
     lua_pushnil(L);
     bool found = false;
     for (int n = 1; (other = lua_getlocal(L, &at, n)) != NULL; n++) {
-        if (strcmp(other, name) == 0) { /* the last one hides those before it */
+        if (strcmp(other, name) == 0) { /* the last one shadows those before it */
             lua_replace(L, base + 1);
             found = true;
         } else {
@@ -75,7 +75,7 @@ static void push_variable(const struct running *running, const char *name, bool 
     lua_settop(L, base + 1);
 }
 
-/* Whether the globals of the function are those of the script: other environments may have more names. */
+/* Whether the globals of the function are those of the script; other environments may have more names. */
 static bool has_usual_globals(const struct running *running) {
     lua_State *L = running->L;
     bool is_global;
@@ -135,9 +135,9 @@ static int block_depth(const struct token *word, int depth) {
     return depth;
 }
 
-/* Visits the tokens of the running line, and of those after it while a bracket is open; w[1] is visited between those
- * beside it. Functions on the line are left out, since they do not run: their names have other values. If the function
- * that runs begins on this line, nothing is left out. */
+/* Visits the tokens of the running line, and of the following lines while a bracket is open. w[1] is visited, between
+ * its neighbours. Functions on the line are skipped, because they do not run: their names have other values. If the
+ * running function begins on this line, nothing is skipped. */
 static bool find_token(const struct running *running,
                        bool (*visit)(const struct running *, const struct token *w, void *), void *wanted) {
     struct lexer lexer = {running->text, running->text + running->size, 1};
@@ -161,7 +161,7 @@ static bool find_token(const struct running *running,
 
 struct declared {
     const char *name;
-    bool in_parameters, in_names; /* after `function`, up to the bracket that closes; after `local` or `for` */
+    bool in_parameters, in_names; /* after `function`, up to the closing bracket; after `local` or `for` */
 };
 
 /* A name that the line declares: a parameter, a local variable, a variable of a loop. */
@@ -183,13 +183,13 @@ static bool visit_declared(const struct running *running, const struct token *w,
     return (declared->in_parameters || declared->in_names) && token_is(&w[1], TOKEN_NAME, declared->name);
 }
 
-/* Where the function that runs begins on the line, names of other functions of the line may be met. */
+/* If the running function begins on the line, this may find names of other functions of the line. */
 static bool is_declared_here(const struct running *running, const char *name) {
     struct declared declared = {.name = name};
     return running->at.linedefined == running->at.currentline && find_token(running, visit_declared, &declared);
 }
 
-/* A name alone: no field, and not left of an assignment. */
+/* A single name: no field, and not left of an assignment. */
 static bool is_variable(const struct token *w, char name[NAME_SIZE]) {
     bool is_field = token_is_symbol(&w[0], '.') || token_is_symbol(&w[0], ':');
     bool is_assigned = token_is_symbol(&w[2], '=') && !token_is_symbol(&w[3], '=');
@@ -219,7 +219,7 @@ static int compare_names(const void *a, const void *b) {
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* Names that have a value, in byte order: traversal of a table has none. */
+/* Names that have a value, in byte order, because the traversal of a table has no fixed order. */
 struct names {
     const char **list;
     size_t count;
@@ -251,7 +251,7 @@ static bool begin_names(struct script_context *c, struct names *names) {
     return names->list != NULL;
 }
 
-/* The variable whose name is like this one. */
+/* The variable with the most similar name. */
 static const char *nearest_variable(struct script_context *c, const struct running *running, const char *name) {
     struct names names;
     lua_State *L = running->L;

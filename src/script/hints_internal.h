@@ -1,4 +1,4 @@
-/* Hints at misspelt names in messages. Texts are in the arena of the call, "" where there is nothing to say. */
+/* Hints about misspelt names in messages. Texts are in the arena of the call, and "" if there is no hint. */
 #ifndef GRAY_SCRIPT_HINTS_INTERNAL_H
 #define GRAY_SCRIPT_HINTS_INTERNAL_H
 
@@ -8,8 +8,8 @@
 const char *hint_of_nil(struct script_context *context);
 /* Raises an error if the running call has `name = VARIABLE` with an undefined global; once for each line. */
 void hint_check_field(struct script_context *context, const char *name);
-/* About "attempt to call a nil value (field 'x')" and the like. May not raise: it is called while an error is handled.
- */
+/* A hint for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is called while an error
+ * is handled. */
 const char *hint_of_lua_error(lua_State *L, const char *message);
 
 #endif

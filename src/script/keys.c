@@ -1,11 +1,10 @@
 /* gr.keys: values at times, and a function of seconds that interpolates them. Every value is a row of numbers, divided
- * into fields of three kinds: numbers that mix linearly, quaternions and directions. The latter two are points of unit
- * spheres, where a straight line is the great circle (K. Shoemake, "Animating Rotation with Quaternion Curves",
- * SIGGRAPH 1985).
- *
- * Between two keys every curve is a cubic Bezier curve, evaluated by de Casteljau's scheme with the mix of the field:
- * so a value that does not change keeps its bits. The inner control values of curve = 'catmull' are a third of a step
- * along the tangents of Catmull and Rom, "A Class of Local Interpolating Splines", 1974, for keys at any distances. */
+ * into fields of three kinds: numbers that are mixed linearly, quaternions and directions. The latter two are points of
+ * unit spheres, where a great circle replaces the straight line (K. Shoemake, "Animating Rotation with Quaternion
+ * Curves", SIGGRAPH 1985). Between two keys every curve is a cubic Bezier curve, evaluated by de Casteljau's scheme
+ * with the mix of the field. So a value that does not change keeps its bits. The inner control values of curve =
+ * 'catmull' are a third of a step along the tangents of Catmull and Rom, "A Class of Local Interpolating Splines",
+ * 1974, for keys at any distances. */
 #include "script/record_internal.h"
 
 #include "base/unreachable.h"
@@ -25,11 +24,12 @@ struct key_field {
     uint32_t offset, count; /* its numbers in a row */
 };
 
-/* What one call of gr.keys makes: a block of Lua, the upvalue of the function. A row has `width` numbers. */
+/* The result of one call of gr.keys: a block of Lua memory, which is an upvalue of the function. A row has `width`
+ * numbers. */
 struct keys {
     struct key_field fields[FIELDS_MAX];
     uint32_t field_count, width, count;
-    bool named; /* the value is a table of the fields; else it is the only field */
+    bool named; /* the value is a table of the fields; otherwise it is the only field */
     enum key_curve curve;
     double numbers[]; /* count times; count values, as many controls before and after them: rows */
 };
@@ -74,7 +74,7 @@ static double angle_of(const double *a, const double *b, uint32_t count) {
     return 2 * el_atan2(length_of(difference, count), length_of(sum, count));
 }
 
-/* out may be a or b. Between opposite vectors, where no great circle is the shortest, a. */
+/* out may be a or b. The result is a for opposite vectors, which have no shortest great circle. */
 static void mix_units(const double *a, const double *b, uint32_t count, double share, double *out) {
     double angle = angle_of(a, b, count), sine = el_sin(angle);
     double from = el_sin((1 - share) * angle), to = el_sin(share * angle);
@@ -95,7 +95,7 @@ static void mix(const struct key_field *field, const double *a, const double *b,
         out[i] = a[i] + (b[i] - a[i]) * share;
 }
 
-/* The difference from a to b: of unit vectors the tangent at a whose length is the angle. */
+/* The difference from a to b. For unit vectors it is the tangent at a whose length is the angle. */
 static void difference(const struct key_field *field, const double *a, const double *b, double out[WIDTH_MAX]) {
     for (uint32_t i = 0; i < field->count; i++)
         out[i] = b[i] - a[i];
@@ -185,7 +185,7 @@ static uint32_t count_of(const struct reader *reader, enum field_kind kind, cons
     return (uint32_t)count;
 }
 
-/* A field of the first key decides what the others must be. */
+/* A field of the first key determines the form of the others. */
 static void describe_field(const struct reader *reader, const char *name, int index) {
     struct keys *keys = reader->keys;
     struct key_field *field = &keys->fields[keys->field_count];
@@ -208,7 +208,7 @@ static bool has_names(lua_State *L, int index) {
     return named;
 }
 
-/* The names of the table at an index, in byte order, in the table at reader->names. */
+/* Collects the names of the table at an index, in byte order, in the table at reader->names. */
 static void list_names(const struct reader *reader, int index) {
     lua_State *L = reader->L;
     const char *names[FIELDS_MAX];
@@ -232,7 +232,7 @@ static void list_names(const struct reader *reader, int index) {
     }
 }
 
-/* Pushes the name of a field, and returns it; NULL, and nothing is pushed, of a value without names. */
+/* Pushes the name of a field, and returns it. For a value without names it pushes nothing and returns NULL. */
 static const char *push_name(lua_State *L, const struct keys *keys, int names, uint32_t field) {
     if (!keys->named)
         return NULL;
@@ -326,7 +326,7 @@ static void read_time(const struct reader *reader, int key) {
                    time, (int)reader->key, keys->numbers[reader->key - 1]);
 }
 
-/* The key at an absolute index, with its controls. */
+/* Reads the key at an absolute index, with its controls. */
 static void read_key(struct reader *reader, int key) {
     static const char *const controls[] = {[ROW_BEFORE] = "before", [ROW_AFTER] = "after"};
     struct keys *keys = reader->keys;
@@ -360,8 +360,8 @@ static void read_key(struct reader *reader, int key) {
 
 /* --- controls --- */
 
-/* A quaternion and its negative are the same rotation: each is chosen on the side of its neighbour, for the shorter
- * way. */
+/* A quaternion and its negative are the same rotation. Of the two, the one closer to its neighbour is chosen, for the
+ * shorter rotation. */
 static void choose_side(const struct key_field *field, const double *neighbour, double *value) {
     double dot = 0;
     if (field->kind != FIELD_TURN)
@@ -372,7 +372,7 @@ static void choose_side(const struct key_field *field, const double *neighbour, 
         value[i] = -value[i];
 }
 
-/* The change per second at a key, times a third of the steps at both of its sides. */
+/* The derivative at a key, times a third of the steps on both sides. */
 static void set_tangent(struct keys *keys, const struct key_field *field, uint32_t key) {
     const double *times = keys->numbers;
     uint32_t first = key > 0 ? key - 1 : key, last = key + 1 < keys->count ? key + 1 : key;
@@ -450,7 +450,7 @@ static void push_field(lua_State *L, const struct key_field *field, const double
     }
 }
 
-/* The share of the interval through the function `ease` of the call, upvalue 3. */
+/* The fraction of the interval, mapped by the function `ease` of the call, upvalue 3. */
 static double eased(lua_State *L, double share) {
     if (lua_isnil(L, lua_upvalueindex(3)))
         return share;
@@ -471,7 +471,7 @@ static int value_at(lua_State *L) {
     double time = lua_isnoneornil(L, 1) ? frame_time(&context_of(L)->frame) : luaL_checknumber(L, 1);
     if (isnan(time))
         luaL_error(L, "gr.keys: the time is not a number (nan)");
-    /* The last key that is not later: low; the first that is: high. */
+    /* low: the last key that is not later; high: the first key that is later. */
     uint32_t low = 0, high = keys->count;
     while (high - low > 1) {
         uint32_t middle = low + (high - low) / 2;

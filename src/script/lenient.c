@@ -371,7 +371,7 @@ static void name_fields(struct script_context *c, const struct script_function *
     }
 }
 
-/* Whether the value at the top is meant for the parameter, whatever its field is called. */
+/* Whether the value at the top fits the parameter, independent of the name of its field. */
 static bool is_meant_by_type(lua_State *L, const struct script_parameter *p) {
     const struct handle *handle = handle_at(L, -1);
     switch ((int)p->kind) {
@@ -393,7 +393,7 @@ static bool is_meant_by_type(lua_State *L, const struct script_parameter *p) {
     return false;
 }
 
-/* Fields whose names mean nothing, for parameters that have no value yet; of several the first in byte order. */
+/* Fields with unknown names, for parameters without a value; of several, the first in byte order. */
 static void name_fields_by_type(struct script_context *c, const struct script_function *function, int table,
                                 int named) {
     lua_State *L = c->lua;
@@ -575,7 +575,7 @@ static bool run(struct script_context *c, const struct script_function *function
     return false;
 }
 
-/* gr.sphere('head', skin): a material among the arguments that the form does not take. */
+/* gr.sphere('head', skin): a material among the arguments that the form does not accept. */
 static void take_material(struct script_context *c, const struct script_function *function, int first,
                           struct node *node) {
     int last = lua_gettop(c->lua);

@@ -41,7 +41,7 @@ void *lenient_ghost_as(struct script_context *c, const struct handle *handle, en
     return ghost->node;
 }
 
-/* Adds the node at `index`, if it is one, to the ghost at `at` as a child. */
+/* Adds the value at `index`, if it is a node, to the ghost at `at` as a child. */
 static void ghost_take(struct script_context *c, int at, int index) {
     const struct handle *given = handle_at(c->lua, index), *holder = handle_at(c->lua, at);
     struct ghost *ghost = ghost_of(holder);
@@ -92,7 +92,7 @@ static void ghost_take_colour(struct script_context *c, struct ghost *ghost, int
             const struct handle *made = handle_at(L, -1);
             ghost->material = made && made->type == HANDLE_MATERIAL ? made->pointer : NULL;
         }
-        lua_settop(L, last + 1); /* the ghost of the result */
+        lua_settop(L, last + 1); /* the ghost that is the result */
     }
 }
 
@@ -138,7 +138,7 @@ static int ghost_index(lua_State *L) {
     lua_settop(L, 2);
     if (lenient_own_field(L))
         return 1;
-    if (lua_type(L, 2) == LUA_TNUMBER) /* a loop over its entries ends */
+    if (lua_type(L, 2) == LUA_TNUMBER) /* a loop over its entries ends immediately */
         return 0;
     lenient_push_ghost(L, lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "ghost", true);
     return 1;
@@ -189,7 +189,7 @@ static int handle_newindex(lua_State *L) {
     return 0;
 }
 
-/* Arithmetic with a ghost is a ghost; comparisons are false, its length is 0. */
+/* The result of arithmetic with a ghost is a ghost; comparisons are false, and its length is 0. */
 static int ghost_arithmetic(lua_State *L) {
     lenient_push_ghost(L, "ghost", false);
     return 1;

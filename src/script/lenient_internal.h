@@ -37,7 +37,7 @@ void lenient_warn(struct script_context *context, const char *format, ...) __att
 /* Pushes the original function of gr, even if the script has replaced it. */
 void lenient_push_function(lua_State *L, const char *name);
 
-/* A node that the script has made. */
+/* A node that the script has created. */
 void lenient_note_node(struct script_context *context, struct node *node);
 
 /* lenient_handles.c */
@@ -47,7 +47,7 @@ void lenient_push_ghost(lua_State *L, const char *name, bool is_method);
 void *lenient_ghost_as(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
 /* Pushes the field at index 2 of the value at index 1 if the script has set it. */
 bool lenient_own_field(lua_State *L);
-/* __index of handles without methods: fields that do not exist are ignored with a warning. */
+/* __index of handles without methods: ignores fields that do not exist, with a warning. */
 int lenient_handle_index(lua_State *L);
 /* Adds the arguments `first` to `last`, and the entries of tables among them, to the ghost at stack index `at`. */
 void lenient_ghost_take(struct script_context *context, int at, int first, int last);

@@ -1,5 +1,5 @@
-/* A lexer of Lua for looking at the text of scenes: comments are skipped, names, strings, numbers and single symbols
- * are tokens. It follows the Lua 5.4 manual, section 3.1, as far as comments, strings and names go. */
+/* A lexer for reading the text of Lua scenes: it skips comments; names, strings, numbers and single symbols are tokens.
+ * It follows section 3.1 of the Lua 5.4 manual for comments, strings and names. */
 #include "script/lexer_internal.h"
 
 #include <string.h>

@@ -19,10 +19,10 @@ struct lexer {
     int line;
 };
 
-/* The next token; TOKEN_END at the end of the text, also again. */
+/* The next token. At the end of the text it returns TOKEN_END, however often it is called. */
 struct token lexer_next(struct lexer *lexer);
 void lexer_skip_line(struct lexer *lexer);
 bool token_is(const struct token *token, enum token_kind kind, const char *text);
-bool token_is_symbol(const struct token *token, char c); /* of one character, as all symbols are */
+bool token_is_symbol(const struct token *token, char c); /* of one character, as every symbol token is */
 
 #endif

@@ -1,10 +1,8 @@
-/* What the text of a scene shows before it runs: the form of its pictures, and the order of transforms
- * (docs/language.md 12.4): the convention of the course changed in autumn
- * 2015 together with the stock scenes. Signs of the new one: names of the project dialect, tables with named fields, an
- * explicit call, a mesh by file name, table.unpack. Signs of the old one, which are used if there is no sign of the new
- * one: readobj, a bare unpack, meshes given by vertex tables. A gr.mesh whose first argument is a material is project
- * dialect.
- */
+/* Decides from the text of a scene, before it runs, the form of its pictures and the order of transforms
+ * (docs/language.md 12.4). The convention of the courses changed in autumn 2015 together with the stock scenes.
+ * Evidence for the new order: names of the project dialect, tables with named fields, an explicit call, a mesh by file
+ * name, table.unpack. Evidence for the old order, which counts only without evidence for the new one: readobj, a bare
+ * unpack, meshes from vertex tables. A gr.mesh whose first argument is a material belongs to the project dialect. */
 #include "script/order_internal.h"
 
 #include "base/arena.h"
@@ -20,7 +18,7 @@
 enum {
     PATHS = 4096,
     SCENE_LIMIT = 1 << 26,
-    SELF_LIMIT = 1 << 28, /* of the scene itself, as where it is run */
+    SELF_LIMIT = 1 << 28, /* of the scene itself, or a folder where files are searched */
     SIBLING_LIMIT = 1 << 20,
     SIBLINGS = 300,
     DEPTH = 8,
@@ -192,7 +190,7 @@ struct search {
     int visited_count;
     struct evidence evidence;
     struct file_search files; /* for those that are not at the path in the script */
-    bool no_memory, unread;   /* unread: the scene itself, with the error */
+    bool no_memory, unread;   /* unread: the scene itself could not be read; with the error */
     struct error error;
 };
 
@@ -274,8 +272,8 @@ static void scan_file(struct search *search, const char *path, int depth) {
     search->visited[search->visited_count++] = copy;
     struct file_bytes bytes;
     struct error error;
-    /* The user named the scene itself; it may be a link to any file. Its text decides how it is shown, so it must be
-     * read; other files may be missing. */
+    /* The user named the scene itself, so it may be a link to any file. It must be readable, because its text decides
+     * how it is rendered; other files may be missing. */
     if (!path_policy_map(depth > 0 ? search->path_policy : NULL, path, depth > 0 ? SCENE_LIMIT : SELF_LIMIT, &bytes,
                          &error)) {
         if (depth == 0) {

@@ -1,6 +1,6 @@
 /* The order in which transforms compose (docs/language.md 12.4), and whether all pictures have the table form without a
- * background, decided from the text of a scene before it runs. No
- * Lua state is involved: a lexer skips comments and strings, a few patterns of words are evidence. */
+ * background, decided from the text of a scene before it runs. This needs no Lua state: a lexer skips comments and
+ * strings, and a few patterns of words are evidence. */
 #ifndef GRAY_SCRIPT_ORDER_INTERNAL_H
 #define GRAY_SCRIPT_ORDER_INTERNAL_H
 

@@ -19,7 +19,7 @@
 
 enum { RECORD_POINTS = 1000 };
 
-/* t[x] of a symbol is nil. */
+/* Indexing a table with a symbol, t[x], gives nil. */
 #define TABLE_HINT "; a number of the recorded function cannot be the index of a table; use gr.lookup(t, i)"
 #define FOR_HINT                                                                                                       \
     "; the bounds of a for loop must not depend on the arguments of the function, gr.loop(n, state, f) may end "       \
@@ -95,8 +95,8 @@ static int add_position(lua_State *L) {
     return 1;
 }
 
-/* Replaces the sentence on top by "scene.lua:12: SENTENCE" with the line where the function begins; not if it is one of
- * C, as math.log. */
+/* Replaces the sentence on top by "scene.lua:12: SENTENCE" with the line where the function begins; not for a C
+ * function, such as math.log. */
 static void name_function(lua_State *L, int function) {
     lua_Debug where;
     lua_pushvalue(L, function);
@@ -299,7 +299,8 @@ static double corner(const struct vec3 *p, int k) {
     return k == 0 ? p->x : k == 1 ? p->y : p->z;
 }
 
-/* The point within bounds: whole and half numbers, zeros of both signs and equal coordinates where they fit. */
+/* A point within the bounds: whole and half numbers, zeros of both signs and equal coordinates, if the bounds contain
+ * them. */
 static void put_in_bounds(uint32_t i, const struct box *bounds, double out[3]) {
     for (int k = 0; k < 3; k++) {
         double low = corner(&bounds->min, k), high = corner(&bounds->max, k);
@@ -443,8 +444,8 @@ static struct texture texture_of(const struct recording *recording) {
     return out;
 }
 
-/* Calls `run` with the function at an absolute index and `data`. Raises every error, with the name of the argument in
- * front. */
+/* Calls `run` with the function at an absolute index and `data`. Raises every error, prefixed by the name of the
+ * argument. */
 static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
     lua_State *L = context->lua;
     struct recorder *recorder = context->recorder;

@@ -1,6 +1,6 @@
-/* Recorded functions compared with Lua where they are used: within the bounds of the shapes whose materials have them,
- * of implicit solids, fogs and displaced meshes. Bounds are in object space, as p is. What is infinite counts within
- * +-100. A function is compared before a picture is rendered, again only if its bounds have grown since. */
+/* Compares recorded functions with Lua at points where they are used: within the bounds of the shapes whose materials
+ * use them, and of implicit solids, fogs and displaced meshes. Bounds are in object space, as p is. Infinite bounds are
+ * replaced by +-100. A function is compared before a picture is rendered, and again only if its bounds have grown. */
 #include "script/record_internal.h"
 
 #include "base/mem.h"
@@ -77,7 +77,7 @@ static void use_material(struct script_context *context, const struct material *
         use_texture(context, bump->texture.authored, bounds);
 }
 
-/* The material of an operand without its own is that of a solid above it. */
+/* An operand without a material has the material of a solid above it. */
 static const struct material *inherited_material(const struct scene_traversal *t) {
     for (uint32_t k = t->depth; k-- > 0;) {
         const struct node *node = t->steps[k].node;
@@ -99,7 +99,7 @@ static void use_node(struct script_context *context, const struct scene_traversa
         use_texture(context, node->bump->texture.authored, &bounds);
 }
 
-/* Every node once: instances may be on millions of paths. */
+/* Visits every node once, because instances may be on millions of paths. */
 static bool use_nodes(struct script_context *context, const struct node *root, struct error *error) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
     uint8_t *seen = mem_alloc_zero((size_t)context->scene.node_total + 1, sizeof *seen);

@@ -39,12 +39,12 @@ struct decision {
 /* The first argument of a function: a point, or a unit direction. */
 enum record_domain { RECORD_POINTS_OF_SPACE, RECORD_DIRECTIONS };
 
-/* A function that was recorded: for comparisons in the bounds of what it is put on. */
+/* A function that was recorded, for comparisons within the bounds of the objects that use it. */
 struct recorded_function {
     const struct expr_program *program;
     int reference; /* the function, in the registry */
     enum record_domain domain;
-    struct box bounds; /* where it is used; empty: nowhere that is known */
+    struct box bounds; /* where it is used; empty: no place is known */
     bool is_compared;  /* in these bounds */
     struct recorded_function *next;
 };
@@ -55,8 +55,8 @@ struct recorder {
     struct expr_graph graph;
     struct decision *decisions;   /* of the path, RECORD_PATHS of them */
     struct path_bounds *narrowed; /* record_interval.c; of each node, EXPR_NODES of them */
-    uint32_t *answers;            /* of each node: 2 * path + answer, where `path` has decided it; EXPR_NODES of them */
-    uint32_t depth, taken;        /* decisions of the path, and those that the call has come to */
+    uint32_t *answers;            /* of each node: 2 * path + answer, if `path` has decided it; EXPR_NODES of them */
+    uint32_t depth, taken;        /* decisions of the path, and the number of decisions that the call has reached */
     uint32_t path;                /* number of the call, from 1 */
     uint32_t serial;              /* of the recording: symbols of others are refused */
     bool active;                  /* symbols may be used */
@@ -115,18 +115,18 @@ void record_compare_in_bounds(lua_State *L, const struct recorded_function *func
 
 /* record_interval.c */
 void record_bounds_end(struct recorder *recorder);
-/* 1 or 0 where the condition holds for all points of the path, or for none; -1: for some, or not known. */
+/* 1 if the condition holds for all points of the path, 0 if it holds for none, -1 if for some or not known. */
 int record_bounds_prove(const struct recorder *recorder, uint32_t condition);
-/* The path goes on where the condition has this answer. False: no memory. */
+/* On the path, the condition has this answer from now on. False: no memory. */
 bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer);
 
 /* record_bounds.c */
-/* Remembers the function at an absolute index. Raises an error: no memory. */
+/* Stores the function at an absolute index. Raises an error: no memory. */
 void record_remember(struct script_context *context, int index, const struct expr_program *program,
                      enum record_domain domain);
 
 /* display_colour.c */
-/* Whether a value is a colour of the screen. Raises an error for a string '#...' that is no colour. */
+/* Whether a value is a display colour. Raises an error for a string '#...' that is not a colour. */
 bool display_colour_at(lua_State *L, int index, struct vec3 *out);
 /* An argument that is a colour of the screen; where textures are accepted it is one. False: it is something else. */
 bool display_colour_read(struct script_context *c, int index, const struct script_parameter *p,

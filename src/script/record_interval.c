@@ -1,8 +1,7 @@
-/* Decisions that bounds make: a condition that holds for all points of a path, or for none, is no branch. Nodes are
- * bounded by interval arithmetic (expr/expr_interval.h) from inputs of any finite size; each decision of the path
- * narrows the bounds of the two sides of its comparison. So `if r < 1 ... elseif r < 2` after `r < 1` has no path that
- * no point takes. The bounds depend on the decisions of the path alone, so that every call of it comes to the same
- * ones. */
+/* Decisions by bounds: a condition that holds for all points of a path, or for none, makes no branch. Nodes are bounded
+ * by interval arithmetic (expr/expr_interval.h) from inputs of any finite size. Each decision of the path narrows the
+ * bounds of the two sides of its comparison. So `if r < 1 ... elseif r < 2` makes no path without points. The bounds
+ * depend only on the decisions of the path, so every call on that path computes the same bounds. */
 #include "script/record_internal.h"
 
 #include "base/mem.h"
@@ -11,7 +10,7 @@
 #include <float.h>
 #include <math.h>
 
-/* Nodes that are visited for the bounds of one condition; what lies deeper is not known. */
+/* The limit of nodes that are visited for the bounds of one condition; deeper nodes are treated as unknown. */
 enum { MAX_VISITS = 200 };
 
 /* Of nodes: bounds on one path of one recording. */
@@ -63,10 +62,10 @@ static struct expr_interval of_constant(const struct expr_node *node) {
 
 static struct expr_interval meet(struct expr_interval a, struct expr_interval b) {
     struct expr_interval out = {fmax(a.low, b.low), fmin(a.high, b.high), a.may_be_nan && b.may_be_nan};
-    return out.low <= out.high ? out : a; /* nothing in common: no point comes here */
+    return out.low <= out.high ? out : a; /* empty intersection: no point takes this path */
 }
 
-/* visits: how many are left. A texel has an address among its operands, which is exact as a constant. */
+/* visits: the remaining number. A texel has an address among its operands, which is exact as a constant. */
 static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t at, int *visits) {
     const struct expr_node *node = &recorder->graph.nodes[at];
     struct expr_interval operands[3] = {{0, 1, false}, {0, 1, false}, {0, 1, false}}, out;
@@ -101,7 +100,7 @@ static void narrow(struct recorder *recorder, uint32_t node, struct expr_interva
         recorder->narrowed[node] = (struct path_bounds){bounds, recorder->serial, recorder->path};
 }
 
-/* Of a comparison of a with b. Where it does not hold, b is less, or one of them is NaN. */
+/* The effect of a comparison of a with b. If it is false, b is less, or one of them is NaN. */
 bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer) {
     const struct expr_node node = recorder->graph.nodes[condition];
     bool is_order = node.operation == EXPR_LESS || node.operation == EXPR_LESS_EQUAL ||

@@ -102,7 +102,7 @@ static const struct allowed allowed_names[] = {
     {LUA_DBLIBNAME, " getinfo traceback "},
 };
 
-/* What Lua 5.4 has beyond them. */
+/* Functions of Lua 5.4 that older versions did not have. */
 static const struct allowed removed_names[] = {
     {LUA_OSLIBNAME, " execute setlocale tmpname "},
     {LUA_IOLIBNAME, " popen tmpfile "},

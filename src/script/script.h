@@ -87,9 +87,9 @@ struct script_host {
     uint32_t frame_limit;                /* of gr.frames; 0: FRAMES_MAX */
     void (*animates)(void *context);     /* the script has called gr.frames */
     void (*frame_begins)(void *context); /* another frame of it: the script's time counts from here */
-    /* In a window, or NULL: the number of the frame to render after `frame` (number 0: none yet); 0: no more. */
+    /* For a window, or NULL: the number of the frame to render after `frame` (number 0: none yet); 0: no more. */
     uint32_t (*next_frame)(void *context, const struct frame *frame);
-    void (*rewinds)(void *context); /* that frame is before the one drawn last: the script ends, to run again */
+    void (*rewinds)(void *context); /* that frame is before the last drawn one: the script ends, and runs again */
 };
 
 /* The time limit under these options; 0: none. */

@@ -104,12 +104,12 @@ enum {
     NOT_ZERO = 8,
     OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
     OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
-    OR_CURVE = 2048, /* of KIND_CHOICE: a function of the light is accepted: `curve` is set */
-    /* Of KIND_COLOUR: a function of the direction is accepted: `program` is set, vector is 1. Of KIND_FUNCTION: it is
-     * one of the direction. */
+    OR_CURVE = 2048, /* of KIND_CHOICE: also accepts a function of the light, which sets `curve` */
+    /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and vector is 1. Of
+     * KIND_FUNCTION: it is a function of the direction. */
     OR_PROFILE = 512,
-    OR_FUNCTION = 1024, /* of KIND_COLOUR: a function of the point is accepted, likewise */
-    OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: a colour of the screen is accepted: `display` is set */
+    OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
+    OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
     REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
     GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
 };
@@ -186,8 +186,8 @@ const struct value_function *value_function_at(size_t index);
 
 /* The row of that name, or NULL. */
 const struct script_function *function_find(enum owner owner, const char *name);
-/* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead: only
- * those whose arguments are all optional, and node:render, have fields. */
+/* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead. Only
+ * methods whose arguments are all optional, and node:render, have fields. */
 bool function_takes_names(const struct script_function *function);
 /* Reads the next name of a form: false at its end. *index is its parameter. */
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);

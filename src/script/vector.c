@@ -525,8 +525,8 @@ static int turbulence(lua_State *L) {
 
 /* --- pictures --- */
 
-/* The picture of a texture as a function, with what gr.texture says of the lookup. Its numbers are those of the file,
- * unless the texture has an encoding of its own. */
+/* The picture of a texture as a function, with the lookup of gr.texture. Its numbers are those of the file, unless the
+ * texture has an explicit encoding. */
 static struct image_function *make_image_function(struct script_context *context, const struct texture_image *image) {
     struct error error = {0};
     struct transfer_function transfer = {TRANSFER_UNSTATED, 0};

@@ -26,7 +26,8 @@ const struct curve *curve_build(struct arena *arena, const struct curve_input *i
 struct box curve_bounds(const struct curve *curve);
 /* The least and the greatest dot(g, p) over the shape. */
 void curve_extent(const struct curve *curve, struct vec3 g, double *lo, double *hi);
-/* Piece `number` as Bezier points of x, y, z and of half the width; pieces turn little. False: there are fewer. */
+/* Piece `number` as Bezier points of x, y, z and of half the width; the direction changes little within a piece. False:
+ * there are fewer pieces. */
 bool curve_piece_tube(const struct curve *curve, uint32_t number, double tube[4][4]);
 /* The part is a piece of the spline, u the place on it. Every crossing enters: the ribbon faces the ray. */
 bool curve_crossings(const struct curve *curve, const struct ray *ray, struct geom_scratch *scratch,

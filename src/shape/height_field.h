@@ -23,8 +23,8 @@ struct height_field_input {
 
 const struct height_field *height_field_build(struct arena *arena, const struct height_field_input *input,
                                               struct error *error);
-/* The input of the same surface on a grid that is `n` times as fine, with heights in the arena: along the edges and the
- * diagonals of the cells they are linear. False: more than 32768 columns or rows, no memory. */
+/* The input of the same surface on a grid that is `n` times as fine, with heights in the arena: heights are linear
+ * along the edges and the diagonals of the cells. False: more than 32768 columns or rows, or no memory. */
 bool height_field_refine(const struct height_field *field, uint32_t n, struct arena *arena,
                          struct height_field_input *out, struct error *error);
 double height_field_step(const struct height_field *field); /* the diagonal of a cell on the ground */

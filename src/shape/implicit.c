@@ -16,11 +16,11 @@
 
 #include <math.h>
 
-/* Shares of the size. Two crossings closer than the resolution may be missed together. The bracket of a crossing ends
- * at the accuracy. */
+/* Fractions of the size. Two crossings that are closer than the resolution may be missed together. A crossing is
+ * located to the accuracy. */
 static const double resolution = 0x1p-25, accuracy = 0x1p-46;
-/* WORK: the limit of instructions of the function for one line; one over intervals counts as ten. Beyond it, stretches
- * are not divided further. GUESS: room for crossings in the scratch memory. */
+/* WORK: the limit of operations of the function for one line; an interval operation counts as ten. Beyond the limit,
+ * segments are not divided further. GUESS: room for crossings in the scratch memory. */
 enum { WORK = 4000000, GUESS = 64 };
 /* Parts of crossings: on a side of the bounds its axis, on a ball, between regions. All others are numbers of regions.
  */
@@ -35,10 +35,10 @@ struct search {
     bool inside;                   /* before the current place */
     double at, value;              /* of the function, where it was evaluated last */
     uint64_t work;
-    struct crossing waiting; /* not given out yet; the next one may cancel it */
+    struct crossing waiting; /* not returned yet; the next one may cancel it */
     bool has_waiting, has_found, is_done, is_full;
     bool is_any;           /* any crossing does */
-    bool is_unknown;       /* `inside` is not valid, because the stretches before were skipped */
+    bool is_unknown;       /* `inside` is not valid, because the segments before were skipped */
     const struct ray *ray; /* of a nearest hit: its interval; then `found` */
     struct crossing *found;
     struct geom_scratch *scratch; /* of a list */
@@ -134,8 +134,8 @@ static double evaluate(struct search *search, const struct expr_program *program
     return outputs[0];
 }
 
-/* Bounds of the function and of its slope over each of the eight parts; or over all of them in each case of its jumps.
- */
+/* Bounds of the function and of its slope over each of the eight parts, or over all of them in each case of its
+ * discontinuities. */
 static void bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
                           bool are_cases, struct expr_lane_range *out) {
     unsigned char memory[expr_lanes_size(program) + IMPLICIT_ALIGNMENT];
@@ -229,7 +229,7 @@ static bool stays(const struct search *search, const struct part *part, struct s
     return below ? farthest < rounding : farthest > -rounding;
 }
 
-/* On which side of the surface a place is, as far as bounds say. */
+/* The side of the surface at a point, if bounds decide it. */
 enum side { SIDE_OUTSIDE, SIDE_INSIDE, SIDE_UNKNOWN };
 
 static enum side side_of_lane(const struct expr_lane_range *range, int lane) {
@@ -238,7 +238,7 @@ static enum side side_of_lane(const struct expr_lane_range *range, int lane) {
     return range->high[lane] < 0 && !(range->may_be_nan >> lane & 1) ? SIDE_INSIDE : SIDE_UNKNOWN;
 }
 
-/* On both sides of a jump the sign may be the same. */
+/* On both sides of a discontinuity the sign may be the same. */
 static enum side side_of_cases(struct search *search, const struct expr_program *program, double a, double b) {
     const double ends[EXPR_LANES + 1] = {[0] = a, [EXPR_LANES] = b};
     struct expr_lane_range range;
@@ -249,7 +249,7 @@ static enum side side_of_cases(struct search *search, const struct expr_program 
     return side;
 }
 
-/* The line is on a known side from s on. */
+/* From s on, the line is on a known side. */
 static void settle(struct search *search, bool inside, double s, uint32_t number, uint32_t first_number) {
     if (search->is_unknown)
         search->inside = inside;
@@ -281,7 +281,7 @@ static void search_part(struct search *search, uint32_t number, const struct par
         pass_change(search, number, part);
 }
 
-/* The value at s, which is remembered for the next part. */
+/* The value at s, which is stored for the next part. */
 static double value_at(struct search *search, const struct expr_program *program, double s) {
     if (search->at != s)
         search->value = evaluate(search, program, s);
@@ -322,8 +322,8 @@ struct node_box {
     double lo[3], hi[3];
 };
 
-/* The side by the value in the middle of the region and the slopes. They bound the function by linear functions, whose
- * extremes are at the ends of the stretch. */
+/* Decides the side by the value at the centre of the region and by the slopes. They bound the function by linear
+ * functions, whose extremes are at the ends of the segment. */
 static enum side side_by_slopes(const struct search *search, const struct implicit_region *region,
                                 const struct node_box *box, double s0, double s1) {
     double lows[2], highs[2];
@@ -359,7 +359,7 @@ static void pass_surface(struct search *search, uint32_t number, double s0, doub
     search->value = value;
 }
 
-/* Whether the ray begins after s. Of such a stretch it needs only the side at its end. */
+/* Whether the ray begins after s. For such a segment only the side at its end is needed. */
 static bool is_before(const struct search *search, double s) {
     return search->ray && line_t(&search->line, s) <= search->ray->t_min;
 }
@@ -394,7 +394,7 @@ static void pass_node(struct search *search, uint32_t node, const struct node_bo
         pass_region(search, node, box, s0, s1);
         return;
     }
-    /* Visits the parts in order. The line changes to the other half of an axis where it meets the middle. */
+    /* Visits the parts in order. The line changes to the other half of an axis where it crosses the middle. */
     double middles[3], meets[3];
     for (int k = 0; k < 3; k++) {
         middles[k] = region_middle(box->lo[k], box->hi[k]);
@@ -531,8 +531,8 @@ static double gradient_at(const struct expr_program *program, struct vec3 point,
     return outputs[0];
 }
 
-/* The normal, on the side from which the line crosses. Near contours rounding may have put it on the other side. Where
- * the function jumps there is no gradient, and the direction of the ray takes its place. */
+/* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side. At a
+ * discontinuity there is no gradient, and the direction of the ray is used. */
 static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
     struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
     double length = vec3_length(normal);
@@ -571,7 +571,8 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
         struct vec3 point = ray_at(ray, crossing->t), gradient;
         double off = gradient_at(&solid->programs[program], point, &gradient);
         double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
-        /* One step along the gradient removes the rounding error of the ray, unless the function jumps here. */
+        /* One step along the gradient removes the rounding error of the ray, unless the function is discontinuous here.
+         * */
         double error = solid->size * 2 * accuracy;
         if (square > 0 && fabs(off) < room * sqrt(square))
             point = vec3_add_scaled(point, gradient, -off / square);

@@ -1,6 +1,6 @@
-/* Implicit solids: where a function of a point is below 0, within a box or a ball. A value of NaN is outside. A jump of
- * sign is a surface. The function is a recorded expression. Bounds of its values and slopes prove where a line has no
- * crossing, or one; no gradient has to be given. */
+/* Implicit solids: the points within a box or a ball where a function is negative. A point with the value NaN is
+ * outside. A discontinuity with a change of sign is a surface. The function is a recorded expression. Bounds of its
+ * values and slopes prove that a segment of a line has no crossing, or one. The caller need not give a gradient. */
 #ifndef GRAY_SHAPE_IMPLICIT_H
 #define GRAY_SHAPE_IMPLICIT_H
 
@@ -24,8 +24,8 @@ struct implicit;
 const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error);
 struct box implicit_bounds(const struct implicit *solid);
 bool implicit_is_closed(const struct implicit *solid);
-/* The same as shape_crossings and shape_nearest. A crossing is within 1e-9 of the size of the solid from where the sign
- * changes. Two crossings that are closer than 1e-7 of the size may be missing together. */
+/* The same as shape_crossings and shape_nearest. A crossing is at most 1e-9 of the size of the solid from the point
+ * where the sign changes. Two crossings that are closer than 1e-7 of the size may be missed together. */
 bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
                         struct crossing_list *out);
 bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out);

@@ -5,15 +5,15 @@
 #include "expr/expr_derivative.h"
 #include "shape/implicit.h"
 
-/* A node of the octree over the bounds is a number. Its lowest two bits are the kind. The bits above are, for
- * REGION_SPLIT, the number of the first of its eight parts, and for REGION_SURFACE the number of the region. Bit k of a
- * part is set in the upper half of axis k; the halves meet at region_middle. */
+/* A node of the octree over the bounds is a number. Its lowest two bits are the kind. The other bits are, for
+ * REGION_SPLIT, the index of the first of its eight parts, and for REGION_SURFACE the index of the region. Bit k of the
+ * number of a part is set in the upper half of axis k; the halves meet at region_middle. */
 enum region_kind { REGION_OUTSIDE, REGION_INSIDE, REGION_SURFACE, REGION_SPLIT };
 
 /* A region in which the sign may change. Slopes bound the derivatives along the axes, rounded outwards. */
 struct implicit_region {
     float low[3], high[3];
-    float middle_low, middle_high; /* bounds of the function in the middle of the region; not finite where it is NaN */
+    float middle_low, middle_high; /* bounds of the function at the centre of the region; not finite if it is NaN */
     uint32_t program;              /* the function, shortened for the region */
 };
 

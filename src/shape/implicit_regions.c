@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What bounds the work and the memory: nodes, instructions that are evaluated over regions, and instructions of
- * shortened programs: beyond KEPT, regions take the program of a larger region, up to twice KEPT in all. */
+/* Limits of the work and of the memory: nodes, instructions that are evaluated over regions, and instructions of
+ * shortened programs. Beyond KEPT, regions use the program of a larger region, up to twice KEPT in all. */
 enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
 /* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
 static const double slope_spread = 0.4;
@@ -27,8 +27,8 @@ struct pending {
     int level;
 };
 
-/* The program of a node that was divided. Candidates live as long as the building; regions keep those that they need.
- */
+/* The program of a node that was divided. Candidates exist only while the octree is built; regions keep those that they
+ * need. */
 struct candidate {
     struct expr_program program;
     uint32_t parent; /* the candidate that it is a part of */
@@ -89,8 +89,7 @@ static bool is_flat(const struct expr_interval slopes[EXPR_DIRECTIONS]) {
     return deviation < slope_spread * slope_spread * length;
 }
 
-/* The program for a region whose choices have been found. False where it is not much shorter. It is overwritten by the
- * next one. */
+/* The program for a region whose choices are known. False if it is not much shorter. The next one overwrites it. */
 static bool shorten(struct building *b, const struct expr_program *whole, int lane, struct expr_program *out) {
     struct expr_stack stack = {.code = b->code, .free = whole->count};
     return expr_shorten(whole, b->choices, (uint32_t)lane, &stack, implicit_aligned(b->scratch), out) &&
@@ -118,7 +117,8 @@ static bool keep_program(struct building *b, const struct expr_program *program,
     return true;
 }
 
-/* The program of a region: the shorter one, or without it (NULL) or without room for it that of the divided node. */
+/* The program of a region: the shortened one; or that of the divided node, if there is no shortened one (NULL) or no
+ * room for it. */
 static bool choose_program(struct building *b, const struct expr_program *shorter, uint32_t candidate, uint32_t *out) {
     if (shorter && b->kept < KEPT)
         return keep_program(b, shorter, out);
@@ -217,7 +217,7 @@ static void evaluate_boxes(struct building *b, const struct expr_program *progra
     *out = outputs[0];
 }
 
-/* The function may jump within a region and have one sign on both sides. */
+/* The function may be discontinuous within a region and have one sign on both sides. */
 static enum region_kind kind_of_cases(struct building *b, const struct expr_program *program, const struct box *box) {
     struct expr_lane_range range;
     evaluate_boxes(b, program, box, true, &range);

@@ -1,5 +1,5 @@
-/* A shape with an axis or edges has one box along them, a curve or a sweep one tube for each of its pieces, which turn
- * little; everything else its bounds (shape_part in shape.c). */
+/* A shape with an axis or edges has one box along them. A curve or a sweep has one tube for each of its pieces, in
+ * which the direction changes little. Every other shape has its bounds (shape_part in shape.c). */
 #include "shape/shape_part.h"
 
 #include "base/unreachable.h"
@@ -55,7 +55,8 @@ static struct vec3 point_of_tube(const struct shape_part *part, int k) {
     return vec3_make(part->tube[0][k], part->tube[1][k], part->tube[2][k]);
 }
 
-/* Along the chord; the second direction is that to which the curve bends, so that the box of a plane curve is flat. */
+/* Along the chord; the second direction is the one to which the curve bends, so that the box of a plane curve is flat.
+ * */
 static void directions_of_tube(const struct shape_part *part, struct vec3 out[3]) {
     struct vec3 begin = point_of_tube(part, 0), chord = vec3_sub(point_of_tube(part, 3), begin);
     struct vec3 inner = vec3_sub(vec3_add(point_of_tube(part, 1), point_of_tube(part, 2)), vec3_scale(begin, 2));

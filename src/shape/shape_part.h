@@ -1,5 +1,6 @@
-/* Boxes with edges in any directions that cover a shape, tighter than its bounds where it is long and thin: a cylinder,
- * a rectangle, a curve. A picture finds shapes by them that its first samples miss (render/thin_map_internal.h). */
+/* Boxes with edges in any directions that cover a shape. They are tighter than its bounds for long and thin shapes: a
+ * cylinder, a rectangle, a curve. Anti-aliasing uses them to find shapes that the first samples of a picture miss
+ * (render/thin_map_internal.h). */
 #ifndef GRAY_SHAPE_SHAPE_PART_H
 #define GRAY_SHAPE_SHAPE_PART_H
 
@@ -26,12 +27,13 @@ struct shape_part {
     };
 };
 
-/* Part `number` of a shape, counted from 0, in its object space; the parts together contain the shape. False: it has no
- * such part, or it has no end. */
+/* Part `number` of a shape, counted from 0, in its object space; together the parts contain the shape. False: it has no
+ * such part, or it is infinite. */
 bool shape_part(const struct shape *shape, uint32_t number, struct shape_part *out);
 /* The part as a box. */
 struct oriented_box shape_part_box(const struct shape_part *part);
-/* Its two halves: across the longest edge of a box in the space that `map` leads to, or at the middle of a curve. */
+/* The two halves of a part: divided across the longest edge of a box in the target space of `map`, or at the middle of
+ * a curve. */
 void shape_part_split(const struct shape_part *part, const struct affine *map, struct shape_part halves[2]);
 
 #endif

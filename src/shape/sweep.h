@@ -25,7 +25,8 @@ const struct sweep_path *sweep_build(struct arena *arena, const struct sweep_inp
 struct box sweep_bounds(const struct sweep_path *sweep);
 /* The least and the greatest dot(g, p) over the shape. */
 void sweep_extent(const struct sweep_path *sweep, struct vec3 g, double *lo, double *hi);
-/* Piece `number` as Bezier points of x, y, z and of the radius; pieces turn little. False: there are fewer. */
+/* Piece `number` as Bezier points of x, y, z and of the radius; the direction changes little within a piece. False:
+ * there are fewer pieces. */
 bool sweep_piece_tube(const struct sweep_path *sweep, uint32_t number, double tube[4][4]);
 /* The part is a piece of the path, u the place of the ball that touches there. */
 bool sweep_crossings(const struct sweep_path *sweep, const struct ray *ray, struct geom_scratch *scratch,

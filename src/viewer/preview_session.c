@@ -36,7 +36,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
         job->settings.path_samples = 1;
         job->settings.noise = job->settings.time_limit = 0;
     }
-    if (view->divide > 1 || view->width > 0) { /* the film defines the part */
+    if (view->divide > 1 || view->width > 0) { /* the film determines the part */
         job->settings.cropped = false;
         job->settings.keep_first = false;
     }

@@ -219,7 +219,7 @@ void viewer_note_stop(struct viewer *viewer, double seconds) {
                    1000 * seconds);
 }
 
-/* No request of the user is open. */
+/* There is no unfinished request of the user. */
 static bool is_served(const struct viewer *viewer) {
     return !viewer->pass.outdated && !viewer->edit.click_waits && !viewer->trace.wanted &&
            viewer->edit.pending.count == 0 && !viewer_needs_overlay(viewer);
@@ -239,7 +239,7 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
     viewer->pass.result = report->stopped ? RESULT_STOPPED : viewer->pass.view.plain ? RESULT_COARSE : RESULT_COMPLETE;
     if (report->stopped)
         return;
-    /* Tiles that were done before a pass was stopped may be denoised now. */
+    /* Tiles that were finished before a pass was stopped may be denoised now. */
     if (path_film_parts(viewer->pass.film.record) != 0) {
         memset(viewer->display.drawn, 0, viewer->display.tiles);
         viewer->large.stale = viewer->large.shown;
@@ -332,7 +332,7 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
     viewer->pass.outdated = false;
 }
 
-/* The complete view once more, with the pixels of the window. */
+/* The complete view again, at the resolution of the window. */
 static void begin_large_pass(struct viewer *viewer, double now) {
     for (uint32_t tile = 0; tile < film_tile_count(&viewer->pass.film); tile++)
         atomic_store(&viewer->pass.film.tiles[tile], FILM_TILE_WANTED);
@@ -449,7 +449,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
         viewer_change_view(viewer);
     while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
         viewer_handle_event(viewer, &event);
-    /* A fine pass of a view that has changed is being stopped: it would show the view before. */
+    /* A fine pass of an outdated view is being stopped: it would show the previous view. */
     bool stale = viewer->pass.outdated && !viewer->pass.view.plain;
     if ((viewer->pass.state == PASS_RUNNING || viewer->pass.state == PASS_STOPPING) && !viewer_plays(viewer) && !stale)
         viewer_draw_tiles(viewer);

@@ -140,7 +140,7 @@ struct viewer_display {
     bool dirty;         /* the image was changed since it was shown */
     bool hud_dirty;     /* the drawing over it is out of date */
     double shown_at, figures_at;
-    bool fits_window; /* the window is to get the size of the picture */
+    bool fits_window; /* the window should get the size of the picture */
 };
 
 /* The mouse. */
@@ -155,11 +155,11 @@ struct viewer_player {
     uint32_t first, step, count; /* the frames that can be shown: first, first + step ... */
     bool playing, loops;
     uint32_t wanted;     /* the frame to go to, or 0 */
-    bool seeking;        /* it was requested, and has not begun */
+    bool seeking;        /* it was requested, and its pass has not begun */
     bool shown;          /* playing: this frame is on the screen */
-    double asked;        /* when it was requested; 0: that is not to be measured */
-    bool restarts_clock; /* the next frame is due at once */
-    bool forgives_delay; /* no frame is left out because the next one comes late */
+    double asked;        /* when it was requested; 0: not measured */
+    bool restarts_clock; /* the next frame is due immediately */
+    bool forgives_delay; /* do not skip frames, even if the next one comes late */
     double origin;       /* when the frame with the index origin_index was due */
     uint32_t origin_index;
     double late, shown_at, began; /* seconds after its time, when it was shown, when playing began */
@@ -167,19 +167,19 @@ struct viewer_player {
     uint32_t played, left_out;    /* since playing began */
 };
 
-/* The view with as many pixels as the window shows (viewer_large.c). */
+/* The view at the resolution of the window (viewer_large.c). */
 struct viewer_large {
     struct share memory;    /* of its film; owned */
     uint32_t width, height; /* of the part that is rendered */
     uint8_t *image;         /* 3 bytes for each pixel; owned */
     uint8_t *drawn;         /* by tile, as in the display; owned */
     size_t tiles;
-    bool shown;                             /* in place of the image of the display */
-    bool stale;                             /* the image is to be drawn again */
+    bool shown;                             /* displayed instead of the image of the display */
+    bool stale;                             /* the image must be drawn again */
     uint32_t refused_width, refused_height; /* there was no memory for this size */
 };
 
-/* A line that is shown for some seconds: which file was saved, or why not. */
+/* A line that is shown for some seconds: the name of a saved file, or an error. */
 struct viewer_notice {
     char text[512];
     bool warns;
@@ -194,7 +194,7 @@ struct viewer {
     bool logs_notes;               /* whether to make notes; set by the caller */
     bool waits;                    /* no script runs; set by the caller */
     double script_began;           /* when the scripts began to run; set by the caller */
-    bool sends_memory;             /* whether memory is sent with a larger pass; set by the caller */
+    bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
     bool open;
     bool keep; /* the scripts run again: camera and edits are kept, earlier pictures are skipped */
@@ -238,7 +238,7 @@ struct viewer_picture {
 bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, const struct viewer_picture *picture,
                   double now, struct error *error);
 void viewer_end(struct viewer *viewer);
-/* Opens it before the first picture, whose size may be this one: it shows how long the script has run. */
+/* Opens it before the first picture, with the probable size of that picture; it shows how long the script has run. */
 bool viewer_open(struct viewer *viewer, const struct window_driver *driver, const char *title, uint32_t width,
                  uint32_t height, struct error *error);
 /* The film is removed: the last image remains visible. */
@@ -247,8 +247,8 @@ void viewer_detach(struct viewer *viewer);
 void viewer_keep(struct viewer *viewer);
 /* Whether the picture with this number is skipped, since a later one is in the window. */
 bool viewer_skips(const struct viewer *viewer, unsigned number);
-/* For control.next_frame: the frame that is wanted or shown, FRAMES_OVER when the script is to go on after the
- * animation, or 0. */
+/* For control.next_frame: the requested or visible frame; FRAMES_OVER if the script is to continue after the animation;
+ * or 0. */
 uint32_t viewer_next_frame(const struct viewer *viewer);
 /* Shows the first line of an error until a picture begins. */
 void viewer_show_message(struct viewer *viewer, const char *text);

@@ -75,8 +75,8 @@ static void draw_menu(struct viewer *viewer) {
     viewer->lights.listed = viewer->lights.listed != used[MENU_LIGHTS];
 }
 
-/* The animation: a row at the bottom. Its parts come first, since they are there between two frames, too, when others
- * are not: their numbers stay. Returns its top. */
+/* The animation: a row at the bottom. Its controls come first, because they also exist between two frames, when others
+ * do not, and so keep their numbers. Returns its top. */
 static int draw_timeline(struct viewer *viewer, const struct figures *figures) {
     struct panel *panel = &viewer->display.panel;
     struct viewer_player *player = &viewer->player;

@@ -90,7 +90,7 @@ static void handle_view_key(struct viewer *viewer, int key, bool control) {
     viewer_change_view(viewer);
 }
 
-/* True: it was one of those of an animation. */
+/* True: it was a key of animations. */
 static bool handle_player_key(struct viewer *viewer, int key) {
     switch (key) {
     case 'k':

@@ -94,18 +94,18 @@ bool viewer_player_continues(const struct viewer *before, const struct picture_r
 enum player_decision viewer_player_decide(struct viewer *viewer, double now);
 void viewer_player_end_pass(struct viewer *viewer, double now); /* chooses pass.divide for the next frame */
 bool viewer_plays(const struct viewer *viewer);
-/* The next frame is not there yet: what is on the screen stays. */
+/* The next frame is not finished yet: the screen does not change. */
 bool viewer_awaits_frame(const struct viewer *viewer, double now);
 void viewer_play(struct viewer *viewer, bool on);
 void viewer_player_loop(struct viewer *viewer);                  /* on, or off again */
 void viewer_step_frames(struct viewer *viewer, int by);          /* pauses */
 void viewer_go_to_frame(struct viewer *viewer, uint32_t number); /* pauses */
-/* The frame that is shown or wanted: its place among those that can be shown, from 0. */
+/* The visible or requested frame: its index among those that can be shown, from 0. */
 uint32_t viewer_frame_index(const struct viewer *viewer);
 uint32_t viewer_frame_number(const struct viewer *viewer, double index);
 
 /* viewer_large.c */
-bool viewer_wants_large(const struct viewer *viewer);       /* the view is complete, and the window larger */
+bool viewer_wants_large(const struct viewer *viewer);       /* the view is complete, and the window is larger */
 bool viewer_large_is_outdated(const struct viewer *viewer); /* the pass is for another size of the window */
 bool viewer_begin_large(struct viewer *viewer);             /* lays out its film; false: there is no memory */
 void viewer_draw_large(struct viewer *viewer);              /* film to image */

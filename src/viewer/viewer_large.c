@@ -1,7 +1,7 @@
-/* A window that is larger than the picture: when the view is complete at the size of the picture, it is rendered once
- * more, with as many pixels as the window shows. That film has a memory of its own, which is sent to the render process
- * with each such pass; the film of the picture, what is picked, saved and drawn over it keep the size of the picture.
- * Until a tile is finished, the picture is shown there in its own pixels. */
+/* A window that is larger than the picture: when the view is complete at the size of the picture, it is rendered again
+ * at the resolution of the window. This film has separate memory, which is sent to the render process with each such
+ * pass. The film of the picture, and everything that is picked, saved or drawn over it, keeps the size of the picture.
+ * Until a tile is finished, the window shows that part of the picture at the resolution of the picture. */
 #include "viewer/viewer_internal.h"
 
 #include "base/mem.h"
@@ -108,7 +108,7 @@ static void tone_large(struct viewer *viewer, const struct tone *tone, uint32_t 
         large->image[3 * at + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
-/* The picture in its own pixels. */
+/* The picture at its own resolution. */
 static void copy_picture(struct viewer *viewer) {
     const struct viewer_large *large = &viewer->large;
     uint32_t width = viewer->request.width, height = viewer->request.height;

@@ -1,8 +1,8 @@
-/* Playing an animation. Each frame is a picture of the script: when its pass is finished, it is shown at the time when
- * it is due, and the next frame is requested at once, so that the script and the build of the next world use the time
- * in which it is visible. The frame rate is held by the number of samples: what remains of the time of a frame beside
- * script and building decides how coarse its pass is. Frames are left out only where the coarsest pass is too slow.
- * Frames have numbers (of the animation) and indices (of the selected ones among them, from 0). */
+/* Plays an animation. Each frame is a picture of the script. When its pass is finished, it is shown at its time, and
+ * the next frame is requested immediately, so that the script and the build of the next world run while it is visible.
+ * The number of samples controls the frame rate: the time of a frame that remains after script and building determines
+ * how coarse its pass is. Frames are skipped only if the coarsest pass is too slow. Frames have numbers (in the
+ * animation) and indices (among the selected frames, from 0). */
 #include "viewer/viewer_internal.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #include <string.h>
 
 enum { PLAYED_DIVIDE_LIMIT = 32 };
-/* Seconds: what a pass takes at least, the pause between two looks at the clock, and a delay after which the time
- * starts again, since the machine did other work. */
+/* Seconds: the minimum duration of a pass, the interval between two checks of the clock, and a delay after which the
+ * time starts again, because the machine did other work. */
 static const double pass_min = 0.004, clock_step = 0.004, delay_max = 1;
-/* Seconds that a frame stays on the screen as it is while the next one is made. */
+/* Seconds that a frame stays unchanged on the screen while the next one is rendered. */
 static const double patience = 0.5;
 
 static uint32_t index_of(const struct viewer_player *player, uint32_t number) {
@@ -60,7 +60,7 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
     if (player->wanted == frame->number)
         player->wanted = 0;
     player->seeking = player->shown = false;
-    viewer->written = true; /* nothing is written of an animation */
+    viewer->written = true; /* a played animation writes no files */
     if (!continues)
         return;
     viewer->input = before->input;
@@ -110,7 +110,7 @@ void viewer_play(struct viewer *viewer, bool on) {
         viewer_halt(viewer, false);
     else if (viewer->block && viewer->pass.result == RESULT_COARSE)
         viewer_draw_tiles(viewer); /* a frame that waited for its time */
-    /* Playing on from the end begins at the first frame. */
+    /* After the end, playing continues at the first frame. */
     if (on && !player->loops && index_of(player, viewer->request.frame.number) + 1 == player->count)
         player->wanted = player->first;
 }
@@ -204,7 +204,7 @@ static bool show_frame(struct viewer *viewer, double now) {
     return true;
 }
 
-/* The frame after this one: the next that can be shown in time. */
+/* The frame after this one: the next one that can be shown in time. */
 static uint32_t frame_after_this(struct viewer *viewer) {
     struct viewer_player *player = &viewer->player;
     uint32_t index = index_of(player, viewer->request.frame.number) + 1;
@@ -215,7 +215,7 @@ static uint32_t frame_after_this(struct viewer *viewer) {
     }
     if (!player->loops && index >= player->count)
         return 0;
-    if (index < player->count) /* the last one is not left out */
+    if (index < player->count) /* the last one is not skipped */
         return number_of(player, player->count - 1);
     /* The script may have to run again. */
     player->origin += ((double)index - player->origin_index) * period_of(viewer);

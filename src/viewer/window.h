@@ -53,7 +53,7 @@ struct window_content {
     const uint8_t *overlay;                   /* over all of the window: red, green, blue, opacity */
     uint32_t window_width, window_height;
     bool overlay_changed;
-    /* Not 0: a picture of this size begins, and the window should have its size unless the user has chosen another. */
+    /* Not 0: a picture of this size begins, and the window should get its size unless the user has chosen another. */
     uint32_t fit_width, fit_height;
 };
 

@@ -5,11 +5,11 @@
 #include "base/mem.h"
 #include "world/world_internal.h"
 
-/* A group costs every ray the start of its search, so it needs several members, most of the scene; and its triangles
- * are in memory twice. */
+/* A group costs every ray the start of a search, so it needs several members and most of the scene; its triangles are
+ * stored twice. */
 enum { MIN_MEMBERS = 4, MAX_TRIANGLES = 4096 };
 
-/* The number of triangles that a primitive contributes; 0: it is no member. */
+/* The number of triangles that a primitive contributes; 0: it is not a member. */
 static uint32_t triangles_of(const struct world *world, uint32_t primitive) {
     const struct prototype *prototype = primitive_prototype(world, primitive);
     const struct mesh *mesh = geometry_mesh(&prototype->geometry);
@@ -18,7 +18,7 @@ static uint32_t triangles_of(const struct world *world, uint32_t primitive) {
     return mesh_triangle_count(mesh);
 }
 
-/* Whether a group is of use; and its size. */
+/* Whether a group is useful, and its size. */
 static bool is_worthwhile(const struct world *world, uint32_t *triangles) {
     uint32_t members = 0;
     *triangles = 0;

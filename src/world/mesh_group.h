@@ -1,6 +1,6 @@
-/* Many small meshes as one: their triangles have one index, so a ray descends one hierarchy and not one over boxes and
- * then that of each mesh. Members are meshes of a few triangles whose space is the world's: their hits have the bits
- * of their own searches. */
+/* Many small meshes with a common index of their triangles. A ray descends one hierarchy, not one over boxes and then
+ * one in each mesh. Members are meshes of a few triangles in world space: their hits have the bits of separate
+ * searches. */
 #ifndef GRAY_WORLD_MESH_GROUP_H
 #define GRAY_WORLD_MESH_GROUP_H
 
@@ -11,7 +11,7 @@
 
 struct world;
 
-/* What world_describe computes for every hit of a triangle alike. */
+/* Data that is equal for all hits of a triangle, for world_describe. */
 struct group_facet {
     struct vec3 normal, unit_normal; /* as they are in struct surface and in struct hit */
     double error;                    /* of a point on it */

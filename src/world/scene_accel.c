@@ -67,12 +67,13 @@ size_t scene_accel_memory(const struct scene_accel *accel) {
 
 /* --- from frame to frame --- */
 
-static const double cost_growth = 1.25; /* rays visit as much more; a new hierarchy costs some tenths of a picture */
+static const double cost_growth =
+    1.25; /* relative growth of the number of visited nodes; a new hierarchy costs some tenths of a picture */
 
-/* A share of the boxes that does not change what the cost model chooses. */
+/* A fraction of changed boxes that does not influence the choice of the cost model. */
 static const double few_changes = 1 / 32.0;
 
-/* How many boxes differ; more than there are: one is empty in a and not in b, or the reverse. */
+/* The number of boxes that differ; more than there are: a box is empty in one array only. */
 static uint32_t changes(const struct box *a, const struct box *b, uint32_t count) {
     uint32_t changed = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -85,7 +86,7 @@ static uint32_t changes(const struct box *a, const struct box *b, uint32_t count
     return changed;
 }
 
-/* A hierarchy has no place for items that were empty. */
+/* A hierarchy has no leaf for items that were empty. */
 static bool refit(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count) {
     uint32_t changed = cache->accel.kind == ACCEL_BVH ? changes(cache->boxes, boxes, count) : UINT32_MAX;
     if (changed > count || (wanted == ACCEL_AUTO && changed > few_changes * count && choose(boxes, count) != ACCEL_BVH))

@@ -24,7 +24,7 @@ bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const 
 void scene_accel_destroy(struct scene_accel *accel);
 size_t scene_accel_memory(const struct scene_accel *accel); /* bytes */
 
-/* The accelerator of the frame before, kept for the next one. Zero-initialised: there is none. Owns what it holds. */
+/* The accelerator of the previous frame, kept for the next one. Zero-initialised: there is none. Owns its contents. */
 struct accel_cache {
     bool full; /* it has an accelerator */
     struct scene_accel accel;
@@ -34,9 +34,9 @@ struct accel_cache {
     double cost; /* of the hierarchy when it was built; 0: it was not kept yet */
 };
 
-/* Hands over the accelerator if it suits these boxes: if they are the same, as it is, and if they are as many and the
- * cost model still chooses a hierarchy, refitted, unless its cost has grown by a quarter since it was built. Searches
- * find the same as in a new one. False: there is none, and it is to be built. */
+/* Returns the stored accelerator if it fits these boxes. It is unchanged if the boxes are the same. It is refitted if
+ * there are as many boxes and the cost model still chooses a hierarchy, unless its cost has grown by a quarter since it
+ * was built. Searches find the same as in a new accelerator. False: it must be built. */
 bool accel_cache_take(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
                       struct scene_accel *accel);
 /* Takes over an accelerator over these boxes, which are copied; without memory for them nothing is kept. */

@@ -134,7 +134,7 @@ bool world_build(struct world *world, const struct world_input *input, struct ar
                  struct error *error);
 /* Copies the numbers of the scene's materials again, after changes that keep the world (change_keeps_world). */
 void world_update_materials(struct world *world);
-/* The accelerator is for the world of the next frame; this world answers no more queries. */
+/* The accelerator moves to the world of the next frame; this world can answer no more queries. */
 void world_keep_accel(struct world *world, struct accel_cache *cache);
 void world_destroy(struct world *world); /* memory outside the arena */
 /* Bytes of placements with what they share and their boxes. */

@@ -36,8 +36,8 @@ bool world_native_uv(const struct world *world, const struct hit *hit, double *u
     return shape_native_uv(geometry_shape(primitive_geometry(world, hit->primitive), hit->leaf), hit, u, v);
 }
 
-/* What bumps and recorded functions need: the world's vectors of one unit along the operand's normal and along its
- * tangents, and on spheres the tangents of their coordinates, which other materials do not need. */
+/* Additional data for bumps and recorded functions: the world vectors of one unit along the operand's normal and along
+ * its tangents, and on spheres the tangents of their coordinates. */
 static void describe_tangents(const struct prototype *prototype, const struct affine *map, const struct csg_leaf *leaf,
                               struct hit *hit) {
     const struct shape *shape = geometry_shape(&prototype->geometry, hit->leaf);

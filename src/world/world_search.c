@@ -48,7 +48,7 @@ static bool any_of_mesh(const struct mesh *mesh, uint32_t index, const struct ra
     return mesh_any(mesh, ray_object, accel, geom);
 }
 
-/* Repeats a query of one primitive with more scratch until it fits; meshes need none. */
+/* Repeats a query of one primitive with more scratch memory until it fits; meshes need none. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,
                        struct world_scratch *scratch, struct crossing *out) {
     const struct geometry *geometry = primitive_geometry(world, index);
@@ -223,7 +223,7 @@ FOR_EACH_MODE void search_grid(struct search *s, enum search_mode mode) {
     s->scratch->geom.cost.voxels += traversal.voxels;
 }
 
-/* The members of the group, all at once. */
+/* Searches all members of the group together. */
 static bool nearest_of_group(const struct world *world, const struct ray *ray, struct geom_scratch *geom,
                              uint32_t *primitive, struct crossing *out) {
     const struct mesh_group *group = &world->group;
@@ -372,7 +372,7 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
     s.scratch = scratch;
     s.found = false;
     s.primitive = *blocker;
-    /* A group is searched in about the time of one member. */
+    /* Searching a group takes about as long as searching one member. */
     bool in_group =
         world->group.index && (*blocker >= world->primitive_count || mesh_group_run(&world->group, *blocker).count > 0);
     if (!in_group)
