@@ -5,8 +5,9 @@
  * the features. The weight of each pixel is its similarity to p in the other half (cross-filtering): weights and
  * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
  * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
- * on every second row and column are enough. This is done for two bandwidths of the similarity; at each pixel the one
- * with the smaller error is used.
+ * on every second row and column are enough. This is done for several windows and bandwidths of the similarity, and
+ * each pixel prefers those with the smallest error. In windows where all pixels have the same weight, the features
+ * alone separate surfaces: pixels on edges and details have few pixels that are like them.
  *
  * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
  * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
@@ -28,7 +29,8 @@ enum {
     LOCAL = DENOISE_LOCAL,
     MARGIN = DENOISE_MARGIN,
     CHOICE = DENOISE_CHOICE,
-    INNER = BLOCK + 2 * CHOICE,
+    INNER = DENOISE_INNER,
+    BANDWIDTHS = DENOISE_BANDWIDTHS,
     LEVELS = 2,
     STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
@@ -41,10 +43,11 @@ _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARI
 
 /* Found by measurement (bench/denoise.sh). */
 static const float colour_noise = 1e-3F; /* of the squared colours: the unit in which errors are compared */
-static const struct denoise_bandwidth bandwidths[DENOISE_BANDWIDTHS] = {{DENOISE_WINDOW, 2}, {5, 3}};
+static const struct denoise_bandwidth bandwidths[BANDWIDTHS] = {
+    {DENOISE_WINDOW, 2, 0}, {5, 3, 0}, {DENOISE_WINDOW, 0, 0}, {2, 0, 0.2F}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
-static const float choice_slope = 12;       /* how strongly the bandwidth with the smaller error is preferred */
+static const float choice_slope = 4;        /* how strongly the bandwidth with the smallest error is preferred */
 
 /* A picture as planes of floats. */
 struct level {
@@ -260,7 +263,7 @@ static void keep_estimates(struct denoise_scratch *s, int bandwidth, int half) {
 /* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
 static void regress_half(const struct denoiser *d, struct denoise_scratch *s, int half, struct denoise_bounds bounds) {
     d->kernels->compare(s, 1 - half);
-    for (int b = 0; b < DENOISE_BANDWIDTHS; b++) {
+    for (int b = 0; b < BANDWIDTHS; b++) {
         d->kernels->regress(s, half, bandwidths[b], bounds);
         keep_estimates(s, b, half);
     }
@@ -270,27 +273,30 @@ static void regress_half(const struct denoiser *d, struct denoise_scratch *s, in
 
 /* The difference between an estimate of one half and the values of the other half contains the errors of both. So
  * the difference of two such squares is the difference of the squared errors of two estimates (Bitterli et al. 2016,
- * section 5.4). Here the estimates are those with the narrow and the wide bandwidth, in units of the variance. */
-static void compare_bandwidths(const struct denoise_scratch *s, float errors[INNER][INNER]) {
+ * section 5.4). Here they are those of each bandwidth and of the first one, in units of the variance. */
+static void compare_bandwidths(struct denoise_scratch *s) {
     for (int y = 0; y < INNER; y++) {
         for (int x = 0; x < INNER; x++) {
             int at = local_of(x, y);
-            float error = 0, scale = FLT_MIN;
+            float errors[BANDWIDTHS] = {0}, scale = FLT_MIN;
             for (int c = 0; c < 3; c++) {
                 for (int h = 0; h < 2; h++) {
-                    float other = s->colour[1 - h][c][at];
-                    float wide = s->estimates[0][h][c][at] - other, narrow = s->estimates[1][h][c][at] - other;
-                    error += narrow * narrow - wide * wide;
+                    float other = s->colour[1 - h][c][at], first = s->estimates[0][h][c][at] - other;
+                    for (int b = 1; b < BANDWIDTHS; b++) {
+                        float own = s->estimates[b][h][c][at] - other;
+                        errors[b] += own * own - first * first;
+                    }
                     scale += s->variance[c][at] + colour_noise * other * other;
                 }
             }
-            errors[y][x] = error / scale;
+            for (int b = 0; b < BANDWIDTHS; b++)
+                s->errors[b][y][x] = errors[b] / scale + bandwidths[b].margin;
         }
     }
 }
 
-/* The weight of the narrow bandwidth at the pixels of a row of the block. */
-static void narrow_shares(float (*errors)[INNER], int y, float shares[BLOCK]) {
+/* The mean errors around the pixels of a row of the block. */
+static void average_errors(float (*errors)[INNER], int y, float means[BLOCK]) {
     float columns[INNER] = {0};
     for (int j = 0; j <= 2 * CHOICE; j++)
         for (int x = 0; x < INNER; x++)
@@ -299,8 +305,25 @@ static void narrow_shares(float (*errors)[INNER], int y, float shares[BLOCK]) {
         float sum = 0;
         for (int i = 0; i <= 2 * CHOICE; i++)
             sum += columns[x + i];
-        float share = 0.5F - choice_slope * sum / ((2 * CHOICE + 1) * (2 * CHOICE + 1));
-        shares[x] = share > 1 ? 1 : share > 0 ? share : 0;
+        means[x] = sum / ((2 * CHOICE + 1) * (2 * CHOICE + 1));
+    }
+}
+
+/* The weights of the bandwidths at the pixels of a row of the block: the larger its error, the smaller the weight. */
+static void choose_bandwidths(struct denoise_scratch *s, int y, float shares[BANDWIDTHS][BLOCK]) {
+    for (int b = 0; b < BANDWIDTHS; b++)
+        average_errors(s->errors[b], y, shares[b]);
+    for (int x = 0; x < BLOCK; x++) {
+        float smallest = shares[0][x], sum = 0;
+        for (int b = 1; b < BANDWIDTHS; b++)
+            smallest = shares[b][x] < smallest ? shares[b][x] : smallest;
+        for (int b = 0; b < BANDWIDTHS; b++) {
+            float share = 1 - choice_slope * (shares[b][x] - smallest);
+            shares[b][x] = share > 0 ? share : 0;
+            sum += shares[b][x];
+        }
+        for (int b = 0; b < BANDWIDTHS; b++)
+            shares[b][x] = sum > 0 ? shares[b][x] / sum : 1.0F / BANDWIDTHS;
     }
 }
 
@@ -312,13 +335,17 @@ static int supported_half(const struct denoise_scratch *s, int bandwidth, int ha
     return unsupported ? 1 - half : half;
 }
 
-static void store_pixel(const struct level *level, const struct denoise_scratch *s, int from, size_t to, float share) {
+static void store_pixel(const struct level *level, const struct denoise_scratch *s, int from, size_t to,
+                        float (*shares)[BLOCK], int x) {
     for (int half = 0; half < 2; half++) {
-        int wide_half = supported_half(s, 0, half, from), narrow_half = supported_half(s, 1, half, from);
-        for (int c = 0; c < 3; c++) {
-            float wide = s->estimates[0][wide_half][c][from], narrow = s->estimates[1][narrow_half][c][from];
-            level->estimate[half][c][to] = wide + share * (narrow - wide);
+        float sum[3] = {0};
+        for (int b = 0; b < BANDWIDTHS; b++) {
+            int speaker = supported_half(s, b, half, from);
+            for (int c = 0; c < 3; c++)
+                sum[c] += shares[b][x] * s->estimates[b][speaker][c][from];
         }
+        for (int c = 0; c < 3; c++)
+            level->estimate[half][c][to] = sum[c];
     }
 }
 
@@ -326,7 +353,7 @@ static void store_pixel(const struct level *level, const struct denoise_scratch 
 static void regress_block(void *context, uint32_t item, int worker) {
     struct denoiser *d = context;
     struct denoise_scratch *s = d->scratch + worker;
-    float errors[INNER][INNER], shares[BLOCK];
+    float shares[BANDWIDTHS][BLOCK];
     int left = -(int)(d->level->x0 % DENOISE_STEP), top = -(int)(d->level->y0 % DENOISE_STEP);
     int across = (d->level->width - left + BLOCK - 1) / BLOCK;
     int bx = left + (int)item % across * BLOCK, by = top + (int)item / across * BLOCK;
@@ -341,12 +368,12 @@ static void regress_block(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
     for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
         regress_half(d, s, half, bounds);
-    compare_bandwidths(s, errors);
+    compare_bandwidths(s);
     for (int y = by > 0 ? by : 0; y < by + BLOCK && y < d->level->height; y++) {
-        narrow_shares(errors, y - by, shares);
+        choose_bandwidths(s, y - by, shares);
         for (int x = bx > 0 ? bx : 0; x < bx + BLOCK && x < d->level->width; x++)
-            store_pixel(d->level, s, local_of(x - bx + CHOICE, y - by + CHOICE), pixel_at(d->level, x, y),
-                        shares[x - bx]);
+            store_pixel(d->level, s, local_of(x - bx + CHOICE, y - by + CHOICE), pixel_at(d->level, x, y), shares,
+                        x - bx);
     }
 }
 

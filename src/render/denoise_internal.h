@@ -10,10 +10,11 @@ enum {
     DENOISE_BLOCK = 96, /* side of the squares that a worker takes */
     DENOISE_WINDOW = 7, /* radius of a regression */
     DENOISE_SIDE = 2 * DENOISE_WINDOW + 1,
-    DENOISE_LANES = 16, /* of a row of a window, of which the last does not count */
-    DENOISE_PATCH = 3,  /* radius of the patches that are compared */
-    DENOISE_STEP = 2,   /* between centres of regressions */
-    DENOISE_CHOICE = 4, /* radius of the mean that chooses between bandwidths */
+    DENOISE_LANES = 16,                                 /* of a row of a window, of which the last does not count */
+    DENOISE_PATCH = 3,                                  /* radius of the patches that are compared */
+    DENOISE_STEP = 2,                                   /* between centres of regressions */
+    DENOISE_CHOICE = 2,                                 /* radius of the mean that chooses between bandwidths */
+    DENOISE_INNER = DENOISE_BLOCK + 2 * DENOISE_CHOICE, /* side of a block with what this mean reads */
     DENOISE_MARGIN = DENOISE_CHOICE + 2 * DENOISE_WINDOW + DENOISE_PATCH,
     DENOISE_LOCAL = DENOISE_BLOCK + 2 * DENOISE_MARGIN, /* side of a block with everything that it reads */
     /* Centres that a block needs: their first coordinate, and how many are on a side. */
@@ -26,12 +27,13 @@ enum {
     DENOISE_FEATURE_WINDOW = 4,                   /* radius of the filter of features */
     DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
     DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
-    DENOISE_BANDWIDTHS = 2,
+    DENOISE_BANDWIDTHS = 4,
 };
 
 struct denoise_bandwidth {
-    int radius;  /* of the window, at most DENOISE_WINDOW */
-    float scale; /* of distances */
+    int radius;   /* of the window, at most DENOISE_WINDOW */
+    float scale;  /* of distances; 0: all pixels of the window have the same weight */
+    float margin; /* added to its error where bandwidths are compared: few pixels leave noise that looks like detail */
 };
 
 typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
@@ -43,7 +45,8 @@ struct denoise_scratch {
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
     denoise_plane sums[4]; /* of weighted colours, and of weights */
     denoise_plane estimates[DENOISE_BANDWIDTHS][2][3], support[DENOISE_BANDWIDTHS][2]; /* support: sums of weights */
-    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES];                       /* between patches */
+    float errors[DENOISE_BANDWIDTHS][DENOISE_INNER][DENOISE_INNER]; /* compared with those of the first bandwidth */
+    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES];    /* between patches */
     float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
     float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
     denoise_feature_plane feature_mean[3], feature_noise[3];
