@@ -194,15 +194,88 @@ static inline const double *operand(const struct expr_program *program, uint16_t
     return &program->constants[value].f;
 }
 
+/* --- loops --- */
+
+/* The states of points that have ended stay: `alive` has all bits set for the others. */
+static void write_state(const struct expr_loop *loop, uint32_t k, uint32_t width, double *rows, const int64_t *alive) {
+    const struct expr_program *body = &loop->body;
+    row_integer *state = (row_integer *)(void *)(rows + (size_t)k * EXPR_BATCH);
+    const row_integer *next = (const row_integer *)(const void *)operand(body, loop->next[k], rows);
+    if (loop->next[k] == body->constant_count + k)
+        return;
+    if (loop->next[k] < body->constant_count) {
+        const row_integer x = *next;
+        for (uint32_t i = 0; i < width; i++)
+            state[i] = (x & alive[i]) | (state[i] & ~alive[i]);
+        return;
+    }
+    INDEPENDENT
+    for (uint32_t i = 0; i < width; i++)
+        state[i] = (next[i] & alive[i]) | (state[i] & ~alive[i]);
+}
+
+/* Keeps those whose first state is > 0; returns whether there are any. */
+static bool keep_alive(const struct expr_loop *loop, uint32_t width, const double *rows, int64_t *alive) {
+    const row_integer *integers = (const row_integer *)(const void *)rows;
+    int64_t any = 0;
+    if (loop->type[0] == EXPR_TYPE_F)
+        for (uint32_t i = 0; i < width; i++)
+            any |= alive[i] &= -(int64_t)(rows[i] > 0);
+    else
+        for (uint32_t i = 0; i < width; i++)
+            any |= alive[i] &= -(int64_t)(integers[i] > 0);
+    return any != 0;
+}
+
+/* Repeats the body until all points have ended. rows: of the loop. */
+static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows) {
+    int64_t alive[EXPR_BATCH];
+    row_integer *steps = (row_integer *)(void *)(rows + (size_t)loop->argument_count * EXPR_BATCH);
+    for (uint32_t i = 0; i < width; i++)
+        alive[i] = -1;
+    for (uint32_t step = loop->first; step <= loop->last; step++) {
+        if (loop->ends && step > 1 && !keep_alive(loop, width, rows, alive))
+            return;
+        for (uint32_t i = 0; i < width; i++)
+            steps[i] = step;
+        KERNEL(run)(&loop->body, width, rows);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            write_state(loop, k, width, rows, alive);
+    }
+}
+
+static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in, uint32_t width,
+                               double *rows) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(program, constant);
+    double *of_loop = rows + (size_t)loop->offset * EXPR_BATCH;
+    double *slot = of_loop + (size_t)expr_slot_of(program, constant) * EXPR_BATCH;
+    double *out = rows + (size_t)(in->out - program->constant_count) * EXPR_BATCH;
+    if (operation == EXPR_LOOP)
+        run_loop(loop, width, of_loop);
+    else if (!is_put)
+        memcpy(out, slot, width * sizeof *slot);
+    else if (in->b >= program->constant_count)
+        memcpy(slot, operand(program, in->b, rows), width * sizeof *slot);
+    else
+        (void)row_of(operand(program, in->b, rows), 1, width, slot);
+}
+
 /* Runs an instruction, or the two of a sine and a cosine; returns the last one. */
 static inline const struct expr_instruction *
 run_instruction(const struct expr_program *program, const struct expr_instruction *in, uint32_t width, double *rows) {
-    double *spare = rows + (size_t)program->register_count * EXPR_BATCH;
+    double *spare = rows + (size_t)program->row_count * EXPR_BATCH;
     const uint32_t constants = program->constant_count;
     const struct expr_instruction *end = program->code + program->count;
     double *to = rows + (size_t)(in->out - constants) * EXPR_BATCH;
     switch ((enum expr_operation)in->operation) {
         EXPR_OPERATIONS(RUN)
+    EXPR_LOOP_CASES:
+        run_loop_operation(program, in, width, rows);
+        break;
+    case EXPR_ALL_OPERATIONS:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:

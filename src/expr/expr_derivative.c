@@ -154,15 +154,17 @@ static void partials(enum expr_operation operation, double a, double b, double c
     case EXPR_SELECT: /* handled by the callers */
     case EXPR_INTEGER_SELECT:
     case EXPR_TRUTH_SELECT:
+    EXPR_LOOP_CASES:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:
+    case EXPR_ALL_OPERATIONS:
         break;
     }
 }
 
 size_t expr_gradient_size(const struct expr_program *program) {
-    return ((size_t)program->constant_count + program->register_count) * sizeof(struct dual);
+    return ((size_t)program->constant_count + program->row_count) * sizeof(struct dual);
 }
 
 /* A derivative of 0 stays 0, whatever factor it gets. */
@@ -200,6 +202,69 @@ static void texel_partials(const struct dual *from[3], double out[3]) {
         break;                                                                                                         \
     }
 
+static void run_duals(const struct expr_program *program, struct dual *values);
+
+/* As expr_evaluate does, with derivatives. values: of the body. */
+static void run_dual_loop(const struct expr_loop *loop, struct dual *values) {
+    struct dual *registers = values + loop->body.constant_count, next[EXPR_STATES];
+    bool is_float = loop->type[0] == EXPR_TYPE_F;
+    for (uint32_t i = 0; i < loop->body.constant_count; i++)
+        values[i] = (struct dual){loop->body.constants[i], {0}};
+    for (uint32_t step = loop->first; step <= loop->last; step++) {
+        if (loop->ends && step > 1 && !(is_float ? registers[0].value.f > 0 : registers[0].value.i > 0))
+            break;
+        registers[loop->argument_count] = (struct dual){{.i = step}, {0}};
+        run_duals(&loop->body, values);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            next[k] = values[loop->next[k]];
+        memcpy(registers, next, loop->state_count * sizeof *next);
+    }
+}
+
+static void run_dual_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
+                                    struct dual *values) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(program, constant);
+    struct dual *of_loop = values + program->constant_count + loop->offset;
+    struct dual *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
+    if (is_put)
+        *slot = values[in->b];
+    else if (operation == EXPR_LOOP)
+        run_dual_loop(loop, of_loop);
+    else
+        values[in->out] = *slot;
+}
+
+static void run_duals(const struct expr_program *program, struct dual *values) {
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+        static const struct dual none = {.d = {0}};
+        enum expr_operation operation = (enum expr_operation)in->operation;
+        if (operation > EXPR_OPERATION_COUNT) {
+            run_dual_loop_operation(program, in, values);
+            continue;
+        }
+        const struct dual *from[3] = {&values[in->a], &values[in->b], &values[in->c]};
+        struct dual result = {.d = {0}};
+        double by[3] = {0, 0, 0};
+        for (int k = expr_operand_count(operation); k < 3; k++)
+            from[k] = &none;
+        switch (operation) {
+            EXPR_OPERATIONS(EVALUATE)
+        EXPR_LOOP_CASES:
+        case EXPR_CONSTANT:
+        case EXPR_INPUT:
+        case EXPR_OPERATION_COUNT:
+        case EXPR_ALL_OPERATIONS:
+            break;
+        }
+        if (operation != EXPR_SELECT)
+            chain(from, by, result.d);
+        values[in->out] = result;
+    }
+}
+
 void expr_evaluate_gradient(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                             const double seeds[EXPR_INPUT_COUNT][EXPR_DIRECTIONS], double outputs[EXPR_OUTPUTS],
                             double gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS], void *rows) {
@@ -212,25 +277,7 @@ void expr_evaluate_gradient(const struct expr_program *program, const double inp
         for (int k = 0; k < D; k++)
             value->d[k] = seeds[program->inputs[i].input][k];
     }
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        static const struct dual none = {.d = {0}};
-        enum expr_operation operation = (enum expr_operation)in->operation;
-        const struct dual *from[3] = {&values[in->a], &values[in->b], &values[in->c]};
-        struct dual result = {.d = {0}};
-        double by[3] = {0, 0, 0};
-        for (int k = expr_operand_count(operation); k < 3; k++)
-            from[k] = &none;
-        switch (operation) {
-            EXPR_OPERATIONS(EVALUATE)
-        case EXPR_CONSTANT:
-        case EXPR_INPUT:
-        case EXPR_OPERATION_COUNT:
-            break;
-        }
-        if (operation != EXPR_SELECT)
-            chain(from, by, result.d);
-        values[in->out] = result;
-    }
+    run_duals(program, values);
     for (int i = 0; i < program->output_count; i++) {
         outputs[i] = values[program->outputs[i]].value.f;
         for (int k = 0; k < D; k++)
@@ -486,9 +533,11 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
     case EXPR_TRUTH_SELECT:
         out[0] = out[1] = out[2] = is_single(value) ? zero : any_slope;
         break;
+    EXPR_LOOP_CASES:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:
+    case EXPR_ALL_OPERATIONS:
         break;
     }
 }
@@ -498,7 +547,7 @@ static void slopes_of(enum expr_operation operation, struct expr_interval a, str
  * may be of 0. */
 
 size_t expr_slopes_size(const struct expr_program *program) {
-    return ((size_t)program->constant_count + program->register_count) * sizeof(struct expr_rooted);
+    return ((size_t)program->constant_count + program->row_count) * sizeof(struct expr_rooted);
 }
 
 static bool is_zero(struct expr_interval a) {
@@ -637,12 +686,94 @@ static void find_operands(const struct expr_program *program, const struct expr_
     }
 }
 
+/* A value without slopes. */
+static struct expr_rooted constant_of(struct expr_interval value) {
+    return (struct expr_rooted){{value, {zero, zero, zero}, false}, {INFINITY, INFINITY, INFINITY}};
+}
+
+static void run_rooted(const struct expr_program *program, int directions, struct expr_rooted *values,
+                       struct expr_choice *choices);
+
+/* The states may jump where some points have ended: bounds of the values, with any slopes. */
+static void run_without_slopes(const struct expr_loop *loop, uint32_t step, struct expr_rooted *registers,
+                               struct expr_interval *scratch) {
+    for (uint32_t k = 0; k < loop->argument_count; k++)
+        scratch[loop->body.constant_count + k] = registers[k].range.value;
+    expr_interval_loop(loop, step, scratch);
+    for (uint32_t k = 0; k < loop->state_count; k++) {
+        registers[k] = constant_of(scratch[loop->body.constant_count + k]);
+        for (int d = 0; d < D; d++)
+            registers[k].range.slopes[d] = any_slope;
+    }
+}
+
+void expr_rooted_loop(const struct expr_loop *loop, int directions, struct expr_rooted *values,
+                      struct expr_interval *scratch) {
+    const struct expr_program *body = &loop->body;
+    struct expr_rooted *registers = values + body->constant_count, next[EXPR_STATES];
+    for (uint32_t step = loop->first; step <= loop->last; step++) {
+        const struct expr_interval first = registers[0].range.value;
+        const bool is_checked = loop->ends && step > 1;
+        if (is_checked && !expr_may_go_on(first))
+            return;
+        if ((is_checked && expr_may_end(first)) || step - loop->first >= EXPR_EXACT_STEPS) {
+            run_without_slopes(loop, step, registers, scratch);
+            return;
+        }
+        registers[loop->argument_count] = constant_of((struct expr_interval){step, step, false});
+        run_rooted(body, directions, values, NULL);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            next[k] = loop->next[k] >= body->constant_count
+                          ? values[loop->next[k]]
+                          : constant_of(expr_interval_of_constant(loop->type[k], body->constants[loop->next[k]]));
+        memcpy(registers, next, loop->state_count * sizeof *next);
+    }
+}
+
+static void run_rooted_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
+                                      int directions, struct expr_rooted *values) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(program, constant);
+    struct expr_rooted *of_loop = values + program->constant_count + loop->offset;
+    struct expr_rooted *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
+    if (operation == EXPR_LOOP)
+        expr_rooted_loop(loop, directions, of_loop,
+                         (struct expr_interval *)(void *)(of_loop + expr_loop_rows(loop) / 2));
+    else if (!is_put)
+        values[in->out] = *slot;
+    else if (in->b >= program->constant_count)
+        *slot = values[in->b];
+    else
+        *slot = constant_of(expr_interval_of_constant(expr_operand_type(operation, 1), program->constants[in->b]));
+}
+
+static void run_rooted(const struct expr_program *program, int directions, struct expr_rooted *values,
+                       struct expr_choice *choices) {
+    struct expr_rooted constants[3];
+    for (int k = 0; k < 3; k++)
+        constants[k] = constant_of(zero);
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+        const struct expr_rooted *from[3];
+        if (in->operation > EXPR_OPERATION_COUNT) {
+            run_rooted_loop_operation(program, in, directions, values);
+            if (choices)
+                choices[in - program->code] = (struct expr_choice){0, 0};
+            continue;
+        }
+        find_operands(program, in, values, constants, from);
+        if (choices)
+            choices[in - program->code] =
+                expr_interval_decide((enum expr_operation)in->operation, from[0]->range.value, from[1]->range.value);
+        expr_rooted_apply(in, from, directions, &values[in->out]);
+    }
+}
+
 void expr_evaluate_slopes(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                           const struct expr_directions *directions, struct expr_range outputs[EXPR_OUTPUTS],
                           struct expr_choice *choices, void *rows) {
-    struct expr_rooted *values = rows, constants[3];
-    for (int k = 0; k < 3; k++)
-        constants[k] = (struct expr_rooted){{zero, {zero, zero, zero}, false}, {INFINITY, INFINITY, INFINITY}};
+    struct expr_rooted *values = rows;
     for (int i = 0; i < program->input_count; i++) {
         struct expr_rooted *value = &values[program->inputs[i].value];
         value->range.value = inputs[program->inputs[i].input];
@@ -653,14 +784,7 @@ void expr_evaluate_slopes(const struct expr_program *program, const struct expr_
             value->roots[k] = INFINITY;
         }
     }
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        const struct expr_rooted *from[3];
-        find_operands(program, in, values, constants, from);
-        if (choices)
-            choices[in - program->code] =
-                expr_interval_decide((enum expr_operation)in->operation, from[0]->range.value, from[1]->range.value);
-        expr_rooted_apply(in, from, directions->count, &values[in->out]);
-    }
+    run_rooted(program, directions->count, values, choices);
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         bool is_constant = value < program->constant_count;
@@ -677,7 +801,7 @@ void expr_evaluate_slopes(const struct expr_program *program, const struct expr_
 /* --- over eight boxes --- */
 
 size_t expr_lanes_size(const struct expr_program *program) {
-    return (size_t)program->register_count * sizeof(struct expr_lanes);
+    return (size_t)program->row_count * sizeof(struct expr_lanes);
 }
 
 static void read_lanes(const struct expr_program *program, uint16_t output, int directions, struct expr_lanes *values,

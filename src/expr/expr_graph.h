@@ -30,14 +30,35 @@
 #define EXPR_INPUT_MEMBER(member, word) member,
 enum expr_input { EXPR_INPUTS(EXPR_INPUT_MEMBER) EXPR_INPUT_COUNT };
 
-enum { EXPR_NODES = 100000 };
+enum { EXPR_NODES = 100000, EXPR_STATES = 64 /* of a loop */ };
 #define EXPR_NONE UINT32_MAX
 
 struct expr_node {
     enum expr_operation operation;
     enum expr_type type;
     uint32_t operands[3]; /* EXPR_NONE after the last operand; of an input: first its number */
+    uint32_t depth;       /* of the innermost loop whose steps it depends on; 0: none */
     union expr_value constant;
+};
+
+/* A loop: states that a body, a part of the graph, computes anew in each step. The body reads symbols of the depth of
+ * the loop (expr_symbol): slot 0 is the number of the step, an integer, the others are the states. What the body reads
+ * and does not depend on its steps is computed once, before the loop. */
+struct expr_graph_loop {
+    uint32_t first, last; /* steps */
+    uint32_t depth;       /* from 1: one more than the depth of what surrounds it */
+    uint32_t state_count;
+    const uint32_t *initial, *next; /* the states before the first step, and the results of the body; types agree */
+    bool ends;                      /* after a step whose first state is not > 0, and before all steps if one step
+                                       has been already (first > 1) */
+};
+
+/* A loop of a graph: a copy of the description, and the arguments: initial states, then what the body reads from
+ * outside. */
+struct expr_kept_loop {
+    struct expr_graph_loop loop;
+    uint32_t *arguments, argument_count;
+    uint32_t node; /* EXPR_LOOP */
 };
 
 /* Zero-initialise to create. expr_graph_destroy frees the memory and leaves an empty graph. */
@@ -45,6 +66,8 @@ struct expr_graph {
     struct expr_node *nodes;
     uint32_t *slots; /* hash table of indices; its size is a power of two, and it is at most half full */
     uint32_t count, capacity, slot_count;
+    struct expr_kept_loop *loops;
+    uint32_t loop_count, loop_capacity;
     bool full, out_of_memory; /* why a node is EXPR_NONE */
 };
 
@@ -57,6 +80,16 @@ uint32_t expr_integer(struct expr_graph *graph, int64_t x);
 uint32_t expr_truth(struct expr_graph *graph, bool x);
 uint32_t expr_input(struct expr_graph *graph, enum expr_input input);
 uint32_t expr_operation(struct expr_graph *graph, enum expr_operation operation, uint32_t a, uint32_t b, uint32_t c);
+/* What a step of a loop of this depth reads, see struct expr_graph_loop. */
+uint32_t expr_symbol(struct expr_graph *graph, uint32_t depth, uint32_t slot, enum expr_type type);
+/* Writes the nodes of the states after the loop. Equal loops are one. False as where a node is EXPR_NONE. */
+bool expr_loop(struct expr_graph *graph, const struct expr_graph_loop *loop, uint32_t *states);
+/* Nodes that the body computes in each step. */
+uint32_t expr_body_size(const struct expr_graph *graph, const struct expr_graph_loop *loop);
+/* Whether an EXPR_INPUT is a symbol, and its slot. */
+bool expr_is_symbol(const struct expr_node *node);
+uint32_t expr_symbol_slot(const struct expr_node *node);
+
 /* The value of a constant; NULL for all other nodes and for EXPR_NONE. */
 const union expr_value *expr_constant(const struct expr_graph *graph, uint32_t node);
 

@@ -499,9 +499,11 @@ apply(enum expr_operation operation, struct expr_interval a, struct expr_interva
     case EXPR_INTEGER_SELECT:
     case EXPR_TRUTH_SELECT:
         return selected(a, b, c);
+    EXPR_LOOP_CASES:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:
+    case EXPR_ALL_OPERATIONS:
         break;
     }
     return anything;
@@ -532,7 +534,7 @@ struct expr_interval expr_interval_of_integer(int64_t i) {
 }
 
 size_t expr_interval_size(const struct expr_program *program) {
-    return ((size_t)program->constant_count + program->register_count) * sizeof(struct expr_interval);
+    return ((size_t)program->constant_count + program->row_count) * sizeof(struct expr_interval);
 }
 
 #define OPERAND_F(value)                                                                                               \
@@ -552,28 +554,170 @@ size_t expr_interval_size(const struct expr_program *program) {
         break;                                                                                                         \
     }
 
+static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
+                               struct expr_interval *values) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(program, constant);
+    struct expr_interval *of_loop = values + program->constant_count + loop->offset;
+    struct expr_interval *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
+    if (operation == EXPR_PUT_FLOAT)
+        *slot = OPERAND_F(in->b);
+    else if (operation == EXPR_PUT_INTEGER)
+        *slot = OPERAND_I(in->b);
+    else if (operation == EXPR_PUT_TRUTH)
+        *slot = OPERAND_B(in->b);
+    else if (operation == EXPR_LOOP)
+        expr_interval_loop(loop, loop->first, of_loop);
+    else
+        values[in->out] = *slot;
+}
+
+static void run_code(const struct expr_program *program, struct expr_interval *values, struct expr_choice *choices) {
+    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
+        switch ((enum expr_operation)in->operation) {
+            EXPR_OPERATIONS(EVALUATE)
+        EXPR_LOOP_CASES:
+            run_loop_operation(program, in, values);
+            if (choices)
+                choices[in - program->code] = (struct expr_choice){0, 0};
+            break;
+        case EXPR_CONSTANT:
+        case EXPR_INPUT:
+        case EXPR_OPERATION_COUNT:
+        case EXPR_ALL_OPERATIONS:
+            break;
+        }
+    }
+}
+
 void expr_evaluate_interval(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                             struct expr_interval outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows) {
     struct expr_interval *values = rows;
     for (int i = 0; i < program->input_count; i++)
         values[program->inputs[i].value] = inputs[program->inputs[i].input];
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        switch ((enum expr_operation)in->operation) {
-            EXPR_OPERATIONS(EVALUATE)
-        case EXPR_CONSTANT:
-        case EXPR_INPUT:
-        case EXPR_OPERATION_COUNT:
-            break;
-        }
-    }
+    run_code(program, values, choices);
     for (int i = 0; i < program->output_count; i++)
         outputs[i] = OPERAND_F(program->outputs[i]);
+}
+
+/* --- loops --- */
+
+/* A loop over one box: the states of the points that have not ended, and all that those that have may have. */
+struct looping {
+    const struct expr_loop *loop;
+    struct expr_interval *values, *states, next[EXPR_STATES], ended[EXPR_STATES];
+    bool has_ended; /* a point may have */
+};
+
+static struct expr_interval either_of(struct expr_interval a, struct expr_interval b) {
+    return (struct expr_interval){fmin(a.low, b.low), fmax(a.high, b.high), a.may_be_nan || b.may_be_nan};
+}
+
+static void end_with(struct looping *l, const struct expr_interval *states) {
+    for (uint32_t k = 0; k < l->loop->state_count; k++)
+        l->ended[k] = l->has_ended ? either_of(l->ended[k], states[k]) : states[k];
+    l->has_ended = true;
+}
+
+/* Ends the points whose first state is not > 0. False: no point goes on. */
+static bool end_some(struct looping *l, struct expr_interval *states) {
+    struct expr_interval first = states[0];
+    if (!l->loop->ends || !expr_may_end(first))
+        return true;
+    states[0].high = fmin(first.high, fmax(first.low, 0)); /* or NaN */
+    end_with(l, states);
+    states[0] = (struct expr_interval){fmax(first.low, l->loop->type[0] == EXPR_TYPE_I), first.high, false};
+    return expr_may_go_on(first);
+}
+
+static void run_step(struct looping *l, double first, double last) {
+    const struct expr_program *program = &l->loop->body;
+    struct expr_interval *values = l->values;
+    l->states[l->loop->argument_count] = (struct expr_interval){first, last, false};
+    run_code(program, values, NULL);
+    for (uint32_t k = 0; k < l->loop->state_count; k++)
+        switch (l->loop->type[k]) {
+        case EXPR_TYPE_F:
+            l->next[k] = OPERAND_F(l->loop->next[k]);
+            break;
+        case EXPR_TYPE_I:
+            l->next[k] = OPERAND_I(l->loop->next[k]);
+            break;
+        case EXPR_TYPE_B:
+        case EXPR_TYPE_N:
+            l->next[k] = OPERAND_B(l->loop->next[k]);
+            break;
+        }
+}
+
+/* Nothing is known of one of the numbers, so that single steps hardly tell more than all of them. */
+static bool is_lost(const struct looping *l) {
+    for (uint32_t k = 0; k < l->loop->state_count; k++)
+        if (l->loop->type[k] == EXPR_TYPE_F && l->states[k].low == -INFINITY && l->states[k].high == INFINITY)
+            return true;
+    return false;
+}
+
+/* Extends the bounds of the states to those after another step, at once to 0 or without end, so that few repetitions
+ * reach bounds which a step does not leave (P. Cousot and R. Cousot, "Abstract interpretation", POPL 1977: widening).
+ * False: they contain them already. */
+static bool widen(struct looping *l) {
+    bool has_grown = false;
+    for (uint32_t k = 0; k < l->loop->state_count; k++) {
+        struct expr_interval *state = &l->states[k], next = l->next[k];
+        const double end = l->loop->type[k] == EXPR_TYPE_F   ? (double)INFINITY
+                           : l->loop->type[k] == EXPR_TYPE_I ? 0x1p63
+                                                             : 1;
+        bool grows = next.low < state->low || next.high > state->high || (next.may_be_nan && !state->may_be_nan);
+        if (next.low < state->low)
+            state->low = next.low >= 0 ? 0 : -end;
+        if (next.high > state->high)
+            state->high = next.high <= 0 ? 0 : end;
+        state->may_be_nan = state->may_be_nan || next.may_be_nan;
+        has_grown = has_grown || grows;
+    }
+    return has_grown;
+}
+
+/* All steps from `step` on at once: bounds of the states that no step leaves. Each repetition extends an end of a state
+ * to the next of few values, so there are at most 5 for each state. */
+static void run_others(struct looping *l, uint32_t step) {
+    for (;;) {
+        run_step(l, step, l->loop->last);
+        if (!end_some(l, l->next))
+            return;
+        if (!widen(l))
+            break;
+    }
+    end_with(l, l->next);
+}
+
+void expr_interval_loop(const struct expr_loop *loop, uint32_t step, struct expr_interval *values) {
+    struct looping l = {.loop = loop, .values = values, .states = values + loop->body.constant_count};
+    const uint32_t first = step, size = loop->state_count;
+    for (;; step++) {
+        if (step > 1 && !end_some(&l, l.states))
+            break;
+        if (step > loop->last) {
+            end_with(&l, l.states);
+            break;
+        }
+        if (step - first >= EXPR_EXACT_STEPS || (step - first >= 32 && is_lost(&l))) {
+            run_others(&l, step);
+            break;
+        }
+        run_step(&l, step, step);
+        memcpy(l.states, l.next, size * sizeof *l.next);
+    }
+    memcpy(l.states, l.ended, size * sizeof *l.ended);
 }
 
 /* --- many boxes --- */
 
 size_t expr_intervals_size(const struct expr_program *program) {
-    return (size_t)program->register_count * (2 * EXPR_BOXES * sizeof(double) + sizeof(struct expr_flags));
+    return (size_t)program->row_count * (2 * EXPR_BOXES * sizeof(double) + sizeof(struct expr_flags));
 }
 
 static void put_inputs(const struct expr_program *program, const struct expr_boxes *boxes, uint32_t width, double *rows,
@@ -597,7 +741,7 @@ void expr_evaluate_intervals(const struct expr_program *program, const struct ex
                                                         [CPU_ISA_AVX512] = expr_run_intervals_avx512};
     uint32_t width = (boxes->count + 7) & ~7U;
     double *values = rows;
-    struct expr_flags *flags = (struct expr_flags *)(void *)(values + (size_t)program->register_count * 2 * EXPR_BOXES);
+    struct expr_flags *flags = (struct expr_flags *)(void *)(values + (size_t)program->row_count * 2 * EXPR_BOXES);
     put_inputs(program, boxes, width, values, flags);
     run[cpu_isa()](program, width, values, flags, choices);
     for (int i = 0; i < program->output_count; i++) {

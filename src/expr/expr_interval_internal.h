@@ -22,6 +22,22 @@ struct expr_interval expr_interval_square(struct expr_interval a);
 /* The decision for one box, in lane 0; a and b are the first two operands. */
 struct expr_choice expr_interval_decide(enum expr_operation operation, struct expr_interval a, struct expr_interval b);
 
+/* Repeats the body of a loop from `step` on over one box, whose points are all in that step. values: of the body, with
+ * its arguments, which become the final states: for each state all values that a point of the box may end with. */
+void expr_interval_loop(const struct expr_loop *loop, uint32_t step, struct expr_interval *values);
+
+/* Whether a point whose first state has these bounds may end, and whether it may go on. */
+static inline bool expr_may_end(struct expr_interval first) {
+    return first.may_be_nan || !(first.low > 0);
+}
+
+static inline bool expr_may_go_on(struct expr_interval first) {
+    return first.high > 0;
+}
+
+/* Steps of a loop that are bounded one by one; the bounds of the others are those of all of them. */
+enum { EXPR_EXACT_STEPS = 1024 };
+
 /* The flags of a register in all boxes: of numbers whether they may be NaN (first), of truth values whether they
  * certainly (first) or possibly (second) hold. */
 struct expr_flags {

@@ -4,6 +4,8 @@
 #include "expr/expr_interval_internal.h"
 #include "expr/expr_vector_internal.h"
 
+#include <string.h>
+
 /* A number in all boxes: its ends, where a constant has the same vector for all of them, and whether it may be NaN. */
 struct ends {
     const double *low, *high;
@@ -86,6 +88,55 @@ static struct expr_flags run_singly(const struct machine *m, const struct expr_i
         low[box] = result.low;
         low[box + EXPR_BOXES] = result.high;
         out.first |= (uint64_t)result.may_be_nan << box;
+    }
+    return out;
+}
+
+/* Of a loop, box by box. The ends of its arguments are in rows, those of truth values too. low: of the result. */
+static struct expr_flags run_loop_operation(const struct machine *m, const struct expr_instruction *in, double *low) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(m->program, constant);
+    const uint32_t slot = loop->offset + expr_slot_of(m->program, constant), values = loop->body.constant_count;
+    double *rows = m->rows + (size_t)slot * 2 * EXPR_BOXES;
+    struct expr_flags out = {0, 0};
+    if (operation == EXPR_LOOP) {
+        struct expr_interval *of_box =
+            (struct expr_interval *)(void *)(rows + (size_t)(expr_loop_rows(loop) / 2) * 2 * EXPR_BOXES);
+        for (uint32_t box = 0; box < m->width; box++) {
+            for (uint32_t k = 0; k < loop->argument_count; k++) {
+                const double *from = rows + (size_t)k * 2 * EXPR_BOXES;
+                bool may_be_nan = m->flags[slot + k].first >> box & 1;
+                of_box[values + k] = (struct expr_interval){from[box], from[box + EXPR_BOXES], may_be_nan};
+            }
+            expr_interval_loop(loop, loop->first, of_box);
+            for (uint32_t k = 0; k < loop->state_count; k++) {
+                double *to = rows + (size_t)k * 2 * EXPR_BOXES;
+                struct expr_interval state = of_box[values + k];
+                to[box] = state.low;
+                to[box + EXPR_BOXES] = state.high;
+                m->flags[slot + k].first =
+                    (m->flags[slot + k].first & ~((uint64_t)1 << box)) | (uint64_t)state.may_be_nan << box;
+            }
+        }
+        return out;
+    }
+    if (!is_put) {
+        memcpy(low, rows, 2 * EXPR_BOXES * sizeof *low);
+        out.first = operation == EXPR_TAKE_TRUTH ? 0 : m->flags[slot].first;
+        for (uint32_t box = 0; operation == EXPR_TAKE_TRUTH && box < m->width; box++) {
+            out.first |= (uint64_t)(rows[box] > 0) << box;
+            out.second |= (uint64_t)(rows[box + EXPR_BOXES] > 0) << box;
+        }
+        return out;
+    }
+    m->flags[slot].first = 0;
+    for (uint32_t box = 0; box < m->width; box++) {
+        struct expr_interval x = single(m, expr_operand_type(operation, 1), in->b, box);
+        rows[box] = x.low;
+        rows[box + EXPR_BOXES] = x.high;
+        m->flags[slot].first |= (uint64_t)x.may_be_nan << box;
     }
     return out;
 }
@@ -203,6 +254,9 @@ static inline __attribute__((always_inline)) void run_boxes(struct machine *m, c
                  hi = CHOOSE(BOXES(holds.first), ah, CHOOSE(BOXES(holds.second), MAX_OF(ah, bh), bh)))
             break;
         }
+        EXPR_LOOP_CASES:
+            out = run_loop_operation(m, in, low);
+            break;
         default:
             out = run_singly(m, in, low, &decided);
         }

@@ -70,7 +70,7 @@ struct expr_link_range {
 };
 #define EXPR_RANGE_1(operation) [EXPR_##operation] = {EXPR_LINK_##operation, 1},
 #define EXPR_RANGE_2(operation) [EXPR_##operation] = {EXPR_LINK_##operation, 2},
-static const struct expr_link_range expr_link_ranges[EXPR_OPERATION_COUNT] = {
+static const struct expr_link_range expr_link_ranges[EXPR_ALL_OPERATIONS] = {
     EXPR_LINKED_1(EXPR_RANGE_1) EXPR_LINKED_2(EXPR_RANGE_2)[EXPR_SELECT] = {EXPR_LINK_SELECT, 3}};
 
 /* The state of a pass that sets links from the last instruction to the first. Zero-initialise but for

@@ -88,6 +88,28 @@ union expr_value {
     X(EXPR_INTEGER_SELECT, "integer_select", I, B, I, I, a ? b : c)                                                    \
     X(EXPR_TRUTH_SELECT, "truth_select", B, B, B, B, a ? b : c)
 
+/* The operations of a loop, which is one unit of several instructions: the first ones put an initial state, or a value
+ * from outside that the body reads, into its memory; EXPR_LOOP repeats the body; the last ones take the final states.
+ * Their integer operands and results only keep them in this order: operand a is the instruction before. The last
+ * operand is a constant, expr_loop_operand. Each line: member, name, types of the result and of the operands. */
+#define EXPR_LOOP_OPERATIONS(X)                                                                                        \
+    X(EXPR_PUT_FLOAT, "put", I, I, F, I)                                                                               \
+    X(EXPR_PUT_INTEGER, "put", I, I, I, I)                                                                             \
+    X(EXPR_PUT_TRUTH, "put", I, I, B, I)                                                                               \
+    X(EXPR_LOOP, "loop", I, I, I, N)                                                                                   \
+    X(EXPR_TAKE_FLOAT, "take", F, I, I, N)                                                                             \
+    X(EXPR_TAKE_INTEGER, "take", I, I, I, N)                                                                           \
+    X(EXPR_TAKE_TRUTH, "take", B, I, I, N)
+/* For switches over all operations. */
+#define EXPR_LOOP_CASES                                                                                                \
+    case EXPR_PUT_FLOAT:                                                                                               \
+    case EXPR_PUT_INTEGER:                                                                                             \
+    case EXPR_PUT_TRUTH:                                                                                               \
+    case EXPR_LOOP:                                                                                                    \
+    case EXPR_TAKE_FLOAT:                                                                                              \
+    case EXPR_TAKE_INTEGER:                                                                                            \
+    case EXPR_TAKE_TRUTH
+
 /* Of a type: the C type of its values, their member of union expr_value, and whether there is an operand. */
 #define EXPR_C_TYPE_F double
 #define EXPR_C_TYPE_I int64_t
@@ -106,7 +128,8 @@ union expr_value {
 enum expr_operation {
     EXPR_CONSTANT, /* leaves of the graph; they are no instructions */
     EXPR_INPUT,
-    EXPR_OPERATIONS(EXPR_OPERATION_MEMBER) EXPR_OPERATION_COUNT
+    EXPR_OPERATIONS(EXPR_OPERATION_MEMBER) EXPR_OPERATION_COUNT,
+    EXPR_LOOP_OPERATIONS(EXPR_OPERATION_MEMBER) EXPR_ALL_OPERATIONS
 };
 enum expr_type { EXPR_TYPE_F, EXPR_TYPE_I, EXPR_TYPE_B, EXPR_TYPE_N };
 
@@ -122,6 +145,11 @@ static inline const struct image_function *expr_texel_function(int64_t operand) 
 
 static inline double expr_texel(double u, double v, int64_t operand) {
     return image_function_value(expr_texel_function(operand), u, v, (int)(operand & 3));
+}
+
+/* The number of a loop in its program (while recording, in the graph), and a slot of it. */
+static inline int64_t expr_loop_operand(uint32_t loop, uint32_t slot) {
+    return (int64_t)((uint64_t)loop << 16 | slot);
 }
 
 static inline double expr_modulo(double a, double b) {

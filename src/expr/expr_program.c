@@ -16,18 +16,48 @@ struct allocation {
     uint32_t wave;    /* its sine or cosine, the first of them */
     uint32_t partner; /* of the first: the other one. EXPR_NONE: none */
     uint16_t value;   /* where it stands */
+    uint16_t operand; /* of an operation of a loop: the constant with the number of the loop */
     bool needed, ordered;
 };
 
-static void mark(const struct expr_graph *graph, const uint32_t *outputs, int output_count,
-                 struct allocation *allocations) {
+/* A program that is compiled: that of a function, or the body of a loop. */
+struct layout {
+    const struct expr_graph *graph;
+    const struct expr_kept_loop *loop; /* NULL: the function */
+    const uint32_t *outputs;           /* nodes */
+    uint32_t output_count;
+    struct allocation *allocations;
+    struct registers *registers;
+    uint32_t *order, *numbers; /* nodes; the loops of this program, by their numbers in the graph */
+    struct arena *arena;
+};
+
+static uint32_t depth_of(const struct layout *layout) {
+    return layout->loop ? layout->loop->loop.depth : 0;
+}
+
+/* Whether this program computes the node: it is no constant, no input and not from outside of the body. */
+static bool is_computed(const struct layout *layout, uint32_t n) {
+    const struct expr_node *node = &layout->graph->nodes[n];
+    return node->operation != EXPR_CONSTANT && node->operation != EXPR_INPUT && node->depth == depth_of(layout);
+}
+
+/* Operands that are values: all but the constant of a loop. */
+static int count_operands(const struct expr_node *node) {
+    return expr_operand_count(node->operation) - (node->operation > EXPR_OPERATION_COUNT);
+}
+
+static void mark(const struct layout *layout) {
+    const struct expr_graph *graph = layout->graph;
+    struct allocation *allocations = layout->allocations;
     for (uint32_t n = 0; n < graph->count; n++)
         allocations[n].wave = allocations[n].partner = EXPR_NONE;
-    for (int i = 0; i < output_count; i++)
-        allocations[outputs[i]].needed = true;
+    for (uint32_t i = 0; i < layout->output_count; i++)
+        allocations[layout->outputs[i]].needed = true;
     for (uint32_t n = graph->count; n-- > 0;) {
         const struct expr_node *node = &graph->nodes[n];
-        for (int k = 0; allocations[n].needed && k < expr_operand_count(node->operation); k++)
+        bool is_read = allocations[n].needed && is_computed(layout, n);
+        for (int k = 0; is_read && k < count_operands(node); k++)
             allocations[node->operands[k]].needed = true;
     }
 }
@@ -37,11 +67,13 @@ static bool is_wave(const struct expr_node *node) {
 }
 
 /* The needed operations in the order of the program; returns their number. */
-static uint32_t put_in_order(const struct expr_graph *graph, const uint32_t *outputs, int output_count,
-                             struct allocation *allocations, uint32_t *order) {
+static uint32_t put_in_order(const struct layout *layout) {
+    const struct expr_graph *graph = layout->graph;
+    struct allocation *allocations = layout->allocations;
+    uint32_t *order = layout->order;
     for (uint32_t n = 0; n < graph->count; n++) {
         uint32_t *wave = is_wave(&graph->nodes[n]) ? &allocations[graph->nodes[n].operands[0]].wave : NULL;
-        if (!wave || !allocations[n].needed)
+        if (!wave || !allocations[n].needed || !is_computed(layout, n))
             continue;
         if (*wave != EXPR_NONE)
             allocations[*wave].partner = n;
@@ -50,9 +82,7 @@ static uint32_t put_in_order(const struct expr_graph *graph, const uint32_t *out
     }
     uint32_t count = 0;
     for (uint32_t n = 0; n < graph->count; n++) {
-        const struct expr_node *node = &graph->nodes[n];
-        if (!allocations[n].needed || allocations[n].ordered || node->operation == EXPR_CONSTANT ||
-            node->operation == EXPR_INPUT)
+        if (!allocations[n].needed || allocations[n].ordered || !is_computed(layout, n))
             continue;
         order[count++] = n;
         uint32_t partner = allocations[n].partner;
@@ -62,10 +92,10 @@ static uint32_t put_in_order(const struct expr_graph *graph, const uint32_t *out
         }
     }
     for (uint32_t at = 0; at < count; at++)
-        for (int k = 0; k < expr_operand_count(graph->nodes[order[at]].operation); k++)
+        for (int k = 0; k < count_operands(&graph->nodes[order[at]]); k++)
             allocations[graph->nodes[order[at]].operands[k]].last = at;
-    for (int i = 0; i < output_count; i++)
-        allocations[outputs[i]].last = UINT32_MAX;
+    for (uint32_t i = 0; i < layout->output_count; i++)
+        allocations[layout->outputs[i]].last = UINT32_MAX;
     return count;
 }
 
@@ -90,14 +120,22 @@ static bool too_large(struct error *error) {
     return error_set(error, ERROR_SCENE, "the function needs more than %d constants and values at once", EXPR_VALUES);
 }
 
-static bool number_constants(const struct expr_graph *graph, struct allocation *allocations, struct arena *arena,
-                             struct expr_program *program, struct error *error) {
+/* The constant operand of a node of a loop: the last one. */
+static int64_t loop_operand(const struct expr_graph *graph, const struct expr_node *node) {
+    return graph->nodes[node->operands[expr_operand_count(node->operation) - 1]].constant.i;
+}
+
+static bool number_constants(const struct layout *layout, struct expr_program *program, struct error *error) {
+    const struct expr_graph *graph = layout->graph;
+    struct allocation *allocations = layout->allocations;
     uint32_t count = 0;
     for (uint32_t n = 0; n < graph->count; n++)
         count += allocations[n].needed && graph->nodes[n].operation == EXPR_CONSTANT;
+    for (uint32_t at = 0; at < program->count; at++)
+        count += graph->nodes[layout->order[at]].operation > EXPR_OPERATION_COUNT;
     if (count >= EXPR_VALUES)
         return too_large(error);
-    union expr_value *constants = arena_alloc_array(arena, (size_t)count + 1, sizeof *constants);
+    union expr_value *constants = arena_alloc_array(layout->arena, (size_t)count + 1, sizeof *constants);
     if (!constants)
         return error_no_memory(error, "a function");
     program->constants = constants;
@@ -107,38 +145,76 @@ static bool number_constants(const struct expr_graph *graph, struct allocation *
         allocations[n].value = (uint16_t)program->constant_count;
         constants[program->constant_count++] = graph->nodes[n].constant;
     }
-    return true;
-}
-
-/* Inputs are in the first registers from the start. */
-static bool assign_inputs(const struct expr_graph *graph, struct allocation *allocations, struct registers *registers,
-                          struct expr_program *program, struct error *error) {
-    for (uint32_t n = 0; n < graph->count; n++) {
-        if (!allocations[n].needed || graph->nodes[n].operation != EXPR_INPUT)
+    for (uint32_t at = 0; at < program->count; at++) {
+        const struct expr_node *node = &graph->nodes[layout->order[at]];
+        if (node->operation < EXPR_OPERATION_COUNT)
             continue;
-        if (!take(registers, &allocations[n].value))
-            return too_large(error);
-        program->inputs[program->input_count].input = (uint16_t)graph->nodes[n].operands[0];
-        program->inputs[program->input_count++].value = allocations[n].value;
+        int64_t operand = loop_operand(graph, node);
+        uint32_t number = 0;
+        while (layout->numbers[number] != operand >> 16)
+            number++;
+        allocations[layout->order[at]].operand = (uint16_t)program->constant_count;
+        constants[program->constant_count++].i = expr_loop_operand(number, (uint32_t)(operand & 0xffff));
     }
     return true;
 }
 
-static bool write_code(const struct expr_graph *graph, const uint32_t *order, struct allocation *allocations,
-                       struct registers *registers, struct expr_instruction *code, struct expr_program *program) {
+/* Inputs are in the first registers from the start. */
+static bool assign_inputs(const struct layout *layout, struct expr_program *program, struct error *error) {
+    const struct expr_graph *graph = layout->graph;
+    for (uint32_t n = 0; n < graph->count; n++) {
+        if (!layout->allocations[n].needed || graph->nodes[n].operation != EXPR_INPUT)
+            continue;
+        if (!take(layout->registers, &layout->allocations[n].value))
+            return too_large(error);
+        program->inputs[program->input_count].input = (uint16_t)graph->nodes[n].operands[0];
+        program->inputs[program->input_count++].value = layout->allocations[n].value;
+    }
+    return true;
+}
+
+/* The arguments of a body are in its first registers from the start, and stay there. */
+static bool assign_arguments(const struct layout *layout, struct error *error) {
+    const struct expr_kept_loop *kept = layout->loop;
+    const struct expr_graph *graph = layout->graph;
+    const uint32_t first = layout->registers->first;
+    for (uint32_t k = 0; k <= kept->argument_count; k++) {
+        uint16_t value;
+        if (!take(layout->registers, &value))
+            return too_large(error);
+        if (k >= kept->loop.state_count && k < kept->argument_count) {
+            layout->allocations[kept->arguments[k]].value = value;
+            layout->allocations[kept->arguments[k]].last = UINT32_MAX;
+        }
+    }
+    for (uint32_t n = 0; n < graph->count; n++) {
+        if (!expr_is_symbol(&graph->nodes[n]) || graph->nodes[n].depth != kept->loop.depth)
+            continue;
+        uint32_t slot = expr_symbol_slot(&graph->nodes[n]);
+        layout->allocations[n].value = (uint16_t)(first + (slot == 0 ? kept->argument_count : slot - 1));
+        layout->allocations[n].last = UINT32_MAX;
+    }
+    return true;
+}
+
+static bool write_code(const struct layout *layout, struct expr_instruction *code, const struct expr_program *program) {
+    const struct expr_graph *graph = layout->graph;
+    struct registers *registers = layout->registers;
     for (uint32_t at = 0; at < program->count; at++) {
-        const struct expr_node *node = &graph->nodes[order[at]];
-        struct allocation *result = &allocations[order[at]];
+        const struct expr_node *node = &graph->nodes[layout->order[at]];
+        struct allocation *result = &layout->allocations[layout->order[at]];
         uint16_t values[3];
-        int count = expr_operand_count(node->operation);
+        int count = count_operands(node);
         for (int k = 0; k < count; k++) {
-            struct allocation *operand = &allocations[node->operands[k]];
+            struct allocation *operand = &layout->allocations[node->operands[k]];
             values[k] = operand->value;
             if (operand->last == at && operand->value >= program->constant_count) {
                 registers->free[registers->free_count++] = operand->value;
                 operand->last = UINT32_MAX; /* once, also if this instruction reads it twice */
             }
         }
+        if (node->operation > EXPR_OPERATION_COUNT)
+            values[count++] = result->operand;
         if (!take(registers, &result->value))
             return false;
         for (int k = count; k < 3; k++)
@@ -149,11 +225,9 @@ static bool write_code(const struct expr_graph *graph, const uint32_t *order, st
     return true;
 }
 
-void expr_link_program(const struct expr_program *program, struct expr_instruction *code) {
-    bool is_read[EXPR_VALUES] = {false}; /* by a later instruction, or as an output */
+/* Sets the links. is_read: of each value, whether it is read after the program. */
+static void link_code(const struct expr_program *program, struct expr_instruction *code, bool is_read[EXPR_VALUES]) {
     struct expr_linker linker = {.constant_count = program->constant_count};
-    for (int i = 0; i < program->output_count; i++)
-        is_read[program->outputs[i]] = true;
     for (uint32_t n = program->count; n-- > 0;) {
         struct expr_instruction *in = &code[n];
         const uint16_t operands[3] = {in->a, in->b, in->c};
@@ -168,55 +242,171 @@ void expr_link_program(const struct expr_program *program, struct expr_instructi
     expr_link_operands(&linker, UINT32_MAX);
 }
 
-/* The compiler's memory. */
-struct layout {
-    struct allocation *allocations;
-    struct registers *registers;
-    uint32_t *order;
-};
+void expr_link_program(const struct expr_program *program, struct expr_instruction *code) {
+    bool is_read[EXPR_VALUES] = {false};
+    for (int i = 0; i < program->output_count; i++)
+        is_read[program->outputs[i]] = true;
+    link_code(program, code, is_read);
+}
 
-/* Generates the code of the nodes in their order. */
-static bool compile(const struct expr_graph *graph, const struct layout *layout, struct arena *arena,
-                    struct expr_program *program, struct expr_instruction *code, struct error *error) {
-    if (!code)
-        return error_no_memory(error, "a function");
+/* Lists the loops of the program: their numbers in the graph. */
+static uint32_t list_loops(const struct layout *layout, const struct expr_program *program) {
+    uint32_t count = 0;
+    for (uint32_t at = 0; at < program->count; at++) {
+        const struct expr_node *node = &layout->graph->nodes[layout->order[at]];
+        if (node->operation == EXPR_LOOP)
+            layout->numbers[count++] = (uint32_t)(loop_operand(layout->graph, node) >> 16);
+    }
+    return count;
+}
+
+/* An instruction that copies a value of this type. */
+static struct expr_instruction copy_of(enum expr_type type, uint16_t from, uint16_t out) {
+    if (type == EXPR_TYPE_F)
+        return (struct expr_instruction){EXPR_COPY, out, from, out, out, 0};
+    if (type == EXPR_TYPE_I)
+        return (struct expr_instruction){EXPR_BIT_AND, out, from, from, out, 0};
+    return (struct expr_instruction){EXPR_TRUTH_SELECT, out, from, from, from, 0};
+}
+
+/* The results of the body in the order of the states. States are written one after the other, so that a result which is
+ * the register of another state is copied. `code` has room for that. */
+static bool finish_body(const struct layout *layout, struct expr_loop *loop, struct expr_instruction *code,
+                        uint16_t *next, enum expr_type *types) {
+    struct expr_program *body = &loop->body;
+    bool is_read[EXPR_VALUES] = {false};
+    for (uint32_t k = 0; k < loop->state_count; k++) {
+        const uint32_t node = layout->loop->loop.next[k];
+        uint16_t value = layout->allocations[node].value, first = (uint16_t)body->constant_count;
+        types[k] = layout->graph->nodes[node].type;
+        if (value >= first && value < first + loop->state_count && value != first + k) {
+            uint16_t copy;
+            if (!take(layout->registers, &copy))
+                return false;
+            code[body->count++] = copy_of(types[k], value, copy);
+            value = copy;
+        }
+        next[k] = value;
+        is_read[value] = true;
+    }
+    for (uint32_t k = 0; k <= loop->argument_count; k++)
+        is_read[body->constant_count + k] = true;
+    body->register_count = layout->registers->count;
+    link_code(body, code, is_read);
+    return true;
+}
+
+static bool compile_loops(const struct layout *layout, struct expr_program *program, struct error *error);
+
+/* Generates the instructions, without links. Returns them, with room for one more for each output; NULL: an error. */
+static struct expr_instruction *generate(const struct layout *layout, struct expr_program *program,
+                                         struct error *error) {
+    mark(layout);
+    program->count = put_in_order(layout);
+    program->loop_count = list_loops(layout, program);
+    struct expr_instruction *code =
+        arena_alloc_array(layout->arena, (size_t)program->count + layout->output_count + 1, sizeof *code);
     program->code = code;
-    if (!number_constants(graph, layout->allocations, arena, program, error))
-        return false;
+    if (!code) {
+        (void)error_no_memory(error, "a function");
+        return NULL;
+    }
+    if (!number_constants(layout, program, error))
+        return NULL;
     layout->registers->first = program->constant_count;
-    if (!assign_inputs(graph, layout->allocations, layout->registers, program, error))
-        return false;
-    if (!write_code(graph, layout->order, layout->allocations, layout->registers, code, program))
-        return too_large(error);
+    if (!(layout->loop ? assign_arguments(layout, error) : assign_inputs(layout, program, error)))
+        return NULL;
+    if (!write_code(layout, code, program)) {
+        (void)too_large(error);
+        return NULL;
+    }
     program->register_count = layout->registers->count;
+    return code;
+}
+
+static bool compile_function(const struct layout *layout, struct expr_program *program, struct error *error) {
+    struct expr_instruction *code = generate(layout, program, error);
+    if (!code)
+        return false;
+    for (uint32_t i = 0; i < layout->output_count; i++)
+        program->outputs[i] = layout->allocations[layout->outputs[i]].value;
+    program->output_count = (int)layout->output_count;
+    expr_link_program(program, code);
+    return compile_loops(layout, program, error);
+}
+
+static bool compile_body(const struct layout *layout, struct expr_loop *loop, struct error *error) {
+    const struct expr_graph_loop *from = &layout->loop->loop;
+    uint16_t *next = arena_alloc_array(layout->arena, (size_t)from->state_count + 1, sizeof *next);
+    enum expr_type *types = arena_alloc_array(layout->arena, (size_t)from->state_count + 1, sizeof *types);
+    if (!next || !types)
+        return error_no_memory(error, "a function");
+    *loop = (struct expr_loop){.first = from->first,
+                               .last = from->last,
+                               .ends = from->ends,
+                               .state_count = (uint16_t)from->state_count,
+                               .argument_count = (uint16_t)layout->loop->argument_count,
+                               .next = next,
+                               .type = types};
+    struct expr_instruction *code = generate(layout, &loop->body, error);
+    if (!code)
+        return false;
+    if (!finish_body(layout, loop, code, next, types))
+        return too_large(error);
+    return compile_loops(layout, &loop->body, error);
+}
+
+/* Compiles with memory that is freed afterwards. loop: where the body goes, or NULL. */
+static bool compile(struct layout *layout, struct expr_program *program, struct expr_loop *loop, struct error *error) {
+    const size_t nodes = (size_t)layout->graph->count + 1;
+    layout->allocations = mem_alloc_zero(nodes, sizeof *layout->allocations);
+    layout->registers = mem_alloc_zero(1, sizeof *layout->registers);
+    layout->order = mem_alloc_zero(nodes, sizeof *layout->order);
+    layout->numbers = mem_alloc_zero((size_t)layout->graph->loop_count + 1, sizeof *layout->numbers);
+    bool ok = layout->allocations && layout->registers && layout->order && layout->numbers;
+    if (!ok)
+        (void)error_no_memory(error, "a function");
+    else
+        ok = loop ? compile_body(layout, loop, error) : compile_function(layout, program, error);
+    mem_free(layout->allocations);
+    mem_free(layout->registers);
+    mem_free(layout->order);
+    mem_free(layout->numbers);
+    return ok;
+}
+
+/* Compiles the loops of a program, and gives them memory after its registers. */
+static bool compile_loops(const struct layout *layout, struct expr_program *program, struct error *error) {
+    program->row_count = program->register_count;
+    if (program->loop_count == 0)
+        return true;
+    struct expr_loop *loops = arena_alloc_array(layout->arena, program->loop_count, sizeof *loops);
+    if (!loops)
+        return error_no_memory(error, "a function");
+    program->loops = loops;
+    for (uint32_t k = 0; k < program->loop_count; k++) {
+        const struct expr_kept_loop *kept = &layout->graph->loops[layout->numbers[k]];
+        struct layout body = {.graph = layout->graph,
+                              .loop = kept,
+                              .outputs = kept->loop.next,
+                              .output_count = kept->loop.state_count,
+                              .arena = layout->arena};
+        if (!compile(&body, NULL, &loops[k], error))
+            return false;
+        loops[k].offset = program->row_count;
+        program->row_count += expr_loop_rows(&loops[k]);
+        program->loop_work += (loops[k].last - loops[k].first + 1) * expr_work(&loops[k].body);
+        if (program->constant_count + program->row_count > EXPR_VALUES)
+            return too_large(error);
+    }
     return true;
 }
 
 bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int output_count, struct arena *arena,
                   struct expr_program *program, struct error *error) {
-    const struct layout layout = {mem_alloc_zero((size_t)graph->count + 1, sizeof *layout.allocations),
-                                  mem_alloc_zero(1, sizeof *layout.registers),
-                                  mem_alloc_zero((size_t)graph->count + 1, sizeof *layout.order)};
+    struct layout layout = {.graph = graph, .outputs = outputs, .output_count = (uint32_t)output_count, .arena = arena};
     *program = (struct expr_program){.count = 0};
-    bool ok = layout.allocations && layout.registers && layout.order;
-    if (!ok)
-        (void)error_no_memory(error, "a function");
-    if (ok) {
-        mark(graph, outputs, output_count, layout.allocations);
-        program->count = put_in_order(graph, outputs, output_count, layout.allocations, layout.order);
-    }
-    struct expr_instruction *code = ok ? arena_alloc_array(arena, (size_t)program->count + 1, sizeof *code) : NULL;
-    ok = ok && compile(graph, &layout, arena, program, code, error);
-    for (int i = 0; ok && i < output_count; i++)
-        program->outputs[i] = layout.allocations[outputs[i]].value;
-    if (ok) {
-        program->output_count = output_count;
-        expr_link_program(program, code);
-    }
-    mem_free(layout.allocations);
-    mem_free(layout.registers);
-    mem_free(layout.order);
-    return ok;
+    return compile(&layout, program, NULL, error);
 }
 
 /* --- one point --- */
@@ -277,46 +467,90 @@ static inline bool is_true(double x) {
     return value.i != 0;
 }
 
+static void run_code(const struct expr_program *program, union expr_value *values);
+
+/* Repeats the body; states are written when all results are known. values: of the body. */
+static void run_loop(const struct expr_loop *loop, union expr_value *values) {
+    union expr_value *registers = values + loop->body.constant_count, next[EXPR_STATES];
+    memcpy(values, loop->body.constants, loop->body.constant_count * sizeof *values);
+    bool is_float = loop->type[0] == EXPR_TYPE_F;
+    for (uint32_t step = loop->first; step <= loop->last; step++) {
+        if (loop->ends && step > 1 && !(is_float ? registers[0].f > 0 : registers[0].i > 0))
+            break;
+        registers[loop->argument_count].i = step;
+        run_code(&loop->body, values);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            next[k] = values[loop->next[k]];
+        memcpy(registers, next, loop->state_count * sizeof *next);
+    }
+}
+
+/* One of the operations of a loop. */
+static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
+                               union expr_value *values) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(program, constant);
+    union expr_value *of_loop = values + program->constant_count + loop->offset;
+    union expr_value *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
+    if (is_put)
+        *slot = values[in->b];
+    else if (operation == EXPR_LOOP)
+        run_loop(loop, of_loop);
+    else
+        values[in->out] = *slot;
+}
+
 /* Runs an instruction, or the two of a sine and a cosine; returns the last one. */
-static const struct expr_instruction *run_unlinked(const struct expr_instruction *in,
-                                                   const struct expr_instruction *end, union expr_value *values) {
+static const struct expr_instruction *run_unlinked(const struct expr_program *program,
+                                                   const struct expr_instruction *in, union expr_value *values) {
+    const struct expr_instruction *end = program->code + program->count;
     switch ((enum expr_operation)in->operation) {
         EXPR_OPERATIONS(EVALUATE)
+    EXPR_LOOP_CASES:
+        run_loop_operation(program, in, values);
+        break;
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:
+    case EXPR_ALL_OPERATIONS:
         break;
     }
     return in;
 }
 
-void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
-                   double outputs[EXPR_OUTPUTS]) {
-    union expr_value values[EXPR_VALUES];
+static void run_code(const struct expr_program *program, union expr_value *values) {
     double last = 0;
-    for (uint32_t i = 0; i < program->constant_count; i++)
-        values[i] = program->constants[i];
-    for (int i = 0; i < program->input_count; i++)
-        values[program->inputs[i].value].f = inputs[program->inputs[i].input];
     for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
         switch (in->link) {
         case EXPR_UNLINKED:
-            in = run_unlinked(in, end, values);
+            in = run_unlinked(program, in, values);
             break;
             EXPR_LINK_CASES(SINGLE_CASE_1, SINGLE_CASE_2, SINGLE_CASE_3)
         default:
             __builtin_unreachable();
         }
     }
+}
+
+void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
+                   double outputs[EXPR_OUTPUTS]) {
+    union expr_value values[EXPR_VALUES];
+    for (uint32_t i = 0; i < program->constant_count; i++)
+        values[i] = program->constants[i];
+    for (int i = 0; i < program->input_count; i++)
+        values[program->inputs[i].value].f = inputs[program->inputs[i].input];
+    run_code(program, values);
     for (int i = 0; i < program->output_count; i++)
         outputs[i] = values[program->outputs[i]].f;
 }
 
 /* --- batches --- */
 
-/* One row for each register, and three for constants that are operands. */
+/* One row for each register and for the memory of loops, and three for constants that are operands. */
 size_t expr_batch_size(const struct expr_program *program) {
-    return ((size_t)program->register_count + 3) * EXPR_BATCH * sizeof(union expr_value);
+    return ((size_t)program->row_count + 3) * EXPR_BATCH * sizeof(union expr_value);
 }
 
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
@@ -330,7 +564,7 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
         double *row = values + (size_t)(program->inputs[i].value - program->constant_count) * EXPR_BATCH;
         memcpy(row, inputs[program->inputs[i].input], count * sizeof *row);
         for (uint32_t k = count; k < width; k++)
-            row[k] = 0;
+            row[k] = row[0]; /* so that it needs no more steps of a loop */
     }
     run[cpu_isa()](program, width, values);
     for (int i = 0; i < program->output_count; i++) {
@@ -366,9 +600,38 @@ static int describe_value(const struct expr_program *program, enum expr_operatio
     return snprintf(out, size, " %lld", (long long)program->constants[value].i);
 }
 
+const struct expr_loop *expr_repeated(const struct expr_program *program, uint32_t instruction) {
+    const struct expr_instruction *in = &program->code[instruction];
+    return in->operation == EXPR_LOOP ? expr_loop_of(program, in->b) : NULL;
+}
+
+/* The registers that a loop names are those of its body. */
+static void describe_loop_operation(const struct expr_program *program, const struct expr_instruction *in, char *out,
+                                    size_t size) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(program, constant);
+    const unsigned number = (unsigned)(loop - program->loops), slot = expr_slot_of(program, constant);
+    char word[40] = "";
+    if (is_put)
+        (void)describe_value(program, operation, 1, in->b, word, sizeof word);
+    if (is_put)
+        (void)snprintf(out, size, "loop %u: r%u =%s", number, slot, word);
+    else if (operation != EXPR_LOOP)
+        (void)snprintf(out, size, "r%u = loop %u: r%u", (unsigned)(in->out - program->constant_count), number, slot);
+    else
+        (void)snprintf(out, size, "loop %u: for r%u = %u to %u%s", number, (unsigned)loop->argument_count, loop->first,
+                       loop->last, loop->ends ? " while r0 > 0" : "");
+}
+
 void expr_describe(const struct expr_program *program, uint32_t instruction, char *out, size_t size) {
     const struct expr_instruction *in = &program->code[instruction];
     enum expr_operation operation = (enum expr_operation)in->operation;
+    if (operation > EXPR_OPERATION_COUNT) {
+        describe_loop_operation(program, in, out, size);
+        return;
+    }
     const uint16_t operands[3] = {in->a, in->b, in->c};
     char words[3][40] = {"", "", ""};
     for (int k = 0; k < expr_operand_count(operation); k++)

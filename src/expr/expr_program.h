@@ -20,16 +20,55 @@ struct expr_instruction {
     uint16_t link;         /* for the evaluators of points, see expr_link_internal.h; 0 is always right */
 };
 
+struct expr_loop;
+
 struct expr_program {
     const struct expr_instruction *code;
     const union expr_value *constants; /* values 0 to constant_count - 1 */
     uint32_t count, constant_count, register_count;
+    uint32_t row_count; /* the registers, and after them the memory of the loops, in registers */
+    uint32_t loop_count;
+    uint64_t loop_work;            /* instructions of all steps of the loops */
+    const struct expr_loop *loops; /* by their number, see expr_loop_operand */
     int input_count, output_count;
     struct {
         uint16_t input, value; /* an enum expr_input, and the register that contains it at the start */
     } inputs[EXPR_INPUT_COUNT];
     uint16_t outputs[EXPR_OUTPUTS]; /* floats */
 };
+
+/* A loop of a program. Its body is a program of its own, without inputs and outputs. The first registers of the body
+ * are the states, then the values from outside, then the number of the step; they keep their values through the body.
+ */
+struct expr_loop {
+    struct expr_program body;
+    uint32_t first, last; /* steps */
+    bool ends;            /* see struct expr_graph_loop */
+    uint16_t state_count, argument_count;
+    const uint16_t *next;       /* values of the body: the new states; none is the register of another state */
+    const enum expr_type *type; /* of the states */
+    uint32_t offset;            /* of its memory, in registers of the program that contains it, after the constants */
+};
+
+/* The memory of a loop, in registers: the constants and rows of its body, and as many for evaluators that need another
+ * form of them. */
+static inline uint32_t expr_loop_rows(const struct expr_loop *loop) {
+    return 2 * (loop->body.constant_count + loop->body.row_count + 3);
+}
+
+/* The loop of an instruction, whose operand is the constant `value`; and the slot. */
+static inline const struct expr_loop *expr_loop_of(const struct expr_program *program, uint16_t value) {
+    return &program->loops[program->constants[value].i >> 16];
+}
+
+static inline uint32_t expr_slot_of(const struct expr_program *program, uint16_t value) {
+    return (uint32_t)(program->constants[value].i & 0xffff);
+}
+
+/* How many instructions a point needs at most, with the steps of loops. */
+static inline uint64_t expr_work(const struct expr_program *program) {
+    return program->count + program->loop_work;
+}
 
 /* Whether an instruction and the next one are the sine and the cosine of one number, in any order. */
 static inline bool expr_is_pair(const struct expr_instruction *in, const struct expr_instruction *end) {
@@ -53,7 +92,10 @@ size_t expr_batch_size(const struct expr_program *program);
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          const double *const inputs[EXPR_INPUT_COUNT], double *const outputs[EXPR_OUTPUTS], void *rows);
 
-/* Prints one instruction: "r12 = add r3 0.5", at most `size` bytes with the final NUL. */
+/* Prints one instruction: "r12 = add r3 0.5", at most `size` bytes with the final NUL. Those of a loop: "loop 0: r1 =
+ * r7" with a register of its body, "loop 0: for r5 = 1 to 99 while r0 > 0", "r9 = loop 0: r1". */
 void expr_describe(const struct expr_program *program, uint32_t instruction, char *out, size_t size);
+/* The loop that an instruction repeats (EXPR_LOOP), or NULL. */
+const struct expr_loop *expr_repeated(const struct expr_program *program, uint32_t instruction);
 
 #endif

@@ -11,7 +11,8 @@ enum { UNWANTED = 0xffff };
 
 /* Whether an operation reads each operand. */
 #define READS(member, name, R, A, B, C, expression) [member] = {EXPR_HAS_##A, EXPR_HAS_##B, EXPR_HAS_##C},
-static const uint8_t reads[EXPR_OPERATION_COUNT][3] = {EXPR_OPERATIONS(READS)};
+#define LOOP_READS(member, name, R, A, B, C) [member] = {EXPR_HAS_##A, EXPR_HAS_##B, EXPR_HAS_##C},
+static const uint8_t reads[EXPR_ALL_OPERATIONS][3] = {EXPR_OPERATIONS(READS) EXPR_LOOP_OPERATIONS(LOOP_READS)};
 
 struct renaming {
     uint16_t *renamed, *unused; /* of old registers, UNWANTED where none; registers that are free */
@@ -158,6 +159,8 @@ bool expr_shorten_decided(const struct expr_program *program, const struct expr_
         shorter.inputs[shorter.input_count++].value = renamed;
     }
     shorter.register_count = r.register_count;
+    if (program->loop_count == 0)
+        shorter.row_count = r.register_count;
     stack->free = (size_t)(to - stack->code);
     *out = shorter;
     return true;

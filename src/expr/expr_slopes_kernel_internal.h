@@ -11,7 +11,9 @@
 
 /* The types of operands. */
 #define TYPES_OF(member, name, R, A, B, C, expression) [member] = {EXPR_TYPE_##A, EXPR_TYPE_##B, EXPR_TYPE_##C},
-static const uint8_t operand_types[EXPR_OPERATION_COUNT][3] = {EXPR_OPERATIONS(TYPES_OF)};
+#define LOOP_TYPES_OF(member, name, R, A, B, C) [member] = {EXPR_TYPE_##A, EXPR_TYPE_##B, EXPR_TYPE_##C},
+static const uint8_t operand_types[EXPR_ALL_OPERATIONS][3] = {EXPR_OPERATIONS(TYPES_OF)
+                                                                  EXPR_LOOP_OPERATIONS(LOOP_TYPES_OF)};
 
 /* Lower and upper ends. */
 struct span {
@@ -181,6 +183,46 @@ static void run_singly(const struct machine *run, const struct expr_instruction 
         }
     }
     *out = result;
+}
+
+static void put_lane(const struct expr_rooted *from, int directions, int lane, struct expr_lanes *to) {
+    const uint32_t bit = 1U << lane;
+    to->low[lane] = from->range.value.low;
+    to->high[lane] = from->range.value.high;
+    to->may_be_nan = from->range.value.may_be_nan ? to->may_be_nan | bit : to->may_be_nan & ~bit;
+    to->is_nan = from->range.is_nan ? to->is_nan | bit : to->is_nan & ~bit;
+    for (int k = 0; k < directions; k++) {
+        to->slopes[k].low[lane] = from->range.slopes[k].low;
+        to->slopes[k].high[lane] = from->range.slopes[k].high;
+    }
+}
+
+/* from: the value that is put; out: the value that is taken. */
+static void run_loop_operation(const struct machine *run, const struct expr_instruction *in,
+                               const struct expr_lanes *from, struct expr_lanes *out) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const uint16_t constant = is_put ? in->c : in->b;
+    const struct expr_loop *loop = expr_loop_of(run->program, constant);
+    struct expr_lanes *of_loop = run->values + loop->offset, *slot = of_loop + expr_slot_of(run->program, constant);
+    if (is_put)
+        *slot = *from;
+    else if (operation != EXPR_LOOP)
+        *out = *slot;
+    if (operation != EXPR_LOOP)
+        return;
+    const uint32_t constants = loop->body.constant_count, rows = loop->body.row_count;
+    struct expr_rooted *values = (struct expr_rooted *)(void *)(of_loop + expr_loop_rows(loop) / 2);
+    struct expr_interval *scratch = (struct expr_interval *)(void *)(values + constants + rows);
+    for (int lane = 0; lane < EXPR_LANES; lane++) {
+        for (uint32_t k = 0; k < loop->argument_count; k++)
+            values[constants + k] = lane_of(&of_loop[k], run->directions, lane);
+        expr_rooted_loop(loop, run->directions, values, scratch);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            put_lane(&values[constants + k], run->directions, lane, &of_loop[k]);
+    }
+    for (uint32_t k = 0; k < loop->state_count; k++)
+        of_loop[k].has_roots = false;
 }
 
 /* --- sines and exponentials --- */
@@ -568,6 +610,9 @@ static inline __attribute__((always_inline)) void run_lanes(struct machine *run,
         }
         case EXPR_EXP:
             run_exponential(run, from[0], out);
+            break;
+        EXPR_LOOP_CASES:
+            run_loop_operation(run, in, from[1], out);
             break;
         default: {
             struct expr_lanes result;

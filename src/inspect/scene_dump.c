@@ -193,26 +193,46 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
 
 /* --- functions of textures --- */
 
-/* Prints the registers of the inputs, the instructions, one per line, and the registers of the results. */
+static void dump_value(struct text_writer *writer, const struct expr_program *program, uint16_t value,
+                       enum expr_type type) {
+    if (value >= program->constant_count)
+        text_writer_print(writer, " r%u", (unsigned)(value - program->constant_count));
+    else if (type == EXPR_TYPE_F)
+        text_writer_print(writer, " %.17g", program->constants[value].f);
+    else
+        text_writer_print(writer, " %lld", (long long)program->constants[value].i);
+}
+
+/* The instructions, one per line, and after that of a loop those of its body, whose registers are its own, and the
+ * values that become its states, r0, r1, ... */
+static void dump_instructions(struct text_writer *writer, const struct expr_program *program, const char *before,
+                              const char *after, int indent) {
+    char line[256];
+    for (uint32_t i = 0; i < program->count; i++) {
+        const struct expr_loop *loop = expr_repeated(program, i);
+        expr_describe(program, i, line, sizeof line);
+        text_writer_print(writer, "%s%*s%s%s", before, indent, "", line, after);
+        if (!loop)
+            continue;
+        dump_instructions(writer, &loop->body, before, after, indent + 4);
+        text_writer_print(writer, "%s%*sr0 ... =", before, indent + 4, "");
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            dump_value(writer, &loop->body, loop->next[k], loop->type[k]);
+        text_writer_print(writer, "%s", after);
+    }
+}
+
+/* Prints the registers of the inputs, the instructions, and the registers of the results. */
 static void dump_program(struct text_writer *writer, const struct expr_program *program, bool json) {
     const char *before = json ? "\"" : "    ", *after = json ? "\"," : "\n";
-    char line[256];
     for (int i = 0; i < program->input_count; i++)
         text_writer_print(writer, "%sr%u = %s%s", before,
                           (unsigned)(program->inputs[i].value - program->constant_count),
                           expr_input_name((enum expr_input)program->inputs[i].input), after);
-    for (uint32_t i = 0; i < program->count; i++) {
-        expr_describe(program, i, line, sizeof line);
-        text_writer_print(writer, "%s%s%s", before, line, after);
-    }
+    dump_instructions(writer, program, before, after, 0);
     text_writer_print(writer, "%sresult", before);
-    for (int i = 0; i < program->output_count; i++) {
-        uint16_t value = program->outputs[i];
-        if (value < program->constant_count)
-            text_writer_print(writer, " %.17g", program->constants[value].f);
-        else
-            text_writer_print(writer, " r%u", (unsigned)(value - program->constant_count));
-    }
+    for (int i = 0; i < program->output_count; i++)
+        dump_value(writer, program, program->outputs[i], EXPR_TYPE_F);
     text_writer_print(writer, json ? "\"" : "\n");
 }
 

@@ -42,9 +42,9 @@ enum {
 };
 
 static bool reads_only(const struct expr_program *program, unsigned inputs, const char *words, struct error *error) {
-    if (program->register_count > VALUES)
+    if (program->row_count > VALUES)
         return error_set(error, ERROR_SCENE, "the function needs %u values at once; that of a fog may need %d",
-                         program->register_count, VALUES);
+                         program->row_count, VALUES);
     return expr_field_reads_only(program, inputs, words, error);
 }
 
@@ -163,7 +163,7 @@ static void choose_cells(struct fog_cells *cells, const struct expr_program *pro
             cells->count[axis] = wanted < 1 ? 1 : (uint32_t)wanted;
             count *= cells->count[axis];
         }
-        if (n <= 4 || count * program->count <= WORK)
+        if (n <= 4 || count * expr_work(program) <= WORK)
             return;
     }
 }

@@ -235,7 +235,7 @@ static void sum_points(const struct texture *texture, const struct region *regio
     }
     for (int k = 0; k < EXPR_OUTPUTS; k++)
         to[k] = values[k];
-    if (count >= BATCH_POINTS && program->register_count <= BATCH_REGISTERS) {
+    if (count >= BATCH_POINTS && program->row_count <= BATCH_REGISTERS) {
         _Alignas(64) double rows[(BATCH_REGISTERS + 3) * EXPR_BATCH];
         expr_evaluate_batch(program, (uint32_t)count, from, to, rows);
     } else {

@@ -41,10 +41,12 @@ void recorder_destroy(struct recorder *recorder) {
     if (!recorder)
         return;
     expr_graph_destroy(&recorder->graph);
-    mem_free(recorder->decisions);
+    for (int k = 0; k < RECORD_LEVELS; k++) {
+        mem_free(recorder->frames[k].decisions);
+        recorder->frames[k].decisions = NULL;
+    }
     mem_free(recorder->answers);
     record_bounds_end(recorder);
-    recorder->decisions = NULL;
     recorder->answers = NULL;
     recorder->active = recorder->busy = false;
 }
@@ -76,8 +78,7 @@ static void push_arguments(lua_State *L, int first) {
     lua_setfield(L, -2, "time");
 }
 
-/* Errors get their position while the stack still exists. */
-static int add_position(lua_State *L) {
+int record_add_position(lua_State *L) {
     struct script_context *context = context_of(L);
     char where[PATH_SIZE + 32];
     if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
@@ -110,7 +111,7 @@ static void name_function(lua_State *L, int function) {
 /* Calls the function at `function` with the values from `first` on. Pushes its first result, or the error. */
 static bool call_function(lua_State *L, int function, int first) {
     struct script_context *context = context_of(L);
-    lua_pushcfunction(L, add_position);
+    lua_pushcfunction(L, record_add_position);
     int handler = lua_gettop(L);
     lua_pushvalue(L, function);
     push_arguments(L, first);
@@ -188,8 +189,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
     struct recorder *recorder = context_of(L)->recorder;
     struct path_result result = {.count = 0};
     int top = lua_gettop(L);
-    recorder->taken = 0;
-    recorder->path++;
+    record_begin_path(L);
     bool fine = call_function(L, function, first) && is_result(L, function, &result.count);
     if (recorder->gave_up) /* even if the function caught the error */
         fine = false;
@@ -223,26 +223,27 @@ _Noreturn static void raise_text(lua_State *L, int index) {
 
 static struct path_result record_paths(lua_State *L, int function, int first) {
     struct recorder *recorder = context_of(L)->recorder;
+    struct record_frame *frame = &recorder->frames[0];
     lua_pushnil(L);
     int error = lua_gettop(L);
-    for (recorder->depth = 0;;) {
+    for (frame->depth = 0;;) {
         struct path_result result = record_path(L, function, first, error);
         if (recorder->gave_up) {
             lua_pushstring(L, recorder->error);
             lua_error(L);
         }
-        while (recorder->depth > 0 && !recorder->decisions[recorder->depth - 1].answer)
-            result = join(L, &recorder->decisions[--recorder->depth], &result);
-        if (recorder->depth == 0) {
+        while (frame->depth > 0 && !frame->decisions[frame->depth - 1].answer)
+            result = join(L, &frame->decisions[--frame->depth], &result);
+        if (frame->depth == 0) {
             if (result.count == 0)
                 raise_text(L, error);
             lua_settop(L, error - 1);
             return result;
         }
-        struct decision *last = &recorder->decisions[recorder->depth - 1];
+        struct decision *last = &frame->decisions[frame->depth - 1];
         last->if_true = result;
         last->answer = false;
-        if (recorder->path == RECORD_PATHS)
+        if (frame->count == RECORD_PATHS)
             record_give_up(L,
                            "the function has more than %d paths; gr.where(x, a, b), gr.step, gr.min and gr.max choose "
                            "without a path each, and gr.loop(n, state, f) repeats",
@@ -360,15 +361,17 @@ static void begin(lua_State *L) {
     struct script_context *context = context_of(L);
     struct recorder *recorder = context->recorder;
     expr_graph_destroy(&recorder->graph);
-    if (!recorder->decisions)
-        recorder->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *recorder->decisions);
+    if (!recorder->frames[0].decisions)
+        recorder->frames[0].decisions = mem_alloc_zero(RECORD_PATHS, sizeof *recorder->frames[0].decisions);
     if (!recorder->answers)
         recorder->answers = mem_alloc_zero(EXPR_NODES, sizeof *recorder->answers);
-    if (!recorder->decisions || !recorder->answers)
+    if (!recorder->frames[0].decisions || !recorder->answers)
         context_raise_no_memory(context);
     memset(recorder->answers, 0, EXPR_NODES * sizeof *recorder->answers);
     recorder->serial++;
-    recorder->path = 0;
+    recorder->level = recorder->calls = recorder->loop_depth = 0;
+    recorder->frames[0].count = 0;
+    recorder->has_loop = false;
     recorder->gave_up = false;
     recorder->active = true;
 }
@@ -444,19 +447,40 @@ static struct texture texture_of(const struct recording *recording) {
     return out;
 }
 
-/* Calls `run` with the function at an absolute index and `data`. Raises every error, prefixed by the name of the
- * argument. */
-static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
+/* Calls `run` with the function at an absolute index and `data`. Leaves an error on top. */
+static int run_once(struct script_context *context, lua_CFunction run, int index, void *data) {
     lua_State *L = context->lua;
     struct recorder *recorder = context->recorder;
-    recorder->busy = true;
     lua_pushcfunction(L, run);
     lua_pushvalue(L, index);
     lua_pushlightuserdata(L, data);
     int status = lua_pcall(L, 2, 0, 0);
-    recorder->active = recorder->busy = false;
+    recorder->active = false;
     expr_graph_destroy(&recorder->graph);
     context->lua = L;
+    return status;
+}
+
+/* Calls `run` with the function at an absolute index and `data`; once more where a step of a loop does what a symbol
+ * cannot do (it compares its number with ==), and then all steps are recorded one by one. Raises every error, with the
+ * name of the argument in front. */
+static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
+    lua_State *L = context->lua;
+    struct recorder *recorder = context->recorder;
+    recorder->busy = true;
+    recorder->unrolls = recorder->has_loop = false;
+    int status = run_once(context, run, index, data);
+    bool is_final = recorder->gave_up || context->fatal.kind != ERROR_NONE || context->limits.memory_out;
+    if (status != LUA_OK && recorder->has_loop && !is_final) {
+        recorder->unrolls = true;
+        int again = run_once(context, run, index, data);
+        if (again != LUA_OK && !recorder->gave_up)
+            lua_remove(L, -2);
+        else
+            lua_pop(L, 1); /* where it gave up, the first error says more */
+        status = again == LUA_OK ? LUA_OK : status;
+    }
+    recorder->busy = false;
     if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)

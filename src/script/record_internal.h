@@ -13,7 +13,14 @@
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
 
-enum { RECORD_PATHS = 4096, RECORD_LOOP = 10000, RECORD_ERROR = PATH_SIZE + 512 };
+/* CALLS: of a function and of the steps of its loops. LEVELS: of steps in steps. */
+enum {
+    RECORD_PATHS = 4096,
+    RECORD_CALLS = 1 << 16,
+    RECORD_LOOP = 10000,
+    RECORD_LEVELS = 8,
+    RECORD_ERROR = PATH_SIZE + 512
+};
 
 /* The kind of a Lua value in a recording. The node of an integer is an integer; the node of the others is a float.
  * EITHER: math.max(x, 0) gives an integer or a float; its node is the float of it, is_integer the node that says which.
@@ -36,6 +43,14 @@ struct decision {
     struct path_result if_true; /* while the answer is false: the result of the paths with true */
 };
 
+/* The calls of a function, or of a step of a loop: the path of the one that runs. */
+struct record_frame {
+    struct decision *decisions; /* of the path, RECORD_PATHS of them */
+    uint32_t depth, taken;      /* decisions of the path, and those that the call has come to */
+    uint32_t path;              /* number of the call among all calls of the recording, from 1 */
+    uint32_t count;             /* of calls */
+};
+
 /* The first argument of a function: a point, or a unit direction. */
 enum record_domain { RECORD_POINTS_OF_SPACE, RECORD_DIRECTIONS };
 
@@ -53,15 +68,17 @@ struct recorded_function {
  * finish. */
 struct recorder {
     struct expr_graph graph;
-    struct decision *decisions;   /* of the path, RECORD_PATHS of them */
-    struct path_bounds *narrowed; /* record_interval.c; of each node, EXPR_NODES of them */
-    uint32_t *answers;            /* of each node: 2 * path + answer, if `path` has decided it; EXPR_NODES of them */
-    uint32_t depth, taken;        /* decisions of the path, and the number of decisions that the call has reached */
-    uint32_t path;                /* number of the call, from 1 */
-    uint32_t serial;              /* of the recording: symbols of others are refused */
-    bool active;                  /* symbols may be used */
-    bool busy;                    /* a function is recorded or compared: no other function of gr may run */
-    bool gave_up;                 /* at a limit; `error` names it and the line */
+    struct record_frame frames[RECORD_LEVELS]; /* of the function, and of the steps that run in it */
+    uint32_t level, calls;                     /* the innermost frame; all calls */
+    uint32_t loop_depth;                       /* of loops whose body runs with symbols */
+    struct path_bounds *narrowed;              /* record_interval.c; of each node, EXPR_NODES of them */
+    uint32_t *answers; /* of each node: 2 * path + answer, where `path` has decided it; EXPR_NODES of them */
+    uint32_t serial;   /* of the recording: symbols of others are refused */
+    bool active;       /* symbols may be used */
+    bool busy;         /* a function is recorded or compared: no other function of gr may run */
+    bool has_loop;     /* the recording has a loop of the graph */
+    bool unrolls;      /* the steps of loops are recorded one by one */
+    bool gave_up;      /* at a limit; `error` names it and the line */
     char error[RECORD_ERROR];
     const void *symbol_metatable, *vector_metatable;
     struct recorded_function *functions; /* the newest first */
@@ -80,6 +97,11 @@ uint32_t record_node(lua_State *L, uint32_t node);
 uint32_t record_operation(lua_State *L, enum expr_operation operation, uint32_t a, uint32_t b, uint32_t c);
 /* a where the condition holds, else b. */
 struct number record_select(lua_State *L, uint32_t condition, struct number a, struct number b);
+/* A frame for the paths of a step of a loop; the next path of the innermost frame; the end of that frame. They raise
+ * errors at the limits. */
+struct record_frame *record_begin_paths(lua_State *L);
+void record_begin_path(lua_State *L);
+void record_end_paths(struct recorder *recorder);
 /* The answer of the path to a condition. */
 bool record_decide(lua_State *L, uint32_t condition);
 /* Replaces the two values on top by the smaller or the larger, as math.min and math.max choose. */
@@ -94,7 +116,12 @@ void push_vector(lua_State *L);
 /* An operator (LUA_OPADD ...) on the components of its arguments, which are vectors, tables or numbers. */
 int vector_arithmetic(lua_State *L, int operator);
 
+/* record_loop.c */
+int record_loop(lua_State *L); /* gr.loop */
+
 /* record.c */
+/* A message handler: errors get their position while the stack still exists. */
+int record_add_position(lua_State *L);
 void record_open(lua_State *L);
 void recorder_destroy(struct recorder *recorder);
 /* The texture of the Lua function at an absolute index, kept by the scene. Raises every error, with the name of the

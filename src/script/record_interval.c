@@ -24,6 +24,10 @@ void record_bounds_end(struct recorder *recorder) {
     recorder->narrowed = NULL;
 }
 
+static uint32_t record_path(const struct recorder *recorder) {
+    return recorder->frames[recorder->level].path;
+}
+
 static struct expr_interval unknown(enum expr_type type) {
     switch (type) {
     case EXPR_TYPE_F:
@@ -73,7 +77,12 @@ static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t 
         return unknown(node->type);
     if (node->operation == EXPR_CONSTANT)
         return of_constant(node);
-    if (node->operation == EXPR_INPUT) {
+    if (node->operation > EXPR_OPERATION_COUNT) {
+        out = unknown(node->type);
+    } else if (expr_is_symbol(node)) {
+        bool is_step = expr_symbol_slot(node) == 0;
+        out = is_step ? (struct expr_interval){1, RECORD_LOOP, false} : unknown(node->type);
+    } else if (node->operation == EXPR_INPUT) {
         out = of_input((enum expr_input)node->operands[0]);
     } else {
         int count = expr_operand_count(node->operation);
@@ -85,7 +94,7 @@ static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t 
     }
     const struct path_bounds none = {{0, 0, false}, 0, 0},
                              *narrowed = recorder->narrowed ? &recorder->narrowed[at] : &none;
-    bool is_here = narrowed->path == recorder->path && narrowed->serial == recorder->serial;
+    bool is_here = narrowed->path == record_path(recorder) && narrowed->serial == recorder->serial;
     return is_here ? meet(out, narrowed->bounds) : out;
 }
 
@@ -97,7 +106,7 @@ int record_bounds_prove(const struct recorder *recorder, uint32_t condition) {
 
 static void narrow(struct recorder *recorder, uint32_t node, struct expr_interval bounds) {
     if (recorder->graph.nodes[node].operation != EXPR_CONSTANT)
-        recorder->narrowed[node] = (struct path_bounds){bounds, recorder->serial, recorder->path};
+        recorder->narrowed[node] = (struct path_bounds){bounds, recorder->serial, record_path(recorder)};
 }
 
 /* The effect of a comparison of a with b. If it is false, b is less, or one of them is NaN. */

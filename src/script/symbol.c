@@ -4,6 +4,8 @@
  * returns) becomes a decision of the path, or a selection. */
 #include "script/record_internal.h"
 
+#include "base/mem.h"
+
 #include <lauxlib.h>
 #include <math.h>
 #include <stdarg.h>
@@ -76,7 +78,7 @@ uint32_t record_node(lua_State *L, uint32_t node) {
     }
     record_give_up(L,
                    "the function has more than %d operations; gr.where, gr.step, gr.min and gr.max need one operation "
-                   "where branches need many, and gr.loop(n, state, f) records each of its n steps",
+                   "where branches need many, and gr.loop(n, state, f) records one step for all",
                    EXPR_NODES);
 }
 
@@ -99,6 +101,8 @@ struct number number_at(lua_State *L, int index) {
     const struct symbol *symbol = lua_touserdata(L, index);
     if (!recorder->active || symbol->serial != recorder->serial)
         luaL_error(L, "a number of a recorded function is used outside the function");
+    if (recorder->graph.nodes[symbol->number.node].depth > recorder->loop_depth)
+        luaL_error(L, "a number of a step of gr.loop is used outside the step");
     return symbol->number;
 }
 
@@ -136,9 +140,13 @@ static struct number make_integer(uint32_t node) {
 
 /* --- decisions --- */
 
+/* On the path, or on those of the calls around it. */
 static int known_answer(const struct recorder *recorder, uint32_t condition) {
     uint32_t answer = recorder->answers[condition];
-    return answer / 2 == recorder->path ? (int)(answer & 1) : -1;
+    for (uint32_t k = 0; k <= recorder->level; k++)
+        if (answer / 2 == recorder->frames[k].path)
+            return (int)(answer & 1);
+    return -1;
 }
 
 /* What follows from the decisions of the path: a < b excludes b < a and b <= a, and includes a <= b; -1 if nothing. */
@@ -159,35 +167,64 @@ static int implied_answer(lua_State *L, uint32_t condition) {
     return known_answer(recorder, record_operation(L, less, a, b, EXPR_NONE)) == 1 ? 1 : -1;
 }
 
+struct record_frame *record_begin_paths(lua_State *L) {
+    struct recorder *recorder = recorder_of(L);
+    if (recorder->level + 1 == RECORD_LEVELS)
+        record_give_up(L, "loops of gr.loop are %d deep in each other; %d may be", RECORD_LEVELS, RECORD_LEVELS - 1);
+    struct record_frame *frame = &recorder->frames[recorder->level + 1];
+    if (!frame->decisions)
+        frame->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *frame->decisions);
+    if (!frame->decisions)
+        context_raise_no_memory(context_of(L));
+    frame->depth = frame->taken = frame->count = 0;
+    recorder->level++;
+    return frame;
+}
+
+void record_begin_path(lua_State *L) {
+    struct recorder *recorder = recorder_of(L);
+    struct record_frame *frame = &recorder->frames[recorder->level];
+    if (recorder->calls == RECORD_CALLS)
+        record_give_up(L, "the function and the steps of its loops have more than %d paths together", RECORD_CALLS);
+    frame->taken = 0;
+    frame->count++;
+    frame->path = ++recorder->calls;
+}
+
+void record_end_paths(struct recorder *recorder) {
+    recorder->level--;
+}
+
 bool record_decide(lua_State *L, uint32_t condition) {
     struct recorder *recorder = recorder_of(L);
+    struct record_frame *frame = &recorder->frames[recorder->level];
     const union expr_value *constant = expr_constant(&recorder->graph, condition);
     if (constant)
         return constant->i != 0;
     int answer = known_answer(recorder, condition);
     if (answer < 0)
         answer = implied_answer(L, condition);
-    bool is_repeated = recorder->taken < recorder->depth && recorder->decisions[recorder->taken].condition == condition;
+    bool is_repeated = frame->taken < frame->depth && frame->decisions[frame->taken].condition == condition;
     if (answer < 0 && !is_repeated) {
         answer = record_bounds_prove(recorder, condition);
         if (answer >= 0)
-            recorder->answers[condition] = 2 * recorder->path + (uint32_t)answer;
+            recorder->answers[condition] = 2 * frame->path + (uint32_t)answer;
     }
     if (answer >= 0)
         return answer == 1;
-    if (recorder->taken == RECORD_PATHS)
+    if (frame->taken == RECORD_PATHS)
         record_give_up(L,
                        "a call of the function branches more than %d times on its arguments; for a loop with a "
                        "constant number of steps use gr.loop(n, state, f)",
                        RECORD_PATHS);
-    struct decision *decision = &recorder->decisions[recorder->taken++];
-    if (recorder->taken > recorder->depth) {
+    struct decision *decision = &frame->decisions[frame->taken++];
+    if (frame->taken > frame->depth) {
         *decision = (struct decision){.condition = condition, .answer = true};
-        recorder->depth = recorder->taken;
+        frame->depth = frame->taken;
     } else if (decision->condition != condition) {
         record_give_up(L, "the function is not pure: a second call with the same arguments took another branch");
     }
-    recorder->answers[condition] = 2 * recorder->path + (decision->answer ? 1 : 0);
+    recorder->answers[condition] = 2 * frame->path + (decision->answer ? 1 : 0);
     if (!record_bounds_narrow(recorder, condition, decision->answer)) {
         context_of(L)->lua = L;
         context_raise_no_memory(context_of(L));

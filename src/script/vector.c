@@ -408,43 +408,6 @@ static int lookup(lua_State *L) {
     return 1;
 }
 
-/* loop(n, s1, s2, ..., f): f(i, s1, s2, ...) for i = 1 to n returns the next state, until s1 <= 0 (for that point).
- * Recorded, every step is there, and the state stays from its end on. */
-static int loop(lua_State *L) {
-    int states = lua_gettop(L) - 2;
-    lua_Integer count = luaL_checkinteger(L, 1);
-    luaL_argcheck(L, count >= 0 && count <= RECORD_LOOP, 1, "a constant number of steps up to 10000 is needed");
-    luaL_argcheck(L, states > 0, 2, "a state is needed");
-    luaL_checktype(L, states + 2, LUA_TFUNCTION);
-    uint32_t alive = EXPR_NONE; /* for every point */
-    for (lua_Integer i = 1; i <= count; i++) {
-        lua_pushvalue(L, states + 2);
-        lua_pushinteger(L, i);
-        for (int k = 0; k < states; k++)
-            lua_pushvalue(L, 2 + k);
-        lua_call(L, states + 1, states);
-        for (int k = 0; k < states; k++) {
-            int next = states + 3 + k;
-            if (!is_number(L, next) && !(lua_istable(L, next) && lua_rawlen(L, next) == 3))
-                return luaL_error(L, "gr.loop: the function must return %d numbers or vectors", states);
-            if (alive != EXPR_NONE) {
-                push_select(L, alive, next, 2 + k);
-                lua_replace(L, next);
-            }
-        }
-        int first = states + 3;
-        if (is_symbol(L, first)) /* of a point that has ended, the first state stays and is not above 0 */
-            alive = is_positive(L, first);
-        bool ends = lua_type(L, first) == LUA_TNUMBER && !(lua_tonumber(L, first) > 0);
-        for (int k = states; k-- > 0;)
-            lua_replace(L, 2 + k);
-        if (ends)
-            break;
-    }
-    lua_settop(L, states + 1);
-    return states;
-}
-
 /* --- noise --- */
 
 /* Whether one of the three values on top is a symbol; else they are numbers, given out. */
@@ -660,7 +623,7 @@ static const struct {
      lookup},
     {{"loop", "n, ...", "Replaces the state s1, s2, ... by f(i, s1, s2, ...) for i = 1 to n while s1 > 0; f is last.",
       "any ..."},
-     loop},
+     record_loop},
     {{"noise", "p", "Perlin noise at a point, or at x, y, z: about -1..1.", "number"}, noise},
     {{"turbulence", "p, octaves", "The sum of |noise(2^k p)| / 2^k for octaves (4) values of k from 0 on.", "number"},
      turbulence},

@@ -130,7 +130,7 @@ static double evaluate(struct search *search, const struct expr_program *program
     inputs[EXPR_POINT_Y] = p.y;
     inputs[EXPR_POINT_Z] = p.z;
     expr_evaluate(program, inputs, outputs);
-    search->work += program->count;
+    search->work += expr_work(program);
     return outputs[0];
 }
 
@@ -156,7 +156,7 @@ static void bound_eighths(struct search *search, const struct expr_program *prog
         }
         directions.seeds[EXPR_POINT_X + k][0] = d;
     }
-    search->work += 10 * (uint64_t)program->count;
+    search->work += 10 * expr_work(program);
     expr_evaluate_slopes_lanes(program, &inputs, &directions, outputs, NULL, implicit_aligned(memory));
     *out = outputs[0];
 }

@@ -126,9 +126,11 @@ static const char *in_lua(enum expr_operation operation) {
     case EXPR_CELL_ID:
     case EXPR_TEXEL:
     case EXPR_TRUTH_SELECT:
+    EXPR_LOOP_CASES:
     case EXPR_CONSTANT:
     case EXPR_INPUT:
     case EXPR_OPERATION_COUNT:
+    case EXPR_ALL_OPERATIONS:
         break;
     }
     return NULL;
