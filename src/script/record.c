@@ -473,12 +473,10 @@ static void run_protected(struct script_context *context, lua_CFunction run, int
     bool is_final = recorder->gave_up || context->fatal.kind != ERROR_NONE || context->limits.memory_out;
     if (status != LUA_OK && recorder->has_loop && !is_final) {
         recorder->unrolls = true;
-        int again = run_once(context, run, index, data);
-        if (again != LUA_OK && !recorder->gave_up)
-            lua_remove(L, -2);
-        else
-            lua_pop(L, 1); /* where it gave up, the first error says more */
-        status = again == LUA_OK ? LUA_OK : status;
+        if (run_once(context, run, index, data) == LUA_OK)
+            status = LUA_OK;
+        bool is_fatal = context->fatal.kind != ERROR_NONE || context->limits.memory_out;
+        lua_remove(L, status == LUA_OK || !is_fatal ? -1 : -2); /* of two errors, the first says more */
     }
     recorder->busy = false;
     if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
@@ -560,7 +558,7 @@ static int sample_curve(lua_State *L) {
 /* Errors in the function get their position while the stack still exists. */
 static int sample_protected(lua_State *L) {
     lua_settop(L, 2);
-    lua_pushcfunction(L, add_position);
+    lua_pushcfunction(L, record_add_position);
     lua_pushcfunction(L, sample_curve);
     lua_pushvalue(L, 1);
     lua_pushvalue(L, 2);

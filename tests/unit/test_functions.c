@@ -166,6 +166,45 @@ TEST(vectors_are_numbers_by_three) {
     fails("vec(1, 2, 3).w = 1", "the fields of a vector cannot be set");
 }
 
+TEST(loops_of_many_steps_are_recorded_as_lua_computes_them) {
+    static const char julia[] = "local function escape(n, cx, cy) return function(p)"
+                                " local _, x, y, k = gr.loop(n, 1, p.x / 50, p.y / 50, 0, function(i, _, x, y, k)"
+                                " if x * x + y * y > 4 then return 0, x, y, k end"
+                                " return 1, x * x - y * y + (cx or p.x / 40), 2 * x * y + (cy or p.y / 40), k + 1 end)"
+                                " return {x, y, k / n} end end fn(escape(300)) fn(escape(10000, 0.4, 0.4))";
+    runs(julia);
+    runs("fn(function(p) local n, x = gr.loop(10000, p.x, 1.5, function(i, d, x)"
+         " local next = (x + math.abs(p.x) / x) / 2 return math.abs(next - x), next end) return x end)"); /* Newton */
+    runs("fn(function(p) local q, a, s = gr.loop(200, p, 1, 0, function(i, q, a, s)"
+         " return q * 1.01 + 0.3, a * 0.99, s + a * gr.noise(q) end) return s + q.x end)");
+    runs("fn(function(p) return (select(2, gr.loop(500, floor(p.x), 1, function(i, a, b)"
+         " if a % 2 > 0 then a = 3 * a + 1 else a = a // 2 end return a - 1, b * 31 + a + i & 0xffff end))) end)");
+    runs("fn(function(p) local n, k = gr.loop(300, 1, 0, function(i, a, k)"
+         " if i > 20 and p.x < k or i * 2 > p.y + 300 and p.z > 0 then return 0, k end return a, k + p.y end)"
+         " return k end)");
+    runs("fn(function(p) local a, b = gr.loop(400, p.x, 0, function(i, a, b)"
+         " return math.max(a, b, 1), math.max(b - 0.25, floor(a)) end) return a // 2 + b // 2 end)");
+    runs("fn(function(p) return gr.loop(200, p.x, function(i, a)"
+         " local s, b = gr.loop(300, 1.5, a, function(k, s, b) return s - 0.5, b + math.sin(b * k) / i end)"
+         " return b end) end)");
+    runs(
+        "fn(function(p) return (gr.loop(150, vec(0), p, function(i, s, q) return s + q / i, q:cross{1, 0, i} / 9 end))"
+        " end)");
+    /* the number of a step as a plain number: recorded one by one */
+    runs("local t = {} for i = 1, 100 do t[i] = sin(i) end"
+         " fn(function(p) return gr.loop(100, p.x, function(i, s) return s * 0.9 + t[i] + (p.y + s) * p.z / i end) "
+         "end)");
+    runs("fn(function(p) local a, b = gr.loop(300, 1, p.x, function(i, a, b)"
+         " if i == 7 then return a, b + 100 end return a, b * 0.5 + p.y * i + p.z end) return b end)");
+    fails("local kept fn(function(p) gr.loop(1000, p.x, function(i, a) kept = a return a * p.y + p.z + i end)"
+          " return kept + 1 end)",
+          "a number of a step of gr.loop is used outside the step");
+    fails("fn(function(p)\n return gr.loop(1000, p.x, function(i, a) return a + nil end) end)", "scene.lua:2: ");
+    fails("fn(function(p) return (gr.loop(1000, p.x, function(i, a) local n = 0 for k = 1, 13 do"
+          " if gr.noise(a * k, p.y, p.z) > 0 then n = n + 2 ^ k end end return n end)) end)",
+          "a step of gr.loop has more than 4096 paths");
+}
+
 TEST(a_function_that_is_not_pure_is_an_error_that_names_the_difference) {
     fails("local n = 0 fn(function(p) n = n + 1 return n end)", "the function of line 1 cannot be recorded: at p = ");
     fails("fn(function(p) return p.x * math.random() end)", "it must depend only on its arguments");
@@ -477,6 +516,29 @@ TEST(pictures_of_functions_have_one_hash_for_threads_and_instruction_sets) {
 
 TEST(a_value_that_is_not_a_number_is_black) {
     check_equal("kd = function(p) return {0 * p.x / 0, 1, p.x * 0} end", "kd = {0, 1, 0}", "");
+}
+
+TEST(the_operations_of_loops_are_listed_below_them) {
+    char text[2048];
+    (void)snprintf(text, sizeof text, stage,
+                   "kd = function(p) return (gr.loop(2000, p.x, function(i, a) return a * p.y - i end)) end", "a.png");
+    struct test_result result = test_gray_scene(text, "--dump-expr scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.out, "a.png: functions of textures\n"
+                           "  scene.lua:1: 4 operations, 5 constants, 2 registers\n"
+                           "    r0 = p.x\n"
+                           "    r1 = p.y\n"
+                           "    loop 0: r0 = r0\n"
+                           "    loop 0: r1 = r1\n"
+                           "    loop 0: for r2 = 1 to 2000 while r0 > 0\n"
+                           "        r3 = multiply r0 r1\n"
+                           "        r4 = to_float r2\n"
+                           "        r4 = subtract r3 r4\n"
+                           "        r0 ... = r4\n"
+                           "    r1 = loop 0: r0\n"
+                           "    result r1\n");
+    free(result.out);
+    free(result.err);
 }
 
 TEST(the_operations_of_functions_are_listed) {
