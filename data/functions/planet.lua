@@ -52,13 +52,14 @@ end
 local function shine(p) return 0.45 * gr.step(height(p:normalize()), 0) * gr.vec(1, 1, 0.95) end
 globe:set_material(gr.material { kd = ground, ks = shine, shininess = 35 })
 
--- The far side of the shell is not seen through the near one.
+-- The far side of the shell is not seen through the near one. Towards the rim the clouds thin out: seen flat, they would
+-- be streaks.
 local function clouds(p, s)
     local d = p:normalize()
     local swirl = d * 2.2 + 0.8 * gr.vec(gr.noise(d * 1.5), gr.noise(d * 1.5 + 5), gr.noise(d * 1.5 + 9))
-    return 0.92 * gr.smoothstep(0.08, 0.62, fbm(gr.vec(swirl.x, swirl.y * 1.7, swirl.z), 6) + 0.1) * gr.step(0, s.normal:dot(s.view))
+    return 0.92 * gr.smoothstep(0.08, 0.62, fbm(gr.vec(swirl.x, swirl.y * 1.7, swirl.z), 6) + 0.1) * gr.smoothstep(0.02, 0.4, s.normal:dot(s.view))
 end
-local sky = gr.sphere { radius = 1.08, material = gr.material { kd = { 0.96, 0.97, 1 }, opacity = clouds } }
+local sky = gr.sphere { radius = 1.05, material = gr.material { kd = { 0.96, 0.97, 1 }, opacity = clouds } }
 
 local function stars(d)
     local near, _, id = gr.cells(d * 45)
