@@ -1,5 +1,5 @@
 -- TITLE: Lamps in plates
--- OPTIONS: --spp 24
+-- OPTIONS: --spp 48 --fxaa
 -- Three plates of metal, from polished to rough, show four lamps, from small and bright to large and dim, after the
 -- picture by which Veach and Guibas compared ways of sampling ("Optimally Combining Sampling Techniques for Monte Carlo
 -- Rendering", 1995). The lamps have the same power: small ones are found by sampling lights, large ones in polished
@@ -19,7 +19,7 @@ end
 local function towards(from, to) return unit { to[1] - from[1], to[2] - from[2], to[3] - from[3] } end
 
 for i, roughness in ipairs { .08, .2, .32 } do
-    local middle = { 0, 2.1 - 1.15 * i, -2.6 + 1.75 * i }
+    local middle = { 0, 1.55 - .85 * i, -3 + 2.2 * i }
     local a, b = towards(middle, eye), towards(middle, lamps)
     local normal = unit { 0, a[2] + b[2], a[3] + b[3] }
     local plate = gr.box { min = { -4.2, -.06, -.85 }, max = { 4.2, 0, .85 },
@@ -40,4 +40,5 @@ end
 gr.render {
     node = scene, file = 'plates.png', width = 480, height = 360, integrator = 'path', spp = 256, denoise = true,
     eye = eye, target = { 0, .9, 0 }, fov = 38, background = { 0, 0, 0 }, tone = 'filmic',
+    filter = 'gaussian',
 }
