@@ -1,6 +1,6 @@
 -- Glass, gold and lacquer on a table: layered materials in the light of a window and a lamp.
 -- TITLE: Glass, gold and lacquer on a table
--- OPTIONS: --spp 32
+-- OPTIONS: --spp 56
 
 local oak = gr.openpbr_material{
     base_color = gr.mix_texture({0.30, 0.17, 0.08}, {0.20, 0.10, 0.045}, gr.wood_texture(0.6, 9)),
@@ -75,4 +75,6 @@ gr.render{
     lights = {window, lamp},
     background = {0.05, 0.055, 0.065},
     area_samples = 3,
+    exposure = .7,
+    filter = 'gaussian',
 }
