@@ -1,24 +1,30 @@
 -- TITLE: A room in the morning sun
--- OPTIONS: --spp 96
+-- OPTIONS: --spp 72
 -- The sun and the clear sky shine through one window; everything else is lit by light that comes back from the floor
 -- and the walls.
 local function matte(r, g, b) return gr.material { kd = { r, g, b }, two_sided = true } end
 local room = gr.node('room')
 local function box(material, min, max) room:add_child(gr.box { material = material, min = min, max = max }) end
 
-local plaster, ceiling, white = matte(.74, .7, .62), matte(.8, .79, .76), matte(.78, .77, .74)
+local plaster, ceiling, white = matte(.78, .76, .71), matte(.82, .81, .79), matte(.8, .79, .77)
 local oak = gr.openpbr_material { base_color = { .48, .3, .16 }, specular_roughness = .35 }
 local dark = matte(.16, .1, .07)
-local floor = gr.openpbr_material { base_color = gr.texture { file = '../../textures/parquet.png', tiles = { 4, 5 } },
-    specular_roughness = .3 }
+-- Boards of 16 by 130 centimetres.
+local function boards(p)
+    local row = math.floor(p.x / .16)
+    local board = math.floor(p.z / 1.3 + gr.hash(row, 0, 0))
+    local grain = gr.noise(p.x * 60, 7 * row, p.z * 4)
+    return gr.mix({ .42, .26, .13 }, { .62, .43, .25 }, gr.clamp(gr.hash(row, board, 1) + .15 * grain, 0, 1))
+end
+local floor = gr.openpbr_material { base_color = gr.fn(boards, 1), specular_roughness = .3 }
 
--- The shell: a window wall on the left with a hole, and five closed sides. A unit is a metre.
+-- The shell: a wall with a window on the left, and the side behind the camera, which is open to a terrace. A unit is a
+-- metre.
 room:add_child(gr.rectangle { material = floor, corner = { -2.7, 0, 3.3 }, along = { 5.3, 0, 0 }, up = { 0, 0, -6.6 } })
 box(plaster, { -2.7, -.1, -3.3 }, { 2.7, 2.8, -3.1 })
 box(plaster, { 2.4, -.1, -3.2 }, { 2.6, 2.8, 3.3 })
-box(plaster, { -2.7, -.1, 3.2 }, { 2.7, 2.8, 3.4 })
 box(ceiling, { -2.7, 2.7, -3.3 }, { 2.7, 2.9, 3.4 })
-local west, z0, z1, y0, y1 = -2.4, -2.1, .1, .75, 2.3
+local west, z0, z1, y0, y1 = -2.4, -2.4, .2, .45, 2.4
 box(plaster, { west - .25, -.1, -3.2 }, { west, 2.8, z0 })
 box(plaster, { west - .25, -.1, z1 }, { west, 2.8, 3.3 })
 box(plaster, { west - .25, -.1, z0 }, { west, y0, z1 })
@@ -109,7 +115,7 @@ cushion({ 1.3, .1, .2 }, { 2.35, .62, .42 })
 local sun = { -.62, .52, -.12 }
 gr.render {
     node = room, file = 'sunlit.png', width = 400, height = 300, integrator = 'path', spp = 256, denoise = true,
-    eye = { -1.2, 1.45, 2.9 }, target = { .25, .95, -2 }, fov = 52, tone = 'filmic', exposure = 2.2,
+    eye = { -1.2, 1.45, 2.9 }, target = { .25, .95, -2 }, fov = 52, tone = 'filmic', exposure = 1,
     background = gr.clear_sky { sun = sun, turbidity = 3 },
     lights = { gr.sun_light { sun = sun, colour = { 2.6, 2.3, 1.9 } } },
 }
