@@ -1,11 +1,11 @@
--- patterns: solid patterns as ordinary Lua functions of a point, for materials and for reading. Inside a recorded function
--- (docs/functions.md) they run at the speed of the built-in ones; called with numbers they give the same bits.
+-- patterns: solid patterns as ordinary Lua functions of a point, for materials and as examples. Inside a recorded function
+-- (docs/functions.md) they are as fast as the built-in patterns; called with numbers they give the same bits.
 -- Sources: K. Perlin, "An Image Synthesizer", SIGGRAPH 1985 (marble, turbulence); S. Worley, "A Cellular Texture Basis
 -- Function", SIGGRAPH 1996 (cells, spots); D. Ebert et al., "Texturing and Modeling", 3rd edition 2003 (wood, granite);
 -- the chapter "Patterns" of POV-Ray's manual (the names, agate, leopard).
--- Invariants: a pattern is a number in 0..1 with a period or a typical feature of about 1; scale the point for another
--- size. No lattice is visible: sums of noise turn and shift every octave, since noise is 0 at all whole numbers, and
--- patterns with jumps have them off the planes of whole numbers, where faces of boxes are.
+-- Invariants: a pattern is a number in 0..1 with a period or a typical feature size of about 1; scale the point for another
+-- size. No lattice is visible: sums of noise rotate and shift every octave, because noise is 0 at all whole numbers.
+-- Discontinuities of patterns are not in planes of whole numbers, because faces of boxes often are.
 --
 --   local patterns = require 'patterns'
 --   local stone = gr.material{kd = function(p) return patterns.map('marble', patterns.marble(p)) end}
@@ -20,7 +20,8 @@ local M = {}
 
 local floor, sin, cos, sqrt, abs, tau = math.floor, math.sin, math.cos, math.sqrt, math.abs, 2 * math.pi
 
--- Jumps at k - OFFSET in place of k: a face at a whole number is on one side of them, in spite of rounding.
+-- Discontinuities are at k - OFFSET instead of k, so that a face at a whole number is on one side of them, in spite of
+-- rounding.
 local OFFSET <const> = 1 / 1024
 
 --- x - floor(x).
@@ -29,7 +30,7 @@ local function fraction(x) return x - floor(x) end
 --- 0 to 1 and back over a period of 1, as a cosine.
 local function wave(x) return 0.5 - 0.5 * cos(tau * x) end
 
---- A rotation without an axis among the diagonals of the lattice, and a shift.
+--- A rotation about an axis that is no diagonal of the lattice, and a shift.
 local function turn(p)
     return gr.vec(0.8 * p.y + 0.6 * p.z + 0.37, 0.36 * p.y - 0.8 * p.x - 0.48 * p.z + 0.71, 0.64 * p.z - 0.6 * p.x - 0.48 * p.y + 0.13)
 end
@@ -55,7 +56,7 @@ function M.gradient(p, direction)
     return fraction(gr.dot(p, direction) / square + OFFSET)
 end
 
---- Bricks in courses along x, the courses on each other along y, every second one shifted by half a brick.
+--- Bricks in courses along x; the courses are stacked along y, and every second one is shifted by half a brick.
 --- `options`: size {1, 0.35, 0.5} of a brick with its joint, joint 0.04: its width, bevel 0: the width of a soft edge.
 ---@param p number[]
 ---@param options table?
@@ -79,7 +80,7 @@ function M.bricks(p, options)
     return gr.step(joint / 2, distance), id
 end
 
---- A honeycomb in x and z with edges of length 1/2: three kinds, of which no two of one kind touch.
+--- A honeycomb in x and z with edges of length 1/2, in three kinds: hexagons of the same kind never touch.
 ---@param p number[]
 ---@return number kind  0, 1 or 2
 ---@return number inside  the distance from the next edge
@@ -90,7 +91,7 @@ function M.hexagons(p)
     local c = -a - b
     local i, j, k = floor(a + 0.5), floor(b + 0.5), floor(c + 0.5)
     local da, db, dc = abs(i - a), abs(j - b), abs(k - c)
-    -- The one that was rounded the most follows from the others.
+    -- The coordinate with the largest rounding error is computed from the other two.
     local of_a = gr.min(gr.where(da - db, 1, 0), gr.where(da - dc, 1, 0))
     local of_b = gr.min(1 - of_a, gr.where(db - dc, 1, 0))
     local q = gr.where(of_a, -j - k, i)
@@ -124,7 +125,7 @@ function M.clouds(p, octaves)
     return gr.clamp(0.5 + 0.6 * sum, 0, 1)
 end
 
---- The sum of octaves of the absolute value of noise: creases, as of smoke and of marble's veins. In about 0..1.
+--- The sum of octaves of the absolute value of noise, with creases as in smoke and in the veins of marble; about 0..1.
 ---@param p number[]
 ---@param octaves integer?  default 5
 function M.turbulence(p, octaves)
@@ -184,7 +185,7 @@ end
 ---@param p number[]
 function M.granite(p) return gr.clamp(1.2 * M.turbulence(gr.vec(p) * 4, 6), 0, 1) end
 
---- Soft spots in rows, as of an old film's leopard.
+--- Soft spots in rows, as in POV-Ray's pattern of this name.
 ---@param p number[]
 function M.leopard(p) return ((sin(tau * p[1]) + sin(tau * p[2]) + sin(tau * p[3])) / 3) ^ 2 end
 
@@ -203,8 +204,8 @@ M.maps = {
     sky = { { 0, { 0.14, 0.32, 0.68 } }, { 0.45, { 0.30, 0.50, 0.82 } }, { 0.75, { 0.92, 0.94, 0.96 } }, { 1, { 1, 1, 1 } } },
 }
 
---- The colour of a map at t: linear between its entries, constant before the first and behind the last. Two entries at
---- one position are a jump.
+--- The colour of a map at t: linear between its entries, constant before the first and after the last. Two entries at
+--- one position are a discontinuity.
 ---@param map string|table[]  the name of one of patterns.maps, or {{position, colour or number}, ...} by ascending positions
 ---@param t number
 ---@return number[]|number

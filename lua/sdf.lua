@@ -1,6 +1,6 @@
--- sdf: solids as functions of a point, below 0 inside, for gr.implicit. Most are distances from the surface, or bounds of it;
--- all are plain Lua and can be called with numbers, or be recorded.
--- Idea: a solid is a function of a point; a function of this module makes one from lengths, or from other solids.
+-- sdf: solids as functions of a point that are negative inside, for gr.implicit. Most are distances from the surface, or
+-- bounds of the distance. All are plain Lua: they can be called with numbers, or be recorded.
+-- Idea: a solid is a function of a point; each function of this module makes one from lengths or from other solids.
 -- Sources: J. Hart, "Sphere Tracing", The Visual Computer 12, 1996 (distances of primitives, operations on space);
 -- A. Ricci, "A Constructive Geometry for Computer Graphics", The Computer Journal 16, 1973 (min and max);
 -- I. Quilez, "Smooth minimum", 2013 (the polynomial blend); A. Schoen, "Infinite Periodic Minimal Surfaces", NASA TN D-5541,
@@ -34,7 +34,7 @@ local function hypot(x, y) return sqrt(x * x + y * y) end
 
 local function abs_of(p) return gr.vec(abs(p[1]), abs(p[2]), abs(p[3])) end
 
---- The distance from a set that is the product of two, from the distances from these.
+--- The distance from the product of two sets, computed from the distances from each set.
 local function product(a, b) return gr.min(gr.max(a, b), 0.0) + hypot(gr.max(a, 0.0), gr.max(b, 0.0)) end
 
 -- --- solids around the origin ---
@@ -78,7 +78,7 @@ end
 ---@param from number[]
 ---@param to number[]
 ---@param radius number
----@param end_radius number?  at `to`, where it differs: then it is a bound of the distance
+---@param end_radius number?  radius at `to`; if it differs, the function is a bound of the distance
 ---@return sdf.solid
 function M.capsule(from, to, radius, end_radius)
     from, to = gr.vec(check.tuple('sdf.capsule', 'from', from, 3)), gr.vec(check.tuple('sdf.capsule', 'to', to, 3))
@@ -94,7 +94,7 @@ function M.capsule(from, to, radius, end_radius)
     end
 end
 
---- Everything below a plane.
+--- The half-space below a plane.
 ---@param normal number[]?  default {0, 1, 0}
 ---@param distance number?  from the origin along the normal, default 0
 ---@return sdf.solid
@@ -116,7 +116,7 @@ function M.ellipsoid(radii)
     return function(p) return (gr.length(gr.vec(p) / radii) - 1) * least end
 end
 
---- A wall around Schoen's gyroid; no distance, but close to it.
+--- A wall around Schoen's gyroid; the function is close to the distance.
 ---@param period number?  default 1
 ---@param thickness number?  of the wall, default a tenth of the period
 ---@return sdf.solid
@@ -242,7 +242,7 @@ end
 
 -- --- surfaces ---
 
---- Grown by a radius: a box gets round edges.
+--- The solid extended by a radius: a box gets round edges.
 ---@return sdf.solid
 function M.round(f, radius)
     solid('round', f)
@@ -250,7 +250,7 @@ function M.round(f, radius)
     return function(p) return f(p) - radius end
 end
 
---- A wall on both sides of the surface.
+--- A wall around the surface, on both sides of it.
 ---@return sdf.solid
 function M.shell(f, thickness)
     solid('shell', f)
@@ -270,7 +270,7 @@ end
 
 local axes = { x = { 2, 3, 1 }, y = { 3, 1, 2 }, z = { 1, 2, 3 } }
 
--- p turned back by an angle about an axis. The angle may differ from point to point.
+-- p rotated backwards by an angle about an axis. The angle may depend on the point.
 local function turned(p, axis, angle)
     local i, j, k = axis[1], axis[2], axis[3]
     local c, s, out = cos(angle), sin(angle), {}
@@ -278,7 +278,7 @@ local function turned(p, axis, angle)
     return gr.vec(out)
 end
 
---- Turned counterclockwise, seen from the end of the axis.
+--- Rotated counterclockwise, seen from the end of the axis.
 ---@param axis 'x'|'y'|'z'
 ---@param degrees number
 ---@return sdf.solid
@@ -304,7 +304,7 @@ function M.mirror(f)
     return function(p) return f(gr.vec(abs(p[1]), p[2], p[3])) end
 end
 
---- Turned about y, more with the height.
+--- Rotated about y by an angle proportional to y.
 ---@param degrees number  in a unit of height
 ---@return sdf.solid
 function M.twist(f, degrees)
@@ -313,7 +313,7 @@ function M.twist(f, degrees)
     return function(p) return f(turned(p, axes.y, p[2] * degrees * pi / 180)) end
 end
 
---- Bent upwards about z: turned more with the distance along x.
+--- Bent upwards: rotated about z by an angle proportional to x.
 ---@param degrees number  in a unit along x
 ---@return sdf.solid
 function M.bend(f, degrees)
@@ -324,7 +324,7 @@ end
 
 --- Copies at the points of a lattice. The solid must be within half of the spacing.
 ---@param spacing number[]  0 for a direction without copies
----@param counts number[]?  copies on each side of the first; default without end
+---@param counts number[]?  copies on each side of the first; default infinitely many
 ---@return sdf.solid
 function M.repeated(f, spacing, counts)
     solid('repeated', f)
@@ -353,7 +353,7 @@ function M.extrude(f, half)
     return function(p) return product(f(gr.vec(p[1], p[2], 0)), abs(p[3]) - half) end
 end
 
---- A flat solid turned about y.
+--- A flat solid revolved about y.
 ---@param offset number?  its distance from the axis, default 0
 ---@return sdf.solid
 function M.revolve(f, offset)

@@ -9,7 +9,7 @@ local GRAVITY = 12
 
 local function rubber(r, g, b) return gr.material { kd = { r, g, b }, ks = { 0.35, 0.35, 0.35 }, shininess = 50 } end
 
--- radius, flights in a loop, phase, place. No frame is at the very moment when a ball touches the floor or leaves it.
+-- radius, number of flights in a loop, phase, position. In no frame does a ball just touch or just leave the floor.
 local balls = {
     { 0.62, 1, 0.12, { -1.9, 0.3 }, rubber(0.83, 0.22, 0.18) }, { 0.44, 2, 0.45, { -0.15, -0.5 }, rubber(0.95, 0.72, 0.18) },
     { 0.50, 1, 0.62, { 1.25, 0.5 }, rubber(0.20, 0.52, 0.78) }, { 0.33, 2, 0.22, { 2.45, -0.2 }, rubber(0.38, 0.66, 0.30) },
@@ -27,7 +27,7 @@ end
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.material { kd = floor, ks = { 0.05, 0.05, 0.05 }, shininess = 10 } })
 scene:add_child(gr.plane { normal = { 0, 0, 1 }, distance = -3.2, material = gr.material { kd = { 0.48, 0.55, 0.63 } } })
 
--- Height of the lowest point, velocity and height of the ball in radii, at a moment.
+-- At a given time: height of the lowest point, velocity, and height of the ball in radii.
 local function motion(b, seconds)
     local period = SECONDS / b[2]
     local flight = period - CONTACT

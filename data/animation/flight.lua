@@ -1,5 +1,5 @@
 -- TITLE: Animation: a flight around the island
--- The island of the library's demo in small; the camera follows keys on a closed spline and looks ahead of itself.
+-- A smaller version of the island in the library's demo. The camera follows keys on a closed spline and looks forwards.
 -- Author: gray project
 
 local noise, terrain = require 'noise', require 'terrain'
@@ -33,7 +33,7 @@ end
 scene:add_child(gr.vn_mesh { material = gr.material { kd = gr.fn(ground, 1) }, verts = verts, normals = normals, faces = faces, face_normals = faces })
 scene:add_child(gr.plane { normal = { 0, 1, 0 }, material = gr.rr_material({ 0.03, 0.16, 0.21 }, { 0.62, 0.68, 0.72 }, 300, 0.55, 0, 1.33) })
 
--- Once around in SECONDS; three keys before and after the loop make the spline closed.
+-- Once around in SECONDS. Three additional keys before and after the loop close the spline.
 local FPS, SECONDS, KEYS = 20, 4, 8
 local keys = { curve = 'catmull' }
 for k = -2, KEYS + 2 do

@@ -1,6 +1,6 @@
 -- TITLE: Animation: waves of columns
--- A loop without an end: rings run outwards over a field of columns, which turn as they rise and are narrow enough not
--- to touch their neighbours. Seen without perspective.
+-- A seamless loop: rings run outwards over a field of columns. The columns turn as they rise, and are narrow enough not
+-- to touch their neighbours. The projection is orthographic.
 -- Author: gray project
 
 local colour = require 'colour'

@@ -1,9 +1,9 @@
 -- TITLE: Functions: a landscape
--- A valley from one function of two numbers, a height field. The same function colours it: meadows, rock on slopes, snow
--- above. The sky with its clouds is a function of the direction.
+-- A valley: a height field from one function of two numbers. The same function colours it: meadows, rock on slopes, and
+-- snow at the top. The sky with its clouds is a function of the direction.
 -- Author: gray project
 
--- Ridged noise: sharp crests; every octave is lower where the one before it was low.
+-- Ridged noise with sharp crests: an octave is lower where the previous one is low.
 local function mountains(x, z)
     local sum, weight, size, frequency = 0, 1, 1, 1
     for k = 1, 9 do

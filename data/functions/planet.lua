@@ -1,6 +1,6 @@
 -- TITLE: Functions: a planet
--- One function is the height of the ground: it displaces an icosahedron, and the colours follow it. Clouds are a shell whose
--- opacity is another function; so are the stars, the sky.
+-- One function is the height of the ground: it displaces an icosahedron, and the colours depend on it. The clouds are a
+-- shell whose opacity is a second function. The stars of the sky are a third one.
 -- Author: gray project
 
 local function fbm(p, octaves)
@@ -12,7 +12,7 @@ local function fbm(p, octaves)
     return sum
 end
 
--- Of a direction: above 0 is land.
+-- The height in a direction; land is above 0.
 local function height(d)
     local warped = d * 1.6 + 0.35 * gr.vec(gr.noise(d * 2 + 3), gr.noise(d * 2 + 11), gr.noise(d * 2 + 19))
     local land = fbm(warped, 6) + 0.06
@@ -52,8 +52,8 @@ end
 local function shine(p) return 0.45 * gr.step(height(p:normalize()), 0) * gr.vec(1, 1, 0.95) end
 globe:set_material(gr.material { kd = ground, ks = shine, shininess = 35 })
 
--- The far side of the shell is not seen through the near one. Towards the rim the clouds thin out: seen flat, they would
--- be streaks.
+-- The far side of the shell is not visible through the near side. Towards the rim the opacity decreases: at grazing
+-- angles the clouds would be streaks.
 local function clouds(p, s)
     local d = p:normalize()
     local swirl = d * 2.2 + 0.8 * gr.vec(gr.noise(d * 1.5), gr.noise(d * 1.5 + 5), gr.noise(d * 1.5 + 9))

@@ -1,5 +1,6 @@
 -- TITLE: Library: patterns, each a line of Lua
--- A wall of balls and tiles in the patterns of the library, which are recorded Lua functions; docs/library.md has the lines.
+-- A wall of balls and tiles with the patterns of the library, which are recorded Lua functions; docs/library.md lists the
+-- functions.
 -- Author: gray project
 
 local studio = require 'studio'

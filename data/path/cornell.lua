@@ -1,7 +1,7 @@
 -- TITLE: The Cornell box
 -- OPTIONS: --spp 24 --denoise
 -- The measured box of Cornell University's Program of Computer Graphics (Goral, Torrance, Greenberg, Battaile 1984; data
--- of 1998), colours as linear RGB: walls light each other. A unit is a decimetre.
+-- of 1998), with colours as linear RGB. The walls illuminate each other. A unit is a decimetre.
 local function matte(r, g, b)
     return gr.material { kd = { r, g, b }, two_sided = true }
 end

@@ -30,7 +30,7 @@ end
 local eye = { -1.22, 1.42, 2.55 }
 local root = room.build { eye = eye, ambient = { 1, 1, 1 }, materials = materials }
 
--- Paths find the sky behind glass by chance alone; light of its colour comes from the panes.
+-- Paths find the sky behind glass only by chance. So the panes emit light of the colour of the sky.
 local w = room.window
 local panes = gr.area_light { corner = place { w.x0 + .05, w.y0 + .05, room.back - .08 },
     v1 = place { w.x1 - w.x0 - .1, 0, 0 }, v2 = place { 0, w.y1 - w.y0 - .1, 0 },

@@ -1,16 +1,16 @@
 -- TITLE: Lamps in plates
 -- OPTIONS: --spp 48 --fxaa
 -- Three plates of metal, from polished to rough, show four lamps, from small and bright to large and dim, after the
--- picture by which Veach and Guibas compared ways of sampling ("Optimally Combining Sampling Techniques for Monte Carlo
+-- picture by which Veach and Guibas compared sampling methods ("Optimally Combining Sampling Techniques for Monte Carlo
 -- Rendering", 1995). The lamps have the same power: small ones are found by sampling lights, large ones in polished
--- plates by sampling the BSDF, and multiple importance sampling needs no choice.
+-- plates by sampling the BSDF. Multiple importance sampling combines both methods.
 local scene = gr.node('scene')
 local wall = gr.material { kd = { .34, .34, .36 }, two_sided = true }
 
 scene:add_child(gr.rectangle { material = wall, corner = { -14, -4, 8 }, along = { 28, 0, 0 }, up = { 0, 0, -14 } })
 scene:add_child(gr.rectangle { material = wall, corner = { -14, -4, -6 }, along = { 28, 0, 0 }, up = { 0, 18, 0 } })
 
--- Each plate is tilted so that its middle shows the middle of the row of lamps.
+-- Each plate is tilted so that its centre reflects the middle of the row of lamps.
 local eye, lamps = { 0, 2.16, 13.5 }, { 0, 4.6, -3 }
 local function unit(v)
     local length = math.sqrt(v[1] ^ 2 + v[2] ^ 2 + v[3] ^ 2)

@@ -64,7 +64,7 @@ local function alone(node)
     return scene
 end
 
--- Displacement moves the vertices of meshes: a ball of triangles in place of the sphere.
+-- Displacement moves the vertices of meshes, so a ball of triangles replaces the sphere.
 local verts, _, faces = require('polyhedra').geodesic(3)
 local function strata(p)
     return gr.mix({ 0.30, 0.25, 0.20 }, { 0.72, 0.64, 0.52 }, gr.smoothstep(1.0, 1.25, p:length()))

@@ -1,6 +1,6 @@
 -- Scenes of IceSL, a modeller for 3D printers: solids are values, `translate(1, 2, 3) * solid` moves one, and emit(solid)
--- makes it part of the scene. What was emitted is rendered to icesl.png after the scene. z points up.
--- docs/dialects.md lists what the dialect has.
+-- adds it to the scene. After the scene, all emitted solids are rendered to icesl.png. z points up.
+-- docs/dialects.md lists the calls of the dialect.
 local sin, rad, sqrt = math.sin, math.rad, math.sqrt
 local ipairs, type = ipairs, type
 local brushes = {[0] = gr.material({0.8, 0.8, 0.75})}
@@ -25,7 +25,8 @@ local function triple(x, y, z)
     return {x, y or x, z or x}
 end
 
--- A solid builds a node of a material; a transform changes a node. The right operand of * is a solid or a transform.
+-- A solid has a function `build` that makes a node with a material; a transform has a function `apply` that changes a
+-- node. The right operand of * is a solid or a transform.
 local transform = {}
 local function solid(build) return {build = build} end
 local function change(apply) return setmetatable({apply = apply}, transform) end
@@ -53,8 +54,8 @@ function rotate(a, b, c)
     if type(b) == 'table' then return change(function(node) node:rotate_axis({b[1], b[2], b[3]}, a) end) end
     return change(function(node) node:rotate('x', a):rotate('y', b):rotate('z', c) end)
 end
--- The reflection in the plane through the origin with this normal: half a turn about the normal, then the reflection in
--- the origin.
+-- The reflection in the plane through the origin with this normal: a rotation by 180 degrees about the normal, then a
+-- reflection through the origin.
 function mirror(n)
     return change(function(node) node:rotate_axis({n[1], n[2], n[3]}, 180):scale(-1, -1, -1) end)
 end
@@ -86,7 +87,7 @@ end
 function ccone(r0, r1, h) return frustum({0, 0, -h / 2}, {0, 0, h / 2}, r0, r1) end
 function cylinder(r, h, to) return cone(r, r, h, to) end
 function ccylinder(r, h) return ccone(r, r, h) end
--- A polygon in the plane z = 0, drawn out along z by the length of the direction.
+-- A polygon in the plane z = 0, extruded along z by the length of the direction.
 function linear_extrude(direction, points)
     local outline = {}
     for i, p in ipairs(points) do outline[i] = {p[1], -p[2]} end
@@ -94,7 +95,7 @@ function linear_extrude(direction, points)
         return gr.prism{material = material, outline = outline, to = triple(direction)[3]}:rotate('x', 90)
     end)
 end
--- load(file) reads a mesh; a text of Lua is still compiled.
+-- load(file) reads a mesh; with a Lua text it still compiles the text.
 local compile = load
 function load(file, ...)
     if type(file) == 'string' and file:find('%.%a+$') and not file:find('\n') then
@@ -123,7 +124,7 @@ function ui_scalar(_, default) return default end
 ui_number, ui_bool = ui_scalar, ui_scalar
 function set_setting_value() end
 
--- The picture: all of it, from the front, the right and above.
+-- The picture shows the whole scene from the front, the right and above.
 local function finish()
     local low, high = root:bounds()
     local centre, size = {}, 0

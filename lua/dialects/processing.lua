@@ -1,6 +1,6 @@
 -- Sketches of Processing in Lua: size(), fill(), pushMatrix(), translate(), box(), sphere(). setup() and draw() are called
 -- after the scene, once each, and the picture is sketch.png. y points down, lengths are pixels, colours are 0 to 255.
--- docs/dialects.md lists what the dialect has.
+-- docs/dialects.md lists the calls of the dialect.
 local tan, rad, deg = math.tan, math.rad, math.deg
 local root = gr.node('sketch')
 root:scale(1, -1, 1)
@@ -37,7 +37,7 @@ function lights()
     directionalLight(128, 128, 128, 0, 0, -1)
 end
 
--- Transforms act on all that is drawn after them: each begins a group below the last one.
+-- A transform acts on everything that is drawn after it: it begins a group below the current one.
 local function below()
     local group = gr.node('group')
     current:add_child(group)
