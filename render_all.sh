@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what is missing, builds, renders every demo and writes gallery/index.html, screenshot01.png and screenshot02.png.
+# Installs missing packages, builds, renders every demo and writes gallery/index.html, screenshot01.png and screenshot02.png.
 # Continues after a failure; at the end it lists the failures and exits with 1. data/gallery.txt has the order of the
 # scenes and their times, from which the time left is estimated.
 # A scene describes itself in comments of its first lines:

@@ -1,7 +1,7 @@
 #!/bin/sh
-# What an animation costs beyond tracing and writing its pictures: one node moves among 100,000 balls, 640 x 480, one
-# sample a pixel, two threads. Tracing and writing are timed for each frame by --stats; the rest is the script, the
-# world, and what passes between the processes. The target is 1.15 for 300 frames.
+# The cost of an animation besides tracing and writing its pictures: one node moves among 100,000 balls, 640 x 480, one
+# sample a pixel, two threads. --stats measures tracing and writing for each frame; the rest is the script, the
+# world, and the communication between the processes. The target is 1.15 for 300 frames.
 # usage: bench/animation.sh [frames]      GRAY=build/release/gray
 set -e
 cd "$(dirname "$0")/.."

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Anti-aliasing of Whitted's integrator: renders scenes with --aa-pattern grid and rotated, compares each with a reference
 # of 16 x 16 samples for every pixel, and measures processor time. Prints for each scene the mean error in levels, the
-# share of pixels that are off by more than 8 levels in some channel, and seconds (the least of RUNS, one thread,
+# fraction of pixels with an error above 8 levels in some channel, and seconds (the minimum of RUNS, one thread,
 # interleaved); the last line has the geometric means and their ratios. Exit status 1: an error decreases by less than
 # a fifth, or the time grows by more than a quarter.
 # Arguments: scripts; GRAY: the program (gray); BASE: an older program that has only the grid (GRAY); SIZE: of the

@@ -1,7 +1,6 @@
 #!/bin/sh
 # The effect of the cut-off by contribution: renders every demo and classic scene with CUTOFF (default: the program's)
-# and with
-# `--cutoff 0` and prints the largest change of an 8-bit value and the number of changed values. Arguments: scripts
+# and with `--cutoff 0`, and prints the largest change of an 8-bit value and the number of changed values. Arguments: scripts
 # (default: all of data/); GRAY: the program; SIZE: of the pictures (default 160x120); LEVELS: the largest allowed
 # change (default 1). Needs ImageMagick. Exit status 1: a scene changes by more. Without ImageMagick it prints a message
 # and measures nothing.

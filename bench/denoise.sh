@@ -2,8 +2,8 @@
 # The error of denoised pictures against raw ones: relMSE, the mean of (x - r)^2 / (r^2 + .01), of 64 samples a pixel
 # denoised and of 64, 256 and 512 raw, at SIZE (default 128x128), against a reference r of REFERENCE samples (default
 # 8192). Arguments: scenes (default: the Cornell box and those of bench/denoise). GRAY: the program; THREADS: for it.
-# The last line has the geometric mean of denoised 64 over raw 512. Exit status 1: that is above 1, or a scene is worse
-# denoised than with 256 raw samples.
+# The last line has the geometric mean of the error of 64 denoised samples divided by that of 512 raw ones. Exit status 1:
+# this mean is above 1, or in some scene 64 denoised samples have more error than 256 raw ones.
 cd "$(dirname "$0")/.." || exit 1
 gray=${GRAY:-./gray}
 size=${SIZE:-128x128}

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Expressions that are recorded from Lua functions: time of an operation, and against Lua; Prospero.
+# Expressions that are recorded from Lua functions: time of an operation, speed compared with Lua, and Prospero.
 # Usage: bench/expr.sh [MODEL.vm]     (default ../shared/models/prospero.vm)
 cd "$(dirname "$0")/.." || exit 1
 make -s build/release/bench/expr && build/release/bench/expr "$@"

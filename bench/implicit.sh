@@ -1,8 +1,8 @@
 #!/bin/sh
-# Ten implicit solids against POV-Ray's isosurface, the same picture of 640 x 480 with a shadow and a floor, one thread,
-# both at their adaptive anti-aliasing with 9 samples for a marked pixel. POV-Ray's max_gradient is set by hand
-# (bench/implicit/implicit.pov), its accuracy is 1e-4. Processor seconds of the trace; `whole` is gray's whole run, with
-# reading, recording and building. Runs alternate; medians of RUNS (default 3). Pictures go to OUT (default
+# Ten implicit solids compared with POV-Ray's isosurface: the same picture of 640 x 480 with a shadow and a floor, one
+# thread, both with adaptive anti-aliasing and 9 samples for a marked pixel. POV-Ray's max_gradient is set by hand
+# (bench/implicit/implicit.pov), its accuracy is 1e-4. Prints processor seconds of rendering; `whole` is gray's whole run,
+# with reading, recording and building. Runs alternate; medians of RUNS (default 3). Pictures go to OUT (default
 # build/bench). Arguments: functions (default: all).
 cd "$(dirname "$0")/.." || exit 1
 here=$(pwd)

@@ -1,16 +1,16 @@
 #!/bin/sh
-# Path tracing beside Cycles (blender) and Embree's tutorial pathtracer (embree-tools). One thread each, runs interleaved,
-# medians of RUNS (default 5), processor time. Rows whose peer is not installed are left out, with a line that says so.
+# Path tracing compared with Cycles (blender) and Embree's tutorial pathtracer (embree-tools). One thread each, runs
+# interleaved, medians of RUNS (default 5), processor time. If the other program is not installed, a message says so.
 #   speed    samples a second against Cycles at depth 8 without Russian roulette: the Cornell box with blocks, and with a
 #            mirror and a ball of glass
 #   error    relMSE, the mean of (x - r)^2 / (r^2 + .01), after SECONDS_EACH (default 10) of rendering at 128 x 128 against
 #            REFERENCE samples (default 16384) of the same program, which are kept in OUT
 #   embree   samples a second against `pathtracer --max-path-length 8` on its Cornell box
 #   denoise  the error of 64 denoised samples against that of 512 raw ones (bench/denoise.sh); seconds for 1280 x 960
-#   threads  the speed of two threads over that of one, and what processor time and idle threads leave of 2 (on any machine)
+#   threads  the speed of two threads relative to one; and 2 reduced by additional processor time and idle threads
 #   memory   bytes a pixel beyond Whitted's, at 1280 x 960
 # Both programs: box filter, all caustics, no clamps, no adaptive sampling; Cycles as bench/path/cycles.py sets it.
-# Errors are scaled to exactly that time, since they fall with the number of samples.
+# Errors are scaled to exactly that time, because they are inversely proportional to the number of samples.
 # Arguments: rows (default: all). SCENES: of the row error; GRAY: the program; OUT: pictures and times, not for two runs
 # at once (default build/bench/path); SHORT=1: one run of 2 seconds against 1024 samples.
 cd "$(dirname "$0")/.." || exit 1

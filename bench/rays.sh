@@ -1,6 +1,6 @@
 #!/bin/sh
-# The same rays through gray's mesh kernel and Embree's single rays, interleaved, on one thread and on two (THREADS: how many,
-# default "1 2"). See the top of rays.c.
+# The same rays through gray's mesh kernel and Embree's single rays, interleaved, on one thread and on two (THREADS:
+# numbers of threads, default "1 2"). See the top of rays.c.
 # MODELS: the folder with the OBJ files (default ../shared/models); scenes that need a missing file are left out.
 cd "$(dirname "$0")/.." || exit 1
 BUILD=${BUILD:-build/release}

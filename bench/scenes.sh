@@ -1,6 +1,6 @@
 #!/bin/sh
-# Complete pictures against POV-Ray on the paired scenes of bench/pov: only the trace, without reading and building, one
-# thread each (THREADS), both at their adaptive anti-aliasing with 9 samples for a marked pixel, both without rays that
+# Complete pictures compared with POV-Ray on the paired scenes of bench/pov: only rendering, without reading and building,
+# one thread each (THREADS), both with adaptive anti-aliasing and 9 samples for a marked pixel, both without rays that
 # change a pixel by less than 1/255 (POV-Ray's adc_bailout, --cutoff); runs interleaved, medians of RUNS (default 3).
 # User is the processor time that each program reports for its trace, wall is elapsed time; memory is the peak of
 # each process. ksmp is thousands of samples. Pictures go to OUT (default build/bench), side by side in OUT/scenes.html.

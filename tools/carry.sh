@@ -1,8 +1,9 @@
 #!/bin/sh
 # Carries the current branch onto main (or the branch given): tools/carry.sh [main]
-# This is a rebase if the other branch has no commits that rename. Commits of it that rename (a line "Renames: MAP", see
-# tools/rename.sh) do not rebase: the branch is put onto the commit before, the map is run on each of its own commits,
-# and they are put on top of the renaming one. Own commits that rename are made again from their map, never merged.
+# If the other branch has no renaming commits, this is a rebase. A renaming commit (with a line "Renames: MAP", see
+# tools/rename.sh) cannot be merged as text. So this script rebases the branch onto the commit before it, runs the map on
+# each commit of the branch, and puts the results on top of the renaming commit. It makes the branch's own renaming
+# commits again from their maps.
 # After a conflict: resolve it, `git rebase --continue`, and run this again.
 maps_of() {
     git log -1 --format='%(trailers:key=Renames,valueonly)' "$1" | grep .

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Finds pixels of a PNG picture (8 bits, RGB) that stand out of their neighbours: in some channel they differ from the
-median of the eight by more than four of their standard deviations plus 8 levels.
+"""Finds outliers of a PNG picture (8 bits, RGB): pixels that in some channel differ from the median of their eight
+neighbours by more than four standard deviations of these neighbours plus 8 levels.
 
 tools/fireflies.py PICTURE [REFERENCE]
 tools/fireflies.py --scene SCRIPT...
 
-A pixel that stands out of the reference, too (a picture of many samples of the same size), belongs there.
-With --scene, renders each path-traced scene with the OPTIONS of its first lines, and the surroundings of the pixels
-that stand out without denoising, by SPP samples (default 4096). GRAY: the program (default ./gray); OPTIONS: more
-options for all of it.
-Prints each pixel that does not belong there, and exits with 1 if there is one."""
+The reference is a picture of the same size with many samples. An outlier that is also one in the reference is no error.
+With --scene, renders each path-traced scene with the OPTIONS of its first lines. It also renders the surroundings of
+the outliers as a reference, without denoising, with SPP samples (default 4096). GRAY: the program (default ./gray);
+OPTIONS: more options for all renderings.
+Prints each outlier that is an error, and exits with 1 if there is one."""
 import os
 import re
 import struct

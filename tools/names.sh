@@ -1,9 +1,9 @@
 #!/bin/sh
 # Prints every identifier and every file of src, tests, bench, tools and lua that has a word of tools/names.list as a
-# component (split at _), and every struct, union or enum of a name that is listed there as a tag; fails when there is
-# any. tools/names.allow has the exceptions, each with its reason; one that allows nothing fails too.
+# component (split at _), and every struct, union or enum with a name that is listed there as a tag; fails if there is
+# any. tools/names.allow has the exceptions, each with its reason; an exception that is not needed is also a failure.
 # Universal Ctags finds the identifiers: functions, variables, parameters, members, types, macros, enumerators and tests
-# of C, functions and variables of Lua, shell and Python. Without it awk splits the C code into words and looks at those.
+# of C, functions and variables of Lua, shell and Python. Without it awk splits the C code into words and checks these.
 # tools/names.sh --count: how many identifiers and files have each word.
 cd "$(dirname "$0")/.." || exit 1
 work=$(mktemp -d) || exit 1

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Renders every scene of the repository in a small size, in several variants, and compares the files with recorded hashes:
 # the check for a change that must not change pictures.
-#   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are
-#   any tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
-# WAYS="default j1 bvh base" chooses among the variants; ONLY="word ..." scenes whose path holds one of the words.
+#   tools/picture_hashes.sh check [DIR]    renders into DIR (build/pictures), lists differences; status 1 if there are any
+#   tools/picture_hashes.sh record [DIR]   renders, and writes the hashes to tests/picture_hashes.txt
+# WAYS="default j1 bvh base" selects variants; ONLY="word ..." selects scenes whose path contains one of the words.
 # The hashes are of whole PNG files, so they hold for one version of zlib; tools/picture_difference.py OLD NEW shows by
 # how many levels the pictures of two folders differ.
 cd "$(dirname "$0")/.." || exit 1

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Installs missing packages from the Debian archive of the machine, and announces it first: what the build needs, and
-# optional libraries: a window (SDL2), JPEG and EXR pictures, glTF meshes, fonts. An optional one that cannot be installed
-# is named and left out. Does nothing if everything is installed. A user who may not install packages gets one line with
-# the command. On systems not derived from Debian it lists what to install by hand.
+# Installs missing packages from the Debian archive of the machine, after a message: those that the build needs, and
+# optional libraries (a window (SDL2), JPEG and EXR pictures, glTF meshes, fonts). If an optional one cannot be installed,
+# it prints its name and continues. Does nothing if everything is installed. For a user who may not install packages, it
+# prints one line with the command. On systems not derived from Debian it lists the packages to install by hand.
 # Usage: tools/setup.sh [--minimal | --check | --tests]
-#   --minimal   only what the build needs
-#   --check     only prints what is missing; exit status 1 if the build needs it
-#   --tests     what the build needs, and what only some tests need (clang); if that fails, they are skipped
+#   --minimal   only the packages that the build needs
+#   --check     only prints the missing packages; exit status 1 if the build needs one of them
+#   --tests     the packages that the build needs, and those of some tests (clang); without them these tests are skipped
 set -u
 mode=${1:-}
 missing=""

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Prints every file and function of src that is out of measure, and every header that should be private by its name; fails
-# when there is any.
+# Prints every file and function of src with a wrong size, and every header whose name should mark it as private; fails
+# if there is any.
 #   - A .c file has 100 to 900 lines. Files for one instruction set (_base, _avx2, _avx512) may be shorter.
-#   - A function has at most six parameters; more belong into a struct. Nine of ten functions have at most 27 lines.
-#   - A header that no other module can see, because none includes it or a header that does, ends in _internal.h, and no
-#     other module includes one that ends so. Tests may. The last module has nothing above it that could see it.
+#   - A function has at most six parameters; more belong in a struct. Nine of ten functions have at most 27 lines.
+#   - If no other module includes a header, directly or through another header, its name ends in _internal.h. No other
+#     module includes a header with such a name; tests may. The rule does not apply to the last module.
 # tools/sizes.allow has the exceptions, each with its reason.
 # tools/sizes.sh --count: the median and the 90th percentile of lines of files and of functions.
 cd "$(dirname "$0")/.." || exit 1

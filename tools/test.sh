@@ -1,5 +1,5 @@
 #!/bin/sh
-# make test, make test-long: runs tools/test_steps.sh in a separate session, so that one signal reaches all of it. This
+# make test, make test-long: runs tools/test_steps.sh in a separate session, so that one signal reaches all processes. This
 # process only waits for it. Ctrl-C, SIGTERM and SIGHUP are passed on; if this process or make ends for another reason,
 # the session ends by itself.
 cd "$(dirname "$0")/.." || exit 1

@@ -1,9 +1,9 @@
 #!/bin/sh
-# tools/test_steps.sh PID PARENT [--long [NAME ...]]: what make test does. Checks the layers, reads all sources with clang,
-# builds and runs the tests of the release build, then a smoke of the same tests under the address and undefined
-# sanitizers. Warnings are errors, unless WERROR is set and empty. --long: all other tests. Ends with one line
+# tools/test_steps.sh PID PARENT [--long [NAME ...]]: the steps of make test. Checks the layers, compiles all sources with
+# clang, builds and runs the tests of the release build, then some of the same tests with the address and undefined
+# behaviour sanitizers. Warnings are errors, unless WERROR is set and empty. --long: all other tests. Ends with one line
 # "N passed, N failed, N skipped". A line at least every GRAY_TEST_PROGRESS seconds (15) reports the current step.
-# Leads a session, which ends when process PID (tools/test.sh) has ended or has lost its parent PARENT (unless empty).
+# It leads a session, which ends when process PID (tools/test.sh) has ended or has lost its parent PARENT (if not empty).
 interval=${GRAY_TEST_PROGRESS:-15}
 
 # Twice a second: do this process and the other one exist? A zombie (Z) does not count.
