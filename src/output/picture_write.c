@@ -211,6 +211,16 @@ static bool write_shown(const struct picture_files *files, const struct picture 
            picture_write_view(picture, &target, FILM_FINAL, pool, error);
 }
 
+/* The contents of the files of a picture. *pool: the threads for writing, or NULL for this thread only; the caller
+ * destroys it, also after an error. */
+static bool make_shown(const struct picture_files *files, const struct picture *picture, struct picture_shown *shown,
+                       struct pool **pool, struct error *error) {
+    enum denoiser denoiser = denoiser_of(files->options, picture);
+    *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
+    return ((*pool || denoiser != DENOISER_GRAY) || error_no_memory(error, "a picture that is denoised")) &&
+           picture_shown_make(shown, picture, denoiser, *pool, error);
+}
+
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
                          struct error *error) {
     if (files->options->shards) {
@@ -219,11 +229,9 @@ bool picture_write_files(const struct picture_files *files, const struct picture
         return tile_file_write(&(struct file_target){.path = name, .rules = &files->part}, NULL, 0, &whole,
                                &picture->film, error);
     }
-    enum denoiser denoiser = denoiser_of(files->options, picture);
-    struct pool *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
-    bool ok = (pool || denoiser != DENOISER_GRAY) || error_no_memory(error, "a picture that is denoised");
     struct picture_shown shown;
-    ok = ok && picture_shown_make(&shown, picture, denoiser, pool, error);
+    struct pool *pool;
+    bool ok = make_shown(files, picture, &shown, &pool, error);
     if (ok) {
         ok = write_shown(files, &shown.picture, name, pool, error);
         picture_shown_destroy(&shown);
@@ -234,11 +242,9 @@ bool picture_write_files(const struct picture_files *files, const struct picture
 
 bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
                          struct error *error) {
-    enum denoiser denoiser = denoiser_of(files->options, picture);
-    struct pool *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
-    bool ok = (pool || denoiser != DENOISER_GRAY) || error_no_memory(error, "a picture that is denoised");
     struct picture_shown shown;
-    ok = ok && picture_shown_make(&shown, picture, denoiser, pool, error);
+    struct pool *pool;
+    bool ok = make_shown(files, picture, &shown, &pool, error);
     if (ok) {
         struct tone tone = picture_tone(&shown.picture.request);
         const struct film *film = &shown.picture.film;
