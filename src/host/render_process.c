@@ -18,6 +18,7 @@
 #include "render/overlay.h"
 #include "render/path_film.h"
 #include "render/render.h"
+#include "scene/scene_digest.h"
 #include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
@@ -444,6 +445,23 @@ static void add_rim(struct picture_request *asked, uint32_t rim) {
     asked->height = shown.y1 + (below > rim ? rim : below) - asked->y0;
 }
 
+/* What a frame shows; zero: it is rendered in any case. Lenient scripts change their scene for a picture. */
+static struct digest digest_of_frame(const struct picture_work *work) {
+    const struct options *options = work->process->options;
+    const struct render_request *request = work->request;
+    const struct scene_content content = {.scene = request->scene,
+                                          .root = request->root,
+                                          .lights = request->lights,
+                                          .light_count = request->light_count,
+                                          .sky = &request->sky,
+                                          .fog = work->job.fog};
+    struct digest_sum sum = {.count = 0};
+    if (!is_frame(work) || work->asked.check || options->no_copies || options->script.lenient || request->changed)
+        return (struct digest){0};
+    render_digest_add(&work->job, &sum);
+    return scene_digest_add(&content, &sum) ? digest_sum_end(&sum) : (struct digest){0};
+}
+
 /* Names the picture and creates its film. *already: there is nothing to do. */
 static bool begin_picture(struct picture_work *work, bool *already, struct error *error) {
     struct render_process *process = work->process;
@@ -475,6 +493,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_no_memory(error, "the list of files that were read");
     if (!reserve_memory(process, asked, &job->settings, error))
         return false;
+    asked->shows = digest_of_frame(work);
     if (!process->services->begin(process->services->context, asked, film, already, error)) {
         error->refused = error->kind == ERROR_SCENE;
         return false;

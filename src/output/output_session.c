@@ -74,6 +74,11 @@ static unsigned number_of(const struct output_session *output, const struct pict
     return request->frame.number > 0 ? request->frame.number : output->pictures;
 }
 
+/* The same of a picture that has begun. */
+static uint32_t frame_number(const struct picture *picture) {
+    return picture->request.frame.number > 0 ? picture->request.frame.number : picture->tiles.number;
+}
+
 /* The name of the picture, also of one that is only checked. */
 static bool choose_name(struct output_session *output, const struct picture_request *request, char name[NAME_LIMIT],
                         struct error *error) {
@@ -224,19 +229,125 @@ static bool count_picture(struct output_session *output, const struct picture_re
     return true;
 }
 
-/* What is there of the picture already: a part, a file of an earlier run, tiles of a checkpoint or of the farm. */
+/* Its files are complete: it is a source for frames that show the same. */
+static void remember(struct output_session *output, const struct picture *picture) {
+    const struct picture_request *request = &picture->request;
+    const struct finished_picture finished = {.shows = request->shows,
+                                              .number = frame_number(picture),
+                                              .order = picture->tiles.number,
+                                              .layers = request->layers & AOV_ALL,
+                                              .name = picture->name};
+    picture_copies_add(&output->copies, &output->files, &finished);
+}
+
+static bool write_picture(struct output_session *output, const struct picture *picture, struct error *error) {
+    char name[NAME_LIMIT];
+    if (animation_streams(&output->animation, &picture->request))
+        return animation_put(&output->animation, picture, error);
+    return picture_files_written(&output->files, picture->name, name, error) &&
+           picture_write_files(&output->files, picture, name, error) &&
+           (output->options->shards || animation_add(&output->animation, name, error)) &&
+           checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, name, error);
+}
+
+static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
+    double begun = progress_clock(), worked = progress_processor_clock();
+    bool ok = write_picture(output, picture, error);
+    picture->write_seconds = progress_clock() - begun;
+    picture->write_processor_seconds = progress_processor_clock() - worked;
+    if (ok)
+        remember(output, picture);
+    return ok;
+}
+
+static void report_copy(struct output_session *output, uint32_t from) {
+    const struct picture *picture = &output->current;
+    char line[NAME_LIMIT + 96];
+    (void)snprintf(line, sizeof line, "%s%s: frame %u is a copy of frame %u", scene_mark(picture->name), picture->name,
+                   frame_number(picture), from);
+    output_report(output, LINE_DETAIL, line);
+}
+
+static const struct finished_picture *equal_picture(const struct output_session *output) {
+    const struct picture *picture = &output->current;
+    return picture_copies_find(&output->copies, &output->files, picture->request.shows, picture->name,
+                               picture->request.layers & AOV_ALL);
+}
+
+/* *already: the frame shows the same as an earlier one, and has its files now. In a farm the first rank decides. */
+static bool copy_picture(struct output_session *output, const char *written, bool *already, struct error *error) {
+    const struct picture *picture = &output->current;
+    uint32_t number;
+    if (output->options->shards || (output->farm && !farm_is_first(output->farm)))
+        return true;
+    if (animation_streams(&output->animation, &picture->request)) {
+        if (!animation_repeat(&output->animation, &picture->request, already, &number, error))
+            return false;
+        if (*already)
+            report_copy(output, number);
+        return true;
+    }
+    const struct finished_picture *earlier = equal_picture(output);
+    if (!earlier)
+        return true;
+    if (!picture_copies_write(earlier, &output->files, picture->name, error) ||
+        !checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, written, error))
+        return false;
+    report_copy(output, earlier->number);
+    *already = true;
+    return true;
+}
+
+/* With --shard: the film gets the tiles of the part of an earlier picture that shows the same, and is written. A part
+ * that does not fit is no error: the frame is rendered. */
+static bool copy_part(struct output_session *output, bool *already, struct error *error) {
+    struct picture *picture = &output->current;
+    const struct finished_picture *earlier = output->options->shards ? equal_picture(output) : NULL;
+    struct tile_picture want = picture->tiles;
+    struct tile_file file;
+    struct error ignored;
+    char part[NAME_LIMIT];
+    uint32_t restored, twice;
+    if (!earlier || !picture_files_written(&output->files, earlier->name, part, &ignored) ||
+        !tile_file_read(part, &file, &ignored))
+        return true;
+    want.number = earlier->order;
+    bool fits = file.has_picture && file.picture.whole && file.picture.shard == want.shard &&
+                !tile_picture_difference(&file.picture, &want);
+    if (fits)
+        tile_file_restore(&file, &picture->film, &restored, &twice);
+    tile_file_close(&file);
+    if (!fits)
+        return true;
+    *already = write_timed(output, picture, error);
+    share_destroy(&picture->memory);
+    if (*already)
+        report_copy(output, earlier->number);
+    return *already;
+}
+
+/* What is there of the picture already: a part, a file of an earlier run or of an equal picture, tiles of a checkpoint
+ * or of the farm. */
 static bool prepare_film(struct output_session *output, const char *written, bool *already, struct error *error) {
     struct picture *picture = &output->current;
     char notice[256];
     *already = part_is_written(output, written);
-    if (*already)
+    if (*already) {
+        remember(output, picture);
         return true;
+    }
     if (!checkpoint_open(&output->checkpoint, picture->name, notice, error))
         return false;
     if (notice[0] != '\0')
         output_report(output, LINE_NOTICE, notice);
-    if (!checkpoint_has_written(&output->checkpoint, output->pictures, &picture->tiles.key, written, already, error) ||
-        (!*already && !make_film(output, picture, error)) || !join_farm(output, already, error))
+    if (!checkpoint_has_written(&output->checkpoint, output->pictures, &picture->tiles.key, written, already, error))
+        return false;
+    if (*already)
+        remember(output, picture);
+    else if (!copy_picture(output, written, already, error))
+        return false;
+    if ((!*already && (!make_film(output, picture, error) || !copy_part(output, already, error))) ||
+        !join_farm(output, already, error))
         return false;
     if (*already)
         picture_files_own(&output->files, written);
@@ -351,24 +462,6 @@ void output_write_checkpoint(struct output_session *output) {
         output_report(output, LINE_NOTICE, "gray: notice: SIGUSR1 writes a checkpoint only with --checkpoint FILE");
     else if (update_checkpoint(output, true, &tiles))
         report_checkpoint(output, tiles);
-}
-
-static bool write_picture(struct output_session *output, const struct picture *picture, struct error *error) {
-    char name[NAME_LIMIT];
-    if (animation_streams(&output->animation, &picture->request))
-        return animation_put(&output->animation, picture, error);
-    return picture_files_written(&output->files, picture->name, name, error) &&
-           picture_write_files(&output->files, picture, name, error) &&
-           (output->options->shards || animation_add(&output->animation, name, error)) &&
-           checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, name, error);
-}
-
-static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
-    double begun = progress_clock(), worked = progress_processor_clock();
-    bool ok = write_picture(output, picture, error);
-    picture->write_seconds = progress_clock() - begun;
-    picture->write_processor_seconds = progress_processor_clock() - worked;
-    return ok;
 }
 
 /* --partial: what is there of a picture that ends early, under a name of its own. */
@@ -574,6 +667,7 @@ void output_restart(struct output_session *output) {
     output->pictures = 0;
     output->plays = false;
     animation_restart(&output->animation);
+    picture_copies_clear(&output->copies);
     output->files.quota.written = 0;
     output->several_under_one_name = false;
 }
@@ -605,6 +699,7 @@ bool output_finish(struct output_session *output, bool all_well, struct error *e
         output_report(output, LINE_WARNING, line);
     }
     close_animation(output);
+    picture_copies_clear(&output->copies);
     picture_files_destroy(&output->files);
     display_close(&output->display);
     return ok;

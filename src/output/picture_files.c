@@ -14,7 +14,7 @@
 #include <strings.h>
 
 /* Picture or part, two debug pictures, --partial, all layers. */
-enum { FILES_LIMIT = 4 + AOV_COUNT };
+enum { PARTIAL_FILE = 3, FILES_LIMIT = 4 + AOV_COUNT };
 
 void picture_files_init(struct picture_files *files, const struct options *options) {
     static const char advice[] = " (-o FILE chooses another file)";
@@ -254,15 +254,9 @@ bool picture_files_checkpoint(const struct picture_files *files, const char *nam
 
 /* Checks. */
 
-/* A file that is named after a picture; rules NULL: it is not written. */
-struct named_file {
-    char path[NAME_LIMIT];
-    const struct file_rules *rules;
-};
-
 /* The file with this number of those that a picture may have. */
 static bool name_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
-                      struct named_file *file, struct error *error) {
+                      struct picture_file *file, struct error *error) {
     const struct options *options = files->options;
     const char *prefixes[2] = {options->targets_prefix, options->first_pass_prefix};
     file->rules = NULL;
@@ -275,7 +269,7 @@ static bool name_file(const struct picture_files *files, const char *name, uint3
     file->rules = &files->beside;
     if (number <= 2 && prefixes[number - 1])
         return picture_files_prefixed(name, prefixes[number - 1], file->path, error);
-    if (number == 3 && options->partial)
+    if (number == PARTIAL_FILE && options->partial)
         return layers_name(name, "partial", file->path, error);
     if (number >= 4 && picture_format(name) != PICTURE_EXR && (layers >> (number - 4) & 1))
         return layers_name(name, aov_name((enum aov)(number - 4)), file->path, error);
@@ -286,7 +280,7 @@ static bool name_file(const struct picture_files *files, const char *name, uint3
 /* Checks that one of them can be written, and differs from those before it and the checkpoint. */
 static bool check_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
                        const char *checkpoint, struct error *error) {
-    struct named_file file, other;
+    struct picture_file file, other;
     if (!name_file(files, name, layers, number, &file, error))
         return false;
     if (!file.rules)
@@ -320,4 +314,16 @@ bool picture_files_check(struct picture_files *files, const char *name, uint32_t
             return files->options->output ? error_elsewhere(error) : false;
     }
     return true;
+}
+
+/* The files of a finished picture: --partial is for others. */
+bool picture_files_before(const struct picture_files *files, const char *name, uint32_t layers, int *number,
+                          struct picture_file *file) {
+    struct error ignored;
+    if (*number > FILES_LIMIT)
+        *number = FILES_LIMIT;
+    while (--*number >= 0)
+        if (*number != PARTIAL_FILE && name_file(files, name, layers, *number, file, &ignored) && file->rules)
+            return true;
+    return false;
 }

@@ -35,7 +35,7 @@ void assets_destroy(struct assets *assets) {
         mem_free(assets->images);
         assets->images = next;
     }
-    *assets = (struct assets){0};
+    *assets = (struct assets){.epochs = assets->epochs};
 }
 
 /* Takes over mesh, also when it fails. */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 void scene_init(struct scene *scene, struct assets *assets) {
-    *scene = (struct scene){.assets = assets};
+    *scene = (struct scene){.assets = assets, .epoch = assets ? ++assets->epochs : 0};
 }
 
 void scene_destroy(struct scene *scene) {
@@ -35,6 +35,7 @@ void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot) {
     scene->last_material = snapshot->last_material;
     scene->file = NULL;
     scene->line = 0;
+    scene->epoch = ++scene->assets->epochs;
     assets_drop_meshes(scene->assets, snapshot->meshes);
     arena_rewind(&scene->arena, snapshot->arena);
 }

@@ -124,6 +124,7 @@ struct assets {
     struct asset_image *images;
     uint32_t mesh_count, image_count;
     uint64_t memory; /* bytes that scripts with a limit have left here */
+    uint64_t epochs; /* of all scenes */
 };
 void assets_destroy(struct assets *assets);
 /* The mesh of this input: an equal one from the store or a new one. Owned by the store. */
@@ -163,6 +164,7 @@ struct scene {
     struct arena arena;
     const char *names[SCENE_NAMES]; /* names of nodes made lately, by hash: most are used again */
     struct assets *assets;          /* not owned */
+    uint64_t epoch; /* while it is the same, an address in the arena or the store names one object for good */
     uint32_t node_count, material_count;
     uint32_t node_total; /* nodes made so far, those of changes too */
     uint8_t *warned;     /* by index: the warning about the node is out; has room for warned_room */

@@ -199,6 +199,9 @@ void frames_list_handle(lua_State *L, uint32_t serial);
 /* Calls `draw` of gr.frames for its frames and renders them; may raise. */
 int frames_run(lua_State *L, const struct script_result *result);
 void frames_open(lua_State *L); /* gr.time, gr.clock and gr.frame */
+/* " (frame 7)" for errors, or "": an error of gr.frames itself is of no frame. */
+enum { FRAME_WORDS = 32 };
+void frames_name_frame(const struct script_context *context, char out[FRAME_WORDS]);
 
 /* arguments.c: reads the arguments; may raise. Reads into args[0 .. parameter_count-1]. False: an argument is a ghost,
  * so the call has no effect. `first` is the stack index of the first argument. */

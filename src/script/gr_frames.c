@@ -7,6 +7,7 @@
 
 #include <lauxlib.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { FRAMES_COUNT, FRAMES_DRAW, FRAMES_SECONDS, FRAMES_FPS, FRAMES_LOOP, FRAMES_SHUTTER, FRAMES_PURE, FRAMES_END };
@@ -271,6 +272,14 @@ int frames_run(lua_State *L, const struct script_result *result) {
     else
         draw_selected(L, draw, plan);
     return 0;
+}
+
+/* With --frames, every run of a script is a frame until it calls gr.frames. */
+void frames_name_frame(const struct script_context *context, char out[FRAME_WORDS]) {
+    bool calls = !context->animates && context->function == function_find(OWNER_GR, "frames");
+    out[0] = '\0';
+    if (context->frame.number > 0 && !calls)
+        (void)snprintf(out, FRAME_WORDS, " (frame %u)", context->frame.number);
 }
 
 void frames_open(lua_State *L) {

@@ -301,6 +301,7 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))
         return false;
+    request.changed = context->change_count > 0;
     limits_pause(context);
     bool turns = context->options->frames.turntable > 0;
     bool done = turns ? render_turntable(context, &request, error)

@@ -93,9 +93,8 @@ _Noreturn static void end_script(lua_State *L, enum error_kind kind, const char 
     char where[PATH_SIZE + 32];
     context->lua = L;
     context_where(context, where, sizeof where);
-    char frame[32] = "";
-    if (context->frame.number > 0)
-        (void)snprintf(frame, sizeof frame, " (frame %u)", context->frame.number);
+    char frame[FRAME_WORDS];
+    frames_name_frame(context, frame);
     error_set(&context->fatal, kind, "%s%s%s", where, what, frame);
     context_raise_fatal(L);
 }

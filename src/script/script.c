@@ -144,9 +144,8 @@ static int describe_error(lua_State *L) {
         return 1;
     }
     size_t first = strcspn(message, "\n");
-    char frame[32] = "";
-    if (context->frame.number > 0)
-        (void)snprintf(frame, sizeof frame, " (frame %u)", context->frame.number);
+    char frame[FRAME_WORDS];
+    frames_name_frame(context, frame);
     error_set(&context->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
               hint_of_lua_error(L, message), frame);
     const char *rest = message + first + (message[first] == '\n');

@@ -61,6 +61,7 @@ struct render_request {
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     uint32_t owned;           /* the same of materials and gr.change_own */
     bool keep;                /* a picture that exists under this name is not replaced */
+    bool changed;             /* gr.change_... has changed the scene for this picture */
     struct frame frame;       /* of an animation; else its number is 0 */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };

@@ -528,6 +528,14 @@ TEST(an_error_in_a_frame_keeps_the_frames_before_it_and_names_it) {
     gives("$gray scene.lua -D FAIL=8 -o x.gif", 1, "no (frame 8)");
     gives("ls x.gif.frames | grep -c png; test -e x.gif", 1, "7");
     gives("$gray scene.lua -D FAIL=8 -o 'x.####.png'; ls x.0*.png | wc -l", 0, "7");
+    gives("sed -i 's/count = 12/count = 20/' scene.lua && $gray scene.lua -D FAIL=17 -o y.gif", 1,
+          "scene.lua:5: no (frame 17)");
+    gives("sed -i 's/count = 12/count = 20/' scene.lua && $gray scene.lua -q -o 'z.####.png' && "
+          "$gray scene.lua -D FAIL=17 -o y.gif; ls y.gif.frames | grep -c png",
+          0, "16");
+    gives("sed -i 's/count = 12/count = 20/' scene.lua && $gray scene.lua -q -o 'z.####.png' && for k in $(seq 16); do "
+          "cmp y.gif.frames/$(printf %06d $k).png z.$(printf %04d $k).png || exit 1; done",
+          0, "");
 }
 
 /* A file system with room for a few frames. */

@@ -140,6 +140,11 @@ TEST(wrong_animations_are_errors_that_name_the_frame) {
     static const char four[] = BALL "gr.frames{count = 4, draw = function() return show end}";
     fails(four, (struct frame_options){.selection = {3, 5, 1}}, "--frames selects frame 5, but the last frame is 4");
     fails(four, (struct frame_options){.turntable = 4}, "--turntable is for scripts without gr.frames");
+    struct test_result result = test_gray_scene(four, "-q --frames 500 scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 1);
+    CHECK(strstr(result.err, "gr.frames: --frames selects frame 500, but the last frame is 4\n") != NULL);
+    free(result.out);
+    free(result.err);
 }
 
 /* The eye goes around the middle of the ball at (2, 0, 0), in a circle of radius 9, and always looks at it. */

@@ -1,0 +1,431 @@
+/* Frames that show the same are copied: the digest of what a picture shows, and the files of the copies. */
+#define _GNU_SOURCE
+#include "image/png_write.h"
+#include "render/render.h"
+#include "scene/scene_digest.h"
+#include "script/table_internal.h"
+#include "tests/unit/script_host.h"
+
+#include <math.h>
+#include <sys/wait.h>
+
+/* --- the digest --- */
+
+struct shown {
+    char file[96];
+    struct digest digest;
+};
+enum { SHOWN_MAX = 4096 };
+static struct shown shown[SHOWN_MAX];
+static int shown_count;
+
+static void see(struct listener *listener, const struct render_request *request) {
+    const struct render_job job = {.camera = request->camera,
+                                   .settings = request->settings,
+                                   .width = (uint32_t)request->width,
+                                   .height = (uint32_t)request->height,
+                                   .ambient = request->ambient,
+                                   .background_lights = request->sky_chosen};
+    const struct scene_content content = {.scene = request->scene,
+                                          .root = request->root,
+                                          .lights = request->lights,
+                                          .light_count = request->light_count,
+                                          .sky = &request->sky,
+                                          .fog = request->fog};
+    struct digest_sum sum = {.count = 0};
+    listener->files[0] = '\0';
+    CHECK(shown_count < SHOWN_MAX);
+    render_digest_add(&job, &sum);
+    CHECK(scene_digest_add(&content, &sum));
+    (void)snprintf(shown[shown_count].file, sizeof shown->file, "%s", request->file);
+    shown[shown_count++].digest = digest_sum_end(&sum);
+}
+
+static void show_pictures(const char *text) {
+    struct listener listener = {.seen = see};
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua"};
+    struct error error;
+    shown_count = 0;
+    if (!listen_to_text(&listener, text, &options, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+}
+
+/* Two images, as a.png and b.png. */
+static void image_row(void *context, uint32_t y, uint8_t *line) {
+    for (int i = 0; i < 12; i++)
+        line[i] = (uint8_t)(20 * i + 7 * (int)y + *(const int *)context);
+}
+
+static void write_images(void) {
+    static const char *const names[] = {"a.png", "b.png"};
+    for (int k = 0; k < 2; k++) {
+        struct error error;
+        struct png_source source = {.width = 4, .height = 3, .bytes = image_row, .context = &k};
+        CHECK(png_write_from(FILE_AT(test_path(names[k])), &source, NULL, &error));
+    }
+}
+
+/* Picture 2k shows the same as picture 2k - 1, and after that a method is called. */
+static const char methods[] =
+    "local arm, joint, goal = gr.node('arm'), gr.joint('joint', {-90, 10, 90}, {-90, 0, 90}), gr.node('goal')\n"
+    "local stone = gr.material({0.5, 0.4, 0.3})\n"
+    "local ball = gr.sphere{material = stone}\n"
+    "local field = gr.height_field{heights = {{0, 1, 0}, {1, 0, 1}, {0, 1, 0}}}\n"
+    "local mesh = gr.mesh(stone, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, "
+    "{0, 3, 2}})\n"
+    "local root = gr.node('root'):add_child(arm:add_child(ball)):add_child(joint):add_child(field):add_child(mesh)\n"
+    "root:add_child(gr.csg_difference('cut', gr.cube{}, ball))\n"
+    "local function show() gr.render{node = root, file = 'x.png', width = 4, height = 3, eye = {0, 0, 9}} end\n"
+    "local steps = {\n"
+    "  function() arm:translate(1, 0, 0) end, function() ball:rotate('x', 10) end,\n"
+    "  function() ball:scale(2, 1, 1) end, function() joint:rotate_axis({1, 1, 0}, 20) end,\n"
+    "  function() joint:rotate_quat(1, 0.5, 0, 0) end, function() arm:pose{translate = {1, 2, 3}} end,\n"
+    "  function() ball:velocity(1, 2, 3) end, function() ball:spin('y', 30) end, function() ball:spin('y', 31) end,\n"
+    "  function() arm:moves_to(goal) end, function() goal:translate(0, 1, 0) end, function() goal:rotate('z', 5) end,\n"
+    "  function() ball:set_material(gr.material({0.1, 0.4, 0.3})) end,\n"
+    "  function() ball:set_texture('a.png') end, function() ball:set_bump('a.png', 0.1) end,\n"
+    "  function() mesh:displace{level = 1, f = function(p) return 0.1 * p.x end} end,\n"
+    "  function() field:displace{level = 1, f = function(p) return 0.1 * p.x end} end,\n"
+    "  function() field:displace{level = 1, f = function(p) return 0.2 * p.x end} end,\n"
+    "  function() arm:add_child(gr.cube{}) end, function() arm:add_child(ball) end, function() joint:scale(0, 1, 1) "
+    "end,\n"
+    "  function() ball:reset() end, function() arm:reset() end}\n"
+    "show() show()\n"
+    "for _, step in ipairs(steps) do step() show() show() end\n";
+
+TEST(every_method_of_nodes_changes_the_digest_of_their_scene) {
+    static const char *const reading[] = {"bounds", "faces", "render"};
+    write_images();
+    show_pictures(methods);
+    CHECK(shown_count > 40);
+    for (int i = 0; i < shown_count; i++)
+        for (int k = 0; k < i; k++)
+            if (digest_equal(shown[i].digest, shown[k].digest) != (i / 2 == k / 2))
+                test_fail(__FILE__, __LINE__, "pictures %d and %d: %s", k, i, i / 2 == k / 2 ? "differ" : "are equal");
+    for (int i = 0; i < function_count(); i++) {
+        const struct script_function *function = function_at(i);
+        char call[64];
+        bool reads = false;
+        for (size_t k = 0; k < sizeof reading / sizeof *reading; k++)
+            reads = reads || strcmp(function->name, reading[k]) == 0;
+        (void)snprintf(call, sizeof call, ":%s", function->name);
+        if (function->owner == OWNER_NODE && !reads && !strstr(methods, call))
+            test_fail(__FILE__, __LINE__, "node:%s is in no step of this test", function->name);
+    }
+}
+
+/* Two values of a kind of parameter, as Lua text; NULL: this test has none. */
+static const char *value_of(const struct script_parameter *parameter, int which) {
+    static char text[2][64];
+    const char *end = parameter->choices ? strchr(parameter->choices, ' ') : NULL;
+    double low = parameter->low, high = parameter->high, number;
+    bool any = low == 0 && high == 0, bounded = isfinite(low) && isfinite(high);
+    switch (parameter->kind) {
+    case KIND_NUMBER:
+    case KIND_WHOLE:
+        number = any ? 1 + which : bounded && high - low < 4 ? low + (high - low) * (1 + which) / 4 : low + 1 + which;
+        (void)snprintf(text[which], sizeof text[which], "%.17g", number);
+        return text[which];
+    case KIND_BOOLEAN:
+        return which ? "true" : "false";
+    case KIND_TEXT:
+    case KIND_FILE:
+        return NULL;
+    case KIND_OUTPUT:
+        return which ? "'y.png'" : "'x.png'";
+    case KIND_CHOICE:
+        if (!end)
+            return NULL;
+        (void)snprintf(text[which], sizeof text[which], "'%.*s'",
+                       which ? (int)strcspn(end + 1, " ") : (int)(end - parameter->choices),
+                       which ? end + 1 : parameter->choices);
+        return text[which];
+    case KIND_AXIS:
+        return which ? "'y'" : "'x'";
+    case KIND_POINT:
+    case KIND_DIRECTION:
+    case KIND_TRIPLE:
+    case KIND_SIZE:
+        return which ? "{1, 2, 5}" : "{2, 1, 3}";
+    case KIND_COLOUR:
+        return which ? "{0.2, 0.3, 0.4}" : "{0.4, 0.3, 0.2}";
+    case KIND_INTERVAL:
+        return which ? "{0, 0.5}" : "{0, 0.25}";
+    case KIND_QUATERNION:
+        return which ? "{1, 0, 0, 0}" : "{1, 1, 0, 0}";
+    case KIND_PAIR:
+        return which ? "{1, 2}" : "{2, 1}";
+    case KIND_NODE:
+        return which ? "ball" : "root";
+    case KIND_MATERIAL:
+        return which ? "gr.material({1, 0, 0})" : "gr.material({0, 1, 0})";
+    case KIND_IMAGE:
+        return which ? "'a.png'" : "'b.png'";
+    case KIND_BACKGROUND:
+        return which ? "{0.1, 0.2, 0.3}" : "function(d) return {d.x * d.x, 0, 0} end";
+    case KIND_FOG:
+        return which ? "gr.uniform_fog(0.1)" : "gr.uniform_fog(0.2)";
+    case KIND_CAUSTICS:
+        return which ? "100" : "{200, 0.5}";
+    case KIND_NODES:
+        return which ? "{ball}" : "{root}";
+    case KIND_LIGHTS:
+        return which ? "{gr.light({1, 2, 3}, {1, 1, 1}, {1, 0, 0})}" : "{gr.light({1, 2, 3}, {1, 0, 1}, {1, 0, 0})}";
+    case KIND_POINTS:
+        return which ? "{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}" : "{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}}";
+    case KIND_PAIRS:
+        return which ? "{{0, 0}, {1, 1}}" : "{{0, 0}, {1, 2}}";
+    case KIND_STOPS:
+        return which ? "{{0, 0, 0, 0}, {1, 1, 1, 1}}" : "{{0, 0, 0, 0}, {1, 1, 0, 1}}";
+    case KIND_NUMBERS:
+        return which ? "{1, 2, 3}" : "{1, 2, 4}";
+    case KIND_FUNCTION:
+        return which ? "function(p) return 0.5 + 0.25 * p.x * p.x end"
+                     : "function(p) return 0.5 + 0.25 * p.y * p.y end";
+    case KIND_MATERIALS:
+    case KIND_FACES:
+    case KIND_ROWS:
+    case KIND_CURVES:
+    case KIND_CALLBACK:
+    case KIND_COUNT:
+        break;
+    }
+    return NULL;
+}
+
+/* Where the result of a function is seen: the fields of gr.render that use `it`. */
+static const char *use_of(const struct script_function *function) {
+    if (strcmp(function->name, "bump") == 0)
+        return "ball:set_bump(it)";
+    switch (function->result) {
+    case RESULT_MATERIAL:
+        return "ball:set_material(it)";
+    case RESULT_LIGHT:
+        return "show.lights = {it}";
+    case RESULT_TEXTURE:
+        return "ball:set_material(gr.image_material{material = gr.material({1, 1, 1}), image = it})";
+    case RESULT_FOG:
+        return "show.fog = it";
+    case RESULT_SKY:
+        return "show.background = it";
+    case RESULT_NOTHING:
+    case RESULT_SELF:
+    case RESULT_NODE:
+    case RESULT_BOUNDS:
+    case RESULT_FACES:
+    case RESULT_GLYPHS:
+    case RESULT_FRAMES:
+        break;
+    }
+    return NULL;
+}
+
+/* One picture, if the call is right: "function parameter which". */
+static void write_call(FILE *out, const struct script_function *function, int changed, int which) {
+    bool renders = strcmp(function->name, "render") == 0;
+    fprintf(out, "try('%s %s %d', function(show) local it = ", function->name, function->parameters[changed].name,
+            which);
+    fprintf(out, renders ? "{" : "gr.%s{", function->name);
+    for (int k = 0; k < function->parameter_count; k++) {
+        const struct script_parameter *parameter = &function->parameters[k];
+        const char *value =
+            k == changed || !(parameter->flags & OPTIONAL) ? value_of(parameter, k == changed && which) : NULL;
+        if (value && !(renders && (parameter->kind == KIND_OUTPUT || parameter->kind == KIND_NODE)))
+            fprintf(out, "%s = %s, ", parameter->name, value);
+    }
+    fprintf(out, "} %s end)\n", renders ? "for k, v in pairs(it) do show[k] = v end" : use_of(function));
+}
+
+/* Parameters of OpenPBR that change nothing beside the defaults of the others, or that this version ignores. */
+static bool has_no_effect(const char *call) {
+    static const char *const calls[] = {"subsurface_color",
+                                        "subsurface_radius",
+                                        "subsurface_scatter_anisotropy",
+                                        "transmission_depth",
+                                        "transmission_scatter_anisotropy",
+                                        "transmission_dispersion_abbe_number",
+                                        "emission_color",
+                                        "thin_film"};
+    if (strncmp(call, "render mirror", 13) == 0) /* it needs a sky */
+        return true;
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
+        if (strncmp(call, "openpbr_material ", 17) == 0 && strstr(call, calls[i]))
+            return true;
+    return false;
+}
+
+/* Objects that are made anew with equal arguments count as equal, except those with tables of numbers. */
+TEST(every_argument_of_pictures_lights_materials_fogs_and_skies_changes_the_digest) {
+    static const char begin[] =
+        "local root = gr.node('root')\n"
+        "local function try(name, make)\n"
+        "  local ball = gr_ball\n"
+        "  local show = {node = root, file = name .. '.png', width = 4, height = 3, eye = {0, 0, 9}}\n"
+        "  ball:set_material(gr.material({0.5, 0.5, 0.5}))\n"
+        "  if pcall(make, show) then pcall(gr.render, show) end\n"
+        "end\n";
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    int differ = 0, same = 0;
+    write_images();
+    fprintf(out, "local ball = gr.sphere{}\ngr_ball = ball\n%sroot:add_child(ball)\n", begin);
+    for (int i = 0; i < function_count(); i++) {
+        const struct script_function *function = function_at(i);
+        if (function->owner != OWNER_GR || (!use_of(function) && strcmp(function->name, "render") != 0))
+            continue;
+        for (int k = 0; k < function->parameter_count; k++)
+            if (value_of(&function->parameters[k], 0) && function->parameters[k].kind != KIND_OUTPUT &&
+                (function->parameters[k].kind != KIND_NODE || use_of(function)))
+                for (int which = 0; which < 3; which++)
+                    write_call(out, function, k, which % 2);
+    }
+    (void)fclose(out);
+    show_pictures(text);
+    for (int i = 0; i + 1 < shown_count; i++) {
+        size_t length = strlen(shown[i].file) - 5;
+        bool pair =
+            strncmp(shown[i].file, shown[i + 1].file, length) == 0 && strcmp(shown[i].file, shown[i + 1].file) != 0;
+        bool equal = digest_equal(shown[i].digest, shown[i + 1].digest);
+        if (pair && equal && !has_no_effect(shown[i].file))
+            test_fail(__FILE__, __LINE__, "%s shows the same as %s", shown[i].file, shown[i + 1].file);
+        differ += pair;
+        if (i + 2 < shown_count && pair && strcmp(shown[i].file, shown[i + 2].file) == 0)
+            same += digest_equal(shown[i].digest, shown[i + 2].digest);
+    }
+    CHECK(differ > 550);
+    CHECK(same > 250);
+    free(text);
+}
+
+/* --- the program --- */
+
+/* A ball at 0, 1, 2, 2, 2, 1, 0, 0: frames 1 to 3 are rendered, the others are copies of these. */
+static const char ping_pong[] =
+    "local root, ball = gr.node('r'), gr.sphere{}\n"
+    "root:add_child(ball)\n"
+    "gr.frames{count = 8, loop = true, draw = function(t, k)\n"
+    ""
+    "  local stone = gr.material({0.9, 0.4, 0.2}, {0.5, 0.5, 0.5}, 20)\n"
+    "  ball:reset():translate(({0, 1, 2, 2, 2, 1, 0, 0})[k], 0, 0):set_material(stone)\n"
+    "  return {node = root, width = 60, height = 44, eye = {0, 0, 6}, view = {0, 0, -1}, fov = 40,\n"
+    "          background = function(d) return {0, 0, d.y * d.y} end,\n"
+    "          lights = {gr.light({4, 5, 6}, {1, 1, 1}, {1, 0, 0})}}\n"
+    "end}\n";
+
+/* A shell's line, in the test's folder, with scene.lua there; it prints `says`, among others. */
+static void gives(const char *scene, const char *line, const char *says) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    test_write_text(test_path("scene.lua"), scene);
+    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; } >out.txt 2>&1", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command), status = WIFEXITED(how) ? WEXITSTATUS(how) : 128;
+    char *said = test_read_file(test_path("out.txt"), NULL);
+    if (status != 0 || !said || !strstr(said, says))
+        test_fail(__FILE__, __LINE__, "%s\nstatus %d, or not \"%s\":\n%s", line, status, says, said ? said : "");
+    free(said);
+    free(command);
+}
+
+TEST(frames_that_show_the_same_are_copied_with_the_same_bytes) {
+    gives(ping_pong,
+          "$gray scene.lua --verbose -o 'a.##.png' 2>&1 | grep -o 'frame . is a copy of frame .' | tr '\\n' ','",
+          "frame 4 is a copy of frame 3,frame 5 is a copy of frame 3,frame 6 is a copy of frame 2,frame 7 is a copy of "
+          "frame 1,frame 8 is a copy of frame 1,");
+    gives(ping_pong,
+          "$gray -q scene.lua --no-copies -o 'b.##.png' && for k in $(seq 8); do cmp a.0$k.png b.0$k.png || exit 1; "
+          "done; "
+          "cmp a.01.png a.02.png || $gray scene.lua --verbose --no-copies -o 'b.##.png' 2>&1 | grep -c 'is a copy' || "
+          "true",
+          "a.01.png a.02.png differ");
+    /* What a picture consists of: layers, further files, other formats. */
+    gives(ping_pong,
+          "for o in \"-o x.gif --contact-sheet --keep-frames\" \"-o x.apng --palette frame\" '-o x.##.pfm --aov depth,"
+          "normal' '-o x.##.png --aov node -write-aa-targets t- --deep' '-o x.##.hdr --integrator path --spp 4' "
+          "'-o x.##.png --frames 3-8/2' '-o x.y4m --frames 2-7' '-o x.##.png --integrator path --spp 2 --denoise'; do "
+          "rm -rf one two; for d in one two; do mkdir $d; (cd $d && $gray -q ../scene.lua $o $(test $d = two && echo "
+          "--no-copies)) || exit 1; done; diff -r one two || exit 1; ls one; done",
+          "x.sheet.png");
+}
+
+TEST(copies_of_frames_are_in_streams_shards_and_resumed_runs) {
+    gives(ping_pong,
+          "$gray -q scene.lua -o - >a.y4m && $gray -q scene.lua --no-copies -o - >b.y4m && cmp a.y4m b.y4m; "
+          "$gray --verbose scene.lua -o - 2>&1 >c.y4m | grep -c 'is a copy of'",
+          "3");
+    gives(ping_pong,
+          "$gray -q scene.lua --no-copies -o one.apng --size 150x110; for i in 1 2; do $gray --verbose scene.lua "
+          "-o b.apng --size 150x110 --shard $i/2 2>&1 | grep -c 'is a copy of'; done; $gray merge -q --loop -o b.apng "
+          "b.apng.frames/*.part && cmp b.apng one.apng",
+          "5\n5\n");
+    gives(ping_pong,
+          "$gray -q scene.lua --no-copies -o one.gif; for i in 1 2 3; do $gray --verbose scene.lua -o c.gif "
+          "--shard-pictures $i/3 2>&1 | grep -o 'frame . is a copy.*'; done; $gray merge -q --loop -o c.gif "
+          "c.gif.frames/*.png && cmp c.gif one.gif",
+          "frame 7 is a copy of frame 1\n");
+    gives(ping_pong,
+          "! $gray -q scene.lua -o d.gif --picture-bytes 8k && ls d.gif.frames && $gray --verbose scene.lua -o d.gif "
+          "--resume 2>&1 | grep -o 'frame . is a copy of frame .' | tr '\\n' ','; cmp d.gif one.gif",
+          "frame 8 is a copy of frame 1,");
+}
+
+TEST(ranks_copy_frames_that_show_the_same) {
+    if (system("test -x $(dirname ${GRAY_TEST_BINARY:-build/release/gray})/gray-mpi && command -v mpirun >/dev/null"))
+        test_skip("there is no gray-mpi beside the program, or no mpirun");
+    gives(ping_pong,
+          "$gray -q scene.lua --no-copies -o one.gif && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+          "OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp} mpirun --oversubscribe -n 3 $gray --mpi --verbose -j 1 "
+          "scene.lua -o x.gif 2>&1 | grep -c 'is a copy of'; cmp x.gif one.gif",
+          "5");
+}
+
+TEST(three_hundred_frames_of_a_still_scene_are_rendered_once) {
+    gives("local root = gr.node('r'):add_child(gr.sphere{})\n"
+          "gr.frames{count = 300, draw = function() return {node = root, width = 20, height = 10, eye = {0, 0, 6}} "
+          "end}\n",
+          "$gray --verbose scene.lua -o x.gif 2>&1 | grep -c 'is a copy of frame 1$'", "299");
+}
+
+/* Differences that are small, or that come from elsewhere than the nodes. */
+TEST(frames_that_differ_are_never_copies) {
+    static const char *const differences[] = {
+        "show.seed = k",
+        "ball:translate(math.random() * 1e-9, 0, 0)",
+        "show.background = function(d) return d.y * gr.time end",
+        "show.background = function(d) return gr.loop(k, d.y, function(i, y) return y / 2 end) end",
+        "show.lights[1] = gr.light({4, 5, 6}, {1, 1, k / 100}, {1, 0, 0})",
+        "ball:set_texture(k % 2 == 0 and 'a.png' or 'b.png') show.seed = k // 2",
+        "show.shutter = {0, k / 10} ball:velocity(0, 1, 0)",
+        "show.ambient = {k / 100, 0, 0}",
+        "show.fov = 40 + k / 10"};
+    char text[2048];
+    write_images();
+    for (size_t i = 0; i < sizeof differences / sizeof *differences; i++) {
+        (void)snprintf(text, sizeof text,
+                       "local root, ball = gr.node('r'), gr.sphere(gr.material({0.9, 0.4, 0.2}))\n"
+                       "root:add_child(ball)\n"
+                       "gr.frames{count = 6, draw = function(t, k)\n"
+                       "  local show = {node = root, width = 20, height = 10, eye = {0, 0, 6}, lights = {}}\n"
+                       "  %s\n  return show\nend}\n",
+                       differences[i]);
+        gives(text, "$gray --verbose scene.lua -o x.gif >said.txt 2>&1 && ! grep 'is a copy' said.txt && echo right",
+              "right");
+    }
+}
+
+/* Each frame makes 2000 nodes and frees them, so that addresses are used again. */
+TEST(frames_of_memory_that_is_used_again_have_the_bytes_of_rendered_ones) {
+    gives("local root, old = gr.node('r'), gr.sphere{}\n"
+          "root:add_child(old)\n"
+          "gr.frames{count = 12, draw = function(t, k)\n"
+          "  local sky = gr.sky_gradient{stops = {{-1, 0, 0, k % 3 / 3}, {1, 0, 1, 1}}}\n"
+          "  for i = 1, 2000 do gr.sphere{} end\n"
+          "  return {node = root, width = 20, height = 10, eye = {0, 0, 6}, background = sky,\n"
+          "          fog = gr.fog_profile{profile = {{0, 0}, {1, k % 2}}}}\n"
+          "end}\n",
+          "$gray scene.lua -q -o 'a.##.png' && $gray scene.lua -q --no-copies -o 'b.##.png' && for k in $(seq -w 12); "
+          "do cmp a.$k.png b.$k.png || exit 1; done; ! cmp a.01.png a.02.png",
+          "differ");
+}
