@@ -126,13 +126,16 @@ bool light_sphere_context(const struct light *light, struct light_context *out) 
     return true;
 }
 
-/* Uniform over all directions; the exit point of the ray. */
+/* Uniform over all directions; the exit point of the ray. If that is closer than the offset of rays is exact, which is
+ * so for directions out of the sphere from a point on it, a point further on has the same direction: rays from the
+ * sphere itself look for what they meet. */
 static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 xi) {
     double y = 1 - 2 * xi.y, level = 2 * sqrt(xi.y * (1 - xi.y)), sine, cosine;
     el_sincos(2 * PI * xi.x, &sine, &cosine);
     struct vec3 direction = {level * cosine, y, level * sine}, off = vec3_sub(context->from, light->position);
     double along = vec3_dot(off, direction), room = light->radius * light->radius - vec3_length_squared(off);
-    return vec3_add_scaled(context->from, direction, sqrt(along * along + (room > 0 ? room : 0)) - along);
+    double exit = sqrt(along * along + (room > 0 ? room : 0)) - along;
+    return vec3_add_scaled(context->from, direction, exit > 0x1p-20 * light->radius ? exit : light->radius);
 }
 
 /* Uniform in the cone: 1 - cos grows with the square of the place's distance from the middle. */

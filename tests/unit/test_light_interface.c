@@ -255,10 +255,30 @@ TEST(samples_of_every_lamp_have_the_density_that_pdf_states) {
     check_density(light_kind_name(e.light.kind), &(struct sampled){&e.light, &context, LIGHT_NONE});
 }
 
+/* Rays start closer to a sphere than directions to its other points are exact. */
+TEST(samples_for_a_point_on_the_inside_of_a_sphere_have_all_directions) {
+    enum { N = 100000, BINS = 20 };
+    const struct vec3 outward = vec3_normalize(vec3_make(1, 2, -2));
+    const struct light ball = {.kind = LIGHT_SPHERE, .colour = {1, 1, 1}, .emissive = true, .radius = 8};
+    const struct vec3 point = vec3_scale(outward, 8), from = vec3_scale(outward, 8 - 0x1p-42);
+    struct light_context context;
+    int counted[BINS] = {0};
+    double chi = 0;
+    CHECK(light_context_make(&ball, point, from, &context));
+    for (uint64_t i = 0; i < N; i++) {
+        double cosine = vec3_dot(light_sample(&ball, &context, xi_of(5, i)).direction, outward);
+        int bin = (int)((1 + cosine) / 2 * BINS);
+        counted[bin < BINS ? bin : BINS - 1]++;
+    }
+    for (int i = 0; i < BINS; i++)
+        chi += pow(counted[i] - N / (double)BINS, 2) / (N / (double)BINS);
+    CHECK(chi < BINS + 5 * sqrt(2.0 * BINS));
+}
+
 /* From near and far, from above the middle and from the side: by solid angle and by area. */
 TEST(samples_of_single_triangles_have_the_density_that_pdf_states) {
-    static const struct vec3 points[] = {{0.3, 1.6, 0.4}, {0.5, 1.1, 0.2}, {0.3, 0.6, -0.2},
-                                         {1.1, 1.2, 0.9}, {0.3, -2.5, 0.2},  {0.31, 2.8, 0.19}};
+    static const struct vec3 points[] = {{0.3, 1.6, 0.4}, {0.5, 1.1, 0.2},  {0.3, 0.6, -0.2},
+                                         {1.1, 1.2, 0.9}, {0.3, -2.5, 0.2}, {0.31, 2.8, 0.19}};
     for (size_t i = 0; i < sizeof points / sizeof *points; i++) {
         struct example e;
         example_begin(&e, LIGHT_MESH, true, 1.5);
