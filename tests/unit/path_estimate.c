@@ -44,7 +44,7 @@ struct estimate estimate_render_twice(struct stage *s, const struct effort *effo
     return (struct estimate){(a.mean + b.mean) / 2, sqrt(squares) / (2 * (double)count)};
 }
 
-static void record(const char *claim, double value, struct estimate e, int seed) {
+void estimate_record(const char *claim, double value, struct estimate e, int seed) {
     const char *name = getenv("GRAY_TEST_VALUES");
     FILE *file = name ? fopen(name, "a") : NULL;
     if (!file)
@@ -54,7 +54,7 @@ static void record(const char *claim, double value, struct estimate e, int seed)
 }
 
 void estimate_check(const char *claim, double value, struct estimate e, int seed) {
-    record(claim, value, e, seed);
+    estimate_record(claim, value, e, seed);
     if (!(e.error <= 0.001 * value))
         test_fail(__FILE__, __LINE__, "%s, seed %d: standard error %g of %g", claim, seed, e.error, value);
     if (!(fabs(e.mean - value) <= 4 * e.error + 1e-6 * value))
@@ -63,7 +63,7 @@ void estimate_check(const char *claim, double value, struct estimate e, int seed
 
 void estimate_check_equal(const char *claim, struct estimate a, struct estimate b, int seed, double precision) {
     double error = sqrt(a.error * a.error + b.error * b.error);
-    record(claim, 1, (struct estimate){b.mean / a.mean, error / fabs(a.mean)}, seed);
+    estimate_record(claim, 1, (struct estimate){b.mean / a.mean, error / fabs(a.mean)}, seed);
     if (!(a.error <= precision * a.mean && b.error <= precision * b.mean))
         test_fail(__FILE__, __LINE__, "%s, seed %d: standard errors %g and %g of %g", claim, seed, a.error, b.error,
                   a.mean);

@@ -23,9 +23,11 @@ struct estimate estimate_render(struct stage *s, const struct effort *effort, in
 /* Of a picture whose pixels differ: from two pictures with different random numbers. */
 struct estimate estimate_render_twice(struct stage *s, const struct effort *effort, int depth, int seed);
 
+/* Appends a comparison as a line to the file that the environment variable GRAY_TEST_VALUES names, if it is set
+ * (tools/verification.sh). The checks below do so themselves. */
+void estimate_record(const char *claim, double value, struct estimate e, int seed);
 /* The standard error is at most 0.1 % of the value, and the mean within four of it, with an allowance for the rounding
- * of pixels to float. If the environment variable GRAY_TEST_VALUES names a file, each comparison is appended to it as a
- * line (tools/verification.sh). */
+ * of pixels to float. */
 void estimate_check(const char *claim, double value, struct estimate e, int seed);
 /* Two means that agree within four standard errors of their difference; each has a standard error of at most
  * `precision` of its value. */

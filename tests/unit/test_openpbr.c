@@ -1,6 +1,7 @@
 /* Layered materials: the layers by closed forms, the tables of albedos by sums over facets, and white materials in
  * uniform light, from which all of it has to come back. */
 #include "tests/harness.h"
+#include "tests/unit/path_estimate.h"
 
 #include "material/albedo_internal.h"
 #include "material/material_eval.h"
@@ -43,11 +44,7 @@ static struct vec3 view_of(double cosine, bool front) {
     return vec3_make(sqrt(1 - cosine * cosine), 0, front ? cosine : -cosine);
 }
 
-/* The share of light that comes back or goes on, with its standard error. */
-struct estimate {
-    double mean, error;
-};
-
+/* The share of light that comes back or goes on. */
 static struct estimate albedo_of(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo, uint64_t key, uint32_t n) {
     double sum = 0, sum2 = 0;
     for (uint32_t i = 0; i < n * n; i++) {
@@ -128,7 +125,9 @@ TEST(the_widest_facets_send_on_one_minus_the_logarithm_of_two) {
     metal.numbers.base_metalness = metal.material.phong.roughness = 1;
     struct bsdf bsdf = one_lobe(&metal, LOBE_METAL, 1, true);
     CHECK_EQ_INT(bsdf.count, 1);
-    CHECK_NEAR(albedo_of(&bsdf, BSDF_ALL, view_of(1, true), 5, 1000).mean, 1 - log(2), 5e-4);
+    for (int seed = 1; seed <= 3; seed++)
+        estimate_check("GGX, one scattering, alpha 1, head on, F = 1", 1 - log(2),
+                       albedo_of(&bsdf, BSDF_ALL, view_of(1, true), (uint64_t)seed, 1250), seed);
     CHECK_NEAR(albedo_mirror(1, 1), 1 - log(2), 5e-4);
 }
 
@@ -232,6 +231,7 @@ TEST(a_clear_coat_over_a_matt_base_reflects_what_reflections_between_them_add_up
         sum += 2 * c / N * (weight_of(&bsdf, LOBE_MIRROR).x + weight_of(&bsdf, LOBE_DIFFUSE).x);
     }
     CHECK_NEAR(sum, 0.65264, 2e-5);
+    estimate_record("coat of index 1.5 over Lambert .8", 0.65264, (struct estimate){sum, 0}, 1);
 }
 
 /* F (metal) below f (coat), both smooth: f + (1 - f)^2 F / (1 - f F). */
@@ -348,36 +348,53 @@ static const struct furnace furnaces[] = {
 
 /* In light that is 1 from everywhere a white surface sends 1 everywhere: a loss below half a percent, an excess below
  * four standard errors, in the mean over views. */
-static void check_furnace(const struct furnace *furnace, double roughness, uint32_t views, uint32_t n) {
-    for (int front = 1; front >= (furnace->solid ? 0 : 1); front--) {
-        double sum = 0, variance = 0;
-        for (uint32_t i = 0; i < views; i++) {
-            struct layers layers;
-            double cosine = sqrt((i + 0.5) / views);
-            layers_init(&layers);
-            layers.material.phong.roughness = roughness;
-            furnace->make(&layers);
-            struct bsdf bsdf = seen(&layers, cosine, front);
-            struct estimate e = albedo_of(&bsdf, BSDF_ALL, view_of(cosine, front), i + 11, n);
-            sum += e.mean / views;
-            variance += e.error * e.error / ((double)views * views);
-        }
-        if (!(sum > 0.995 && sum < 1 + 4 * sqrt(variance) + 1e-12))
-            test_fail(__FILE__, __LINE__, "%s of roughness %g, from %s: %.5f +- %.5f", furnace->name, roughness,
-                      front ? "outside" : "inside", sum, sqrt(variance));
+static struct estimate furnace_mean(const struct furnace *furnace, double roughness, bool front, uint32_t views,
+                                    uint32_t n, uint32_t seed) {
+    double sum = 0, variance = 0;
+    for (uint32_t i = 0; i < views; i++) {
+        struct layers layers;
+        double cosine = sqrt((i + 0.5) / views);
+        layers_init(&layers);
+        layers.material.phong.roughness = roughness;
+        furnace->make(&layers);
+        struct bsdf bsdf = seen(&layers, cosine, front);
+        struct estimate e = albedo_of(&bsdf, BSDF_ALL, view_of(cosine, front), i + seed, n);
+        sum += e.mean / views;
+        variance += e.error * e.error / ((double)views * views);
     }
+    return (struct estimate){sum, sqrt(variance)};
+}
+
+/* Returns the smallest mean, of both sides and all roughnesses. */
+static struct estimate check_furnace(const struct furnace *furnace, double step, uint32_t views, uint32_t n,
+                                     uint32_t seed, double precision) {
+    struct estimate least = {INFINITY, 0};
+    for (int front = 1; front >= (furnace->solid ? 0 : 1); front--) {
+        for (double roughness = 0; roughness <= 1; roughness += step) {
+            struct estimate e = furnace_mean(furnace, roughness, front, views, n, seed);
+            least = e.mean < least.mean ? e : least;
+            if (!(e.mean > 0.995 && e.mean < 1 + 4 * e.error + 1e-12 && e.error <= precision))
+                test_fail(__FILE__, __LINE__, "%s of roughness %g, from %s: %.5f +- %.5f", furnace->name, roughness,
+                          front ? "outside" : "inside", e.mean, e.error);
+        }
+    }
+    return least;
 }
 
 TEST(white_layered_surfaces_send_all_light_back_or_on) {
     for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++)
-        for (double roughness = 0; roughness <= 1; roughness += 0.25)
-            check_furnace(&furnaces[i], roughness, 24, 40);
+        (void)check_furnace(&furnaces[i], 0.25, 24, 40, 11, 1);
 }
 
 TEST_LONG(white_layered_surfaces_send_all_light_back_or_on_at_every_roughness) {
-    for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++)
-        for (double roughness = 0; roughness <= 1; roughness += 0.0625)
-            check_furnace(&furnaces[i], roughness, 200, 100);
+    for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++) {
+        for (uint32_t seed = 1; seed <= 3; seed++) {
+            struct estimate least = check_furnace(&furnaces[i], 0.0625, 40, 100, 1000 * seed, 0.001);
+            char claim[64];
+            (void)snprintf(claim, sizeof claim, "furnace, %s: smallest mean", furnaces[i].name);
+            estimate_record(claim, 1, least, (int)seed);
+        }
+    }
 }
 
 /* --- inputs --- */
