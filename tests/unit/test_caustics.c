@@ -716,8 +716,8 @@ static struct estimate lens_estimate(int photons, int samples, double alpha, uin
 TEST_LONG(paths_with_photons_show_what_paths_show_below_a_lens_for_every_seed) {
     for (int rough = 0; rough < 2; rough++) {
         for (uint64_t seed = 1; seed <= 3; seed++) {
-            struct estimate paths = lens_estimate(0, rough ? 3584 : 2048, 0.3 * rough, seed);
-            struct estimate both = lens_estimate(100000, rough ? 512 : 384, 0.3 * rough, seed + 10);
+            struct estimate paths = lens_estimate(0, rough ? 2560 : 2048, 0.3 * rough, seed);
+            struct estimate both = lens_estimate(rough ? 250000 : 100000, 384, 0.3 * rough, seed + 10);
             estimate_check_equal(rough ? "below a rough lens: paths, and photons" : "below a lens: paths, and photons",
                                  paths, both, (int)seed, 0.001);
         }

@@ -347,7 +347,9 @@ static const struct furnace furnaces[] = {
 };
 
 /* In light that is 1 from everywhere a white surface sends 1 everywhere: a loss below half a percent, an excess below
- * four standard errors, in the mean over views. */
+ * four standard errors, in the mean over views. The tables of albedos are interpolated: errors below 1e-4 count as
+ * 1e-4.
+ */
 static struct estimate furnace_mean(const struct furnace *furnace, double roughness, bool front, uint32_t views,
                                     uint32_t n, uint32_t seed) {
     double sum = 0, variance = 0;
@@ -368,17 +370,17 @@ static struct estimate furnace_mean(const struct furnace *furnace, double roughn
 /* Returns the smallest mean, of both sides and all roughnesses. */
 static struct estimate check_furnace(const struct furnace *furnace, double step, uint32_t views, uint32_t n,
                                      uint32_t seed, double precision) {
-    struct estimate least = {INFINITY, 0};
+    struct estimate min = {INFINITY, 0};
     for (int front = 1; front >= (furnace->solid ? 0 : 1); front--) {
         for (double roughness = 0; roughness <= 1; roughness += step) {
             struct estimate e = furnace_mean(furnace, roughness, front, views, n, seed);
-            least = e.mean < least.mean ? e : least;
-            if (!(e.mean > 0.995 && e.mean < 1 + 4 * e.error + 1e-12 && e.error <= precision))
+            min = e.mean < min.mean ? e : min;
+            if (!(e.mean > 0.995 && e.mean < 1 + 4 * fmax(e.error, 1e-4) && e.error <= precision))
                 test_fail(__FILE__, __LINE__, "%s of roughness %g, from %s: %.5f +- %.5f", furnace->name, roughness,
                           front ? "outside" : "inside", e.mean, e.error);
         }
     }
-    return least;
+    return min;
 }
 
 TEST(white_layered_surfaces_send_all_light_back_or_on) {
@@ -389,10 +391,10 @@ TEST(white_layered_surfaces_send_all_light_back_or_on) {
 TEST_LONG(white_layered_surfaces_send_all_light_back_or_on_at_every_roughness) {
     for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++) {
         for (uint32_t seed = 1; seed <= 3; seed++) {
-            struct estimate least = check_furnace(&furnaces[i], 0.0625, 40, 100, 1000 * seed, 0.001);
+            struct estimate min = check_furnace(&furnaces[i], 0.0625, 200, 60, 1000 * seed, 0.001);
             char claim[64];
             (void)snprintf(claim, sizeof claim, "furnace, %s: smallest mean", furnaces[i].name);
-            estimate_record(claim, 1, least, (int)seed);
+            estimate_record(claim, 1, min, (int)seed);
         }
     }
 }
