@@ -579,6 +579,27 @@ TEST(a_loop_closes_where_its_script_is_periodic) {
           0, "");
 }
 
+/* Renders what draw returns at the beginning and at the end of the loop, in place of the frames. */
+TEST(demos_of_animations_close_their_loops) {
+    static const char *const demos[] = {"bounce", "clockwork", "flight", "walker", "waves"};
+    char folder[4096], line[8192];
+    CHECK(realpath("data/animation", folder) != NULL);
+    test_write_text(test_path("ends.lua"), "gr.frames = function(a)\n"
+                                           "  for i = 0, 1 do\n"
+                                           "    local show = a.draw(i, 1 + i * a.count)\n"
+                                           "    show.file = 'frame'\n"
+                                           "    gr.render(show)\n"
+                                           "  end\nend\n");
+    for (size_t i = 0; i < sizeof demos / sizeof *demos; i++) {
+        (void)snprintf(
+            line, sizeof line,
+            "cat ends.lua '%s'/%s.lua >demo.lua && $gray -q demo.lua --size 60x44 -D quick=true -o %%d.png && "
+            "cmp 1.png 2.png && ! test -e 3.png",
+            folder, demos[i]);
+        gives(line, 0, "");
+    }
+}
+
 TEST(every_picture_of_an_old_script_is_a_frame) {
     gives("cat > old.lua <<'END'\n"
           "local node = gr.node('r')\nnode:add_child(gr.sphere{})\n"
