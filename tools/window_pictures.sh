@@ -3,7 +3,7 @@
 # display (Xvfb), keys and mouse by xdotool, pictures by ImageMagick. Waits for changes of the window's title, not for
 # times.
 cd "$(dirname "$0")/.." || exit 1
-gray=$PWD/build/release/gray
+gray=$PWD/build/release/gray demos=$PWD/data
 [ "$1" = inside ] && out=$2 || out=${1:-$PWD/docs/window}
 export SDL_RENDER_DRIVER=software SDL_FRAMEBUFFER_ACCELERATION=0
 if [ "$1" != inside ]; then
@@ -105,5 +105,14 @@ xdotool mousemove 400 600 mousedown 1 mousemove 405 590 sleep 0.1 mousemove 430 
 sleep 0.5
 titled ready
 take operand
+xdotool key q
+wait $pid
+
+"$gray" -gui -q --progress=none --size 640x480 "$demos/animation/waves.lua" 2>>said.txt &
+pid=$!
+titled playing
+xdotool key k sleep 0.2 mousemove 400 612 click 1 sleep 1
+titled 'ready.*frame 13'
+take playing
 xdotool key q
 wait $pid

@@ -43,7 +43,7 @@ end
 
 local lamp = gr.area_light({ -4.6, 8, 3.6 }, { 1.4, 0, 0 }, { 0, 0.5, 1.4 }, { 0.75, 0.72, 0.66 }, { 1, 0, 0 })
 gr.frames {
-    count = FPS * SECONDS, loop = true, fps = FPS, shutter = { 0, 0.5 },
+    count = FPS * SECONDS, loop = true, pure = true, fps = FPS, shutter = { 0, 0.5 },
     draw = function(t)
         for _, b in ipairs(balls) do
             local low, v, tall = motion(b, t * SECONDS)

@@ -72,7 +72,7 @@ local lights = {
     gr.light({ -5, 8, 9 }, { 0.86, 0.82, 0.74 }, { 1, 0, 0 }), gr.light({ 7, 2, 10 }, { 0.28, 0.31, 0.37 }, { 1, 0, 0 }),
 }
 gr.frames {
-    count = 48, loop = true, fps = 30,
+    count = 48, loop = true, pure = true, fps = 30,
     draw = function(t)
         for _, w in ipairs(wheels) do w.node:reset():rotate('z', w.angle + w.turn * t):translate(w.x, w.y, w.z) end
         pendulum:reset():rotate('z', 15 * math.sin(2 * math.pi * t)):translate(2.5, 4.1, -0.3)

@@ -48,7 +48,7 @@ local path = gr.keys(keys)
 
 local sun = { -0.72, 0.52, 0.42 }
 gr.frames {
-    count = FPS * SECONDS, loop = true, fps = FPS,
+    count = FPS * SECONDS, loop = true, pure = true, fps = FPS,
     draw = function(t)
         local show = path(t * SECONDS)
         show.node, show.width, show.height, show.fov = scene, 320, 180, 46

@@ -101,7 +101,7 @@ end
 scene:add_child(ground)
 
 gr.frames {
-    count = 32, loop = true, fps = 25,
+    count = 32, loop = true, pure = true, fps = 25,
     draw = function(t)
         local hips = height(t)
         for _, s in ipairs(sides) do

@@ -28,7 +28,7 @@ local lights = {
     gr.light({ -12, 20, 6 }, { 0.66, 0.63, 0.58 }, { 1, 0, 0 }), gr.light({ 14, 12, 14 }, { 0.22, 0.24, 0.30 }, { 1, 0, 0 }),
 }
 gr.frames {
-    count = 36, loop = true, fps = 25,
+    count = 36, loop = true, pure = true, fps = 25,
     draw = function(t)
         for _, c in ipairs(columns) do
             local wave = 0.5 + 0.5 * math.sin(2 * math.pi * (t - c.far / 6))

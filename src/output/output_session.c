@@ -69,9 +69,9 @@ static bool one_name_for_all(const struct output_session *output) {
     return options->output && options->animation == ANIMATION_NONE && !output_name_numbered(options->output);
 }
 
-/* The number in the name of a picture: the number of the frame, or else of the picture. */
+/* The number in -o: the number of the frame, or else of the picture. */
 static unsigned number_of(const struct output_session *output, const struct picture_request *request) {
-    return request->frame.number > 0 ? request->frame.number : output->pictures;
+    return request->frame.number > 0 ? request->frame.before + request->frame.number : output->pictures;
 }
 
 /* The same of a picture that has begun. */
@@ -83,7 +83,7 @@ static uint32_t frame_number(const struct picture *picture) {
 static bool choose_name(struct output_session *output, const struct picture_request *request, char name[NAME_LIMIT],
                         struct error *error) {
     char notice[NAME_LIMIT + 128];
-    const struct picture_label label = {request->file, number_of(output, request), request->frame.number > 0};
+    const struct picture_label label = {request->file, number_of(output, request), request->frame.number};
     if (one_name_for_all(output) && output->pictures > 1 && !animation_streams(&output->animation, request)) {
         output->several_under_one_name = true;
         return error_set(

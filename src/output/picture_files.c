@@ -210,7 +210,7 @@ bool picture_files_name(struct picture_files *files, const struct picture_label 
         return false;
     }
     return name_from_script(files, label->from_script, name, notice, error) &&
-           (!label->is_frame || number_frame(label->number, name, error));
+           (label->frame == 0 || number_frame(label->frame, name, error));
 }
 
 bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error) {

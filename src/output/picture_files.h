@@ -40,11 +40,12 @@ void picture_files_own(struct picture_files *files, const char *name);
 /* Whether this run wrote the file before as a picture. */
 bool picture_files_is_own(const struct picture_files *files, const char *name);
 
-/* The names of a picture: the name in the script, and its number, from 1; for a frame the number of the frame. */
+/* The names of a picture: the name in the script, and its number in -o, from 1; for a frame also the number in its
+ * animation, else 0. */
 struct picture_label {
     const char *from_script;
     unsigned number;
-    bool is_frame;
+    unsigned frame;
 };
 /* Its name. notice: a line to report, or empty. */
 bool picture_files_name(struct picture_files *files, const struct picture_label *label, char name[NAME_LIMIT],

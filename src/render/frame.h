@@ -13,8 +13,9 @@ enum { FRAMES_MAX = 10000000 };
 /* One frame of `count`; number 0: a picture outside of animations. */
 struct frame {
     uint32_t number, count;
-    double rate; /* frames per second */
-    bool loops;  /* after the last frame comes the first */
+    double rate;     /* frames per second */
+    bool loops;      /* after the last frame comes the first */
+    uint32_t before; /* --turntable: frames of the pictures before this one, which -o counts too */
 };
 
 /* The frames that a run renders: first, first + step ... up to last. Zero value: all. */

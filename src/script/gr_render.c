@@ -229,7 +229,8 @@ static bool render_turntable(struct script_context *context, const struct render
         return error_set(error, ERROR_SCENE, "--frames selects frame %u, but the last frame is %u",
                          options->selection.last, count);
     const struct script_host *host = context->host;
-    request.frame = (struct frame){0, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true};
+    request.frame = (struct frame){0, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true,
+                                   .before = context->pictures * count};
     while ((request.frame.number = host->next_frame ? host->next_frame(host->context, &request.frame)
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);

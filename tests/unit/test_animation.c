@@ -610,6 +610,13 @@ TEST(every_picture_of_an_old_script_is_a_frame) {
           "old.apng && $gray -q old.lua -o sheet.gif --contact-sheet --keep-frames && ls sheet.gif.frames && "
           "test -s sheet.sheet.png",
           0, "000001.png\n000002.png\n000003.png\n000004.png\n");
+    /* Turntables of several pictures follow each other; frame 1 of each is the picture. */
+    gives("$gray -q old.lua --turntable 3 -o 't.##.png' && ls t.*.png | wc -l && cmp t.01.png old1.png && cmp t.04.png "
+          "old2.png && cmp t.10.png old4.png && ! cmp -s t.05.png old2.png && $gray -q old.lua --turntable 3 -o t.apng "
+          "--keep-frames && for k in 01 02 03 04 05 06 07 08 09 10 11 12; do cmp t.$k.png t.apng.frames/0000$k.png || "
+          "exit 1; done; $gray -q old.lua --turntable 3 --frames 2-2 && ls old?.0002.png | wc -l; cmp old4.0002.png "
+          "t.11.png",
+          0, "12\n4\n");
     gives("$gray -q old.lua -o x.png", 2,
           "several pictures are rendered, so the name needs %d, or an ending of animations such as .gif or .mp4");
     gives("$gray -q old.lua -o x%04d%d.png", 2, "-o x%04d%d.png: a name has one number: %d, %04d or ####");
