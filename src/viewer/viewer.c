@@ -161,6 +161,7 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     else
         forget_work(&before);
     viewer_player_begin(viewer, &before);
+    resized = resized || viewer->display.tiles != before.display.tiles; /* before: maybe a window without picture */
     if (viewer->open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
         return false;
     memset(viewer->display.drawn, 0, viewer->display.tiles);

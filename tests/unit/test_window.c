@@ -200,6 +200,21 @@ static void begin(struct table *t) {
     build(t);
 }
 
+/* The window of a script that has not rendered yet, and then a picture of its size. */
+TEST(window_that_waits_for_a_picture_of_its_size_has_room_for_all_tiles_of_it) {
+    struct error error;
+    struct table t;
+    begin(&t);
+    const struct picture_request request = t.request;
+    viewer_end(&t.viewer);
+    CHECK(viewer_open(&t.viewer, &t.driver, "slow.lua", request.width, request.height, &error));
+    CHECK(viewer_begin(&t.viewer, &t.driver, &(struct viewer_picture){&request, t.block, "x.png"}, t.now, &error));
+    CHECK_EQ_INT(t.viewer.display.tiles, 4 * 3);
+    CHECK(t.viewer.display.fits_window); /* its images are new */
+    viewer_end(&t.viewer);
+    mem_free(t.block);
+}
+
 static void end(struct table *t) {
     viewer_end(&t->viewer);
     CHECK(!t->fake.open);
@@ -363,7 +378,7 @@ TEST(window_plays_frames_when_they_are_due_by_passes_as_coarse_as_necessary) {
     double shown = 0;
     uint32_t number = 1, divide = 0;
     begin(&t);
-    t.request.frame = (struct frame){1, 60, 30, true};
+    t.request.frame = (struct frame){1, 60, 30, true, 0};
     for (int frame = 0; frame < 150; frame++) {
         t.request.frame.number = number;
         CHECK(
