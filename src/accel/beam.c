@@ -51,7 +51,7 @@ void beam_traversal_begin(struct beam_traversal *traversal, const struct box_tre
     }
 }
 
-/* The children that the beam meets, and the distance to each. A NaN, from infinite sides, is never outside. */
+/* The children that intersect the beam, and the distance to each. A NaN, from infinite sides, is never outside. */
 static unsigned meet_children(const struct beam *b, const struct box_tree_node *node, double forward[BOX_TREE_WIDTH],
                               double behind[BOX_TREE_WIDTH]) {
     unsigned met = 0;

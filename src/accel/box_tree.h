@@ -61,8 +61,8 @@ struct box_tree_traversal {
     double enter[BOX_TREE_STACK];
 };
 void box_tree_traversal_begin(struct box_tree_traversal *traversal, const struct box_tree *tree, const struct ray *ray);
-/* Takes what is on top of a traversal. False: t_max is before it, or it is an empty child, which only rays that are not
- * finite meet (comparisons with NaN). */
+/* Takes the top entry of a traversal. False: it begins beyond t_max, or it is an empty child, which only rays that are
+ * not finite can reach (comparisons with NaN). */
 static inline bool box_tree_take(struct box_tree_traversal *traversal, double t_max, uint32_t *child) {
     *child = traversal->child[--traversal->top];
     double enter = traversal->enter[traversal->top];

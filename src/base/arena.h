@@ -15,7 +15,7 @@ void *arena_alloc(struct arena *arena, size_t size);
 void *arena_alloc_array(struct arena *arena, size_t count, size_t size);
 char *arena_copy_text(struct arena *arena, const char *text, size_t length); /* adds the final NUL */
 char *arena_format(struct arena *arena, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* The state of an arena, and the way back to it: everything handed out since then is freed. */
+/* The state of an arena, for a reset: everything that was allocated later is freed. */
 struct arena_mark {
     struct arena_block *head;
     size_t used, total;

@@ -60,7 +60,7 @@ struct file_read_log {
 /* The content of a file and its time: versions with different size or time need not be compared byte by byte. */
 struct file_version {
     struct file_identity identity;
-    struct digest content; /* zero unless the listener wants contents */
+    struct digest content; /* zero unless the listener needs contents */
     uint64_t size;
     int64_t seconds, nanoseconds; /* of its last change */
 };

@@ -1,4 +1,4 @@
-/* The geometry of a primitive: a shape or a CSG solid. One two-way switch for each query; the results are those of
+/* The geometry of a primitive: a shape or a CSG solid. Each query is one two-way switch; the results are those of
  * shape.h and csg.h, in object space. */
 #ifndef GRAY_CSG_GEOMETRY_H
 #define GRAY_CSG_GEOMETRY_H

@@ -17,7 +17,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-/* A message under way. */
+/* A message that is being sent. */
 struct transfer {
     struct transfer *next;
     MPI_Request request;

@@ -57,7 +57,7 @@ struct render_process {
     int warned_count;
 };
 
-/* A picture on its way from the call of gr.render to the finished film. */
+/* A picture between the call of gr.render and the finished film. */
 struct picture_work {
     struct render_process *process;
     const struct render_request *request;

@@ -18,7 +18,7 @@ struct script_clock {
     double used;      /* seconds of earlier stretches of the script */
     double since;     /* the child's clock when this stretch began */
     uint64_t frames;  /* that it has begun: each has the whole time */
-    bool runs;        /* a stretch is under way */
+    bool runs;        /* a time interval is being measured */
     bool out_of_time; /* the child was killed for that */
 };
 
@@ -69,8 +69,8 @@ struct supervisor {
     struct script_retry retry;
 };
 
-/* Seconds a cancelled child has to give up by itself before it is killed. It writes no files: nothing is lost with it,
- * and giving back the memory of a large scene takes longer than a kill. */
+/* Seconds that a cancelled child has to end by itself before it is killed. It writes no files, so nothing is lost; and
+ * freeing the memory of a large scene takes longer than a kill. */
 static const double supervisor_patience = 0.03;
 
 /* supervisor.c */

@@ -7,7 +7,7 @@
 #include <poll.h>
 #include <string.h>
 
-/* Seconds that a child has to give up when the window is closed, which is to be over within 50 milliseconds. */
+/* Seconds that a child has to end when the window is closed; closing must take less than 50 milliseconds. */
 static const double patience_quit = 0.01;
 /* Seconds that the scripts run before the window opens without a picture. */
 static const double patience_open = 0.4;
@@ -66,8 +66,8 @@ static bool same_picture(const struct picture_request *a, const struct picture_r
            strcmp(a->file, b->file) == 0;
 }
 
-/* A script that starts again reaches its pictures again; the one that is kept goes on with the tiles it has. False:
- * the picture is made like any other. */
+/* A script that starts again reaches its pictures again; the picture that was kept continues with its tiles. False: the
+ * picture is rendered like any other. */
 static bool answer_retry(struct supervisor *supervisor, const struct picture_request *request) {
     struct output_session *output = &supervisor->output;
     struct error error = {0};
@@ -251,7 +251,7 @@ static void answer_done(struct supervisor *supervisor, const struct message *mes
     bool ok = output_done(&supervisor->output, &message->body.report, &error);
     if (ok)
         settle(supervisor, supervisor->output.pictures);
-    if (supervisor->finishing) { /* the tiles under way were the last ones: the picture is whole, and the end is here */
+    if (supervisor->finishing) { /* the tiles in progress were the last ones: the picture is complete */
         supervisor->deadline = progress_clock() + supervisor_patience;
         atomic_store(&supervisor->control->cancel, CANCEL_ALL);
     }

@@ -31,7 +31,7 @@ bool supervisor_listen(struct supervisor *supervisor, struct error *error) {
     return true;
 }
 
-/* The first Ctrl-C, where tiles are kept (--checkpoint, --partial): those under way are finished. */
+/* The first Ctrl-C, if tiles are kept (--checkpoint, --partial): tiles in progress are finished. */
 static bool finish_tiles(struct supervisor *supervisor) {
     const struct options *options = supervisor->options;
     const struct picture *picture = &supervisor->output.current;

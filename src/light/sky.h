@@ -31,7 +31,7 @@ struct sky {
     const double (*stops)[4];
     uint32_t stop_count;
     struct clear_sky {
-        struct vec3 sun, ground; /* unit, to the sun; what lies below the horizon */
+        struct vec3 sun, ground; /* unit, to the sun; for the part below the horizon */
         double perez[3][5];      /* for Y, x, y */
         double scale[3];         /* zenith over Perez' function there */
     } clear;

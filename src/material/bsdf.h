@@ -74,7 +74,7 @@ struct bsdf_facets {
     struct facet_distribution distribution;
     double eta; /* index on the ray's side over that behind; 1 for metals */
     struct vec3 f0, edge;
-    /* Light that meets more than one facet (rough_lobes_internal.h). */
+    /* Light that is scattered by more than one facet (rough_lobes_internal.h). */
     double roughness;         /* for an isotropic surface */
     double lack, lack_behind; /* 1 - mean albedo, on the ray's side and behind */
     double through;           /* the share of that light that is transmitted */

@@ -29,7 +29,7 @@ struct medium_stack {
     struct medium entries[MEDIUM_STACK_LIMIT];
 };
 
-/* A surface between two media, as a ray meets it. */
+/* A surface between two media, at the hit of a ray. */
 struct medium_boundary {
     struct medium medium; /* on the inner side of the surface */
     bool entering;        /* the ray comes from the outer side */

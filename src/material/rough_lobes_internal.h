@@ -1,5 +1,5 @@
 /* The lobes of layered materials, which bsdf.h lists: rough diffuse surfaces, fuzz, gloss, metal, glass and thin walls
- * with facets, and the light that meets more than one facet. bsdf.c calls them. */
+ * with facets, and light that is scattered by more than one facet. bsdf.c calls them. */
 #ifndef GRAY_MATERIAL_ROUGH_LOBES_INTERNAL_H
 #define GRAY_MATERIAL_ROUGH_LOBES_INTERNAL_H
 
@@ -24,7 +24,7 @@ void bsdf_facets_pane(struct bsdf_facets *facets, double eta);
 /* f0: reflectance head on; tint: the reflectance at the cosine 1/7 over that of Schlick's formula. */
 void bsdf_facets_metal(struct bsdf_facets *facets, struct vec3 f0, struct vec3 tint);
 
-/* The reflectance of metal for a facet that sees the view at this cosine, and its mean over a hemisphere with the
+/* The reflectance of metal at a facet for this cosine to the view, and its mean over a hemisphere, weighted with the
  * cosine. */
 struct vec3 bsdf_metal_fresnel(const struct bsdf_facets *facets, double cosine);
 struct vec3 bsdf_metal_fresnel_average(const struct bsdf_facets *facets);

@@ -39,9 +39,8 @@ bool checkpoint_has_written(struct checkpoint *checkpoint, uint32_t number, cons
 bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture *picture, struct film *film,
                         char notice[256], struct error *error);
 /* Writes the file when it is due, or if `now` is set; film: of the current picture, or NULL. False with error: it could
- * not be written, reported once; the run goes on. *tiles: how many the file contains now; unchanged if nothing was
- * written.
- */
+ * not be written, reported once; the run continues. *tiles: the number of tiles in the file now; unchanged if nothing
+ * was written. */
 bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture *picture, const struct film *film,
                        bool now, uint32_t *tiles, struct error *error);
 /* The picture is written under its name. */

@@ -7,10 +7,10 @@
 
 #include <stdbool.h>
 
-/* Hands colour, albedo and normal to the program as three PFM files in a folder of their own, waits for it, and reads
- * its picture into out[width * height]. Its arguments are always the same and it works in that folder; what it prints
- * is thrown away. Errors, each in one line: the program is not on PATH, it fails, its picture has another size, a file
- * cannot be written. */
+/* Passes colour, albedo and normal to the program as three PFM files in a new folder, waits for it, and reads its
+ * picture into out[width * height]. Its arguments are fixed, it works in that folder, and its output is discarded.
+ * Errors, each in one line: the program is not on PATH, it fails, its picture has another size, a file cannot be
+ * written. */
 bool oidn_run(const struct denoise_source *source, float (*out)[3], struct error *error);
 
 #endif

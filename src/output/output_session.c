@@ -464,7 +464,7 @@ void output_write_checkpoint(struct output_session *output) {
         report_checkpoint(output, tiles);
 }
 
-/* --partial: what is there of a picture that ends early, under a name of its own. */
+/* --partial: writes the finished part of an interrupted picture under a separate name. */
 static void write_partial(struct output_session *output) {
     struct picture *picture = &output->current;
     uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE);

@@ -1,5 +1,5 @@
-/* The output session: the supervisor's half of making a picture. It names the picture, holds its film, writes the
- * files, and reports to the user. It sees no scene. */
+/* The output session: the supervisor's part of rendering a picture. It names the picture, holds its film, writes the
+ * files, and reports to the user. It has no access to the scene. */
 #ifndef GRAY_OUTPUT_OUTPUT_SESSION_H
 #define GRAY_OUTPUT_OUTPUT_SESSION_H
 

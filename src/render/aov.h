@@ -12,15 +12,16 @@
 
 /* Each layer, with its name for --aov and in names of files, and the letters of its channels in an EXR file. */
 #define AOVS(X)                                                                                                        \
-    X(AOV_DEPTH, "depth", "Z")       /* distance from the eye along the ray, world units; 0: nothing met */            \
+    X(AOV_DEPTH, "depth", "Z")       /* distance from the eye along the ray, world units; 0: no hit */                 \
     X(AOV_NORMAL, "normal", "XYZ")   /* unit vector in world space, the outward shading normal; {0, 0, 0}: no hit */   \
     X(AOV_ALBEDO, "albedo", "RGB")   /* kd of the surface */                                                           \
-    X(AOV_UV, "uv", "UV")            /* u, v, 1; {0, 0, 0}: nothing met or no image coordinates */                     \
-    X(AOV_NODE, "node", "N")         /* the node's number by order of creation, from 1; 0: nothing met */              \
+    X(AOV_UV, "uv", "UV")            /* u, v, 1; {0, 0, 0}: no hit or no image coordinates */                          \
+    X(AOV_NODE, "node", "N")         /* the number of the node by order of creation, from 1; 0: no hit */              \
     X(AOV_MATERIAL, "material", "N") /* the material's number in the scene, from 1 */                                  \
     X(AOV_COST, "cost", "N") /* nodes, voxels, boxes, shapes and triangles that all samples of the pixel looked at */  \
     X(AOV_SAMPLES, "samples", "N") /* camera rays of the pixel */                                                      \
-    X(AOV_LIGHTS, "lights", "N")   /* share of the lights with a place or a direction whose middle the point sees */   \
+    X(AOV_LIGHTS, "lights",                                                                                            \
+      "N") /* fraction of the lights with a position or a direction whose centre the point sees */                     \
     /* Of path-traced pictures only. */                                                                                \
     X(AOV_RAW, "raw", "RGB")           /* the picture before it is denoised */                                         \
     X(AOV_VARIANCE, "variance", "RGB") /* of the raw picture: the squared standard error */                            \

@@ -21,7 +21,7 @@ struct filter {
 
 void filter_init(struct filter *filter, enum filter_kind kind);
 
-/* Where a sample lies, in pixels from the pixel's upper left corner (its centre is .5, .5), and what it counts. */
+/* The position of a sample in pixels from the upper left corner of the pixel (its centre is .5, .5), and its weight. */
 struct filter_sample {
     double x, y, weight;
 };

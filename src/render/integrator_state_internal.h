@@ -26,7 +26,7 @@ struct integrator_state {
     const struct render_job *job;
     const struct pool *pool; /* returns whether to stop; NULL: never */
     struct world_scratch *scratch;
-    const struct medium_stack *eye_medium_stack; /* what the camera stands in */
+    const struct medium_stack *eye_medium_stack; /* the medium that contains the camera */
     struct sampler sampler;                      /* of the current pixel sample */
     const struct photon_map *caustics;           /* or NULL */
     struct observer *observer;                   /* or NULL */

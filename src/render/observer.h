@@ -20,13 +20,13 @@ enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
 enum mark_reason { MARK_COLOUR, MARK_SURFACE, MARK_DETAIL, MARK_THIN };
 
 enum observation_kind {
-    OBSERVED_SAMPLE_BEGIN,  /* sample.place */
-    OBSERVED_SAMPLE_END,    /* sample.place, sample.colour */
-    OBSERVED_SPLIT,         /* part: the rays that the ray under way sends from now on have this part of their weight */
-    OBSERVED_RAY_SENT,      /* sent: a secondary ray leaves the hit of the current ray, or would without the cut */
-    OBSERVED_RAY_BEGIN,     /* begin: the ray is current; its hit */
-    OBSERVED_MATERIAL,      /* material: one link of the material of the hit is evaluated */
-    OBSERVED_SURFACE,       /* surface: all of it is */
+    OBSERVED_SAMPLE_BEGIN, /* sample.place */
+    OBSERVED_SAMPLE_END,   /* sample.place, sample.colour */
+    OBSERVED_SPLIT,     /* part: the rays that the current ray spawns from now on have this fraction of their weight */
+    OBSERVED_RAY_SENT,  /* sent: a secondary ray leaves the hit of the current ray, or would without the cut */
+    OBSERVED_RAY_BEGIN, /* begin: the ray is current; its hit */
+    OBSERVED_MATERIAL,  /* material: one link of the material of the hit is evaluated */
+    OBSERVED_SURFACE,   /* surface: all of it is */
     OBSERVED_LIGHT_BEGIN,   /* light.number, light.light */
     OBSERVED_LIGHT_SAMPLE,  /* the light is shaded as if from one position */
     OBSERVED_SHADOW_RAYS,   /* shadow: of the current light */

@@ -1,19 +1,19 @@
 /* A light with a position is surrounded by a cube whose faces are quadtrees of cells, each cell a pyramid of
- * directions; a distant light by a square across its rays. A cell counts when its pyramid, widened by the light's own
- * extent, can meet the box of something specular. Cells are made as small as a budget of them allows, so a far small
- * thing is aimed at as well as a near large one.
+ * directions; a distant light by a square across its rays. A cell is active if its pyramid, extended by the extent of
+ * the light, can intersect the box of a specular object. Cells are as small as the maximum number of cells allows, so
+ * photons find small distant objects as well as large near ones.
  *
- * A cell is as important as its solid angle (area) times the strength of the strongest thing in it times the light's
- * own brightness there, and gets its share of the photons by systematic sampling; inside the cell they follow the
- * additive recurrence of the generalised golden ratio (Roberts, "The Unreasonable Effectiveness of Quasirandom
- * Sequences", 2018), moved by an offset of the cell. The weight of a photon is exactly the light's intensity over the
- * density of photons: no cell that light can pass may be missing, which is the invariant.
+ * The importance of a cell is its solid angle (area), times the strength of its most specular object, times the
+ * brightness of the light in its direction. Systematic sampling gives each cell its share of the photons. Inside the
+ * cell they follow the additive recurrence of the generalised golden ratio (Roberts, "The Unreasonable Effectiveness of
+ * Quasirandom Sequences", 2018), moved by an offset of the cell. The weight of a photon is exactly the intensity of the
+ * light divided by the density of photons. Invariant: every cell that light can pass to a specular object is active.
  *
- * An environment sends from all sides: it chooses directions itself, and each has its rectangle across.
+ * An environment emits from all sides: it chooses directions itself, and each has its rectangle across.
  *
- * Units (docs/light.md): a light without body sends its colour per steradian, times d^2 attenuation(d) after the way d,
- * so that free light arrives as colour * attenuation(d) * cosine; a lamp sends radiance / pi per area and projected
- * solid angle, since a view factor is a cosine over pi. */
+ * Units (docs/light.md): a light without an extent emits its colour per steradian, times d^2 attenuation(d) after the
+ * distance d, so that unblocked light arrives as colour * attenuation(d) * cosine. A lamp emits radiance / pi per area
+ * and projected solid angle, because a view factor is a cosine over pi. */
 #include "render/photon_target_internal.h"
 
 #include "base/random.h"
@@ -85,8 +85,8 @@ static struct specular_object specular_object_make(const struct world *world, ui
     return specular_object;
 }
 
-/* Things without end are meant as far as the finite ones reach, and as far again. */
-static bool find_casters(struct specular_objects *out, const struct world *world, struct arena *arena) {
+/* Photons hit infinite objects within twice the extent of the finite ones. */
+static bool find_specular_objects(struct specular_objects *out, const struct world *world, struct arena *arena) {
     *out = (struct specular_objects){.scene = box_empty()};
     uint32_t specular = 0;
     for (uint32_t i = 0; i < world->primitive_count; i++) {
@@ -272,7 +272,7 @@ static bool is_dark(const struct photon_target *target, struct target_square squ
     return !is_distant(target) && !target->emitter.even && !(cell_shine(target, square, &area) > 0);
 }
 
-/* `list`: the casters that the parent may meet. */
+/* `list`: the specular objects that the parent square may contain. */
 static void visit(struct search *s, struct target_square square, const uint32_t *list, uint32_t count,
                   uint32_t *free_room) {
     uint32_t face = square.face, level = square.level, i = square.i, j = square.j;
@@ -513,7 +513,7 @@ bool photon_targets_make(struct photon_targets *out, const struct world *world, 
                          struct pool *pool, struct error *error) {
     struct specular_objects specular_objects;
     *out = (struct photon_targets){0};
-    if (!find_casters(&specular_objects, world, arena))
+    if (!find_specular_objects(&specular_objects, world, arena))
         return error_no_memory(error, "the photons of the caustics");
     if (specular_objects.count == 0 || world->light_count == 0)
         return true;

@@ -1,5 +1,5 @@
-/* Where photons start: for each light the directions (of a distant light: the places across its rays) from which they
- * can meet something specular, in cells; the projection maps of Jensen 1996. */
+/* Emission of photons. For each light, the directions (for a distant light: the positions across its rays) from which
+ * photons can hit a specular object are stored in cells: the projection maps of Jensen 1996. */
 #ifndef GRAY_RENDER_PHOTON_TARGET_INTERNAL_H
 #define GRAY_RENDER_PHOTON_TARGET_INTERNAL_H
 

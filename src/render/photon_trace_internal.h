@@ -1,5 +1,5 @@
-/* Caustics: light that went through or off something specular before it met something diffuse. Photons are traced
- * before the picture is made, and stored in a map. */
+/* Caustics: light that was refracted or reflected by specular surfaces before it hit a diffuse one. Photons are traced
+ * before the picture is rendered, and stored in a map. */
 #ifndef GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
 #define GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
 

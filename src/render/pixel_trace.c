@@ -16,7 +16,7 @@ static struct pixel_trace_ray *ray_of(const struct pixel_trace *pixel_trace) {
     return pixel_trace->on && pixel_trace->mute == 0 ? pixel_trace->ray : NULL;
 }
 
-/* The same for the light under way. */
+/* The same for the current light. */
 static struct pixel_trace_light *light_of(const struct pixel_trace *pixel_trace) {
     return ray_of(pixel_trace) ? pixel_trace->light : NULL;
 }
@@ -55,7 +55,7 @@ static void end_sample(struct pixel_trace *pixel_trace, const struct pixel_sampl
     }
 }
 
-/* A new ray below the one under way, or NULL. */
+/* A new ray below the current one, or NULL. */
 static struct pixel_trace_ray *add_ray(struct pixel_trace *pixel_trace) {
     struct pixel_trace_ray *parent = pixel_trace->ray;
     if (pixel_trace->rays >= PIXEL_TRACE_RAYS) {

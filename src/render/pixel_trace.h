@@ -103,10 +103,10 @@ struct pixel_trace {
     uint32_t rays, omitted;
     bool failed; /* no memory */
     /* While it is written. */
-    bool on; /* a sample of the pixel itself is under way */
+    bool on; /* a sample of the pixel itself is being traced */
     struct pixel_trace_ray *ray;
     struct pixel_trace_light *light;
-    uint32_t mute;      /* how many rays that are not printed are under way */
+    uint32_t mute;      /* number of rays in progress that are not printed */
     enum ray_kind kind; /* of the next ray */
     struct vec3 weight; /* of the next ray */
 };

@@ -1,5 +1,5 @@
-/* What the files of a render share: tiles (render.c), samples (sample.c), integrators (integrator_internal.h), the time
- * estimate (cost_prepass.c), render layers (aov.c). Nobody else includes it. */
+/* Common parts of the files of a render: tiles (render.c), samples (sample.c), integrators (integrator_internal.h), the
+ * time estimate (cost_prepass.c), render layers (aov.c). Other modules do not include it. */
 #ifndef GRAY_RENDER_RENDER_INTERNAL_H
 #define GRAY_RENDER_RENDER_INTERNAL_H
 

@@ -62,7 +62,7 @@ enum { PHOTONS_MAX = 100000000, PHOTONS_USUAL = 200000 };
 /* What colours mean (docs/colour.md). AUTO: linear with integrators of light (integrator_traits), else classic. */
 #define COLOUR_PIPELINES(X)                                                                                            \
     X(COLOUR_AUTO, "auto")                                                                                             \
-    X(COLOUR_CLASSIC, "classic") /* numbers as they are */                                                             \
+    X(COLOUR_CLASSIC, "classic") /* numbers unchanged */                                                               \
     X(COLOUR_LINEAR, "linear")   /* light: pictures are decoded, PNG files encoded */
 enum colour_pipeline { COLOUR_PIPELINES(LIST_MEMBER) };
 
@@ -128,8 +128,8 @@ enum { LINE_WIDTH_MAX = 32, TOON_STEPS_MAX = 64 };
     X(ORDER_ROWS, "rows")
 enum order { TILE_ORDERS(LIST_MEMBER) };
 
-/* How paths find light that rays can meet: by lights and BSDFs with multiple importance sampling, or, to be compared
- * with, by one of them alone. */
+/* How paths find light that rays can hit: by sampling lights and BSDFs with multiple importance sampling, or, for
+ * comparison, by one of them only. */
 enum path_strategy { PATH_STRATEGY_MIS, PATH_STRATEGY_LIGHTS, PATH_STRATEGY_BSDF };
 
 struct settings {

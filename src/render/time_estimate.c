@@ -158,7 +158,7 @@ static struct totals add_up(const struct time_estimate *time_estimate) {
     return all;
 }
 
-/* Cholesky's decomposition of the rows and columns that take part; the ridge keeps it positive. */
+/* Cholesky decomposition of the rows and columns with active terms; the ridge keeps it positive. */
 static void solve(double matrix[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS], const double right[TIME_ESTIMATE_TERMS],
                   const bool takes_part[TIME_ESTIMATE_TERMS], double out[TIME_ESTIMATE_TERMS]) {
     double lower[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS] = {{0}};
@@ -215,7 +215,7 @@ static double combined(const double terms[TIME_ESTIMATE_TERMS], const double fac
     return sum;
 }
 
-/* Tiles under way, by the share that first passes had of the cost so far. */
+/* Tiles in progress, by the fraction of the cost so far that first passes had. */
 static void add_parts(const struct time_estimate *time_estimate, const struct totals *totals,
                       double done[TIME_ESTIMATE_TERMS]) {
     double first = totals->cost > 0 ? totals->first_cost / totals->cost : 0.5;

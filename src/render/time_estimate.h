@@ -19,7 +19,7 @@ struct time_estimate_sums {
         costs[TIME_ESTIMATE_TERMS]; /* weighted, of tiles done */
     _Atomic double done[TIME_ESTIMATE_TERMS];
     _Atomic double weight, cost, first_cost;
-    _Atomic uint32_t tile;  /* under way, or TIME_ESTIMATE_NO_TILE */
+    _Atomic uint32_t tile;  /* in progress, or TIME_ESTIMATE_NO_TILE */
     _Atomic double share;   /* of the tile, that this worker makes */
     _Atomic double part[2]; /* of its first pass and of the second, 0..1 */
 };
@@ -87,7 +87,7 @@ void progress_estimate_reset(struct progress_estimate *progress_estimate, bool w
 bool progress_estimate_is_wanted(const struct progress_estimate *progress_estimate);
 /* Sets the work done and the work left, in the same unit; the share never decreases. */
 void progress_estimate_report(struct progress_estimate *progress_estimate, double done, double left, uint64_t now);
-/* Seconds by the clock that a second of work takes where other programs want the processor, too; 1 while unknown. */
+/* Wall-clock seconds for a second of work if other programs also use the processor; 1 if unknown. */
 double progress_estimate_pace(const struct progress_estimate *progress_estimate);
 /* 0..1; negative while nothing is known. */
 double progress_estimate_share(const struct progress_estimate *progress_estimate);

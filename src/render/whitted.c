@@ -58,7 +58,7 @@ static bool is_given_up(const struct integrator_state *state, enum ray_kind kind
     return cut != RAY_FOLLOWED;
 }
 
-/* A hit with its surface and the ray that met it. */
+/* A hit with its surface and its ray. */
 struct surface_point {
     const struct ray *ray;
     const struct hit *hit;

@@ -23,7 +23,7 @@ struct whitted_worker {
 /* Of a run. Owns the photon map, the map of thin primitives and the array of workers with their contours. */
 struct whitted {
     double cutoff; /* cutoff_weight: rays of less weight are not followed */
-    /* -full, or a lens or moving things: what is blurred differs from sample to sample, not from its neighbours */
+    /* -full, or a lens or moving objects: blurred pixels differ from sample to sample, not from their neighbours */
     bool full;
     bool blurred;         /* by a lens or motion */
     bool fine;            /* surfaces, details and thin primitives mark pixels */
@@ -50,7 +50,7 @@ void whitted_add_statistics(const struct whitted *whitted, const struct renderer
 /* The radiance along a camera ray, clamped to the range of float; key: the random key of this pixel and sample. */
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                           uint64_t key);
-/* The same for a ray that went with a packet: what it has met, or NULL. */
+/* The same for a ray of a packet: its hit, or NULL. */
 struct vec3 whitted_trace_met(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,
                               const struct packet_answer *met, uint64_t key);
 

@@ -20,9 +20,9 @@ static double largest(struct vec3 c) {
 /* The squared distance of two colours is never larger: with these tolerances no pixel is marked. */
 static const double tolerance_of_all = 3;
 
-/* The largest radiance that a ray can meet: the sky, a visible light, an emitting surface, the fog, or a white surface
+/* The largest radiance that a ray can find: the sky, a visible light, an emissive surface, the fog, or a white surface
  * in the light of all lights, each at the distance where it has its nominal colour. Closer to a light with falloff it
- * may be brighter: the bound holds for usual scenes, not for all. */
+ * may be brighter, so the bound holds for usual scenes only. */
 static double brightest_of_scene(const struct render_job *job) {
     const struct world *world = job->world;
     double max = sky_brightest(&world->sky), lit = largest(job->ambient);
@@ -37,9 +37,9 @@ static double brightest_of_scene(const struct render_job *job) {
     return job->fog ? fmax(max, largest(job->fog->colour)) : max;
 }
 
-/* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: that, over
- * how bright things can be in this scene, and over how much the tone of the picture file raises small differences. 0:
- * every ray counts. */
+/* The weight of a ray in its pixel below which it changes the picture by less than settings.cutoff of white: this
+ * limit, divided by the largest radiance in this scene and by the factor by which the tone of the picture file raises
+ * small differences. 0: every ray counts. */
 static double cutoff_weight(const struct render_job *job) {
     const struct tone *tone = &job->settings.tone;
     double brightest = brightest_of_scene(job), cutoff = job->settings.cutoff;

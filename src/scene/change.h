@@ -64,7 +64,7 @@ struct change_list {
     struct change *items;
     uint32_t count, room;
 };
-/* Two changes of the same thing: the later one replaces the earlier one. */
+/* Two changes of the same object: the later one replaces the earlier one. */
 bool change_same_target(const struct change *a, const struct change *b);
 /* Puts the change into the list (replacing one of the same target, else in order of kind and number: the list does not
  * depend on the order of changes), or, with `present` false, removes it. False: no memory, or too many. */

@@ -4,8 +4,8 @@
 
 #include "script/context_internal.h"
 
-/* The result of a call of an unknown function. It accepts every call and index, holds the nodes of the call, and is
- * ignored where it cannot stand for anything. */
+/* The result of a call of an unknown function. It accepts every call and index, contains the nodes of the call, and is
+ * ignored if no value can replace it. */
 struct ghost {
     const char *name;
     struct node *node; /* NULL until it has a child or a parent */
@@ -52,7 +52,7 @@ int lenient_handle_index(lua_State *L);
 /* Adds the arguments `first` to `last`, and the entries of tables among them, to the ghost at stack index `at`. */
 void lenient_ghost_take(struct script_context *context, int at, int first, int last);
 
-/* lenient_values.c: pushes the value at `index` in the form that the parameter wants, or nil. */
+/* lenient_values.c: pushes the value at `index` in the form of the parameter, or nil. */
 void lenient_convert(struct script_context *context, int index, const struct script_function *function,
                      const struct script_parameter *parameter, const struct script_value *args);
 /* Pushes a value for an argument that is missing, or nil. */

@@ -33,7 +33,7 @@ static bool number_of(lua_State *L, int index, int depth, double *out) {
     return is_number && isfinite(*out);
 }
 
-/* Brings the number into the range. False: no number near it is in the range. */
+/* Clamps the number into the range. False: no number near it is in the range. */
 static bool into_range(const struct script_parameter *p, double *x) {
     *x = fmax(-NUMBER_LIMIT, fmin(NUMBER_LIMIT, *x));
     if (p->kind == KIND_WHOLE)

@@ -435,7 +435,7 @@ static bool reads_coordinates(const struct expr_program *program) {
     return false;
 }
 
-/* The mean and the largest value at the points of the comparison stand for the function where no hit is known. */
+/* Where no hit is known, the mean and the largest value at the points of the comparison represent the function. */
 static struct texture texture_of(const struct recording *recording) {
     const struct comparison *comparison = &recording->comparison;
     int last = recording->program->output_count - 1;

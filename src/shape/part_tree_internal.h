@@ -28,7 +28,8 @@ bool part_tree_build(struct arena *arena, const struct box *boxes, uint32_t coun
 /* Adds the crossings of a line and one part of a shape to the scratch. False: no room there. */
 typedef bool part_crossings(const void *shape, uint32_t part, const struct line *line, struct geom_scratch *scratch);
 
-/* Adds those of all parts whose boxes the line meets. False: no room; then the scratch is as it was before. */
+/* Adds the crossings of all parts whose boxes the line intersects. False: no room; then the scratch memory is
+ * unchanged. */
 bool part_tree_crossings(const struct part_tree *tree, const struct line *line, const void *shape,
                          part_crossings *crossings_of_part, struct geom_scratch *scratch);
 

@@ -472,7 +472,7 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
     case SHAPE_CURVE:
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, out);
-    case SHAPE_IMPLICIT: /* the same crossings, as far as they are asked for */
+    case SHAPE_IMPLICIT: /* the same crossings, but only the requested ones */
         scratch->shape_tests++;
         return implicit_nearest(shape->implicit, ray, out);
     case SHAPE_HEIGHT_FIELD: /* the same crossings, without those that come later */

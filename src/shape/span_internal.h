@@ -75,7 +75,7 @@ static inline int open_crossings(const struct span *spans, int count, const stru
     return found;
 }
 
-/* What lies between two parallel planes, and the parts of the surface in them. */
+/* The region between two parallel planes, and the parts of the surface in them. */
 struct slab {
     double lo, hi;
     uint32_t lo_part, hi_part;

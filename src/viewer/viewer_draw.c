@@ -93,8 +93,8 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
     }
 }
 
-/* Tiles that are finished or, after a pass over the picture, have more samples than before, and in those under way the
- * pixels that are being sampled again, in red. */
+/* Draws tiles that are finished or, after a pass over the picture, have more samples than before. In tiles in progress,
+ * pixels that are being sampled again are red. */
 void viewer_draw_tiles(struct viewer *viewer) {
     if (viewer->pass.view.width > 0) {
         viewer_draw_large(viewer);

@@ -41,13 +41,13 @@ struct flattening {
     struct primitive *primitives;
     struct box *limits; /* of each primitive, when there are any; else NULL */
     uint32_t primitive_capacity, prototype_capacity, linear_capacity, moving_capacity, link_capacity;
-    uint32_t *prototype_of;            /* by node->index: number of its first thing */
+    uint32_t *prototype_of;            /* by node->index: index of its first prototype */
     struct linear_table *linear_table; /* the maps by their bits */
     struct material_table *materials;
 };
 
-/* Fills world->primitives, things, linear_maps, moving, links, and authored. Errors: cycles, too many primitives, open
- * operands of CSG, no memory. */
+/* Fills world->primitives, prototypes, linear_maps, moving, links, and authored. Errors: cycles, too many primitives,
+ * open operands of CSG, no memory. */
 bool flatten_scene(struct flattening *f, const struct node *root);
 
 /* The CSG primitives of a NODE_CSG, or of geometry that is clipped, in its own space: none if it is empty, several if

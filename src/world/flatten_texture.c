@@ -14,7 +14,7 @@ struct numbered {
     uint32_t index;
 };
 
-/* Indices of authored things. */
+/* Indices of authored textures and bumps. */
 struct numbering {
     struct numbered *entries; /* capacity a power of two, at most half full */
     uint32_t capacity, count;

@@ -1,5 +1,5 @@
-/* See mesh_group.h. In rooms of small meshes, where nearly every ray hits one, the hierarchy over boxes and the starts
- * of the searches in several meshes cost more than the tests of triangles. */
+/* See mesh_group.h. In rooms of small meshes nearly every ray hits one. There, the hierarchy over boxes and the starts
+ * of searches in several meshes cost more than the triangle tests. */
 #include "world/mesh_group.h"
 
 #include "base/mem.h"

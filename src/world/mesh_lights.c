@@ -89,7 +89,7 @@ bool mesh_lights_primitive(const struct world *world, uint32_t primitive, struct
 
 /* --- emission that varies over a mesh --- */
 
-/* Of a triangle that each point stands for: weights of vertices 1 and 2. */
+/* Barycentric weights of vertices 1 and 2 at sample points of a triangle. */
 static const double points[][2] = {{1.0 / 3, 1.0 / 3}, {0.2, 0.2},   {0.6, 0.2}, {0.2, 0.6},
                                    {0.45, 0.1},        {0.45, 0.45}, {0.1, 0.45}};
 enum { POINTS = sizeof points / sizeof *points };

@@ -77,7 +77,7 @@ struct world {
     const uint32_t *material_numbers;
     const struct texture *textures; /* textures of materials and bumps; parts come before their readers */
     const struct bump *bumps;
-    bool *material_has_image;    /* such materials need to know the footprint on the surface */
+    bool *material_has_image;    /* such materials need the footprint on the surface */
     bool *material_has_tangents; /* and such ones the tangents of the pattern: bumps and functions */
     uint32_t *material_medium;   /* number of the medium in solids of the material, or MEDIUM_NONE: opaque */
     struct medium *media;        /* one for each transparent material; their `primitive` is anything */

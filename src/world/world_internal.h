@@ -13,8 +13,8 @@ bool world_ask_any(const struct world *world, uint32_t index, const struct ray *
 /* What is the same for every hit of a triangle of a primitive whose space is the world's. */
 struct group_facet world_facet(const struct world *world, uint32_t primitive, uint32_t triangle);
 
-/* The boxes of all primitives in the world, cut by `limits` where there are any (NULL: none), and what is
- * counted on the way: triangles, scratch, hulls. Errors: cancelled. */
+/* Computes the boxes of all primitives in the world, cut by `limits` if there are any (NULL: none). Also counts
+ * triangles, scratch memory and convex hulls. Errors: cancelled. */
 bool world_primitive_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error);
 
 #endif

@@ -283,7 +283,7 @@ FOR_EACH_MODE void search_tree(struct search *s, enum search_mode mode) {
     s->scratch->geom.cost.hierarchy_steps += traversal.steps;
 }
 
-/* Boxes are padded, so that the points of their primitives as they are computed lie inside: no slack is needed. */
+/* Boxes are padded so that they contain the computed points of their primitives: no slack is needed. */
 FOR_EACH_MODE void search_kd_tree(struct search *s, enum search_mode mode) {
     struct mailbox mailbox;
     probe_begin(s, mode);
