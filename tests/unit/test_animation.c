@@ -636,6 +636,24 @@ TEST(a_stream_is_the_y4m_file) {
           "YUV4MPEG2 W60 H44 F30:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\nFRAME\n");
 }
 
+/* A program ffmpeg of this test: it fails, or is killed. */
+TEST(an_ffmpeg_that_fails_leaves_the_frames_for_the_next_one) {
+    gives("mkdir bin; printf '#!/bin/sh\\nexit 7\\n' >bin/ffmpeg; chmod +x bin/ffmpeg; "
+          "PATH=$PWD/bin:$PATH $gray -q scene.lua -o x.mp4",
+          3, "x.mp4: ffmpeg failed (status 7)");
+    gives("ls x.mp4.frames | grep -c png; test -e x.mp4", 1, "12");
+    gives("printf '#!/bin/sh\\nkill -9 $$\\n' >bin/ffmpeg; PATH=$PWD/bin:$PATH $gray -q scene.lua -o x.webm", 3,
+          "x.webm: ffmpeg was ended by signal 9");
+    if (system("ffmpeg -hide_banner -encoders 2>/dev/null | grep -q libx264") == 0)
+        gives("$gray -q scene.lua -o x.mp4 --resume && test -s x.mp4 && ! test -e x.mp4.frames", 0, "");
+}
+
+TEST(files_of_one_pixel_and_of_odd_sizes_are_written) {
+    gives("for f in gif apng y4m; do $gray -q scene.lua --size 1x1 -o one.$f && $gray -q scene.lua --size 25x17 -o "
+          "odd.$f && test -s one.$f && test -s odd.$f || exit 1; done; head -c 31 odd.y4m",
+          0, "YUV4MPEG2 W25 H17 F30:1 Ip A1:1");
+}
+
 TEST(videos_have_the_same_bytes_each_time) {
     if (system("ffmpeg -hide_banner -encoders 2>/dev/null | grep -q libx264") != 0)
         test_skip("ffmpeg with libx264 is not installed");
