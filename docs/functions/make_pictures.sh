@@ -9,6 +9,7 @@ planet 360x270
 landscape 400x240
 lamp 240x240
 creature 300x200
+fractals 360x225
 END
 for picture in docs/functions/*.png; do
     command -v convert >/dev/null && convert "$picture" -dither FloydSteinberg -colors 128 -strip "PNG8:$picture"

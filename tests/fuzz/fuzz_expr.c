@@ -1,6 +1,6 @@
-/* Any bytes as an expression: four bytes are an operation on nodes that exist, of the types that it takes. Its program
- * gives the same bits at one point, in a batch of every instruction set, and where the inputs are constants and the
- * graph folds to one. */
+/* Any bytes as an expression: four bytes are an operation on nodes that exist, of the types that it takes, or a loop;
+ * in the folded graph the steps of a loop follow each other. Its program gives the same bits at one point, in a batch
+ * of every instruction set, and where the inputs are constants and the graph folds to one. */
 #include "base/isa.h"
 #include "base/mem.h"
 #include "expr/expr_program.h"
@@ -42,6 +42,48 @@ static const struct image_function *fuzz_picture(void) {
     return &function;
 }
 
+/* A step of a loop of a float and an integer: operations that the bytes name, on the states and on what is outside. */
+static void add_step(struct nodes *nodes, const uint8_t bytes[4], uint32_t step, const uint32_t in[2],
+                     uint32_t out[2]) {
+    static const enum expr_operation of_floats[] = {EXPR_ADD, EXPR_MULTIPLY, EXPR_MODULO, EXPR_SUBTRACT,
+                                                    EXPR_MIN, EXPR_POWER,    EXPR_ATAN,   EXPR_DIVIDE};
+    static const enum expr_operation of_integers[] = {EXPR_INTEGER_ADD, EXPR_INTEGER_MULTIPLY, EXPR_BIT_XOR,
+                                                      EXPR_SHIFT_LEFT};
+    struct expr_graph *graph = &nodes->graph;
+    uint32_t outside = nodes->of_type[EXPR_TYPE_F][bytes[1] % nodes->count[EXPR_TYPE_F]];
+    uint32_t whole = expr_operation(graph, EXPR_TO_FLOAT, in[1], EXPR_NONE, EXPR_NONE);
+    uint32_t moved = expr_operation(graph, of_floats[bytes[2] % 8], in[0], outside, EXPR_NONE);
+    uint32_t condition = expr_operation(graph, EXPR_LESS, whole, moved, EXPR_NONE);
+    out[0] = bytes[2] & 64 ? expr_operation(graph, EXPR_SELECT, condition, moved, whole) : moved;
+    out[1] = expr_operation(graph, of_integers[bytes[2] >> 3 & 3], in[1], step, EXPR_NONE);
+}
+
+static void add_loop(struct nodes *nodes, const uint8_t bytes[4], bool folded) {
+    struct expr_graph *graph = &nodes->graph;
+    const uint32_t last = 1 + bytes[3] % 20, zero = expr_float(graph, 0);
+    const bool ends = bytes[2] & 128;
+    uint32_t state[2] = {nodes->of_type[EXPR_TYPE_F][nodes->count[EXPR_TYPE_F] - 1],
+                         nodes->of_type[EXPR_TYPE_I][nodes->count[EXPR_TYPE_I] - 1]},
+             next[2];
+    for (uint32_t i = 1; folded && i <= last; i++) {
+        uint32_t alive = expr_operation(graph, EXPR_LESS, zero, state[0], EXPR_NONE);
+        add_step(nodes, bytes, expr_integer(graph, i), state, next);
+        bool is_checked = ends && i > 1;
+        state[0] = is_checked ? expr_operation(graph, EXPR_SELECT, alive, next[0], state[0]) : next[0];
+        state[1] = is_checked ? expr_operation(graph, EXPR_INTEGER_SELECT, alive, next[1], state[1]) : next[1];
+    }
+    if (!folded) {
+        const uint32_t symbols[2] = {expr_symbol(graph, 1, 1, EXPR_TYPE_F), expr_symbol(graph, 1, 2, EXPR_TYPE_I)};
+        add_step(nodes, bytes, expr_symbol(graph, 1, 0, EXPR_TYPE_I), symbols, next);
+        const struct expr_graph_loop loop = {
+            .first = 1, .last = last, .depth = 1, .state_count = 2, .initial = state, .next = next, .ends = ends};
+        if (!expr_loop(graph, &loop, state))
+            exit(0);
+    }
+    add_node(nodes, state[0]);
+    add_node(nodes, state[1]);
+}
+
 static uint32_t build(struct nodes *nodes, const uint8_t *data, size_t size, bool folded) {
     struct expr_graph *graph = &nodes->graph;
     for (int k = 0; k < EXPR_INPUT_COUNT; k++)
@@ -50,6 +92,10 @@ static uint32_t build(struct nodes *nodes, const uint8_t *data, size_t size, boo
     add_node(nodes, expr_integer(graph, 3));
     add_node(nodes, expr_truth(graph, true));
     for (; size >= 4; data += 4, size -= 4) {
+        if (data[0] >= 248) {
+            add_loop(nodes, data, folded);
+            continue;
+        }
         enum expr_operation operation =
             (enum expr_operation)(EXPR_INPUT + 1 + data[0] % (EXPR_OPERATION_COUNT - EXPR_INPUT - 1));
         uint32_t operands[3] = {EXPR_NONE, EXPR_NONE, EXPR_NONE};
