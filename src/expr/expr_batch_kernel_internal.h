@@ -214,34 +214,83 @@ static void write_state(const struct expr_loop *loop, uint32_t k, uint32_t width
         state[i] = (next[i] & alive[i]) | (state[i] & ~alive[i]);
 }
 
-/* Keeps those whose first state is > 0; returns whether there are any. */
-static bool keep_alive(const struct expr_loop *loop, uint32_t width, const double *rows, int64_t *alive) {
+/* Keeps those whose first state is > 0; returns their number. */
+static uint32_t keep_alive(const struct expr_loop *loop, uint32_t width, const double *rows, int64_t *alive) {
     const row_integer *integers = (const row_integer *)(const void *)rows;
-    int64_t any = 0;
+    int64_t count = 0;
     if (loop->type[0] == EXPR_TYPE_F)
         for (uint32_t i = 0; i < width; i++)
-            any |= alive[i] &= -(int64_t)(rows[i] > 0);
+            count -= alive[i] &= -(int64_t)(rows[i] > 0);
     else
         for (uint32_t i = 0; i < width; i++)
-            any |= alive[i] &= -(int64_t)(integers[i] > 0);
-    return any != 0;
+            count -= alive[i] &= -(int64_t)(integers[i] > 0);
+    return (uint32_t)count;
 }
 
-/* Repeats the body until all points have ended. rows: of the loop. */
+/* The points of a loop: `kept` has a row for each state, in the order at the start. Of the first `width` lanes,
+ * points[i] is the point of lane i. */
+struct packing {
+    double *kept;
+    uint32_t width, points[EXPR_BATCH];
+    bool is_packed;
+};
+
+static void keep_states(const struct expr_loop *loop, const struct packing *p, const double *rows) {
+    for (uint32_t k = 0; k < loop->state_count; k++)
+        for (uint32_t i = 0; i < p->width; i++)
+            p->kept[k * EXPR_BATCH + p->points[i]] = rows[k * EXPR_BATCH + i];
+}
+
+/* Moves the `count` points that have not ended to the first lanes; lanes up to a multiple of 16 repeat the first. */
+static void pack(const struct expr_loop *loop, uint32_t count, struct packing *p, double *rows, int64_t *alive) {
+    uint32_t from[EXPR_BATCH], filled = 0, width = (count + 15) & ~15U;
+    keep_states(loop, p, rows);
+    for (uint32_t i = 0; i < p->width; i++)
+        if (alive[i])
+            from[filled++] = i;
+    for (; filled < width; filled++)
+        from[filled] = from[0];
+    for (uint32_t k = 0; k < loop->argument_count; k++) {
+        double row[EXPR_BATCH], *values = rows + (size_t)k * EXPR_BATCH;
+        for (uint32_t i = 0; i < width; i++)
+            row[i] = values[from[i]];
+        memcpy(values, row, width * sizeof *row);
+    }
+    for (uint32_t i = 0, first = p->points[from[0]]; i < width; i++) {
+        p->points[i] = i < count ? p->points[from[i]] : first;
+        alive[i] = -1;
+    }
+    p->width = width;
+    p->is_packed = true;
+}
+
+/* Repeats the body until all points have ended, with those that have not in fewer vectors. rows: of the loop. */
 static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows) {
     int64_t alive[EXPR_BATCH];
     row_integer *steps = (row_integer *)(void *)(rows + (size_t)loop->argument_count * EXPR_BATCH);
-    for (uint32_t i = 0; i < width; i++)
+    struct packing p = {.kept = rows + (size_t)(expr_loop_rows(loop) / 2) * EXPR_BATCH, .width = width};
+    for (uint32_t i = 0; i < width; i++) {
+        p.points[i] = i;
         alive[i] = -1;
-    for (uint32_t step = loop->first; step <= loop->last; step++) {
-        if (loop->ends && step > 1 && !keep_alive(loop, width, rows, alive))
-            return;
-        for (uint32_t i = 0; i < width; i++)
-            steps[i] = step;
-        KERNEL(run)(&loop->body, width, rows);
-        for (uint32_t k = 0; k < loop->state_count; k++)
-            write_state(loop, k, width, rows, alive);
     }
+    for (uint32_t step = loop->first; step <= loop->last; step++) {
+        const bool is_checked = loop->ends && step > 1;
+        const uint32_t count = is_checked ? keep_alive(loop, p.width, rows, alive) : p.width;
+        if (count == 0)
+            break;
+        if (((count + 15) & ~15U) <= p.width / 2)
+            pack(loop, count, &p, rows, alive);
+        for (uint32_t i = 0; i < p.width; i++)
+            steps[i] = step;
+        KERNEL(run)(&loop->body, p.width, rows);
+        for (uint32_t k = 0; k < loop->state_count; k++)
+            write_state(loop, k, p.width, rows, alive);
+    }
+    if (!p.is_packed)
+        return;
+    keep_states(loop, &p, rows);
+    for (uint32_t k = 0; k < loop->state_count; k++)
+        memcpy(rows + (size_t)k * EXPR_BATCH, p.kept + (size_t)k * EXPR_BATCH, width * sizeof *rows);
 }
 
 static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in, uint32_t width,
