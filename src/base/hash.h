@@ -37,9 +37,9 @@ static inline struct digest digest_bytes(const void *data, size_t size, struct d
     return (struct digest){hash_bytes(data, size, before.a), hash_bytes(data, size, before.b ^ ~UINT64_C(0))};
 }
 
-/* The digest of words that come one by one, in order. Zero-initialise; digest_sum_end gives the result. Two sums of
- * products of pairs of words (W. Wang, "wyhash", and Y. Collet, "XXH3": a product of 64 x 64 bits, folded), each with
- * constants of its own at every place. */
+/* The digest of a sequence of words. Zero-initialise; digest_sum_end gives the result. Two sums of products of pairs of
+ * words (W. Wang, "wyhash", and Y. Collet, "XXH3": a product of 64 x 64 bits, folded); each position has separate
+ * constants. */
 enum { DIGEST_SUM_WORDS = 64 };
 struct digest_sum {
     struct digest before;
@@ -74,7 +74,7 @@ static inline void digest_sum_add(struct digest_sum *sum, uint64_t word) {
         digest_sum_flush(sum);
 }
 
-/* Numbers by their bits: 0 and -0 differ. */
+/* Numbers are compared by their bits: 0 and -0 differ. */
 static inline void digest_sum_add_numbers(struct digest_sum *sum, const double *numbers, size_t count) {
     for (size_t i = 0; i < count; i++) {
         uint64_t word;

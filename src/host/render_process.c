@@ -445,7 +445,8 @@ static void add_rim(struct picture_request *asked, uint32_t rim) {
     asked->height = shown.y1 + (below > rim ? rim : below) - asked->y0;
 }
 
-/* What a frame shows; zero: it is rendered in any case. Lenient scripts change their scene for a picture. */
+/* The digest of a frame; zero: the frame is always rendered. With --lenient, scripts change their scene for a picture.
+ * */
 static struct digest digest_of_frame(const struct picture_work *work) {
     const struct options *options = work->process->options;
     const struct render_request *request = work->request;

@@ -203,8 +203,8 @@ static void dump_value(struct text_writer *writer, const struct expr_program *pr
         text_writer_print(writer, " %lld", (long long)program->constants[value].i);
 }
 
-/* The instructions, one per line, and after that of a loop those of its body, whose registers are its own, and the
- * values that become its states, r0, r1, ... */
+/* Prints the instructions, one per line. After a loop follow the instructions of its body, which has separate
+ * registers, and the values that become its states, r0, r1, ... */
 static void dump_instructions(struct text_writer *writer, const struct expr_program *program, const char *before,
                               const char *after, int indent) {
     char line[256];

@@ -126,9 +126,9 @@ bool light_sphere_context(const struct light *light, struct light_context *out) 
     return true;
 }
 
-/* Uniform over all directions; the exit point of the ray. If that is closer than the offset of rays is exact, which is
- * so for directions out of the sphere from a point on it, a point further on has the same direction: rays from the
- * sphere itself look for what they meet. */
+/* Uniform over all directions; finds the exit point of the ray. If the exit is closer than the precision of ray offsets
+ * (for directions out of the sphere from a point on it), the target is a point farther in the same direction: rays that
+ * start on the sphere itself determine their own hits. */
 static struct vec3 inside_target(const struct light *light, const struct light_context *context, struct sample2 xi) {
     double y = 1 - 2 * xi.y, level = 2 * sqrt(xi.y * (1 - xi.y)), sine, cosine;
     el_sincos(2 * PI * xi.x, &sine, &cosine);

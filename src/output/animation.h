@@ -25,7 +25,7 @@ struct animation {
     bool incomplete;           /* other shards render some of the frames */
     bool borrowed;             /* the frames are files of the user */
     struct file_output stream; /* Y4M on standard output, once its first frame is there */
-    uint8_t *last_frame;       /* of the stream: its bytes, to be written again; owned */
+    uint8_t *last_frame;       /* of the stream: its bytes, for writing them again; owned */
     struct digest last_shows;  /* picture_request.shows of it */
     uint32_t last_number;
 };
@@ -43,7 +43,8 @@ bool animation_begin(struct animation *animation, const struct picture_request *
 bool animation_add(struct animation *animation, const char *name, struct error *error);
 /* Writes a frame of the stream; its rows are those of a PNG file. */
 bool animation_put(struct animation *animation, const struct picture *picture, struct error *error);
-/* Writes the last frame again if this one shows the same. *done: it was written; *number: of the last frame. */
+/* Writes the previous frame again if this frame is equal to it. *done: it was written; *number: of the previous frame.
+ * */
 bool animation_repeat(struct animation *animation, const struct picture_request *request, bool *done, uint32_t *number,
                       struct error *error);
 /* Uses these PNG files as the frames; they are not removed. */

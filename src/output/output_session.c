@@ -74,7 +74,7 @@ static unsigned number_of(const struct output_session *output, const struct pict
     return request->frame.number > 0 ? request->frame.before + request->frame.number : output->pictures;
 }
 
-/* The same of a picture that has begun. */
+/* The same for a picture that has begun. */
 static uint32_t frame_number(const struct picture *picture) {
     return picture->request.frame.number > 0 ? picture->request.frame.number : picture->tiles.number;
 }
@@ -229,7 +229,7 @@ static bool count_picture(struct output_session *output, const struct picture_re
     return true;
 }
 
-/* Its files are complete: it is a source for frames that show the same. */
+/* Its files are complete: equal frames can be copied from it. */
 static void remember(struct output_session *output, const struct picture *picture) {
     const struct picture_request *request = &picture->request;
     const struct finished_picture finished = {.shows = request->shows,
@@ -274,7 +274,7 @@ static const struct finished_picture *equal_picture(const struct output_session 
                                picture->request.layers & AOV_ALL);
 }
 
-/* *already: the frame shows the same as an earlier one, and has its files now. In a farm the first rank decides. */
+/* *already: the frame is equal to an earlier one, and its files have been copied. In a farm the first rank decides. */
 static bool copy_picture(struct output_session *output, const char *written, bool *already, struct error *error) {
     const struct picture *picture = &output->current;
     uint32_t number;
@@ -298,8 +298,8 @@ static bool copy_picture(struct output_session *output, const char *written, boo
     return true;
 }
 
-/* With --shard: the film gets the tiles of the part of an earlier picture that shows the same, and is written. A part
- * that does not fit is no error: the frame is rendered. */
+/* With --shard: if an earlier picture is equal, copies the tiles of its part into the film and writes the film. If the
+ * part does not fit, this is no error: the frame is rendered. */
 static bool copy_part(struct output_session *output, bool *already, struct error *error) {
     struct picture *picture = &output->current;
     const struct finished_picture *earlier = output->options->shards ? equal_picture(output) : NULL;
@@ -326,7 +326,7 @@ static bool copy_part(struct output_session *output, bool *already, struct error
     return *already;
 }
 
-/* What is there of the picture already: a part, a file of an earlier run or of an equal picture, tiles of a checkpoint
+/* Uses existing results for the picture: a part, a file of an earlier run or of an equal picture, tiles of a checkpoint
  * or of the farm. */
 static bool prepare_film(struct output_session *output, const char *written, bool *already, struct error *error) {
     struct picture *picture = &output->current;

@@ -1,5 +1,5 @@
-/* A hash table. A script cannot replace a file of the run, but another program can: a picture whose files have another
- * identity, size or time is no source any more. */
+/* A hash table. A script cannot replace a file of the run, but another program can. So a picture is no longer a source
+ * if its files have another identity, size or time. */
 #include "output/picture_copies.h"
 
 #include "base/mem.h"

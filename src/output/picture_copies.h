@@ -1,5 +1,5 @@
-/* Finished pictures by the digests of what they show, so that an equal frame of an animation is copied and not rendered
- * again. Entries are of one render process: its digests mean nothing to another one. */
+/* Finished pictures by the digests of their contents, so that an equal frame of an animation is copied and not rendered
+ * again. All entries belong to one render process: digests of two processes cannot be compared. */
 #ifndef GRAY_OUTPUT_PICTURE_COPIES_H
 #define GRAY_OUTPUT_PICTURE_COPIES_H
 
@@ -21,16 +21,15 @@ struct picture_copies {
     uint32_t count, room;
 };
 
-/* Remembers a picture whose files are complete: number, order, layers and name of `picture` count. Without a digest,
- * and for the digest of an earlier picture whose files are still as they were, nothing happens; without memory the
- * picture is no source. */
+/* Stores a picture whose files are complete: its number, order, layers and name. Does nothing without a digest, or if
+ * the digest is that of an earlier picture with unchanged files. Without memory, the picture is not stored. */
 void picture_copies_add(struct picture_copies *copies, const struct picture_files *files,
                         const struct finished_picture *picture);
-/* An earlier picture that shows the same and has the same kind of files, which are unchanged since then; or NULL. */
+/* An equal earlier picture with the same kind of files, which have not changed since; or NULL. */
 const struct finished_picture *picture_copies_find(const struct picture_copies *copies,
                                                    const struct picture_files *files, struct digest shows,
                                                    const char *name, uint32_t layers);
-/* Copies all files of an earlier picture; each is written as the renderer would write it. */
+/* Copies all files of an earlier picture; the result has the bytes that rendering would give. */
 bool picture_copies_write(const struct finished_picture *earlier, const struct picture_files *files, const char *name,
                           struct error *error);
 void picture_copies_clear(struct picture_copies *copies);

@@ -316,7 +316,7 @@ bool picture_files_check(struct picture_files *files, const char *name, uint32_t
     return true;
 }
 
-/* The files of a finished picture: --partial is for others. */
+/* The files of a finished picture, so without that of --partial. */
 bool picture_files_before(const struct picture_files *files, const char *name, uint32_t layers, int *number,
                           struct picture_file *file) {
     struct error ignored;

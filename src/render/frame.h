@@ -15,7 +15,7 @@ struct frame {
     uint32_t number, count;
     double rate;     /* frames per second */
     bool loops;      /* after the last frame comes the first */
-    uint32_t before; /* --turntable: frames of the pictures before this one, which -o counts too */
+    uint32_t before; /* --turntable: number of frames of the previous pictures, which -o also counts */
 };
 
 /* The frames that a run renders: first, first + step ... up to last. Zero value: all. */

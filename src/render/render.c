@@ -575,7 +575,7 @@ bool renderer_make_passes(struct renderer *renderer) {
 
 /* --- digests --- */
 
-/* A field that is added to one of the structs changes its size; the assertions remind of these functions. */
+/* A new field of one of these structs changes its size, and the assertions fail: then update these functions. */
 
 static void digest_add(struct digest_sum *sum, int64_t whole) {
     digest_sum_add(sum, (uint64_t)whole);

@@ -69,7 +69,7 @@ struct render_area {
 };
 /* Checks picture size, crop, camera; fills the area. First call of a job. Warnings: up parallel to view. */
 bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error);
-/* Adds everything of a job that its picture depends on, except the scene. */
+/* Adds all data of a job that its picture depends on, except the scene. */
 void render_digest_add(const struct render_job *job, struct digest_sum *sum);
 
 #endif

@@ -164,7 +164,7 @@ struct scene {
     struct arena arena;
     const char *names[SCENE_NAMES]; /* names of nodes made lately, by hash: most are used again */
     struct assets *assets;          /* not owned */
-    uint64_t epoch; /* while it is the same, an address in the arena or the store names one object for good */
+    uint64_t epoch; /* while it does not change, an address in the arena or the store always means the same object */
     uint32_t node_count, material_count;
     uint32_t node_total; /* nodes made so far, those of changes too */
     uint8_t *warned;     /* by index: the warning about the node is out; has room for warned_room */

@@ -13,7 +13,7 @@
 
 enum { MATERIALS_KNOWN = 256 };
 
-/* The materials met last, by their address, with their digests. */
+/* The most recent materials, by their address, with their digests. */
 struct known_material {
     const struct material *material;
     struct digest digest;
@@ -195,7 +195,7 @@ static void add_openpbr(struct digest_sum *sum, const struct openpbr *pbr) {
 }
 static_assert(sizeof(struct openpbr) == 232, "scene_digest.c adds every field");
 
-/* Worlds have a flat copy of a material: its own inputs, and the numbers of the base at the end of its chain. */
+/* Worlds have a flat copy of a material: its inputs, and the numbers of the base at the end of its chain. */
 static struct digest digest_of_material(const struct material *material) {
     const struct material *origin = material_origin(material);
     struct digest_sum sum = {.count = 0};
@@ -223,7 +223,7 @@ static void add_material(struct scene_digest *digest, const struct material *mat
 
 /* --- nodes --- */
 
-/* node:displace gives a shape another mesh or height field; the rest of a shape never changes. */
+/* node:displace gives a shape another mesh or height field; other data of a shape never change. */
 static const void *replaceable_part(const struct shape *shape) {
     if (shape->kind == SHAPE_MESH)
         return shape->mesh;
@@ -280,7 +280,7 @@ static void add_node(struct scene_digest *digest, const struct node *node) {
     }
 }
 
-/* The node and everything below it. seen: by index, of the nodes that were added. */
+/* Adds the node and all nodes below it. seen: by index, the nodes that were added. */
 static bool add_nodes(struct scene_digest *digest, const struct node *root, uint8_t *seen) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
     enum scene_event event;
@@ -354,7 +354,8 @@ static void add_list(struct digest_sum *sum, const struct node *const *nodes, ui
         digest_sum_add(sum, nodes[i]->serial);
 }
 
-/* A node that lights or is lit counts where it is below the root, but may be anywhere. */
+/* The nodes that the light illuminates count by their serial numbers; their transforms count where the tree below the
+ * root is visited. The node of a mesh light may be outside that tree. */
 static bool add_scene_light(struct scene_digest *digest, const struct scene_light *light, uint8_t *seen) {
     struct digest_sum *sum = digest->sum;
     add_light(sum, &light->light);

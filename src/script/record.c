@@ -461,9 +461,9 @@ static int run_once(struct script_context *context, lua_CFunction run, int index
     return status;
 }
 
-/* Calls `run` with the function at an absolute index and `data`; once more where a step of a loop does what a symbol
- * cannot do (it compares its number with ==), and then all steps are recorded one by one. Raises every error, with the
- * name of the argument in front. */
+/* Calls `run` with the function at an absolute index and `data`. If a step of a loop does something that a symbol does
+ * not support (it compares its number with ==), calls it again and records all steps one by one. Raises every error,
+ * prefixed by the name of the argument. */
 static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
     lua_State *L = context->lua;
     struct recorder *recorder = context->recorder;
@@ -476,7 +476,7 @@ static void run_protected(struct script_context *context, lua_CFunction run, int
         if (run_once(context, run, index, data) == LUA_OK)
             status = LUA_OK;
         bool is_fatal = context->fatal.kind != ERROR_NONE || context->limits.memory_out;
-        lua_remove(L, status == LUA_OK || !is_fatal ? -1 : -2); /* of two errors, the first says more */
+        lua_remove(L, status == LUA_OK || !is_fatal ? -1 : -2); /* of two errors, the first one is more useful */
     }
     recorder->busy = false;
     if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)

@@ -46,7 +46,7 @@ struct decision {
 /* The calls of a function, or of a step of a loop: the path of the one that runs. */
 struct record_frame {
     struct decision *decisions; /* of the path, RECORD_PATHS of them */
-    uint32_t depth, taken;      /* decisions of the path, and those that the call has come to */
+    uint32_t depth, taken;      /* decisions of the path, and the number of decisions that the call has reached */
     uint32_t path;              /* number of the call among all calls of the recording, from 1 */
     uint32_t count;             /* of calls */
 };
@@ -72,7 +72,7 @@ struct recorder {
     uint32_t level, calls;                     /* the innermost frame; all calls */
     uint32_t loop_depth;                       /* of loops whose body runs with symbols */
     struct path_bounds *narrowed;              /* record_interval.c; of each node, EXPR_NODES of them */
-    uint32_t *answers; /* of each node: 2 * path + answer, where `path` has decided it; EXPR_NODES of them */
+    uint32_t *answers; /* of each node: 2 * path + answer, if `path` has decided it; EXPR_NODES of them */
     uint32_t serial;   /* of the recording: symbols of others are refused */
     bool active;       /* symbols may be used */
     bool busy;         /* a function is recorded or compared: no other function of gr may run */
@@ -97,8 +97,8 @@ uint32_t record_node(lua_State *L, uint32_t node);
 uint32_t record_operation(lua_State *L, enum expr_operation operation, uint32_t a, uint32_t b, uint32_t c);
 /* a where the condition holds, else b. */
 struct number record_select(lua_State *L, uint32_t condition, struct number a, struct number b);
-/* A frame for the paths of a step of a loop; the next path of the innermost frame; the end of that frame. They raise
- * errors at the limits. */
+/* Begins a frame for the paths of a step of a loop; begins the next path of the innermost frame; ends that frame. They
+ * raise errors at the limits. */
 struct record_frame *record_begin_paths(lua_State *L);
 void record_begin_path(lua_State *L);
 void record_end_paths(struct recorder *recorder);

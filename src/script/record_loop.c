@@ -123,7 +123,7 @@ static struct number select_number(lua_State *L, uint32_t condition, struct numb
     return (struct number){NUMBER_EITHER, node, is_integer};
 }
 
-/* a where the condition holds, else b. A path with an error, without states, is NaN, or 0 of integers. */
+/* a if the condition holds, otherwise b. A path with an error has no states: its values are NaN, or 0 for integers. */
 static void join_states(lua_State *L, uint32_t condition, const struct states *a, struct states *b) {
     struct expr_graph *graph = &recorder_of(L)->graph;
     if (a->count > 0 && b->count > 0 && !same_shape(a, b))
@@ -142,7 +142,7 @@ static void join_states(lua_State *L, uint32_t condition, const struct states *a
 
 /* --- a step --- */
 
-/* One call on one path. On an error the states are none; the first of them is kept at the index `error`. */
+/* One call on one path. After an error there are no states; the first error is kept at the index `error`. */
 static void call_step(lua_State *L, int function, struct number step, const struct states *in, int error,
                       struct states *out) {
     struct script_context *context = context_of(L);
@@ -223,7 +223,7 @@ static uint32_t goes_on(lua_State *L, const struct states *states) {
     return record_operation(L, EXPR_LESS, zero, float_of(L, states->numbers[0]), EXPR_NONE);
 }
 
-/* A step for the points that have not ended; those that have keep their states. False: all have ended. */
+/* A step for the points that have not ended; the others keep their states. False: all have ended. */
 static bool unroll_step(lua_State *L, int function, uint32_t step, struct states *states) {
     struct states next;
     const struct expr_graph *graph = &recorder_of(L)->graph;
@@ -259,7 +259,7 @@ static uint32_t make_symbols(lua_State *L, const struct states *like, struct sta
     return slot;
 }
 
-/* The nodes of the slots of states, in the types of `like`. */
+/* The nodes of the slots of states, with the types of `like`. */
 static void list_slots(lua_State *L, const struct states *states, const struct states *like, uint32_t *out) {
     for (int k = 0; k < like->number_count; k++) {
         struct number number = states->numbers[k];
@@ -271,7 +271,8 @@ static void list_slots(lua_State *L, const struct states *states, const struct s
     }
 }
 
-/* Records the body until its results have the types of its symbols. False: they have not the shape, or are too many. */
+/* Records the body until its results have the types of its symbols. False: they have another form, or there are too
+ * many. */
 static bool record_body(lua_State *L, int function, struct states *symbols, struct states *next, uint32_t *slots) {
     struct recorder *recorder = recorder_of(L);
     for (bool is_settled = false; !is_settled;) {
@@ -292,7 +293,7 @@ static bool record_body(lua_State *L, int function, struct states *symbols, stru
     return true;
 }
 
-/* Whether the body, recorded once, gives states of the types of these: else a step on its own may change them. */
+/* Whether the body, recorded once, gives states of these types. Otherwise a single step may change the types. */
 static bool keeps_types(const struct states *states, const struct states *symbols) {
     for (int k = 0; k < states->number_count; k++)
         if (states->numbers[k].type != symbols->numbers[k].type)
@@ -307,8 +308,8 @@ struct looping {
     bool is_done, is_refused;
 };
 
-/* Records the other steps as a loop; is_refused where they are better recorded one by one. Argument 1: the function, 2:
- * the struct looping. */
+/* Records the remaining steps as a loop; is_refused if it is better to record them one by one. Argument 1: the
+ * function, 2: the struct looping. */
 static int record_others(lua_State *L) {
     struct recorder *recorder = recorder_of(L);
     struct looping *l = lua_touserdata(L, 2);
@@ -318,7 +319,7 @@ static int record_others(lua_State *L) {
     recorder->loop_depth++;
     if (!record_body(L, 1, &symbols, &next, &slots))
         return 0;
-    if (!keeps_types(&l->states, &symbols) && l->step < 3) { /* after another step they may fit */
+    if (!keeps_types(&l->states, &symbols) && l->step < 3) { /* after another step the types may agree */
         l->is_refused = false;
         return 0;
     }
@@ -349,7 +350,7 @@ static int record_others(lua_State *L) {
     return 0;
 }
 
-/* Calls it; an error is a refusal, but for limits. */
+/* Calls it; an error means a refusal, except at limits. */
 static void try_loop(lua_State *L, int function, struct looping *l) {
     struct script_context *context = context_of(L);
     struct recorder *recorder = context->recorder;

@@ -140,7 +140,7 @@ static struct number make_integer(uint32_t node) {
 
 /* --- decisions --- */
 
-/* On the path, or on those of the calls around it. */
+/* On this path, or on a path of the calls around it. */
 static int known_answer(const struct recorder *recorder, uint32_t condition) {
     uint32_t answer = recorder->answers[condition];
     for (uint32_t k = 0; k <= recorder->level; k++)
