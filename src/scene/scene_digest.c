@@ -11,7 +11,7 @@
 
 #include <assert.h>
 
-enum { MATERIALS_KNOWN = 256 };
+enum { MATERIALS_KNOWN = 256, MATERIALS_NEAR = 8 /* slots that are searched */ };
 
 /* The most recent materials, by their address, with their digests. */
 struct known_material {
@@ -215,7 +215,10 @@ static void add_material(struct scene_digest *digest, const struct material *mat
     digest_sum_add(digest->sum, material != NULL);
     if (!material)
         return;
-    struct known_material *known = &digest->known[random_mix((uint64_t)(uintptr_t)material) % MATERIALS_KNOWN];
+    uint64_t first = random_mix((uint64_t)(uintptr_t)material), at = first;
+    struct known_material *known = &digest->known[first % MATERIALS_KNOWN];
+    while (known->material && known->material != material && at - first < MATERIALS_NEAR)
+        known = &digest->known[++at % MATERIALS_KNOWN];
     if (known->material != material)
         *known = (struct known_material){material, digest_of_material(material)};
     add_digest(digest->sum, known->digest);

@@ -44,38 +44,47 @@ static uint32_t multiply_saturating(uint32_t a, uint32_t b) {
     return b > 0 && a > UINT32_MAX / b ? UINT32_MAX : a * b;
 }
 
-/* The number of primitives of a node and everything below it, from the numbers of its children. */
-static uint32_t count_below(const uint32_t *drawable, const struct node *node) {
+/* The number of primitives of a node and everything below it; children: that of all its children. */
+static uint32_t count_node(const uint32_t *drawable, const struct node *node, uint32_t children) {
     uint32_t own = node_is_placing(node) ? drawable[node->operands[0]->index]
                                          : node->kind == NODE_GEOMETRY || node->kind == NODE_CSG;
-    uint32_t below = 0;
-    for (const struct node_child *child = node->first_child; child; child = child->next)
-        below = add_saturating(below, drawable[child->node->index]);
     if (node->placements)
-        below = multiply_saturating(below, node->placements->count);
-    return node->singular ? 0 : add_saturating(own, below);
+        children = multiply_saturating(children, node->placements->count);
+    return node->singular ? 0 : add_saturating(own, children);
+}
+
+/* Adds the number of the node to the sum of the node that it is a child of: nodes are read once. */
+static void count_child(const struct scene_traversal *t, uint32_t count) {
+    if (t->depth < 2 || scene_traversal_operand(t) != SCENE_CHILD)
+        return;
+    uint32_t *children = scene_traversal_frame(t, 1);
+    *children = add_saturating(*children, count);
 }
 
 static bool count_nodes(struct flattening *f, const struct node *root, uint32_t *drawable, uint8_t *draws) {
     enum { UNSEEN, ON_PATH, FINISHED };
-    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true, .frame_size = sizeof(uint32_t)};
     uint8_t *state = mem_alloc_zero(f->scene->node_total, 1);
     enum scene_event event = SCENE_NO_MEMORY;
     bool cycle = false;
     scene_traversal_begin(&t, root);
     while (state && !cycle && (event = scene_traversal_next(&t)) < SCENE_END) {
         const struct node *node = scene_traversal_node(&t);
+        uint32_t *children = scene_traversal_frame(&t, 0);
         if (event == SCENE_ENTER && state[node->index] != UNSEEN) {
             cycle = state[node->index] == ON_PATH;
             if (cycle)
                 report_cycle(f, t.steps, t.depth);
+            count_child(&t, drawable[node->index]);
             scene_traversal_skip(&t);
         } else if (event == SCENE_ENTER) {
             state[node->index] = ON_PATH;
+            *children = 0;
         } else if (event == SCENE_LEAVE) {
-            drawable[node->index] = count_below(drawable, node);
+            drawable[node->index] = count_node(drawable, node, *children);
             draws[node->index] = drawable[node->index] > 0;
             state[node->index] = FINISHED;
+            count_child(&t, drawable[node->index]);
         }
     }
     scene_traversal_end(&t);

@@ -74,28 +74,102 @@ static struct box primitive_bounds(const struct world *world, uint32_t primitive
     return box_pad(geometry_bounds_under(geometry, &world_from_object.forward));
 }
 
-bool world_primitive_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
-    uint32_t exact = EXACT_IN_ALL;
-    world->moves = world->moving_count > 0;
-    for (uint32_t i = 0; i < world->primitive_count; i++) {
-        const struct mesh *mesh = geometry_mesh(primitive_geometry(world, i));
-        uint32_t before = exact;
-        world->boxes[i] = primitive_bounds(world, i, &exact);
-        if (limits)
-            world->boxes[i] = box_meet(world->boxes[i], box_pad(limits[i]));
-        if (box_is_empty(&world->boxes[i]))
-            world->boxes[i] = box_empty();
-        if (before != exact && pool_cancelled(pool))
-            return error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
-        if (mesh)
-            world->triangles += mesh_triangle_count(mesh);
+/* What a run over chunks of primitives and prototypes finds. */
+enum { CHUNK = 4096 };
+struct box_chunk {
+    uint32_t scratch_need;
+    bool has_meshes; /* their boxes are still to be made: they share EXACT_IN_ALL, in order */
+};
+struct box_run {
+    struct world *world;
+    const struct box *limits; /* or NULL */
+    uint32_t chunks;          /* of primitives; those of prototypes follow */
+    struct box_chunk *found;
+};
+
+static void set_box(const struct box_run *run, uint32_t primitive, struct box box) {
+    if (run->limits)
+        box = box_meet(box, box_pad(run->limits[primitive]));
+    run->world->boxes[primitive] = box_is_empty(&box) ? box_empty() : box;
+}
+
+static uint32_t chunk_end(uint32_t chunk, uint32_t count) {
+    return count - chunk * CHUNK < CHUNK ? count : (chunk + 1) * CHUNK;
+}
+
+static void measure_primitives(const struct box_run *run, uint32_t chunk) {
+    const struct world *world = run->world;
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(chunk, world->primitive_count); i++) {
+        uint32_t no_mesh = 0;
+        if (geometry_mesh(primitive_geometry(world, i)))
+            run->found[chunk].has_meshes = true;
+        else
+            set_box(run, i, primitive_bounds(world, i, &no_mesh));
     }
-    for (uint32_t i = 0; i < world->prototype_count; i++) {
-        uint32_t need = geometry_scratch_need(&world->prototypes[i].geometry);
-        world->scratch_need = need > world->scratch_need ? need : world->scratch_need;
+}
+
+static void measure_prototypes(const struct box_run *run, uint32_t chunk) {
+    struct world *world = run->world;
+    uint32_t *need = &run->found[run->chunks + chunk].scratch_need;
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(chunk, world->prototype_count); i++) {
+        uint32_t own = geometry_scratch_need(&world->prototypes[i].geometry);
+        *need = own > *need ? own : *need;
         world->prototypes[i].convexity = geometry_convexity(&world->prototypes[i].geometry);
     }
+}
+
+static void measure_chunk(void *context, uint32_t item, int worker) {
+    const struct box_run *run = context;
+    (void)worker;
+    if (item < run->chunks)
+        measure_primitives(run, item);
+    else
+        measure_prototypes(run, item - run->chunks);
+}
+
+static bool measure_meshes(const struct box_run *run, uint32_t chunk, uint32_t *exact, const struct pool *pool) {
+    struct world *world = run->world;
+    for (uint32_t i = chunk * CHUNK; i < chunk_end(chunk, world->primitive_count); i++) {
+        const struct mesh *mesh = geometry_mesh(primitive_geometry(world, i));
+        uint32_t before = *exact;
+        if (!mesh)
+            continue;
+        set_box(run, i, primitive_bounds(world, i, exact));
+        world->triangles += mesh_triangle_count(mesh);
+        if (before != *exact && pool_cancelled(pool))
+            return false;
+    }
     return true;
+}
+
+/* Small scenes are measured by this thread. */
+static bool measure_all(const struct box_run *run, uint32_t items, struct pool *pool) {
+    struct box_run own = *run;
+    uint32_t exact = EXACT_IN_ALL;
+    bool ok = true;
+    if (items > 2)
+        ok = pool_run(pool, items, measure_chunk, &own);
+    else
+        for (uint32_t item = 0; item < items; item++)
+            measure_chunk(&own, item, 0);
+    for (uint32_t chunk = 0; ok && chunk < run->chunks; chunk++)
+        ok = !run->found[chunk].has_meshes || measure_meshes(run, chunk, &exact, pool);
+    return ok;
+}
+
+bool world_primitive_boxes(struct world *world, const struct box *limits, struct pool *pool, struct error *error) {
+    uint32_t chunks = (world->primitive_count + CHUNK - 1) / CHUNK;
+    uint32_t items = chunks + (world->prototype_count + CHUNK - 1) / CHUNK;
+    const struct box_run run = {world, limits, chunks, mem_alloc_zero((size_t)items + 1, sizeof *run.found)};
+    world->moves = world->moving_count > 0;
+    if (!run.found)
+        return error_no_memory(error, "the boxes of the scene");
+    bool ok = measure_all(&run, items, pool);
+    for (uint32_t item = 0; item < items; item++)
+        world->scratch_need =
+            run.found[item].scratch_need > world->scratch_need ? run.found[item].scratch_need : world->scratch_need;
+    mem_free(run.found);
+    return ok || error_set(error, ERROR_CANCELLED, "stopped while the scene was measured");
 }
 
 /* Placements as a translation and the number of a linear map: a million pots in rows share one map, and cost 56 bytes
