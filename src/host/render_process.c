@@ -65,6 +65,7 @@ struct picture_work {
     struct picture_request asked;
     struct film film;
     struct world world;
+    bool built; /* the world is complete */
     struct picture_report report;
 };
 
@@ -258,8 +259,7 @@ static void report_samples(const struct picture_work *work) {
 
 /* Whether the next picture may be like this one. */
 static bool is_frame(const struct picture_work *work) {
-    return (work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE) &&
-           !work->asked.in_window;
+    return work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE;
 }
 
 static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
@@ -282,7 +282,7 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                                       .cache = is_frame(work) ? &process->accel_cache : NULL,
                                       .warn = warn_of_scene,
                                       .warn_context = process};
-    bool ok = world_build(&work->world, &input, &process->job, process->pool, error);
+    bool ok = work->built = world_build(&work->world, &input, &process->job, process->pool, error);
     process->building = false;
     atomic_store(&control->build_step, 0);
     return ok;
@@ -360,7 +360,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     fill_report(work, job->film, report);
     if (ok && job->world)
         warn_of_nan(process, job->world);
-    if (ok && is_frame(work))
+    if (ok && work->built && is_frame(work))
         world_keep_accel(&work->world, &process->accel_cache);
     world_destroy(&work->world);
     if (ok && !is_asked(process->options) && !process->options->check)
