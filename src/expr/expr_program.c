@@ -469,19 +469,21 @@ static inline bool is_true(double x) {
 
 static void run_code(const struct expr_program *program, union expr_value *values);
 
-/* Repeats the body; states are written when all results are known. values: of the body. */
+/* Repeats the body. The states are written in order, which changes no result (see struct expr_loop). values: of the
+ * body. */
 static void run_loop(const struct expr_loop *loop, union expr_value *values) {
-    union expr_value *registers = values + loop->body.constant_count, next[EXPR_STATES];
+    union expr_value *registers = values + loop->body.constant_count;
+    const bool is_float = loop->type[0] == EXPR_TYPE_F;
+    const uint32_t states = loop->state_count;
+    const uint16_t *next = loop->next;
     memcpy(values, loop->body.constants, loop->body.constant_count * sizeof *values);
-    bool is_float = loop->type[0] == EXPR_TYPE_F;
     for (uint32_t step = loop->first; step <= loop->last; step++) {
         if (loop->ends && step > 1 && !(is_float ? registers[0].f > 0 : registers[0].i > 0))
             break;
         registers[loop->argument_count].i = step;
         run_code(&loop->body, values);
-        for (uint32_t k = 0; k < loop->state_count; k++)
-            next[k] = values[loop->next[k]];
-        memcpy(registers, next, loop->state_count * sizeof *next);
+        for (uint32_t k = 0; k < states; k++)
+            registers[k] = values[next[k]];
     }
 }
 
