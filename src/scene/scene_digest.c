@@ -357,8 +357,8 @@ static void add_list(struct digest_sum *sum, const struct node *const *nodes, ui
         digest_sum_add(sum, nodes[i]->serial);
 }
 
-/* The nodes that the light illuminates count by their serial numbers; their transforms count where the tree below the
- * root is visited. The node of a mesh light may be outside that tree. */
+/* The lists count by the serial numbers of their nodes. These nodes, and the node of a mesh light, may be outside the
+ * tree below the root, so they are added here. */
 static bool add_scene_light(struct scene_digest *digest, const struct scene_light *light, uint8_t *seen) {
     struct digest_sum *sum = digest->sum;
     add_light(sum, &light->light);
