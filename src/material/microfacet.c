@@ -145,9 +145,9 @@ double facet_distribution_escape(const struct facet_distribution *facets, struct
  * (n - 1) / (n + 1), where albedos change about evenly. Between them go the cubics of Catmull and Rom; at both ends the
  * parabola through the last three nodes goes on. */
 
-/* Weights of four nodes in a row. */
+/* Weights of four nodes in a row; the position is between nodes `low` and low + 1 of them. */
 struct taps {
-    int first;
+    int first, low;
     double weight[4];
 };
 
@@ -159,10 +159,10 @@ static struct taps taps_at(double x, int count) {
     double before = t * (-1 + t * (2 - t)) / 2, here = 1 + t * t * (3 * t - 5) / 2,
            next = t * (1 + t * (4 - 3 * t)) / 2, after = t * t * (t - 1) / 2;
     if (i == 0)
-        return (struct taps){0, {here + 3 * before, next - 3 * before, after + before, 0}};
+        return (struct taps){0, 0, {here + 3 * before, next - 3 * before, after + before, 0}};
     if (i == count - 2)
-        return (struct taps){i - 2, {0, before + after, here - 3 * after, next + 3 * after}};
-    return (struct taps){i - 1, {before, here, next, after}};
+        return (struct taps){i - 2, 2, {0, before + after, here - 3 * after, next + 3 * after}};
+    return (struct taps){i - 1, 1, {before, here, next, after}};
 }
 
 static double row(const uint16_t *values, const struct taps *taps) {
@@ -175,6 +175,13 @@ static double plane(const uint16_t (*values)[ALBEDO_COSINES], const struct taps 
     for (int i = 0; i < 4; i++)
         sum += roughness->weight[i] * row(values[roughness->first + i], cosine);
     return sum;
+}
+
+/* A row that jumps: beside the angle of total reflection a cubic would leave the values of the nodes around it. */
+static double row_limited(const uint16_t *values, const struct taps *taps) {
+    const uint16_t *v = values + taps->first + taps->low;
+    double x = row(values, taps), low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
+    return x < low ? low : x > high ? high : x;
 }
 
 static double share(double units) {
@@ -209,8 +216,10 @@ static double block(const uint16_t (*values)[ALBEDO_ROUGHNESSES][ALBEDO_COSINES]
                     double eta) {
     struct taps c = of_cosine(cosine), r = of_roughness(roughness), k = of_index(eta);
     double sum = 0;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < 4 && eta <= 1; i++)
         sum += k.weight[i] * plane(values[k.first + i], &r, &c);
+    for (int i = 0; i < 16 && eta > 1; i++)
+        sum += k.weight[i / 4] * r.weight[i % 4] * row_limited(values[k.first + i / 4][r.first + i % 4], &c);
     return share(sum);
 }
 

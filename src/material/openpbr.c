@@ -124,6 +124,13 @@ static struct bsdf_facets *add_facets(struct layering *l, struct vec3 tangent, d
     return facets;
 }
 
+/* The share of light that facets keep from the base below them. Inside of glass the table has no node at the angle of
+ * total reflection; there, facets of little roughness reflect as a smooth boundary does. */
+static double reflected_before_base(double cosine, double roughness, double eta, double table) {
+    double smooth = fmin(fmax(16 * (0.1875 - roughness), 0), 1);
+    return eta > 1 ? table + smooth * (dielectric_fresnel(cosine, eta) - table) : table;
+}
+
 static void add_fuzz(struct layering *l) {
     const struct openpbr *v = l->values;
     if (!(v->fuzz_weight > 0) || l->inside)
@@ -276,7 +283,7 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
     }
     double opaque = v->thin_walled ? 1 : 1 - clear;
     if (opaque > 0)
-        add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
+        add_diffuse(l, vec3_scale(all, opaque * (1 - reflected_before_base(l->cosine, roughness, eta, reflected))));
 }
 
 /* Of an opaque base: relative to the surrounding medium or to the coat. A coat that is denser than the base would

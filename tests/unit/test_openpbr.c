@@ -388,6 +388,16 @@ TEST(white_layered_surfaces_send_all_light_back_or_on) {
         (void)check_furnace(&furnaces[i], 0.25, 24, 40, 11, 1);
 }
 
+/* Inside of glass the albedo of little roughness jumps at the angle of total reflection. */
+TEST(white_glass_of_little_roughness_sends_all_light_back_or_on_from_inside) {
+    for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++) {
+        for (double roughness = 0.0625; roughness < 0.2 && furnaces[i].solid; roughness += 0.0625) {
+            struct estimate e = furnace_mean(&furnaces[i], roughness, false, 100, 40, 5);
+            CHECK(e.mean > 0.995 && e.mean < 1 + 4 * e.error);
+        }
+    }
+}
+
 TEST_LONG(white_layered_surfaces_send_all_light_back_or_on_at_every_roughness) {
     for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++) {
         for (uint32_t seed = 1; seed <= 3; seed++) {
