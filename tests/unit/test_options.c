@@ -262,7 +262,12 @@ TEST(numbers_of_paths_that_mean_nothing_are_refused) {
     refused("--spp 0 s.lua", "--spp needs a whole number from 1 to 16777216, not '0'");
     refused("--noise 0 s.lua", "--noise needs a number from 1e-06 to 10, not '0'");
     refused("--noise nan s.lua", "--noise needs a number from 1e-06 to 10, not 'nan'");
+    refused("--noise inf s.lua", "--noise needs a number from 1e-06 to 10, not 'inf'");
+    refused("--spp 1000000000 --time-limit 2 s.lua", "--spp needs a whole number from 1 to 16777216, not '1000000000'");
+    refused("--time-limit nan s.lua", "--time-limit needs a number from 0.001 to 1e+09, not 'nan'");
     refused("--max-depth -1 s.lua", "--max-depth needs a whole number from 0 to 1000000, not '-1'");
+    refused("--max-depth 1000000000 s.lua", "--max-depth needs a whole number from 0 to 1000000, not '1000000000'");
+    refused("--seed -1 s.lua", "--seed needs a whole number from 0 to 18446744073709551615, not '-1'");
     refused("--clamp -1 s.lua", "--clamp needs a number of at least 0, not '-1'");
 }
 

@@ -3,6 +3,7 @@
  * sequence of low discrepancy: few pixels with many samples have less error than many with few. */
 #include "shape/planar.h"
 #include "tests/harness.h"
+#include "tests/unit/mesh_makers.h"
 #include "tests/unit/path_estimate.h"
 
 #include <math.h>
@@ -79,6 +80,38 @@ TEST_LONG(closed_scenes_show_the_sum_of_their_bounces) {
         for (int depth = 0; depth <= 5 && ks == 0; depth++)
             check_cut(kd, depth, (struct effort){16, 512, 3});
     }
+}
+
+/* Rooms whose own light is sampled by the solid angle of their bound, or of their triangles. */
+static void check_box_room(bool mesh, struct effort effort) {
+    static const uint32_t faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
+    struct stage s;
+    stage_begin(&s, 1);
+    struct node *room = stage_cube(&s, s.root, glowing(&s, 1, 0.5, 0));
+    stage_move(&s, room, -0.5, -0.5, -0.5);
+    stage_scale(&s, room, 8, 8, 8);
+    s.camera = (struct camera){{0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 60};
+    struct maker maker = {0};
+    for (int i = 0; i < 8; i++)
+        maker_vertex(&maker, i & 1, i >> 1 & 1, i >> 2);
+    for (int i = 0; i < 6; i++)
+        maker_face(&maker, faces[i], 4);
+    struct mesh_input input = maker_input(&maker);
+    if (mesh)
+        room->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s.assets, &input, &s.error)};
+    maker_free(&maker);
+    estimate_check_mean(mesh ? "closed room of triangles" : "closed room, a box", 2, &s, &effort, 1000);
+    stage_end(&s);
+}
+
+TEST(closed_rooms_of_a_box_and_of_triangles_show_the_sum_of_their_bounces) {
+    check_box_room(false, (struct effort){16, 128, 1});
+    check_box_room(true, (struct effort){16, 128, 1});
+}
+TEST_LONG(closed_rooms_of_a_box_and_of_triangles_show_the_sum_of_their_bounces_for_every_seed) {
+    check_box_room(false, (struct effort){16, 1024, 3});
+    check_box_room(true, (struct effort){16, 1024, 3});
 }
 
 /* Without roughness the remaining light is uniform, as always in a sphere. E / pi is I cos / d^2 of a light of
