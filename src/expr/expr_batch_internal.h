@@ -6,7 +6,7 @@
 #include "expr/expr_program.h"
 
 /* rows: EXPR_BATCH values for each register, then three spare rows. The first `width` values of each row are
- * computed; width is a multiple of 16. */
+ * computed; width is a multiple of 4, for AVX-512 of 8. */
 void expr_run_base(const struct expr_program *program, uint32_t width, double *rows);
 void expr_run_avx2(const struct expr_program *program, uint32_t width, double *rows);
 void expr_run_avx512(const struct expr_program *program, uint32_t width, double *rows);

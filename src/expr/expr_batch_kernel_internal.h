@@ -362,7 +362,11 @@ run_rows(const struct expr_program *program, const struct expr_instruction *in, 
 #define LINKED_LESS_EQUAL(a, b) TRUTH_OF(LESS_EQUAL(a, b))
 #define LINKED_SELECT(a, b, c) PICK(MASK_OF(a), b, c)
 
-/* Sixteen points; and eight vectors, which AVX2 has registers for. */
+/* One vector, for a few points; sixteen points; and eight vectors, which AVX2 has registers for. */
+#define VECTORS 1
+#define EACH(X, ...) X(0, __VA_ARGS__)
+#define RUN_LINKED run_one
+#include "expr/expr_linked_kernel_internal.h"
 #ifdef __AVX512F__
 #define VECTORS 2
 #define EACH(X, ...) X(0, __VA_ARGS__) X(1, __VA_ARGS__)
@@ -385,8 +389,10 @@ void KERNEL(run)(const struct expr_program *program, uint32_t width, double *row
     uint32_t at = 0;
     for (; at + 8 * WIDTH <= width; at += 8 * WIDTH)
         run_many(program, rows + at);
-    for (; at < width; at += 16)
+    for (; at + 16 <= width; at += 16)
         run_few(program, rows + at);
+    for (; at < width; at += WIDTH)
+        run_one(program, rows + at);
 }
 
 #else

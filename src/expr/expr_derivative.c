@@ -368,7 +368,7 @@ static void noise_slopes(const struct expr_interval box[3], struct expr_interval
         out[0] = out[1] = out[2] = any_slope;
     if (!all_finite || !is_small)
         return;
-    noise_perlin_gradient(middle[0], middle[1], middle[2], gradient);
+    (void)noise_perlin_with_gradient(middle[0], middle[1], middle[2], gradient);
     for (int k = 0; k < 3; k++) {
         double change =
             NOISE_SECOND_MAX * radius[k] + NOISE_MIXED_MAX * (radius[(k + 1) % 3] + radius[(k + 2) % 3]) + 1e-9;

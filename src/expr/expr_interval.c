@@ -173,10 +173,11 @@ static struct expr_interval wave(struct expr_interval a, function_of_one *f, dou
     bool may_be_nan = a.may_be_nan || isinf(a.low) || isinf(a.high);
     if (!(a.high - a.low < 2 * PI) || fabs(a.low) > 1e6 || fabs(a.high) > 1e6)
         return (struct expr_interval){-1, 1, may_be_nan};
+    bool to_bottom = contains_angle(a, top + PI), to_top = contains_angle(a, top);
+    if (to_bottom && to_top)
+        return (struct expr_interval){-1, 1, may_be_nan};
     double p = f(a.low), q = f(a.high);
-    return within(widened(contains_angle(a, top + PI) ? -1 : smaller(p, q), contains_angle(a, top) ? 1 : larger(p, q),
-                          may_be_nan),
-                  -1, 1);
+    return within(widened(to_bottom ? -1 : smaller(p, q), to_top ? 1 : larger(p, q), may_be_nan), -1, 1);
 }
 
 static struct expr_interval tangent(struct expr_interval a) {
@@ -247,13 +248,11 @@ static struct expr_interval noise(const struct expr_interval box[3]) {
     double m[3], r[3], gradient[3];
     if (!middle_of(box, m, r) || r[0] + r[1] + r[2] > 1)
         return all;
-    noise_perlin_gradient(m[0], m[1], m[2], gradient);
-    double change = 1e-14;
+    double value = noise_perlin_with_gradient(m[0], m[1], m[2], gradient), change = 1e-14;
     for (int k = 0; k < 3; k++) {
         double others = r[(k + 1) % 3] + r[(k + 2) % 3];
         change += (fabs(gradient[k]) + (NOISE_SECOND_MAX * r[k] + NOISE_MIXED_MAX * others) / 2) * r[k];
     }
-    double value = noise_perlin(m[0], m[1], m[2], 0);
     return within((struct expr_interval){value - change, value + change, false}, all.low, all.high);
 }
 

@@ -560,7 +560,8 @@ void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          void *rows) {
     static void (*const run[])(const struct expr_program *, uint32_t, double *) = {
         [CPU_ISA_BASE] = expr_run_base, [CPU_ISA_AVX2] = expr_run_avx2, [CPU_ISA_AVX512] = expr_run_avx512};
-    uint32_t width = (count + 15) & ~15U;
+    static const uint32_t steps[] = {[CPU_ISA_BASE] = 4, [CPU_ISA_AVX2] = 4, [CPU_ISA_AVX512] = 8};
+    const uint32_t step = steps[cpu_isa()], width = (count + step - 1) & ~(step - 1);
     double *values = rows;
     for (int i = 0; i < program->input_count; i++) {
         double *row = values + (size_t)(program->inputs[i].value - program->constant_count) * EXPR_BATCH;

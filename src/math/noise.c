@@ -114,6 +114,10 @@ double noise_perlin(double x, double y, double z, int interpolation) {
     return noise_mix(w, noise_mix(v, near_low, near_high), noise_mix(v, far_low, far_high));
 }
 
+static inline double fade_slope(double t) {
+    return 30 * t * t * ((t - 1) * (t - 1));
+}
+
 /* The sum over the corners of weight * ramp, by the product rule. */
 void noise_perlin_gradient(double x, double y, double z, double gradient[3]) {
     double p[3] = {x, y, z}, weights[2][3], slope[3];
@@ -125,7 +129,7 @@ void noise_perlin_gradient(double x, double y, double z, double gradient[3]) {
         p[k] = cell_of(p[k], &cell[k]);
         weights[1][k] = noise_fade(p[k]);
         weights[0][k] = 1 - weights[1][k];
-        slope[k] = 30 * p[k] * p[k] * ((p[k] - 1) * (p[k] - 1));
+        slope[k] = fade_slope(p[k]);
     }
     for (unsigned corner = 0; corner < 8; corner++) {
         unsigned far[3] = {corner & 1, corner >> 1 & 1, corner >> 2};
@@ -138,6 +142,51 @@ void noise_perlin_gradient(double x, double y, double z, double gradient[3]) {
             gradient[k] += others * (w[k] * gradients[h & 15][k] + (far[k] ? slope[k] : -slope[k]) * height);
         }
     }
+}
+
+/* A number and its gradient. */
+struct blend {
+    double value, slopes[3];
+};
+
+static inline struct blend blend_ramp(unsigned h, double x, double y, double z) {
+    const double *g = gradients[h & 15];
+    return (struct blend){ramp(h, x, y, z), {g[0], g[1], g[2]}};
+}
+
+/* slope: of the weight, along the axis. */
+static inline struct blend blend_mix(int axis, double weight, double slope, struct blend a, struct blend b) {
+    struct blend out = {noise_mix(weight, a.value, b.value), {0, 0, 0}};
+    for (int k = 0; k < 3; k++)
+        out.slopes[k] = noise_mix(weight, a.slopes[k], b.slopes[k]);
+    out.slopes[axis] += slope * (b.value - a.value);
+    return out;
+}
+
+/* noise_perlin with the gradient of each blend. */
+double noise_perlin_with_gradient(double x, double y, double z, double gradient[3]) {
+    unsigned i, j, k;
+    gradient[0] = gradient[1] = gradient[2] = 0;
+    if (!isfinite(x) || !isfinite(y) || !isfinite(z))
+        return 0;
+    x = cell_of(x, &i);
+    y = cell_of(y, &j);
+    z = cell_of(z, &k);
+    double u = noise_fade(x), v = noise_fade(y), w = noise_fade(z), du = fade_slope(x), dv = fade_slope(y);
+    unsigned a = hash(i) + j, aa = hash(a) + k, ab = hash(a + 1) + k;
+    unsigned b = hash(i + 1) + j, ba = hash(b) + k, bb = hash(b + 1) + k;
+    struct blend low[2], high[2], sides[2];
+    for (unsigned far = 0; far < 2; far++) {
+        double d = z - far;
+        low[far] = blend_mix(0, u, du, blend_ramp(hash(aa + far), x, y, d), blend_ramp(hash(ba + far), x - 1, y, d));
+        high[far] =
+            blend_mix(0, u, du, blend_ramp(hash(ab + far), x, y - 1, d), blend_ramp(hash(bb + far), x - 1, y - 1, d));
+        sides[far] = blend_mix(1, v, dv, low[far], high[far]);
+    }
+    struct blend all = blend_mix(2, w, fade_slope(z), sides[0], sides[1]);
+    for (int axis = 0; axis < 3; axis++)
+        gradient[axis] = all.slopes[axis];
+    return all.value;
 }
 
 /* Rounding may exceed [0, 1] by a last bit, and NaN is outside. */

@@ -605,6 +605,9 @@ TEST(noise_and_its_derivatives_are_within_their_bounds) {
         noise_perlin_gradient(p[0], p[1], p[2], gradient);
         for (int k = 0; k < 3; k++)
             steepest = fmax(steepest, fabs(gradient[k]));
+        CHECK(noise_perlin_with_gradient(p[0], p[1], p[2], moved) == noise_perlin(p[0], p[1], p[2], 0));
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(moved[k], gradient[k], 1e-13);
         noise_perlin_gradient(p[0] + 1e-4, p[1], p[2], moved);
         CHECK(fabs(moved[0] - gradient[0]) <= NOISE_SECOND_MAX * 1.0001e-4);
         CHECK(fabs(moved[1] - gradient[1]) <= NOISE_MIXED_MAX * 1.0001e-4);
