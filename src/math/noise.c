@@ -38,9 +38,7 @@ static const double pi = 0x1.921fb54442d18p+1;
     X(222) X(114) X(67) X(29) X(24) X(72) X(243) X(141) X(128) X(195) X(78) X(66) X(215) X(61) X(156) X(180)
 /* clang-format on */
 #define BYTE(n) n,
-#define WIDE(n) n,
-const uint8_t noise_permutation_bytes[257] = {PERMUTATION(BYTE) 151};
-const uint64_t noise_permutation[256] = {PERMUTATION(WIDE)};
+const uint8_t noise_permutation_bytes[264] = {PERMUTATION(BYTE) 151, 160, 137, 91, 90, 15, 131, 13};
 
 /* The cell modulo 256 and the place in it. */
 static inline double cell_of(double x, unsigned *cell) {
@@ -72,7 +70,10 @@ static const double gradients[16][3] = {
     (((uint64_t)(there) >> ((n)&15) & 1) * 0x3ff | ((uint64_t)(negative) >> ((n)&15) & 1) * 0x800)
 #define WORD(n)                                                                                                        \
     COORDINATE(n, 0x50ff, 0x40aa) << 52 | COORDINATE(n, 0xff0f, 0xaa0c) << 40 | COORDINATE(n, 0xaff0, 0x8cc0) << 28,
-const uint64_t noise_gradient_words[256] = {PERMUTATION(WORD)};
+#define HALF_WORD(n)                                                                                                   \
+    (uint32_t)(COORDINATE(n, 0x50ff, 0x40aa) << 20 | COORDINATE(n, 0xff0f, 0xaa0c) << 8 |                              \
+               COORDINATE(n, 0xaff0, 0x8cc0) >> 4),
+const uint32_t noise_gradient_words[257] = {PERMUTATION(HALF_WORD) HALF_WORD(151)};
 const uint64_t noise_directions[16] = {WORD(0) WORD(1) WORD(2) WORD(3) WORD(4) WORD(5) WORD(6) WORD(7) WORD(8) WORD(9)
                                            WORD(10) WORD(11) WORD(12) WORD(13) WORD(14) WORD(15)};
 

@@ -8,12 +8,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The published permutation; and of each of its numbers the gradient: 12 bits for each coordinate from the top, which
- * are the upper bits of the coordinate as a double. */
-extern const uint64_t noise_permutation[256], noise_gradient_words[256];
-/* The permutation as bytes; the first follows the last. */
-extern const uint8_t noise_permutation_bytes[257];
-/* The 16 gradients themselves, in the form of the words. */
+/* The published permutation; the first numbers follow the last, so that 8 bytes may be read at each. */
+extern const uint8_t noise_permutation_bytes[264];
+/* Of each of its numbers the gradient: from the top 12 bits for x, 12 for y and 8 for z, which are the upper bits of
+ * the coordinate as a double, of z divided by NOISE_Z_SCALE. The first follows the last. */
+extern const uint32_t noise_gradient_words[257];
+#define NOISE_Z_SCALE 0x1p15
+/* The 16 gradients: 12 bits for each coordinate from the top. */
 extern const uint64_t noise_directions[16];
 
 static inline double noise_fade(double t) {
@@ -24,9 +25,22 @@ static inline double noise_mix(double weight, double a, double b) {
     return a + weight * (b - a);
 }
 
-static inline double noise_ramp_lane(uint64_t at, double x, double y, double z) {
-    const uint64_t upper = (uint64_t)0xfff << 52, word = noise_gradient_words[at & 255];
-    return from_bits(word & upper) * x + from_bits(word << 12 & upper) * y + from_bits(word << 24 & upper) * z;
+/* Eight bytes of the tables from an entry on, little-endian: one lookup gives both neighbours. */
+typedef uint64_t __attribute__((aligned(1), may_alias)) noise_bytes;
+typedef uint64_t __attribute__((aligned(4), may_alias)) noise_words;
+
+static inline uint64_t noise_hashes_lane(uint64_t at) {
+    return *(const noise_bytes *)(const void *)(noise_permutation_bytes + (at & 255));
+}
+
+static inline uint64_t noise_gradients_lane(uint64_t at) {
+    return *(const noise_words *)(const void *)(noise_gradient_words + (at & 255));
+}
+
+/* The gradient in the upper half of the word; z is multiplied by NOISE_Z_SCALE. All products are exact. */
+static inline double noise_ramp_lane(uint64_t word, double x, double y, double z) {
+    const uint64_t upper = (uint64_t)0xfff << 52, top = (uint64_t)0xff << 56;
+    return from_bits(word & upper) * x + from_bits(word << 12 & upper) * y + from_bits(word << 24 & top) * z;
 }
 
 /* Coordinates that noise_perlin_lane may have. */
@@ -37,20 +51,22 @@ static inline bool noise_fits(double x, double y, double z) {
 /* The bits of noise_perlin(x, y, z, 0). */
 static inline double noise_perlin_lane(double x, double y, double z) {
     const double to_integer = 0x1.8p52; /* the sum has the integer in its lower bits */
-    const uint64_t *hash = noise_permutation;
     double fx = floor(x) + to_integer, fy = floor(y) + to_integer, fz = floor(z) + to_integer;
     uint64_t i = to_bits(fx), j = to_bits(fy), k = to_bits(fz);
     x -= fx - to_integer;
     y -= fy - to_integer;
     z -= fz - to_integer;
     double u = noise_fade(x), v = noise_fade(y), w = noise_fade(z);
-    uint64_t a = hash[i & 255] + j, aa = hash[a & 255] + k, ab = hash[(a + 1) & 255] + k;
-    uint64_t b = hash[(i + 1) & 255] + j, ba = hash[b & 255] + k, bb = hash[(b + 1) & 255] + k;
-    double near_low = noise_mix(u, noise_ramp_lane(aa, x, y, z), noise_ramp_lane(ba, x - 1, y, z));
-    double near_high = noise_mix(u, noise_ramp_lane(ab, x, y - 1, z), noise_ramp_lane(bb, x - 1, y - 1, z));
-    double far_low = noise_mix(u, noise_ramp_lane(aa + 1, x, y, z - 1), noise_ramp_lane(ba + 1, x - 1, y, z - 1));
-    double far_high =
-        noise_mix(u, noise_ramp_lane(ab + 1, x, y - 1, z - 1), noise_ramp_lane(bb + 1, x - 1, y - 1, z - 1));
+    double near = z * NOISE_Z_SCALE, far = (z - 1) * NOISE_Z_SCALE;
+    uint64_t first = noise_hashes_lane(i);
+    uint64_t a = noise_hashes_lane((first & 255) + j), b = noise_hashes_lane((first >> 8) + j);
+    uint64_t aa = noise_gradients_lane((a & 255) + k), ab = noise_gradients_lane((a >> 8) + k);
+    uint64_t ba = noise_gradients_lane((b & 255) + k), bb = noise_gradients_lane((b >> 8) + k);
+    double near_low = noise_mix(u, noise_ramp_lane(aa << 32, x, y, near), noise_ramp_lane(ba << 32, x - 1, y, near));
+    double near_high =
+        noise_mix(u, noise_ramp_lane(ab << 32, x, y - 1, near), noise_ramp_lane(bb << 32, x - 1, y - 1, near));
+    double far_low = noise_mix(u, noise_ramp_lane(aa, x, y, far), noise_ramp_lane(ba, x - 1, y, far));
+    double far_high = noise_mix(u, noise_ramp_lane(ab, x, y - 1, far), noise_ramp_lane(bb, x - 1, y - 1, far));
     return noise_mix(w, noise_mix(v, near_low, near_high), noise_mix(v, far_low, far_high));
 }
 
