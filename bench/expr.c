@@ -269,6 +269,8 @@ static void measure_prospero(const char *name) {
 int main(int argc, char **argv) {
     static struct sample s;
     rows = mem_alloc_aligned(64, (size_t)1 << 20);
+    if (argc > 2 && !cpu_select_isa(argv[2]))
+        return 2;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < POINTS; i++)
             points[k][i] = 4 * random_unit(random_combine((uint64_t)k, (uint64_t)i)) - 2;
