@@ -187,9 +187,8 @@ TEST(loops_of_many_steps_are_recorded_as_lua_computes_them) {
     runs("fn(function(p) return gr.loop(200, p.x, function(i, a)"
          " local s, b = gr.loop(300, 1.5, a, function(k, s, b) return s - 0.5, b + math.sin(b * k) / i end)"
          " return b end) end)");
-    runs(
-        "fn(function(p) return (gr.loop(150, vec(0), p, function(i, s, q) return s + q / i, q:cross{1, 0, i} / 9 end))"
-        " end)");
+    runs("fn(function(p) return (gr.loop(150, vec(0), p, function(i, s, q) return s + q / i, q:cross{1, 0, i} / 9 end))"
+         " end)");
     /* the number of a step as a plain number: recorded one by one */
     runs("local t = {} for i = 1, 100 do t[i] = sin(i) end"
          " fn(function(p) return gr.loop(100, p.x, function(i, s) return s * 0.9 + t[i] + (p.y + s) * p.z / i end) "
@@ -393,6 +392,28 @@ TEST(marble_written_in_lua_is_the_picture_of_the_built_in_marble) {
     check_equal("kd = gr.fn(" LUA_MARBLE ", 1)", "kd = gr.marble_texture(2, 3, 4)", "");
     check_equal("kd = {0.5, 0.5, 0.5}, bump = gr.bump(gr.multiply_texture(gr.fn(" LUA_MARBLE ", 1), 1), 0.1)",
                 "kd = {0.5, 0.5, 0.5}, bump = gr.bump(gr.marble_texture(2, 3, 4), 0.1)", "");
+}
+
+/* The ball as a sum of 400 terms, with an end that no point of the ball reaches, and by its formula. */
+TEST(an_implicit_solid_of_a_loop_is_that_of_its_formula) {
+    static const char text[] = "local function square(p) return p.x * p.x + p.y * p.y + p.z * p.z end\n"
+                               "local function sum(p) local _, s = gr.loop(400, 1, 0.0, function(i, _, s)\n"
+                               " if s > 50 then return 0, s end return 1, s + square(p) / 400 end) return s end\n"
+                               "for name, f in pairs{a = sum, b = square} do\n"
+                               " local ball = gr.implicit{f = function(p) return f(p) - 1 end, radius = 1.25,\n"
+                               " material = gr.material{kd = {0.8, 0.6, 0.3}}}\n"
+                               " gr.render{node = ball, file = name .. '.png', width = 40, height = 30, eye = {2, 1.4, "
+                               "1.6}, target = {0, 0, 0},\n"
+                               " fov = 45, lights = {gr.light{position = {5, 10, 6}, colour = {1, 1, 1}}}} end\n";
+    struct test_result result = test_gray_scene(text, "-q -ss 1 scene.lua", NULL);
+    size_t size_a = 0, size_b = 0;
+    CHECK_EQ_INT(result.status, 0);
+    char *a = test_read_file(test_path("a.png"), &size_a), *b = test_read_file(test_path("b.png"), &size_b);
+    CHECK(a && b && size_a == size_b && memcmp(a, b, size_a) == 0);
+    free(a);
+    free(b);
+    free(result.out);
+    free(result.err);
 }
 
 TEST(every_input_of_a_material_takes_a_function) {
