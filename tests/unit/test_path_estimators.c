@@ -189,7 +189,7 @@ static void turn_camera(struct stage *s, size_t i) {
 enum { TARGETS = 5, DEPTH = 3 };
 
 /* How much larger the effort for each target is than that for the sheet, for equal errors. */
-static const int target_effort[TARGETS] = {2, 2, 48, 1, 2};
+static const int target_effort[TARGETS] = {2, 2, 48, 1, 3};
 
 static struct effort effort_for(size_t target, struct effort effort) {
     effort.samples *= target_effort[target];
