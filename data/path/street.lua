@@ -1,9 +1,9 @@
 -- TITLE: A street with a thousand lamps
 -- OPTIONS: --spp 32
--- All lamps illuminate the street: lanterns on strings between the houses and under the eaves, lit windows, candles on
--- the kerbs, a clock. The light sampler finds the important lamps for each point by a hierarchy with
--- powers, bounds and cones (Conty and Kulla 2018).
--- Even the farthest lantern is three pixels wide, because the brightness of a smaller one would depend on its position.
+-- All lamps illuminate the street: lanterns on strings between the houses, along the houses and on the kerbs, lit
+-- windows, a clock. The light sampler finds the important lamps for each point by a hierarchy with powers, bounds and
+-- cones (Conty and Kulla 2018).
+-- Even the farthest lantern is wider than two pixels, because the brightness of a smaller one would depend on its position.
 local random = require 'random'
 local dice = random.new(11)
 local street = gr.node('street')
