@@ -1,5 +1,5 @@
 -- TITLE: The dining room, path traced
--- OPTIONS: --spp 48
+-- OPTIONS: --spp 56
 -- The room of 14demo.lua with materials that are made for paths: evening light comes in through the window, the bulb
 -- of the lamp glows, and everything else is lit by the walls, the table and the floor.
 local here = debug.getinfo(1, 'S').source:match('^@(.*/)') or './'
@@ -12,7 +12,7 @@ local function materials(m)
     local function glossy(r, g, b, roughness)
         return gr.openpbr_material { base_color = { r, g, b }, specular_roughness = roughness }
     end
-    m.glow = gr.material { kd = { 0, 0, 0 }, emission = { 60, 46, 28 } }
+    m.glow = gr.material { kd = { 0, 0, 0 }, emission = { 36, 28, 17 } }
     m.gold = gr.metal_material { metal = 'gold', roughness = .35 }
     m.brass = gr.metal_material { metal = 'brass', roughness = .25 }
     m.mirror = gr.metal_material { metal = 'silver', roughness = 0 }
@@ -40,5 +40,5 @@ gr.render {
     node = root, file = 'dining.png', width = 400, height = 300, integrator = 'path', spp = 256, denoise = true,
     eye = place(eye), target = place { eye[1] + .49, eye[2] - .155, eye[3] - 1 }, fov = 43,
     background = gr.sky_cross { image = '../../textures/sky_dusk.png' }, lights = { panes },
-    tone = 'filmic', exposure = 2,
+    tone = 'filmic', exposure = 2, filter = 'gaussian',
 }
