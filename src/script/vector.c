@@ -353,6 +353,10 @@ static void make_top_vector(lua_State *L) {
     lua_replace(L, top);
 }
 
+static bool is_integer_at(lua_State *L, int index) {
+    return is_symbol(L, index) ? number_at(L, index).type == NUMBER_INTEGER : lua_isinteger(L, index);
+}
+
 /* where(x, a, b): a where x > 0, else b; an integer only where both are. */
 static int where(lua_State *L) {
     lua_settop(L, 3);
@@ -362,7 +366,10 @@ static int where(lua_State *L) {
     }
     bool positive = luaL_checknumber(L, 1) > 0;
     lua_pushvalue(L, positive ? 2 : 3);
-    if (lua_type(L, -1) == LUA_TNUMBER && !(lua_isinteger(L, 2) && lua_isinteger(L, 3)))
+    bool is_float = !is_integer_at(L, 2) || !is_integer_at(L, 3);
+    if (is_float && is_symbol(L, -1))
+        push_symbol(L, (struct number){NUMBER_FLOAT, number_float(recorder_of(L), number_at(L, -1)), EXPR_NONE});
+    else if (is_float && lua_type(L, -1) == LUA_TNUMBER)
         lua_pushnumber(L, lua_tonumber(L, -1));
     make_top_vector(L);
     return 1;

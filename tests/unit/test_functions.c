@@ -262,11 +262,23 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
 }
 
+TEST(a_choice_by_a_constant_is_a_float_where_lua_has_one) {
+    runs("fn(function(p) return -gr.where(0.5, floor(-2 - p.y), 0.0) end) "
+         "fn(function(p) return -math.abs(gr.where(0, p.x, 1 - floor(p.y))) end) "
+         "fn(function(p) return 2 // math.min(gr.where(1, floor(p.z), p.x), 1) end) "
+         "fn(function(p) return -gr.where(1, 0 // 1, floor(p.y)) end) "
+         "fn(function(p) return 7 // gr.where(-1, p.x, 3) end)");
+}
+
 /* A function of random statements: locals, branches, loops, tables, closures. What is rounded is limited before:
  * integers beyond 64 bits are a limit of recordings (docs/functions.md). Zeros are floats: Lua computes x - 0 as x + 0,
- * which is another zero for x = -0. */
+ * which is another zero for x = -0, also where it has folded the 0 of numbers. */
 static const char generator[] =
     "local function pick(...) return (select(math.random(select('#', ...)), ...)) end\n"
+    "local function is_zero(text)\n"
+    "  local good, number = pcall(load('return ' .. (text:find('%a') and '1' or text)))\n"
+    "  return good and number == 0\n"
+    "end\n"
     "local function generate()\n"
     "  local names, paths = {'p.x', 'p.y', 'p.z', 's.u', 's.normal.x', 'p[2]'}, 1\n"
     "  local lines, count = {}, 0\n"
@@ -277,7 +289,8 @@ static const char generator[] =
     "        string.format('%.3f', math.random() * 4 - 2))\n"
     "    end\n"
     "    local a, b = value(depth - 1), value(depth - 1)\n"
-    "    return pick('(' .. a .. ' + ' .. b .. ')', '(' .. a .. ' - ' .. b .. ')', '(' .. a .. ' * ' .. b .. ')',\n"
+    "    return pick('(' .. a .. ' + ' .. b .. ')', '(' .. a .. (is_zero(b) and ' + ' or ' - ') .. b .. ')', '(' .. a "
+    ".. ' * ' .. b .. ')',\n"
     "      '(' .. a .. ' / ' .. b .. ')', '(' .. a .. ' % ' .. b .. ')', '(' .. a .. ' // ' .. b .. ')',\n"
     "      '(- ' .. a .. ')', 'whole(' .. a .. ')', 'math.min(' .. a .. ', ' .. b .. ')',\n"
     "      'math.max(' .. a .. ', ' .. b .. ')', 'math.abs(' .. a .. ')', 'math.sin(' .. a .. ')',\n"
