@@ -137,10 +137,10 @@ static void run_children(struct supervisor *supervisor) {
         talk_to_child(supervisor);
         if (supervisor->waits)
             return;
+        channel_close(&supervisor->channel); /* a child that waits for an answer ends */
         int how = supervisor_reap_child(supervisor);
         there = false;
         supervisor->child = 0;
-        channel_close(&supervisor->channel);
         supervisor_judge_end(supervisor, how);
     }
 }
