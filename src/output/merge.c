@@ -7,6 +7,7 @@
 #include "output/output_session.h"
 
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -166,26 +167,19 @@ static int merge_frames(const struct options *options, struct output_session *ou
     return status;
 }
 
-int merge_run(const struct options *options) {
-    struct control control = {0};
-    struct output_session output;
+static int merge_parts(const struct options *options, struct output_session *output) {
     struct error error = {0};
     size_t count = (size_t)options->script_count, first = 0;
     int status = 0;
-    (void)signal(SIGPIPE, SIG_IGN);
-    (void)signal(SIGXFSZ, SIG_IGN);
-    output_init(&output, options, &control);
-    if (are_frames(options))
-        return merge_frames(options, &output);
     struct part *parts = mem_alloc_zero(count, sizeof *parts);
     if (!parts) {
         (void)error_no_memory(&error, "the parts");
-        status = report_error(&output, &error, status);
+        status = report_error(output, &error, status);
         count = 0;
     }
     for (size_t i = 0; i < count; i++) {
         if (!read_part(options->scripts[i], &parts[i], &error))
-            status = report_error(&output, &error, status);
+            status = report_error(output, &error, status);
     }
     /* A part that cannot be read may belong to any picture: no picture is merged without it. */
     if (status != 0)
@@ -195,11 +189,27 @@ int merge_run(const struct options *options) {
     for (size_t end; first < count; first = end) {
         for (end = first + 1; end < count && parts[end].picture.number == parts[first].picture.number;)
             end++;
-        if (!merge_picture(&output, parts + first, end - first, &error))
-            status = report_error(&output, &error, status);
+        if (!merge_picture(output, parts + first, end - first, &error))
+            status = report_error(output, &error, status);
     }
     mem_free(parts);
-    if (!output_finish(&output, status == 0, &error))
-        status = report_error(&output, &error, status);
+    if (!output_finish(output, status == 0, &error))
+        status = report_error(output, &error, status);
+    return status;
+}
+
+int merge_run(const struct options *options) {
+    struct control control = {0};
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)signal(SIGXFSZ, SIG_IGN);
+    /* Not on the stack, which may be small. */
+    struct output_session *output = mem_alloc_zero(1, sizeof *output);
+    if (!output) {
+        (void)fputs("gray: out of memory\n", stderr);
+        return ERROR_MACHINE;
+    }
+    output_init(output, options, &control);
+    int status = are_frames(options) ? merge_frames(options, output) : merge_parts(options, output);
+    mem_free(output);
     return status;
 }

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/mem.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
 #include "image/exr.h"
@@ -133,21 +134,22 @@ static void describe_tiles(const struct output_session *output, struct picture *
     const struct picture_request *request = &picture->request;
     const struct options *options = output->options;
     struct tile_picture *tiles = &picture->tiles;
-    *tiles = (struct tile_picture){.number = output->pictures,
-                                   .key = {GRAY_VERSION, options_digest(options), request->files},
-                                   .full_width = request->full_width,
-                                   .full_height = request->full_height,
-                                   .x0 = request->x0,
-                                   .y0 = request->y0,
-                                   .width = request->width,
-                                   .height = request->height,
-                                   .shown = request->shown,
-                                   .tone = picture_tone(request),
-                                   .deep = request->deep != 0,
-                                   .finish = picture_finish(request),
-                                   .record = request->record,
-                                   .shard = options->shards ? options->shard : 1,
-                                   .shards = options->shards ? options->shards : 1};
+    memset(tiles, 0, sizeof *tiles); /* no temporary of this size on the stack */
+    tiles->number = output->pictures;
+    tiles->key = (struct tile_key){GRAY_VERSION, options_digest(options), request->files};
+    tiles->full_width = request->full_width;
+    tiles->full_height = request->full_height;
+    tiles->x0 = request->x0;
+    tiles->y0 = request->y0;
+    tiles->width = request->width;
+    tiles->height = request->height;
+    tiles->shown = request->shown;
+    tiles->tone = picture_tone(request);
+    tiles->deep = request->deep != 0;
+    tiles->finish = picture_finish(request);
+    tiles->record = request->record;
+    tiles->shard = options->shards ? options->shard : 1;
+    tiles->shards = options->shards ? options->shards : 1;
     tiles->tone.table = NULL;
     tiles->tone_table = request->tone_table;
     memcpy(tiles->name, picture->name, sizeof tiles->name);
@@ -181,16 +183,31 @@ static bool make_film(struct output_session *output, struct picture *picture, st
     return true;
 }
 
+/* A part, or NULL if it cannot be read. It is not on the stack, which may be small. */
+static struct tile_file *open_part(const char *name) {
+    struct error ignored;
+    struct tile_file *file = mem_alloc_zero(1, sizeof *file);
+    if (file && tile_file_read(name, file, &ignored))
+        return file;
+    mem_free(file);
+    return NULL;
+}
+
+static void close_part(struct tile_file *file) {
+    tile_file_close(file);
+    mem_free(file);
+}
+
 /* With --resume: whether the part exists, is finished, and belongs to this picture. */
 static bool part_is_written(const struct output_session *output, const char *name) {
-    struct tile_file file;
-    struct error ignored;
-    const struct tile_picture *want = &output->current.tiles, *have = &file.picture;
-    if (!output->options->shards || !output->options->resume || !file_is_regular(name) ||
-        !tile_file_read(name, &file, &ignored))
+    const struct tile_picture *want = &output->current.tiles;
+    bool exists = output->options->shards && output->options->resume && file_is_regular(name);
+    struct tile_file *file = exists ? open_part(name) : NULL;
+    if (!file)
         return false;
-    bool there = file.has_picture && have->whole && have->shard == want->shard && !tile_picture_difference(have, want);
-    tile_file_close(&file);
+    const struct tile_picture *have = &file->picture;
+    bool there = file->has_picture && have->whole && have->shard == want->shard && !tile_picture_difference(have, want);
+    close_part(file);
     return there;
 }
 
@@ -303,20 +320,22 @@ static bool copy_picture(struct output_session *output, const char *written, boo
 static bool copy_part(struct output_session *output, bool *already, struct error *error) {
     struct picture *picture = &output->current;
     const struct finished_picture *earlier = output->options->shards ? equal_picture(output) : NULL;
-    struct tile_picture want = picture->tiles;
-    struct tile_file file;
     struct error ignored;
     char part[NAME_LIMIT];
     uint32_t restored, twice;
-    if (!earlier || !picture_files_written(&output->files, earlier->name, part, &ignored) ||
-        !tile_file_read(part, &file, &ignored))
+    if (!earlier || !picture_files_written(&output->files, earlier->name, part, &ignored))
         return true;
-    want.number = earlier->order;
-    bool fits = file.has_picture && file.picture.whole && file.picture.shard == want.shard &&
-                !tile_picture_difference(&file.picture, &want);
+    struct tile_file *file = open_part(part);
+    if (!file)
+        return true;
+    struct tile_picture *have = &file->picture;
+    bool fits =
+        file->has_picture && have->whole && have->shard == picture->tiles.shard && have->number == earlier->order;
+    have->number = picture->tiles.number;
+    fits = fits && !tile_picture_difference(have, &picture->tiles);
     if (fits)
-        tile_file_restore(&file, &picture->film, &restored, &twice);
-    tile_file_close(&file);
+        tile_file_restore(file, &picture->film, &restored, &twice);
+    close_part(file);
     if (!fits)
         return true;
     *already = write_timed(output, picture, error);
@@ -474,11 +493,11 @@ static void write_partial(struct output_session *output) {
     if (done == 0)
         return;
     film_clear_unfinished(&picture->film);
-    struct picture_shown shown = {0};
+    struct picture_shown *shown = NULL;
     bool ok = layers_name(picture->name, "partial", name, &error) &&
-              picture_shown_make(&shown, picture, DENOISER_NONE, NULL, &error) &&
-              picture_write_view(&shown.picture, &target, FILM_FINAL, NULL, &error);
-    picture_shown_destroy(&shown);
+              (shown = picture_shown_make(picture, DENOISER_NONE, NULL, &error)) &&
+              picture_write_view(&shown->picture, &target, FILM_FINAL, NULL, &error);
+    picture_shown_destroy(shown);
     if (!ok) {
         output_report(output, LINE_ERROR, error.text);
         return;

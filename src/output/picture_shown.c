@@ -138,8 +138,8 @@ static bool make_shown(struct picture_shown *out, const struct picture *picture,
     return true;
 }
 
-bool picture_shown_make(struct picture_shown *out, const struct picture *picture, enum denoiser denoiser,
-                        struct pool *pool, struct error *error) {
+struct picture_shown *picture_shown_make(const struct picture *picture, enum denoiser denoiser, struct pool *pool,
+                                         struct error *error) {
     const struct film *film = &picture->film;
     const struct finish finish = picture_finish(&picture->request);
     struct film_rectangle part = picture->request.shown;
@@ -147,31 +147,34 @@ bool picture_shown_make(struct picture_shown *out, const struct picture *picture
         part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};
     if (!(path_film_parts(film->record) & PATH_PART_FEATURES))
         denoiser = DENOISER_NONE;
-    *out = (struct picture_shown){.picture = *picture};
+    struct picture_shown *out = mem_alloc_zero(1, sizeof *out);
+    if (!out) {
+        (void)error_no_memory(error, "a picture that is written");
+        return NULL;
+    }
+    out->picture = *picture;
     bool changes = denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
     if (!changes && is_whole(film, &part))
-        return true;
+        return out;
     if (!make_shown(out, picture, &part, denoiser, pool, error)) {
         picture_shown_destroy(out);
-        return false;
+        return NULL;
     }
     struct picture_request *request = &out->picture.request;
     request->x0 = part.x0;
     request->y0 = part.y0;
     request->width = part.x1 - part.x0;
     request->height = part.y1 - part.y0;
-    return true;
+    return out;
 }
 
 void picture_shown_destroy(struct picture_shown *shown) {
+    if (!shown)
+        return;
     mem_free(shown->pixels);
     mem_free(shown->display);
     mem_free(shown->floats);
     mem_free(shown->marked);
     mem_free(shown->layers);
-    shown->pixels = NULL;
-    shown->display = NULL;
-    shown->floats = NULL;
-    shown->marked = NULL;
-    shown->layers = NULL;
+    mem_free(shown);
 }

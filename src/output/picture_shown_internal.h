@@ -19,10 +19,11 @@ struct picture_shown {
     float (*layers)[3];
 };
 
-/* denoiser: DENOISER_NONE shows the film as it is, and so does a film without features. Errors: no memory; with
- * DENOISER_OIDN that the program is missing or has failed. After an error there is nothing to destroy. */
-bool picture_shown_make(struct picture_shown *out, const struct picture *picture, enum denoiser denoiser,
-                        struct pool *pool, struct error *error);
+/* denoiser: DENOISER_NONE shows the film as it is, and so does a film without features. NULL: an error, no memory; with
+ * DENOISER_OIDN that the program is missing or has failed. It is not on the stack, which may be small. */
+struct picture_shown *picture_shown_make(const struct picture *picture, enum denoiser denoiser, struct pool *pool,
+                                         struct error *error);
+/* shown: or NULL. */
 void picture_shown_destroy(struct picture_shown *shown);
 
 #endif

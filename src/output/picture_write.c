@@ -213,12 +213,15 @@ static bool write_shown(const struct picture_files *files, const struct picture 
 
 /* The contents of the files of a picture. *pool: the threads for writing, or NULL for this thread only; the caller
  * destroys it, also after an error. */
-static bool make_shown(const struct picture_files *files, const struct picture *picture, struct picture_shown *shown,
-                       struct pool **pool, struct error *error) {
+static struct picture_shown *make_shown(const struct picture_files *files, const struct picture *picture,
+                                        struct pool **pool, struct error *error) {
     enum denoiser denoiser = denoiser_of(files->options, picture);
     *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
-    return ((*pool || denoiser != DENOISER_GRAY) || error_no_memory(error, "a picture that is denoised")) &&
-           picture_shown_make(shown, picture, denoiser, *pool, error);
+    if (!*pool && denoiser == DENOISER_GRAY) {
+        (void)error_no_memory(error, "a picture that is denoised");
+        return NULL;
+    }
+    return picture_shown_make(picture, denoiser, *pool, error);
 }
 
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
@@ -229,31 +232,28 @@ bool picture_write_files(const struct picture_files *files, const struct picture
         return tile_file_write(&(struct file_target){.path = name, .rules = &files->part}, NULL, 0, &whole,
                                &picture->film, error);
     }
-    struct picture_shown shown;
     struct pool *pool;
-    bool ok = make_shown(files, picture, &shown, &pool, error);
-    if (ok) {
-        ok = write_shown(files, &shown.picture, name, pool, error);
-        picture_shown_destroy(&shown);
-    }
+    struct picture_shown *shown = make_shown(files, picture, &pool, error);
+    bool ok = shown && write_shown(files, &shown->picture, name, pool, error);
+    picture_shown_destroy(shown);
     pool_destroy(pool);
     return ok;
 }
 
 bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
                          struct error *error) {
-    struct picture_shown shown;
     struct pool *pool;
-    bool ok = make_shown(files, picture, &shown, &pool, error);
-    if (ok) {
-        struct tone tone = picture_tone(&shown.picture.request);
-        const struct film *film = &shown.picture.film;
-        struct rows rows = {film, FILM_FINAL, &tone, shown.picture.display,
-                            picture_finish(&shown.picture.request).dither};
+    struct picture_shown *shown = make_shown(files, picture, &pool, error);
+    if (shown) {
+        struct tone tone = picture_tone(&shown->picture.request);
+        const struct film *film = &shown->picture.film;
+        struct rows rows = {film, FILM_FINAL, &tone, shown->picture.display,
+                            picture_finish(&shown->picture.request).dither};
         for (uint32_t y = 0; y < film->height; y++)
             row(&rows, y, rgb + (size_t)3 * film->width * y);
-        picture_shown_destroy(&shown);
     }
+    bool ok = shown != NULL;
+    picture_shown_destroy(shown);
     pool_destroy(pool);
     return ok;
 }
