@@ -582,7 +582,7 @@ static struct tile_picture picture_of(const struct film *film) {
                                  .width = film->width,
                                  .height = film->height,
                                  .record = film->record,
-                                 .tone = {-1.5, TONE_FILMIC, true},
+                                 .tone = {-1.5, TONE_FILMIC, true, NULL},
                                  .deep = true,
                                  .shard = 2,
                                  .shards = 5,
