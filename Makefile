@@ -31,7 +31,7 @@ WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-q
 EXACT = -ffp-contract=off -fno-fast-math -fno-math-errno
 CFLAGS.release = -O3 -g -DNDEBUG
 CFLAGS.debug = -O0 -g -DGRAY_FAULTS
-CFLAGS.asan = -O1 -g1 -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+CFLAGS.asan = -Og -g1 -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.tsan = -O1 -g1 -DGRAY_FAULTS -fsanitize=thread
 CFLAGS.fuzz = -O1 -g -DGRAY_FAULTS -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 CFLAGS.afl = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
