@@ -12,8 +12,10 @@
 static const double pause_factor = 20;
 
 void checkpoint_init(struct checkpoint *checkpoint, const struct options *options, const struct picture_files *files) {
-    *checkpoint = (struct checkpoint){
-        .on = options->checkpoint && !options->check, .resume = options->resume, .every = options->checkpoint_every};
+    memset(checkpoint, 0, sizeof *checkpoint); /* no temporary of this size on the stack, as elsewhere */
+    checkpoint->on = options->checkpoint && !options->check;
+    checkpoint->resume = options->resume;
+    checkpoint->every = options->checkpoint_every;
     checkpoint->files = files;
 }
 
@@ -174,6 +176,6 @@ bool checkpoint_finish(struct checkpoint *checkpoint, bool all_written, struct e
         ok = checkpoint_update(checkpoint, NULL, NULL, true, &tiles, error);
     tile_file_close(&checkpoint->old);
     mem_free(checkpoint->done);
-    *checkpoint = (struct checkpoint){0};
+    memset(checkpoint, 0, sizeof *checkpoint);
     return ok;
 }

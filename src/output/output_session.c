@@ -596,7 +596,7 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         progress_end(&output->progress, PROGRESS_WRITTEN);
         output->held_report = *report;
         output->held = output->current;
-        output->current = (struct picture){0};
+        memset(&output->current, 0, sizeof output->current);
         return true;
     }
     bool ok = write_timed(output, &output->current, error);

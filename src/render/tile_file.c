@@ -531,16 +531,18 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
 }
 
 bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error) {
-    *out = (struct tile_file){.bytes = bytes};
+    memset(out, 0, sizeof *out); /* no temporary of this size on the stack */
+    out->bytes = bytes;
     if (read_file(path, bytes.size, out, error))
         return true;
     mem_free(out->done);
-    *out = (struct tile_file){0};
+    memset(out, 0, sizeof *out);
     return false;
 }
 
 bool tile_file_read(const char *path, struct tile_file *out, struct error *error) {
-    *out = (struct tile_file){.buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK)};
+    memset(out, 0, sizeof *out);
+    out->buffer = mem_alloc(RECORD_HEAD + PAYLOAD_LIMIT + RECORD_CHECK);
     bool ok = out->buffer ? file_source_open(&out->source, path, error) : error_no_memory(error, path);
     ok = ok && read_file(path, out->source.size, out, error);
     if (!ok)
@@ -553,7 +555,7 @@ void tile_file_close(struct tile_file *file) {
     file_unmap(&file->bytes);
     mem_free(file->buffer);
     mem_free(file->done);
-    *file = (struct tile_file){0};
+    memset(file, 0, sizeof *file);
 }
 
 void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice) {
