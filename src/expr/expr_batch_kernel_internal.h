@@ -296,15 +296,14 @@ static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows)
 static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in, uint32_t width,
                                double *rows) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(program, constant);
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const struct expr_loop *loop = at.loop;
     double *of_loop = rows + (size_t)loop->offset * EXPR_BATCH;
-    double *slot = of_loop + (size_t)expr_slot_of(program, constant) * EXPR_BATCH;
+    double *slot = of_loop + (size_t)at.slot * EXPR_BATCH;
     double *out = rows + (size_t)(in->out - program->constant_count) * EXPR_BATCH;
     if (operation == EXPR_LOOP)
         run_loop(loop, width, of_loop);
-    else if (!is_put)
+    else if (!at.puts)
         memcpy(out, slot, width * sizeof *slot);
     else if (in->b >= program->constant_count)
         memcpy(slot, operand(program, in->b, rows), width * sizeof *slot);

@@ -224,12 +224,11 @@ static void run_dual_loop(const struct expr_loop *loop, struct dual *values) {
 static void run_dual_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
                                     struct dual *values) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(program, constant);
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const struct expr_loop *loop = at.loop;
     struct dual *of_loop = values + program->constant_count + loop->offset;
-    struct dual *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
-    if (is_put)
+    struct dual *slot = of_loop + loop->body.constant_count + at.slot;
+    if (at.puts)
         *slot = values[in->b];
     else if (operation == EXPR_LOOP)
         run_dual_loop(loop, of_loop);
@@ -733,15 +732,14 @@ void expr_rooted_loop(const struct expr_loop *loop, int directions, struct expr_
 static void run_rooted_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
                                       int directions, struct expr_rooted *values) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(program, constant);
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const struct expr_loop *loop = at.loop;
     struct expr_rooted *of_loop = values + program->constant_count + loop->offset;
-    struct expr_rooted *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
+    struct expr_rooted *slot = of_loop + loop->body.constant_count + at.slot;
     if (operation == EXPR_LOOP)
         expr_rooted_loop(loop, directions, of_loop,
                          (struct expr_interval *)(void *)(of_loop + expr_loop_rows(loop) / 2));
-    else if (!is_put)
+    else if (!at.puts)
         values[in->out] = *slot;
     else if (in->b >= program->constant_count)
         *slot = values[in->b];

@@ -556,11 +556,10 @@ size_t expr_interval_size(const struct expr_program *program) {
 static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
                                struct expr_interval *values) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(program, constant);
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const struct expr_loop *loop = at.loop;
     struct expr_interval *of_loop = values + program->constant_count + loop->offset;
-    struct expr_interval *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
+    struct expr_interval *slot = of_loop + loop->body.constant_count + at.slot;
     if (operation == EXPR_PUT_FLOAT)
         *slot = OPERAND_F(in->b);
     else if (operation == EXPR_PUT_INTEGER)

@@ -95,10 +95,9 @@ static struct expr_flags run_singly(const struct machine *m, const struct expr_i
 /* Of a loop, box by box. The ends of its arguments are in rows, those of truth values too. low: of the result. */
 static struct expr_flags run_loop_operation(const struct machine *m, const struct expr_instruction *in, double *low) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(m->program, constant);
-    const uint32_t slot = loop->offset + expr_slot_of(m->program, constant), values = loop->body.constant_count;
+    const struct expr_loop_access at = expr_loop_access(m->program, in);
+    const struct expr_loop *loop = at.loop;
+    const uint32_t slot = loop->offset + at.slot, values = loop->body.constant_count;
     double *rows = m->rows + (size_t)slot * 2 * EXPR_BOXES;
     struct expr_flags out = {0, 0};
     if (operation == EXPR_LOOP) {
@@ -122,7 +121,7 @@ static struct expr_flags run_loop_operation(const struct machine *m, const struc
         }
         return out;
     }
-    if (!is_put) {
+    if (!at.puts) {
         memcpy(low, rows, 2 * EXPR_BOXES * sizeof *low);
         out.first = operation == EXPR_TAKE_TRUTH ? 0 : m->flags[slot].first;
         for (uint32_t box = 0; operation == EXPR_TAKE_TRUTH && box < m->width; box++) {

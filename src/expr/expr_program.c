@@ -491,12 +491,11 @@ static void run_loop(const struct expr_loop *loop, union expr_value *values) {
 static void run_loop_operation(const struct expr_program *program, const struct expr_instruction *in,
                                union expr_value *values) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(program, constant);
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const struct expr_loop *loop = at.loop;
     union expr_value *of_loop = values + program->constant_count + loop->offset;
-    union expr_value *slot = of_loop + loop->body.constant_count + expr_slot_of(program, constant);
-    if (is_put)
+    union expr_value *slot = of_loop + loop->body.constant_count + at.slot;
+    if (at.puts)
         *slot = values[in->b];
     else if (operation == EXPR_LOOP)
         run_loop(loop, of_loop);
@@ -605,21 +604,20 @@ static int describe_value(const struct expr_program *program, enum expr_operatio
 
 const struct expr_loop *expr_repeated(const struct expr_program *program, uint32_t instruction) {
     const struct expr_instruction *in = &program->code[instruction];
-    return in->operation == EXPR_LOOP ? expr_loop_of(program, in->b) : NULL;
+    return in->operation == EXPR_LOOP ? expr_loop_access(program, in).loop : NULL;
 }
 
 /* The registers that a loop names are those of its body. */
 static void describe_loop_operation(const struct expr_program *program, const struct expr_instruction *in, char *out,
                                     size_t size) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(program, constant);
-    const unsigned number = (unsigned)(loop - program->loops), slot = expr_slot_of(program, constant);
+    const struct expr_loop_access at = expr_loop_access(program, in);
+    const struct expr_loop *loop = at.loop;
+    const unsigned number = (unsigned)(loop - program->loops), slot = at.slot;
     char word[40] = "";
-    if (is_put)
+    if (at.puts)
         (void)describe_value(program, operation, 1, in->b, word, sizeof word);
-    if (is_put)
+    if (at.puts)
         (void)snprintf(out, size, "loop %u: r%u =%s", number, slot, word);
     else if (operation != EXPR_LOOP)
         (void)snprintf(out, size, "r%u = loop %u: r%u", (unsigned)(in->out - program->constant_count), number, slot);

@@ -56,13 +56,20 @@ static inline uint32_t expr_loop_rows(const struct expr_loop *loop) {
     return 2 * (loop->body.constant_count + loop->body.row_count + 3);
 }
 
-/* The loop of an instruction, whose operand is the constant `value`; and the slot. */
-static inline const struct expr_loop *expr_loop_of(const struct expr_program *program, uint16_t value) {
-    return &program->loops[program->constants[value].i >> 16];
-}
+/* What an instruction of a loop names by a constant: the loop, and the slot of its memory, after the constants of its
+ * body. An instruction that puts a value there has the constant as its operand c, others as b. */
+struct expr_loop_access {
+    bool puts;
+    const struct expr_loop *loop;
+    uint32_t slot;
+};
 
-static inline uint32_t expr_slot_of(const struct expr_program *program, uint16_t value) {
-    return (uint32_t)(program->constants[value].i & 0xffff);
+static inline struct expr_loop_access expr_loop_access(const struct expr_program *program,
+                                                       const struct expr_instruction *in) {
+    const enum expr_operation operation = (enum expr_operation)in->operation;
+    const bool puts = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
+    const int64_t named = program->constants[puts ? in->c : in->b].i;
+    return (struct expr_loop_access){puts, &program->loops[named >> 16], (uint32_t)(named & 0xffff)};
 }
 
 /* How many instructions a point needs at most, with the steps of loops. */

@@ -201,11 +201,10 @@ static void put_lane(const struct expr_rooted *from, int directions, int lane, s
 static void run_loop_operation(const struct machine *run, const struct expr_instruction *in,
                                const struct expr_lanes *from, struct expr_lanes *out) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const bool is_put = operation == EXPR_PUT_FLOAT || operation == EXPR_PUT_INTEGER || operation == EXPR_PUT_TRUTH;
-    const uint16_t constant = is_put ? in->c : in->b;
-    const struct expr_loop *loop = expr_loop_of(run->program, constant);
-    struct expr_lanes *of_loop = run->values + loop->offset, *slot = of_loop + expr_slot_of(run->program, constant);
-    if (is_put)
+    const struct expr_loop_access at = expr_loop_access(run->program, in);
+    const struct expr_loop *loop = at.loop;
+    struct expr_lanes *of_loop = run->values + loop->offset, *slot = of_loop + at.slot;
+    if (at.puts)
         *slot = *from;
     else if (operation != EXPR_LOOP)
         *out = *slot;
