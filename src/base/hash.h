@@ -83,6 +83,11 @@ static inline void digest_sum_add_numbers(struct digest_sum *sum, const double *
     }
 }
 
+static inline void digest_sum_add_digest(struct digest_sum *sum, struct digest digest) {
+    digest_sum_add(sum, digest.a);
+    digest_sum_add(sum, digest.b);
+}
+
 static inline struct digest digest_sum_end(struct digest_sum *sum) {
     digest_sum_flush(sum);
     return sum->before;

@@ -9,6 +9,7 @@
 #include "render/path_film.h"
 #include "render/pixel_trace.h"
 #include "render/settings.h"
+#include "scene/scene_digest.h"
 
 #include <assert.h>
 #include <math.h>
@@ -586,31 +587,22 @@ static void digest_add_numbers(struct digest_sum *sum, double a, double b, doubl
     digest_sum_add_numbers(sum, numbers, 3);
 }
 
-static void digest_add_vector(struct digest_sum *sum, struct vec3 v) {
-    digest_add_numbers(sum, v.x, v.y, v.z);
-}
-
-static void digest_add_digest(struct digest_sum *sum, struct digest digest) {
-    digest_sum_add(sum, digest.a);
-    digest_sum_add(sum, digest.b);
-}
-
 static void digest_add_camera(struct digest_sum *sum, const struct render_job *job) {
     const struct camera *camera = &job->camera;
     const struct camera_motion *motion = &job->settings.motion;
     const struct lens *lens = &job->settings.lens;
-    digest_add_vector(sum, camera->eye);
-    digest_add_vector(sum, camera->view);
-    digest_add_vector(sum, camera->up);
+    digest_sum_add_vector(sum, camera->eye);
+    digest_sum_add_vector(sum, camera->view);
+    digest_sum_add_vector(sum, camera->up);
     digest_add(sum, motion->moves);
-    digest_add_vector(sum, motion->eye);
-    digest_add_vector(sum, motion->view);
-    digest_add_vector(sum, motion->up);
+    digest_sum_add_vector(sum, motion->eye);
+    digest_sum_add_vector(sum, motion->view);
+    digest_sum_add_vector(sum, motion->up);
     digest_add_numbers(sum, camera->fov, job->settings.shutter.open, job->settings.shutter.close);
     digest_add(sum, lens->projection);
     digest_add_numbers(sum, lens->view_height, lens->angle, lens->aperture);
     digest_add_numbers(sum, lens->shift_x, lens->shift_y, lens->focus);
-    digest_add_vector(sum, lens->focus_point);
+    digest_sum_add_vector(sum, lens->focus_point);
     digest_add(sum, lens->blades);
     digest_add(sum, lens->stereo);
     digest_add_numbers(sum, lens->blade_angle, lens->eye_distance, lens->screen);
@@ -624,7 +616,7 @@ static void digest_add_display(struct digest_sum *sum, const struct settings *s)
     digest_add_numbers(sum, tone->exposure, finish->bloom, finish->vignette);
     digest_add(sum, tone->curve);
     if (tone->table)
-        digest_add_digest(sum, digest_bytes(tone->table, sizeof *tone->table, (struct digest){0}));
+        digest_sum_add_digest(sum, digest_bytes(tone->table, sizeof *tone->table, (struct digest){0}));
     digest_add(sum, tone->srgb | finish->gray << 1 | finish->edges << 2 | finish->fxaa << 3 | s->deep << 4);
     digest_add(sum, finish->dither);
     digest_add(sum, s->style);
@@ -661,7 +653,7 @@ static_assert(sizeof(struct settings) == 504, "render.c adds every field");
 void render_digest_add(const struct render_job *job, struct digest_sum *sum) {
     digest_add(sum, (int64_t)job->width << 32 | job->height);
     digest_add(sum, job->background_lights);
-    digest_add_vector(sum, job->ambient);
+    digest_sum_add_vector(sum, job->ambient);
     digest_add_camera(sum, job);
     digest_add_display(sum, &job->settings);
     digest_add_settings(sum, &job->settings);

@@ -37,19 +37,9 @@ static void add_number(struct digest_sum *sum, double number) {
     digest_sum_add_numbers(sum, &number, 1);
 }
 
-static void add_vector(struct digest_sum *sum, struct vec3 v) {
-    const double numbers[3] = {v.x, v.y, v.z};
-    digest_sum_add_numbers(sum, numbers, 3);
-}
-
 static void add_transform(struct digest_sum *sum, const struct transform *t) {
     digest_sum_add_numbers(sum, t->forward.m[0], sizeof t->forward.m / sizeof(double));
     digest_sum_add_numbers(sum, t->inverse.m[0], sizeof t->inverse.m / sizeof(double));
-}
-
-static void add_digest(struct digest_sum *sum, struct digest digest) {
-    digest_sum_add(sum, digest.a);
-    digest_sum_add(sum, digest.b);
 }
 
 static void add_program(struct digest_sum *sum, const struct expr_program *program);
@@ -78,7 +68,7 @@ static void add_program(struct digest_sum *sum, const struct expr_program *progr
         digest_sum_add(sum, program->outputs[i]);
     digest = digest_bytes(program->code, program->count * sizeof *program->code, digest);
     digest = digest_bytes(program->constants, program->constant_count * sizeof *program->constants, digest);
-    add_digest(sum, digest);
+    digest_sum_add_digest(sum, digest);
     digest_sum_add(sum, program->loop_work);
     digest_sum_add(sum, program->loop_count);
     for (uint32_t i = 0; i < program->loop_count; i++)
@@ -96,7 +86,7 @@ static void add_image_lookup(struct digest_sum *sum, const struct texture_image 
     add_flags(sum, image->flip_u | image->outside << 1 | image->apart << 2);
     digest_sum_add_numbers(sum, image->scale, 2);
     digest_sum_add_numbers(sum, image->offset, 2);
-    add_vector(sum, image->tint);
+    digest_sum_add_vector(sum, image->tint);
     digest_sum_add(sum, (uint64_t)image->alpha << 32 | (uint64_t)image->encoding);
     add_number(sum, image->gamma);
 }
@@ -110,7 +100,7 @@ static void add_texture(struct digest_sum *sum, const struct texture *texture) {
     add_flags(sum, texture->shared | texture->has_image << 1 | texture->has_function << 2);
     switch (texture->kind) {
     case TEXTURE_CONSTANT:
-        add_vector(sum, texture->constant.colour);
+        digest_sum_add_vector(sum, texture->constant.colour);
         add_number(sum, texture->constant.number);
         digest_sum_add(sum, texture->constant.display);
         break;
@@ -123,7 +113,8 @@ static void add_texture(struct digest_sum *sum, const struct texture *texture) {
         add_image_lookup(sum, &texture->image.lookup);
         break;
     case TEXTURE_MARBLE:
-        add_vector(sum, vec3_make(texture->marble.f, texture->marble.multiplier, texture->marble.vein_frequency));
+        digest_sum_add_vector(sum,
+                              vec3_make(texture->marble.f, texture->marble.multiplier, texture->marble.vein_frequency));
         digest_sum_add(sum, (uint64_t)texture->marble.interpolation);
         break;
     case TEXTURE_WOOD:
@@ -141,8 +132,8 @@ static void add_texture(struct digest_sum *sum, const struct texture *texture) {
     case TEXTURE_FUNCTION:
         add_program(sum, texture->recorded.program);
         digest_sum_add(sum, (uint64_t)texture->recorded.mapping << 32 | (uint64_t)texture->recorded.points);
-        add_vector(sum, texture->recorded.average);
-        add_vector(sum, texture->recorded.largest);
+        digest_sum_add_vector(sum, texture->recorded.average);
+        digest_sum_add_vector(sum, texture->recorded.largest);
         break;
     }
     struct texture own = *texture;
@@ -165,11 +156,11 @@ static void add_bump(struct digest_sum *sum, const struct bump *bump) {
 static_assert(sizeof(struct bump) == 48, "scene_digest.c adds every field");
 
 static void add_phong(struct digest_sum *sum, const struct phong *phong) {
-    add_vector(sum, phong->kd);
-    add_vector(sum, phong->ks);
-    add_vector(sum, vec3_make(phong->shininess, phong->reflect, phong->refract));
-    add_vector(sum, phong->emission);
-    add_vector(sum, phong->absorption);
+    digest_sum_add_vector(sum, phong->kd);
+    digest_sum_add_vector(sum, phong->ks);
+    digest_sum_add_vector(sum, vec3_make(phong->shininess, phong->reflect, phong->refract));
+    digest_sum_add_vector(sum, phong->emission);
+    digest_sum_add_vector(sum, phong->absorption);
     add_number(sum, phong->ior);
     add_number(sum, phong->roughness);
     add_flags(sum, phong->has_ior | phong->two_sided << 1 | phong->unlit << 2);
@@ -181,17 +172,17 @@ static void add_openpbr(struct digest_sum *sum, const struct openpbr *pbr) {
     digest_sum_add(sum, pbr != NULL);
     if (!pbr)
         return;
-    add_vector(sum, vec3_make(pbr->base_weight, pbr->base_diffuse_roughness, pbr->base_metalness));
-    add_vector(sum, vec3_make(pbr->specular_weight, pbr->specular_anisotropy, pbr->specular_ior));
-    add_vector(sum, pbr->transmission_colour);
-    add_vector(sum, vec3_make(pbr->coat_weight, pbr->coat_roughness, pbr->coat_anisotropy));
-    add_vector(sum, vec3_make(pbr->coat_ior, pbr->coat_darkening, pbr->fuzz_weight));
-    add_vector(sum, pbr->coat_colour);
+    digest_sum_add_vector(sum, vec3_make(pbr->base_weight, pbr->base_diffuse_roughness, pbr->base_metalness));
+    digest_sum_add_vector(sum, vec3_make(pbr->specular_weight, pbr->specular_anisotropy, pbr->specular_ior));
+    digest_sum_add_vector(sum, pbr->transmission_colour);
+    digest_sum_add_vector(sum, vec3_make(pbr->coat_weight, pbr->coat_roughness, pbr->coat_anisotropy));
+    digest_sum_add_vector(sum, vec3_make(pbr->coat_ior, pbr->coat_darkening, pbr->fuzz_weight));
+    digest_sum_add_vector(sum, pbr->coat_colour);
     add_number(sum, pbr->fuzz_roughness);
-    add_vector(sum, pbr->fuzz_colour);
+    digest_sum_add_vector(sum, pbr->fuzz_colour);
     add_flags(sum, pbr->deep | pbr->thin_walled << 1);
-    add_vector(sum, pbr->tangent);
-    add_vector(sum, pbr->coat_tangent);
+    digest_sum_add_vector(sum, pbr->tangent);
+    digest_sum_add_vector(sum, pbr->coat_tangent);
 }
 static_assert(sizeof(struct openpbr) == 232, "scene_digest.c adds every field");
 
@@ -221,7 +212,7 @@ static void add_material(struct scene_digest *digest, const struct material *mat
         known = &digest->known[++at % MATERIALS_KNOWN];
     if (known->material != material)
         *known = (struct known_material){material, digest_of_material(material)};
-    add_digest(digest->sum, known->digest);
+    digest_sum_add_digest(digest->sum, known->digest);
 }
 
 /* --- nodes --- */
@@ -258,11 +249,11 @@ static void add_node(struct scene_digest *digest, const struct node *node) {
     add_transform(sum, &node->parent_from_node);
     add_address(sum, node->placements);
     if (moves) {
-        add_vector(sum, node->velocity);
+        digest_sum_add_vector(sum, node->velocity);
         add_flags(sum, (node->spin != NULL) | has_end << 1);
     }
     if (node->spin) {
-        add_vector(sum, node->spin->axis);
+        digest_sum_add_vector(sum, node->spin->axis);
         add_number(sum, node->spin->degrees);
     }
     if (has_end) {
@@ -310,7 +301,7 @@ static void add_sky(struct digest_sum *sum, const struct sky *sky) {
     digest_sum_add(sum, sky ? 1 + (uint64_t)sky->kind : 0);
     if (!sky)
         return;
-    add_vector(sum, sky->colour);
+    digest_sum_add_vector(sum, sky->colour);
     add_address(sum, sky->image);
     for (int i = 0; i < 6; i++)
         add_address(sum, sky->faces[i]);
@@ -318,35 +309,35 @@ static void add_sky(struct digest_sum *sum, const struct sky *sky) {
     digest_sum_add(sum, sky->stop_count);
     for (uint32_t i = 0; i < sky->stop_count; i++)
         digest_sum_add_numbers(sum, sky->stops[i], 4);
-    add_vector(sum, sky->clear.sun);
-    add_vector(sum, sky->clear.ground);
+    digest_sum_add_vector(sum, sky->clear.sun);
+    digest_sum_add_vector(sum, sky->clear.ground);
     digest_sum_add_numbers(sum, sky->clear.perez[0], sizeof sky->clear.perez / sizeof(double));
     digest_sum_add_numbers(sum, sky->clear.scale, 3);
     add_program(sum, sky->program);
     add_number(sum, sky->largest);
-    add_vector(sum, vec3_make(sky->turn_sine, sky->turn_cosine, sky->intensity));
+    digest_sum_add_vector(sum, vec3_make(sky->turn_sine, sky->turn_cosine, sky->intensity));
 }
 static_assert(sizeof(struct sky) == 360, "scene_digest.c adds every field");
 
 static void add_light(struct digest_sum *sum, const struct light *light) {
     digest_sum_add(sum, (uint64_t)light->kind << 32 | (uint64_t)light->attenuation);
-    add_vector(sum, light->position);
-    add_vector(sum, light->corner);
-    add_vector(sum, light->edge1);
-    add_vector(sum, light->edge2);
-    add_vector(sum, light->colour);
+    digest_sum_add_vector(sum, light->position);
+    digest_sum_add_vector(sum, light->corner);
+    digest_sum_add_vector(sum, light->edge1);
+    digest_sum_add_vector(sum, light->edge2);
+    digest_sum_add_vector(sum, light->colour);
     add_program(sum, light->profile);
     add_number(sum, light->profile_largest);
-    add_vector(sum, light->display);
+    digest_sum_add_vector(sum, light->display);
     digest_sum_add_numbers(sum, light->falloff, 3);
-    add_vector(sum, vec3_make(light->range, light->intensity, light->radius));
-    add_vector(sum, light->direction);
+    digest_sum_add_vector(sum, vec3_make(light->range, light->intensity, light->radius));
+    digest_sum_add_vector(sum, light->direction);
     add_number(sum, light->cos_inner);
     add_number(sum, light->cos_outer);
     add_flags(sum, light->has_display | light->emissive << 1 | light->one_sided << 2 | light->visible << 3 |
                        light->has_emission << 4);
     digest_sum_add(sum, (uint64_t)light->samples);
-    add_vector(sum, light->emission);
+    digest_sum_add_vector(sum, light->emission);
     add_sky(sum, light->sky);
 }
 static_assert(sizeof(struct light) == 344, "scene_digest.c adds every field");
@@ -381,7 +372,7 @@ static void add_fog(struct digest_sum *sum, const struct fog *fog) {
     digest_sum_add(sum, fog ? 1 + (uint64_t)fog->kind : 0);
     if (!fog)
         return;
-    add_vector(sum, fog->colour);
+    digest_sum_add_vector(sum, fog->colour);
     add_number(sum, fog->density);
     add_number(sum, fog->near);
     add_number(sum, fog->far);
@@ -390,8 +381,8 @@ static void add_fog(struct digest_sum *sum, const struct fog *fog) {
     digest_sum_add(sum, fog->count);
     add_address(sum, fog->heights);
     add_address(sum, fog->densities);
-    add_vector(sum, fog->corner);
-    add_vector(sum, fog->size);
+    digest_sum_add_vector(sum, fog->corner);
+    digest_sum_add_vector(sum, fog->size);
     digest_sum_add(sum, (uint64_t)fog->cells[0] << 32 | fog->cells[1]);
     digest_sum_add(sum, fog->cells[2]);
     add_flags(sum, fog->display | fog->clear_sky << 1);

@@ -23,4 +23,9 @@ struct scene_content {
  * have separate serial numbers. False: no memory. */
 bool scene_digest_add(const struct scene_content *content, struct digest_sum *sum);
 
+static inline void digest_sum_add_vector(struct digest_sum *sum, struct vec3 v) {
+    const double numbers[3] = {v.x, v.y, v.z};
+    digest_sum_add_numbers(sum, numbers, 3);
+}
+
 #endif
