@@ -242,7 +242,7 @@ static void check_bsdf_sampling(struct effort both, struct effort bsdf_effort, d
 }
 
 TEST(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies) {
-    check_bsdf_sampling((struct effort){8, 64, 1}, (struct effort){8, 128, 1}, 0.03);
+    check_bsdf_sampling((struct effort){8, 160, 1}, (struct effort){8, 320, 1}, 0.02);
 }
 TEST_LONG(sampling_bsdfs_alone_agrees_where_all_lights_have_bodies_or_are_skies_for_every_seed) {
     check_bsdf_sampling((struct effort){16, 640, 3}, (struct effort){16, 2560, 3}, 0.001);
