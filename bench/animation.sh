@@ -1,7 +1,8 @@
 #!/bin/sh
 # The cost of an animation besides tracing and writing its pictures: one node moves among 100,000 balls, 640 x 480, one
-# sample a pixel, two threads. --stats measures tracing and writing for each frame; the rest is the script, the
-# world, and the communication between the processes. The target is 1.15 for 300 frames.
+# sample a pixel, two threads. The script, the world and the communication between the processes are the rest. gray
+# writes a frame while the script of the next one runs, so tracing and writing alone are measured in a run of one process
+# (--no-fork), where they follow each other. The target is 1.15 for 300 frames.
 # usage: bench/animation.sh [frames]      GRAY=build/release/gray
 set -e
 cd "$(dirname "$0")/.."
@@ -25,19 +26,27 @@ gr.frames{count = COUNT, loop = true, draw = function(t)
 end}
 END
 cd "$folder"
-begun=$(date +%s.%N)
-"$gray" -j 2 -D COUNT="$frames" scene.lua -full -ss 1 --stats=json -o 'x.####.png' >stats 2>errors || { cat errors; exit 1; }
-ended=$(date +%s.%N)
-python3 - "$begun" "$ended" <<'END'
-import json, sys
-frames = [json.loads(line) for line in open('stats') if line.startswith('{')]
-begun, ended = map(float, sys.argv[1:])
-def total(part, clock):
-    return sum(frame[part + clock] for frame in frames)
-for name, clock in (('clock', '_seconds'), ('processors', '_processor_seconds')):
-    build, render, write = (total(part, clock) for part in ('build', 'render', 'write'))
-    n = len(frames)
-    print(f'{name:<11} a frame: build {1000 * build / n:.1f} ms, trace {1000 * render / n:.1f} ms, '
-          f'write {1000 * write / n:.1f} ms; all of it over tracing and writing: '
-          f'{(ended - begun if name == "clock" else build + render + write) / (render + write):.3f}')
+python3 - "$gray" "$frames" <<'END'
+import json, resource, subprocess, sys, time
+gray, frames = sys.argv[1], int(sys.argv[2])
+def processors():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+def run(*options):
+    begun, worked = time.time(), processors()
+    done = subprocess.run([gray, '-j', '2', '-D', f'COUNT={frames}', 'scene.lua', '-full', '-ss', '1', '--stats=json',
+                           '-o', 'x.####.png', *options], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(done.stderr)
+    stats = [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{')]
+    return stats, (time.time() - begun, processors() - worked)
+def mean(stats, part, clock):
+    return 1000 * sum(frame[part + clock] for frame in stats) / frames
+alone, _ = run('--no-fork')
+stats, whole = run()
+for name, clock, seconds in (('clock', '_seconds', whole[0]), ('processors', '_processor_seconds', whole[1])):
+    trace, write = (mean(alone, part, clock) for part in ('render', 'write'))
+    print(f'{name:<11} a frame: {1000 * seconds / frames:.1f} ms, build {mean(stats, "build", clock):.1f} ms; '
+          f'alone: trace {trace:.1f} ms, write {write:.1f} ms; the frame over both: '
+          f'{1000 * seconds / frames / (trace + write):.3f}')
 END

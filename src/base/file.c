@@ -26,6 +26,11 @@ void file_set_listener(const struct file_listener *listener) {
     file_listener = listener;
 }
 
+void file_note_search(void) {
+    if (file_listener && file_listener->searches)
+        file_listener->searches(file_listener->context);
+}
+
 /* Sets of files. */
 
 static bool is_same(struct file_identity a, struct file_identity b) {
@@ -285,6 +290,7 @@ bool file_map_descriptor(int descriptor, const char *path, size_t limit, struct 
 }
 
 static int open_for_reading(const char *path, struct error *error) {
+    file_note_search();
     /* O_NONBLOCK: opening a named pipe must not wait for a writer. */
     int descriptor = MAY_FAIL(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     if (descriptor < 0)
@@ -339,6 +345,7 @@ bool file_exists(const char *path) {
 
 bool file_is_regular(const char *path) {
     struct stat status;
+    file_note_search();
     return stat(path, &status) == 0 && S_ISREG(status.st_mode);
 }
 
@@ -370,6 +377,7 @@ bool file_null_input(void) {
 
 bool file_canonical(const char *path, char *out, size_t size) {
     char resolved[PATH_MAX];
+    file_note_search();
     const char *found = MAY_GIVE_NULL(realpath(path, resolved));
     if (!found || strlen(found) >= size)
         return false;

@@ -67,7 +67,8 @@ struct file_version {
 /* Receives every file that is read, with the name that was used, and every file that a script opens for writing; the
  * members may be NULL. */
 struct file_listener {
-    struct file_read_log *log; /* of the files that are read */
+    void (*searches)(void *context); /* before files are searched or opened by name */
+    struct file_read_log *log;       /* of the files that are read */
     void (*heard)(void *context, const char *path, const struct file_version *version);
     void (*wrote)(void *context, const char *path, const struct file_version *version);
     bool contents; /* versions have digests */
@@ -81,6 +82,8 @@ void file_set_listener(const struct file_listener *listener);
 bool file_version_of(const char *path, const struct file_version *known, struct file_version *out);
 /* The same without its content; false: there is no regular file. */
 bool file_version_without_content(const char *path, struct file_version *out);
+/* For functions outside of file.c that search files by name. */
+void file_note_search(void);
 /* Notes the content of an open regular file without moving its position. For readers beside file_map. */
 void file_note_read(int descriptor, const char *path);
 /* The same for a file that was opened for writing. */

@@ -258,6 +258,7 @@ static bool take_part(const struct path_policy *path_policy, struct resolution *
  * `at` is the existing part, inside the list or above it, and `rest` the first missing component and all after it.
  * follow: also follows a link in the last component. */
 static bool resolve(const struct path_policy *path_policy, const char *path, bool follow, struct resolution *r) {
+    file_note_search();
     r->at[0] = '\0';
     r->links = 0;
     r->last_is_link = r->is_out = false;

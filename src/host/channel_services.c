@@ -84,17 +84,38 @@ static void link_abandon(void *context) {
     note(link, channel_send(&link->channel, MESSAGE_ABANDON, NULL, 0, -1));
 }
 
-static bool link_done(void *context, const struct picture_report *report, struct error *error) {
+static void link_wait(void *context) {
     struct channel_services *link = context;
     struct message message;
+    if (!link->unanswered)
+        return;
+    link->unanswered = false;
+    if (channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_ANSWER) {
+        link->failed = !nobody_there(link, &link->failure);
+    } else if (!message.body.answer.ok) {
+        link->failed = true;
+        link->failure = message.body.answer.error;
+    }
+}
+
+static bool link_settle(void *context, struct error *error) {
+    struct channel_services *link = context;
+    link_wait(link);
+    if (!link->failed)
+        return true;
+    link->failed = false;
+    *error = link->failure;
+    return false;
+}
+
+static bool link_done(void *context, const struct picture_report *report, bool early, struct error *error) {
+    struct channel_services *link = context;
     share_destroy(&link->memory);
     share_destroy(&link->large);
-    if (!channel_send(&link->channel, MESSAGE_DONE, report, sizeof *report, -1) ||
-        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_ANSWER)
+    if (!channel_send(&link->channel, MESSAGE_DONE, report, sizeof *report, -1))
         return nobody_there(link, error);
-    if (!message.body.answer.ok)
-        *error = message.body.answer.error;
-    return message.body.answer.ok;
+    link->unanswered = true;
+    return early || link_settle(link, error);
 }
 
 static void link_line(void *context, enum line_kind kind, const char *text) {
@@ -143,6 +164,8 @@ struct host_services channel_services_make(struct channel_services *link, struct
                                   .reply = link_reply,
                                   .abandon = link_abandon,
                                   .done = link_done,
+                                  .wait = link_wait,
+                                  .settle = link_settle,
                                   .line = link_line,
                                   .script_ended = link_script_ended,
                                   .read = link_read,

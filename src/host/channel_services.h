@@ -12,7 +12,10 @@ struct channel_services {
     struct share memory;         /* the film of the current picture */
     struct share large;          /* that of a larger pass */
     struct picture_request request;
-    bool broken; /* a message was not delivered: this process must end */
+    bool broken;     /* a message was not delivered: this process must end */
+    bool unanswered; /* MESSAGE_DONE is sent, its answer is not yet received */
+    bool failed;     /* the last picture could not be written: `failure`, not yet reported */
+    struct error failure;
 };
 
 /* The services point to `link`, which must not move. */

@@ -27,8 +27,9 @@ static void in_process_abandon(void *context) {
     output_abandon(&in_process->output);
 }
 
-static bool in_process_done(void *context, const struct picture_report *report, struct error *error) {
+static bool in_process_done(void *context, const struct picture_report *report, bool early, struct error *error) {
     struct in_process *in_process = context;
+    (void)early;
     return output_done(&in_process->output, report, error);
 }
 

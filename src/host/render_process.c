@@ -66,6 +66,7 @@ struct picture_work {
     struct film film;
     struct world world;
     bool built; /* the world is complete */
+    bool ok;    /* the film is */
     struct picture_report report;
 };
 
@@ -79,6 +80,23 @@ static void finish_output(const struct render_process *process) {
     scene_writer_flush(process->errors);
     if (fflush(stdout) != 0 || ferror(stdout))
         atomic_store(&process->services->control->lost, 1);
+}
+
+/* The supervisor writes the files of a frame while the script and the digest of the next one run. Whatever could show
+ * the difference waits: reading files, printing, the next picture, the end of the script. */
+static void wait_for_files(void *context) {
+    const struct render_process *process = context;
+    if (process->services->wait)
+        process->services->wait(process->services->context);
+}
+
+/* False: the last frame could not be written. The error has the name of its file, and no line of the script, which has
+ * gone on. */
+static bool settle(const struct render_process *process, struct error *error) {
+    if (!process->services->settle || process->services->settle(process->services->context, error))
+        return true;
+    error->elsewhere = true;
+    return false;
 }
 
 static void report(const struct render_process *process, enum line_kind kind, const char *text) {
@@ -360,14 +378,26 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     fill_report(work, job->film, report);
     if (ok && job->world)
         warn_of_nan(process, job->world);
-    if (ok && work->built && is_frame(work))
-        world_keep_accel(&work->world, &process->accel_cache);
-    world_destroy(&work->world);
+    work->ok = ok;
     if (ok && !is_asked(process->options) && !process->options->check)
         report_samples(work);
     if (ok)
         report_world(process, work->request->file, report);
     return ok;
+}
+
+/* After a large scene the memory is released: the next picture may need blocks of other sizes. */
+static void clear_picture(struct picture_work *work) {
+    struct render_process *process = work->process;
+    (void)mem_charge(process->account);
+    if (work->ok && work->built && is_frame(work))
+        world_keep_accel(&work->world, &process->accel_cache);
+    world_destroy(&work->world);
+    if (process->job.total > LARGE_JOB)
+        arena_destroy(&process->job);
+    else
+        arena_reset(&process->job);
+    (void)mem_charge(NULL);
 }
 
 /* The same within the remaining memory. */
@@ -378,11 +408,6 @@ static bool make_picture(struct picture_work *work, struct error *error) {
     bool ok = make_picture_unlimited(work, error);
     if (!ok && mem_refusals() != refusals)
         (void)too_much_memory(process, error);
-    /* After a large scene the memory is released: the next picture may need blocks of other sizes. */
-    if (process->job.total > LARGE_JOB)
-        arena_destroy(&process->job);
-    else
-        arena_reset(&process->job);
     (void)mem_charge(NULL);
     return ok;
 }
@@ -495,6 +520,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
     if (!reserve_memory(process, asked, &job->settings, error))
         return false;
     asked->shows = digest_of_frame(work);
+    if (!settle(process, error))
+        return false;
     if (!process->services->begin(process->services->context, asked, film, already, error)) {
         error->refused = error->kind == ERROR_SCENE;
         return false;
@@ -540,6 +567,16 @@ static void init_work(struct picture_work *work, struct render_process *process,
         settings->aov &= ~AOV_PATH; /* all that there are */
 }
 
+/* A frame of gr.frames that another one follows: the script goes on while its files are written. Outside the sandbox,
+ * a script can read them in ways that wait_for_files does not see. */
+static bool is_written_early(const struct picture_work *work) {
+    const struct render_process *process = work->process;
+    const struct script_options *options = &process->options->script;
+    const struct frame *frame = &work->request->frame;
+    return process->animates && frame->number > 0 && !work->asked.check && !work->asked.in_window &&
+           !options->no_sandbox && frame_after(&options->frames.selection, frame) > 0;
+}
+
 static bool render_job_run(struct render_process *process, const struct render_request *request, struct error *error) {
     const struct host_services *services = process->services;
     struct control *control = services->control;
@@ -561,8 +598,14 @@ static bool render_job_run(struct render_process *process, const struct render_r
     const struct options *options = process->options;
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout;
     bool ok = make_picture(&work, error);
+    if (ok && is_written_early(&work)) {
+        ok = services->done(services->context, &work.report, true, error);
+        clear_picture(&work);
+        return ok;
+    }
+    clear_picture(&work);
     if (ok && !work.asked.check)
-        return services->done(services->context, &work.report, error);
+        return services->done(services->context, &work.report, false, error);
     services->abandon(services->context);
     return ok;
 }
@@ -702,6 +745,7 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .frame_limit = options_picture_limit(process->options),
                                .animates = note_animation,
                                .frame_begins = begin_frame,
+                               .prints = wait_for_files,
                                .next_frame = process->options->window ? next_frame : NULL,
                                .rewinds = note_rewind,
                                .output_is_error =
@@ -716,6 +760,11 @@ static int run_once(struct render_process *process, const char *path, const stru
     int status = ok ? process->status : (int)error.kind;
     if (!ok && error.kind != ERROR_CANCELLED)
         report_error(process, &arena, &error, traceback);
+    if (!settle(process, &error)) {
+        if (error.kind != ERROR_CANCELLED)
+            report_error(process, &arena, &error, NULL);
+        status = (int)error.kind > status ? (int)error.kind : status;
+    }
     const char *nothing = "%s: no picture was rendered, because the script did not call gr.render";
     if (ok && process->pictures == before && (nothing = arena_format(&arena, nothing, path)) != NULL)
         message(process, SCRIPT_NOTICE, nothing);
@@ -796,6 +845,7 @@ void render_process_run(const struct options *options, const struct host_service
     struct render_process process = {.options = options, .services = services, .errors = &errors};
     scene_writer_init(&errors, &services->control->error_stream);
     const struct file_listener listener = {
+        .searches = services->wait ? wait_for_files : NULL,
         .log = options->checkpoint || options->shards || options->mpi ? &process.read_log : NULL,
         .heard = services->read ? report_read : NULL,
         .wrote = services->read ? report_write : NULL,
@@ -803,7 +853,7 @@ void render_process_run(const struct options *options, const struct host_service
         .context = &process};
     bool watched = options->watch && services->again;
     mem_return_large();
-    if (listener.log || listener.heard)
+    if (listener.log || listener.heard || listener.searches)
         file_set_listener(&listener);
     run_scripts(&process, first);
     while (watched && services->again(services->context)) {

@@ -139,7 +139,10 @@ void limits_count_output(struct script_context *context, size_t size) {
 }
 
 void limits_output(lua_State *L, size_t size) {
+    const struct script_host *host = context_of(L)->host;
     struct limits *limits = &context_of(L)->limits;
+    if (host->prints)
+        host->prints(host->context);
     limits->output += size;
     if (limits->output_limit == 0 || limits->output <= limits->output_limit)
         return;

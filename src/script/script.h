@@ -82,6 +82,7 @@ struct script_host {
      * text holds any bytes. NULL: the streams are those of the process. */
     void (*error_text)(void *context, const char *text, size_t size);
     bool output_is_error;
+    void (*prints)(void *context); /* the script is about to print, or to write to a file; may be NULL */
     /* Animations; the functions may be NULL. A script without gr.frames runs once for each frame of --frames: `frame`
      * is the frame of this run, else its number is 0. */
     struct frame frame;

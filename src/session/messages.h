@@ -22,7 +22,7 @@
 enum message_kind {
     MESSAGE_LINE = 1,      /* struct message_line: a line for the user */
     MESSAGE_BEGIN,         /* struct picture_request; answered by MESSAGE_FILM */
-    MESSAGE_DONE,          /* struct picture_report; answered by MESSAGE_ANSWER */
+    MESSAGE_DONE,          /* struct picture_report; answered by MESSAGE_ANSWER when the files are written */
     MESSAGE_PREVIEW_REPLY, /* struct preview_reply: a command of the window is done; answered by MESSAGE_PREVIEW_COMMAND
                             */
     MESSAGE_ABANDON,       /* no body: the picture in progress will not be finished; no answer */

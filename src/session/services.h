@@ -20,8 +20,13 @@ struct host_services {
     bool (*reply)(void *context, const struct preview_reply *reply, struct preview_command *command,
                   struct error *error);
     void (*abandon)(void *context);
-    /* The film is complete. True if the files are written. */
-    bool (*done)(void *context, const struct picture_report *report, struct error *error);
+    /* The film is complete. True if the files are written; with `early`, where there is a `settle`, it may return true
+     * before. */
+    bool (*done)(void *context, const struct picture_report *report, bool early, struct error *error);
+    /* Waits until the files of the last picture are written. NULL: they are. */
+    void (*wait)(void *context);
+    /* The same. False: they cannot be written, reported once. NULL with `wait`. */
+    bool (*settle)(void *context, struct error *error);
     void (*line)(void *context, enum line_kind kind, const char *text);
     void (*script_ended)(void *context, int index, int status);
     /* A script read a file, or opened it for writing. */
