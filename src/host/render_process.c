@@ -730,8 +730,9 @@ static void note_rewind(void *context) {
     begin_frame(process);
 }
 
-/* Runs a script once; returns the exit status. frame: the frame that it renders outside of gr.frames, or number 0. */
-static int run_once(struct render_process *process, const char *path, const struct frame *frame) {
+/* Runs a script once; returns the exit status. frame: the frame that it renders outside of gr.frames, or number 0;
+ * repeats: an earlier run did not call gr.frames. */
+static int run_once(struct render_process *process, const char *path, const struct frame *frame, bool repeats) {
     /* Without the sandbox, in a separate process, standard output is a copy of standard error here. */
     bool sandboxed = !process->options->script.no_sandbox, in_process = process->options->no_fork;
     struct script_host host = {.context = process,
@@ -742,6 +743,7 @@ static int run_once(struct render_process *process, const char *path, const stru
                                .cancelled = is_cancelled,
                                .error_text = scene_text,
                                .frame = *frame,
+                               .repeats = repeats,
                                .frame_limit = options_picture_limit(process->options),
                                .animates = note_animation,
                                .frame_begins = begin_frame,
@@ -754,7 +756,6 @@ static int run_once(struct render_process *process, const char *path, const stru
     struct error error = {0};
     const char *traceback = NULL;
     begin_memory(process);
-    uint64_t before = process->pictures;
     process->rewinds = process->passed_over = false;
     bool ok = script_run(path, &process->options->script, &host, &arena, &traceback, &error);
     int status = ok ? process->status : (int)error.kind;
@@ -765,12 +766,18 @@ static int run_once(struct render_process *process, const char *path, const stru
             report_error(process, &arena, &error, NULL);
         status = (int)error.kind > status ? (int)error.kind : status;
     }
-    const char *nothing = "%s: no picture was rendered, because the script did not call gr.render";
-    if (ok && process->pictures == before && (nothing = arena_format(&arena, nothing, path)) != NULL)
-        message(process, SCRIPT_NOTICE, nothing);
     arena_destroy(&arena);
     finish_output(process);
     return status;
+}
+
+static void report_no_picture(struct render_process *process, const char *path) {
+    struct arena arena = {0};
+    const char *line =
+        arena_format(&arena, "%s: no picture was rendered, because the script did not call gr.render", path);
+    if (line)
+        message(process, SCRIPT_NOTICE, line);
+    arena_destroy(&arena);
 }
 
 /* Runs a script; returns the exit status. With --frames, a script that does not call gr.frames runs again for each
@@ -795,18 +802,20 @@ static int run_script(struct render_process *process, const char *path) {
     (void)mem_charge(process->account);
     accel_cache_destroy(&process->accel_cache);
     (void)mem_charge(NULL);
-    uint64_t before = process->pictures;
-    int status = run_once(process, path, &frame);
+    uint64_t first = process->pictures, before = first;
+    int status = run_once(process, path, &frame, false);
     while (status == 0 && process->rewinds)
-        status = run_once(process, path, &frame);
+        status = run_once(process, path, &frame, false);
     process->skips = false;
     while (repeats && status == 0 && !process->animates && (process->pictures > before || !process->options->window) &&
            (frame.number = process->options->window ? next_frame(process, &frame) : frame_after(selection, &frame)) >
                0) {
         begin_frame(process);
         before = process->pictures;
-        status = run_once(process, path, &frame);
+        status = run_once(process, path, &frame, true);
     }
+    if (status == 0 && process->pictures == first)
+        report_no_picture(process, path);
     return status;
 }
 

@@ -199,7 +199,7 @@ void frames_list_handle(lua_State *L, uint32_t serial);
 /* Calls `draw` of gr.frames for its frames and renders them; may raise. */
 int frames_run(lua_State *L, const struct script_result *result);
 void frames_open(lua_State *L); /* gr.time, gr.clock and gr.frame */
-/* " (frame 7)" for errors, or "": an error of gr.frames itself belongs to no frame. */
+/* " (frame 7)" for errors, or "": an error before or after the frames of gr.frames belongs to no frame. */
 enum { FRAME_WORDS = 32 };
 void frames_name_frame(const struct script_context *context, char out[FRAME_WORDS]);
 

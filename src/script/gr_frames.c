@@ -274,11 +274,10 @@ int frames_run(lua_State *L, const struct script_result *result) {
     return 0;
 }
 
-/* With --frames, every run of a script is a frame until it calls gr.frames. */
+/* With --frames, the first run of a script is a frame only if the script does not call gr.frames. */
 void frames_name_frame(const struct script_context *context, char out[FRAME_WORDS]) {
-    bool calls = !context->animates && context->function == function_find(OWNER_GR, "frames");
     out[0] = '\0';
-    if (context->frame.number > 0 && !calls)
+    if (context->animates || context->host->repeats)
         (void)snprintf(out, FRAME_WORDS, " (frame %u)", context->frame.number);
 }
 

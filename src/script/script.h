@@ -84,8 +84,10 @@ struct script_host {
     bool output_is_error;
     void (*prints)(void *context); /* the script is about to print, or to write to a file; may be NULL */
     /* Animations; the functions may be NULL. A script without gr.frames runs once for each frame of --frames: `frame`
-     * is the frame of this run, else its number is 0. */
+     * is the frame of this run, else its number is 0. The first run may still call gr.frames; `repeats` is set in the
+     * later ones. */
     struct frame frame;
+    bool repeats;
     uint32_t frame_limit;                /* of gr.frames; 0: FRAMES_MAX */
     void (*animates)(void *context);     /* the script has called gr.frames */
     void (*frame_begins)(void *context); /* another frame of it: the script's time counts from here */

@@ -9,6 +9,9 @@
     "local show = {node = root, file = 'x.png', width = 4, height = 3, eye = {0, 0, 9}, view = {0, 0, -1}, fov = 40, " \
     "lights = {}}\n"
 
+/* The same without warnings. */
+#define PLAIN "gr.sphere = function() return gr.node('ball') end\n" BALL
+
 enum { SEEN_MAX = 64 };
 static struct render_request seen[SEEN_MAX];
 
@@ -106,6 +109,61 @@ TEST(the_shutter_of_a_frame_is_a_part_of_its_time) {
     CHECK_NEAR(seen[0].settings.shutter.close, 0, 0);
     CHECK_NEAR(seen[2].settings.shutter.close, 1, 0);
     CHECK_EQ_INT(seen[2].frame.number, 0);
+}
+
+/* The first run of a script with --frames may still call gr.frames. */
+TEST(errors_before_and_after_the_frames_of_an_animation_name_no_frame) {
+    static const char *const texts[] = {"error('no')\ngr.frames{count = 3, draw = error}\n",
+                                        PLAIN "gr.frames{count = 3, draw = function() return show end}\nerror('no')\n",
+                                        "pcall(gr.frames, {count = 3, draw = error}) error('no')\n"};
+    for (int i = 0; i < 3; i++) {
+        struct test_result result = test_gray_scene(texts[i], "-q --frames 2-3 scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 1);
+        CHECK(strstr(result.err, ": no\n") != NULL);
+        free(result.out);
+        free(result.err);
+    }
+    struct test_result result =
+        test_gray_scene("if gr.frame == 3 then error('no') end\n", "--frames 2-3 scene.lua", NULL);
+    CHECK(strstr(result.err, "scene.lua:1: no (frame 3)\n") != NULL);
+    free(result.out);
+    free(result.err);
+}
+
+TEST(a_script_that_renders_some_frames_is_not_reported_to_render_nothing) {
+    struct test_result result = test_gray_scene(PLAIN "gr.render(show)\n", "--frames 2-3 scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.err, "");
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene("local x\n", "--frames 2-3 scene.lua", NULL);
+    CHECK_TEXT(result.err, "scene.lua: no picture was rendered, because the script did not call gr.render\n");
+    free(result.out);
+    free(result.err);
+}
+
+TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_command_line) {
+    static const char *const texts[] = {PLAIN "gr.render(show) show.file = 'other.png' gr.render(show)\n",
+                                        PLAIN "for i = 1, 2 do gr.frames{count = 3, draw = function() return show end} "
+                                              "end\n"};
+    for (int i = 0; i < 2; i++) {
+        struct test_result result = test_gray_scene(texts[i], "--frames 3 -o x.##.png scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 2);
+        CHECK(
+            strstr(result.err, "gray: -o x.##.png: frame 1 is rendered twice, and x.01.png is the only name for it") ==
+            result.err);
+        free(result.out);
+        free(result.err);
+    }
+    /* Scripts choose names of their own, and frames of a turntable are counted. */
+    struct test_result result = test_gray_scene(texts[0], "--frames 2 scene.lua", NULL);
+    CHECK_TEXT(result.err, "");
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene(texts[0], "--turntable 2 -o x.##.png scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
 }
 
 TEST(wrong_animations_are_errors_that_name_the_frame) {
