@@ -147,10 +147,25 @@ struct change_application {
     struct error *error;
 };
 
-static void report_missing(const struct change_application *l, const char *what) {
-    char text[256];
-    (void)snprintf(text, sizeof text, "an edit of %s '%s' (%u) is skipped: it no longer exists", what, l->change->name,
-                   l->change->serial);
+uint32_t added_number(uint32_t serial) {
+    return serial > UINT32_MAX - CHANGE_LIMIT ? UINT32_MAX - serial + 1 : 0;
+}
+
+/* serial: of the object of the change, or the number of a light. */
+static void report_missing(const struct change_application *l, const char *what, uint32_t serial) {
+    char text[256], number[64];
+    const char *name = l->change->name;
+    if (added_number(serial) > 0)
+        (void)snprintf(number, sizeof number, "added %u", added_number(serial));
+    else if (l->change->kind == CHANGE_MATERIAL && serial <= OWN_SERIAL && serial > OWN_SERIAL - CHANGE_LIMIT)
+        (void)snprintf(number, sizeof number, "own copy %u", OWN_SERIAL - serial + 1);
+    else
+        (void)snprintf(number, sizeof number, "%u", serial);
+    if (name[0] != '\0')
+        (void)snprintf(text, sizeof text, "an edit of %s '%s' (%s) is skipped: it no longer exists", what, name,
+                       number);
+    else
+        (void)snprintf(text, sizeof text, "an edit of %s (%s) is skipped: it no longer exists", what, number);
     l->warn(l->context, text);
 }
 
@@ -175,7 +190,7 @@ enum { COMMON_PART = offsetof(struct node, joint_x) };
 static struct node *begin_node(struct change_application *l) {
     struct node *node = node_of(l, l->change->serial, l->change->name);
     if (!node) {
-        report_missing(l, "the node");
+        report_missing(l, "the node", l->change->serial);
         return NULL;
     }
     struct changed_node *note = &l->out->nodes[l->out->node_count++];
@@ -277,7 +292,7 @@ static struct node *new_node(struct change_application *l, struct node *source) 
 static bool add_node(struct change_application *l) {
     struct node *source = NULL;
     if (l->change->added == ADDED_COPY && !(source = node_of(l, l->change->source, ""))) {
-        report_missing(l, "a copy under the node");
+        report_missing(l, "a copy under the node", l->change->serial);
         return true;
     }
     struct node *parent = begin_node(l);
@@ -300,7 +315,7 @@ static struct material *material_of(const struct change_application *l, uint32_t
 static void change_material(struct change_application *l) {
     struct material *material = material_of(l, l->change->serial);
     if (!material || material->base) {
-        report_missing(l, "the material");
+        report_missing(l, "the material", l->change->serial);
         return;
     }
     l->out->materials[l->out->material_count++] = (struct changed_material){material, *material};
@@ -369,7 +384,7 @@ static bool give_own(struct change_application *l) {
     if (!node)
         return true;
     if (node->kind != NODE_GEOMETRY) {
-        report_missing(l, "the shape");
+        report_missing(l, "the shape", l->change->serial);
         return true;
     }
     const struct material *like = node->material;
@@ -382,7 +397,7 @@ static bool give_own(struct change_application *l) {
 static void change_light(struct change_application *l) {
     const double *numbers = l->change->numbers;
     if (l->change->serial < 1 || l->change->serial > l->out->light_count) {
-        report_missing(l, "the light");
+        report_missing(l, "the light", l->change->serial);
         return;
     }
     struct scene_light *changed = &l->out->lights[l->change->serial - 1];
@@ -416,7 +431,7 @@ static void add_light(struct change_application *l) {
         light_move(light, first);
         light->colour = vec3_mul(light->colour, second);
     } else {
-        report_missing(l, "the light of a copy");
+        report_missing(l, "a copy of the light", like);
     }
 }
 

@@ -37,6 +37,9 @@ const char *added_kind_name(enum added_kind kind);
 /* The material of new shapes; its serial is 0. */
 struct material added_material(struct vec3 colour);
 
+/* An added node or material, by its serial: its number from 1; 0: the script made it. */
+uint32_t added_number(uint32_t serial);
+
 enum { CHANGE_NAME = 64, CHANGE_LIMIT = 4096, CHANGE_NUMBERS = 18 };
 
 struct change {

@@ -1,6 +1,8 @@
 /* The primitives of a node are the next ones in the list that name this node. */
 #include "world/path.h"
 
+#include "scene/change.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -38,9 +40,10 @@ size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out
     for (uint32_t i = 0; i < depth; i++) {
         if (steps[i].placement > 0)
             (void)snprintf(suffix, sizeof suffix, " [%u]", steps[i].placement);
-        int length =
-            snprintf(used < size ? out + used : NULL, used < size ? size - used : 0, "%s%s#%u%s", i > 0 ? " / " : "",
-                     steps[i].node->name, steps[i].node->serial, steps[i].placement > 0 ? suffix : "");
+        uint32_t added = added_number(steps[i].node->serial);
+        int length = snprintf(used < size ? out + used : NULL, used < size ? size - used : 0, "%s%s%s#%u%s",
+                              i > 0 ? " / " : "", added > 0 ? "added " : "", steps[i].node->name,
+                              added > 0 ? added : steps[i].node->serial, steps[i].placement > 0 ? suffix : "");
         used += length > 0 ? (size_t)length : 0;
     }
     for (char *c = out; size > 0 && *c; c++)

@@ -22,8 +22,8 @@ typedef bool world_path_visit(void *context, uint32_t first, uint32_t count, con
 bool world_visit_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
                        struct error *error);
 
-/* "root#0 / tree#7 [3] / leaf#9": names with their order of creation, and which placement. Control characters become
- * '?'. Cut at `size`; returns the length it would have. */
+/* "root#0 / tree#7 [3] / leaf#9": names with their order of creation, and which placement; "added cube#1": the first
+ * node that was added in the window. Control characters become '?'. Cut at `size`; returns the length it would have. */
 size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size);
 
 struct primitive_list {

@@ -289,6 +289,23 @@ TEST(changes_of_missing_nodes_are_reported_once_and_left_out) {
     free(result.err);
 }
 
+TEST(reports_count_nodes_that_were_added_in_the_window_from_1) {
+    struct test_result result =
+        test_gray_scene(SCENE_HEAD "gr.change_add('root', 4294967295, 'cube', {1, 0, 0}, 0)\n"
+                                   "gr.change_node('cube', 4294967295, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 3})\n"
+                                   "gr.change_node('cone', 4294967291, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 3})\n"
+                                   "gr.change_material(2147483645, {1, 0, 0})\n"
+                                   "gr.change_material(77, {1, 0, 0})\n" SCENE_TAIL("{0, 0, 6}", LIGHT),
+                        "--pixel 30,20 scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.out, "root#0 / added cube#1, ") != NULL);
+    CHECK(strstr(result.err, "an edit of the node 'cone' (added 5) is skipped: it no longer exists") != NULL);
+    CHECK(strstr(result.err, "an edit of the material (own copy 3) is skipped") != NULL);
+    CHECK(strstr(result.err, "an edit of the material (77) is skipped") != NULL);
+    free(result.out);
+    free(result.err);
+}
+
 struct collected {
     char text[16384];
 };
