@@ -393,6 +393,26 @@ static void start_picture(struct output_session *output) {
         display_begin(&output->display, picture->name, &picture->film, &tone);
 }
 
+/* A picture whose name this run has used already. Names of -o have only the number of a frame, so a second picture of
+ * the frame is an error; the names of a script are its own choice. */
+static bool check_own(struct output_session *output, const struct picture_request *request, const char *written,
+                      struct error *error) {
+    /* With --watch, and after a crash in a farm, scripts render their pictures again. */
+    bool again = request->in_window || output->options->watch || output->farm;
+    char notice[NAME_LIMIT + 128];
+    if (again || !picture_files_is_own(&output->files, written))
+        return true;
+    if (request->frame.number > 0 && output->options->output)
+        return error_set(error, ERROR_USAGE,
+                         "-o %.600s: frame %u is rendered twice, and %.600s is the only name for it; without -o, "
+                         "pictures have the names of the script",
+                         output->options->output, request->frame.number, written);
+    (void)snprintf(notice, sizeof notice,
+                   "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
+    output_report(output, LINE_NOTICE, notice);
+    return true;
+}
+
 bool output_begin(struct output_session *output, const struct picture_request *request, bool *already,
                   struct error *error) {
     struct picture *picture = &output->current;
@@ -419,14 +439,8 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     }
     if (!output->plays && !check_files(output, picture, error))
         return false;
-    /* With --watch, and after a crash in a farm, scripts render their pictures again. */
-    bool again = request->in_window || output->options->watch || output->farm;
-    if (!again && picture_files_is_own(&output->files, written)) {
-        char notice[NAME_LIMIT + 128];
-        (void)snprintf(notice, sizeof notice,
-                       "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
-        output_report(output, LINE_NOTICE, notice);
-    }
+    if (!check_own(output, request, written, error))
+        return false;
     describe_tiles(output, picture);
     if (!prepare_film(output, written, already, error))
         return false;
