@@ -158,7 +158,8 @@ static int dispatch(lua_State *L) {
     c->lua = L;
     if (c->recorder->busy) {
         char title[96];
-        luaL_error(L, "%s cannot be called by a function that is recorded", function_title(function, title));
+        luaL_error(L, "%s cannot be called by a %s", function_title(function, title),
+                   c->recorder->samples ? "tone curve" : "function that is recorded");
     }
     memset(args, 0, (size_t)function->parameter_count * sizeof *args);
     c->function = function;

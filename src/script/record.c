@@ -48,7 +48,7 @@ void recorder_destroy(struct recorder *recorder) {
     mem_free(recorder->answers);
     record_bounds_end(recorder);
     recorder->answers = NULL;
-    recorder->active = recorder->busy = false;
+    recorder->active = recorder->busy = recorder->samples = false;
 }
 
 /* --- calls --- */
@@ -478,7 +478,7 @@ static void run_protected(struct script_context *context, lua_CFunction run, int
         bool is_fatal = context->fatal.kind != ERROR_NONE || context->limits.memory_out;
         lua_remove(L, status == LUA_OK || !is_fatal ? -1 : -2); /* of two errors, the first one is more useful */
     }
-    recorder->busy = false;
+    recorder->busy = recorder->samples = false;
     if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
@@ -571,6 +571,7 @@ const struct tone_table *record_tone_curve(struct script_context *context, int i
     struct tone_table *table = arena_alloc(&context->call, sizeof *table);
     if (!table)
         context_raise_no_memory(context);
+    context->recorder->samples = true;
     run_protected(context, sample_protected, index, table, name);
     return table;
 }

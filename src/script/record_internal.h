@@ -75,6 +75,7 @@ struct recorder {
     uint32_t *answers; /* of each node: 2 * path + answer, if `path` has decided it; EXPR_NODES of them */
     uint32_t serial;   /* of the recording: symbols of others are refused */
     bool active;       /* symbols may be used */
+    bool samples;      /* busy with a tone curve, which is only called */
     bool busy;         /* a function is recorded or compared: no other function of gr may run */
     bool has_loop;     /* the recording has a loop of the graph */
     bool unrolls;      /* the steps of loops are recorded one by one */
