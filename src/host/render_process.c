@@ -254,7 +254,8 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
             inspect_pixels(&picture, options->pixels, options->pixel_count, &writer, error));
 }
 
-/* With --time-limit the number of samples that were possible, with --noise the number that were needed. */
+/* With --time-limit the number of samples that were possible, with --noise the number that were needed, or the limit
+ * that came first. */
 static void report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
@@ -262,9 +263,17 @@ static void report_samples(const struct picture_work *work) {
     if (!integrator_traits(settings->integrator).progressive || work->asked.in_window || rays->pixels == 0)
         return;
     double mean = (double)rays->samples / (double)rays->pixels;
-    if (settings->noise > 0)
+    if (settings->noise > 0 && !rays->noisy)
         (void)snprintf(line, sizeof line, "%s: %s: %.1f samples per pixel, for a noise of %g", work->process->script,
                        work->request->file, mean, settings->noise);
+    else if (settings->noise > 0 && rays->out_of_time)
+        (void)snprintf(line, sizeof line,
+                       "%s: %s: %.1f samples per pixel in %.1f s (--time-limit); parts have more noise than %g",
+                       work->process->script, work->request->file, mean, rays->render_seconds, settings->noise);
+    else if (settings->noise > 0)
+        (void)snprintf(
+            line, sizeof line, "%s: %s: %.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
+            work->process->script, work->request->file, mean, settings_path_samples(settings), settings->noise);
     else if (settings->time_limit > 0)
         (void)snprintf(line, sizeof line,
                        "%s: %s: %llu samples per pixel in %.1f s (--spp %llu makes the same picture)",

@@ -24,15 +24,6 @@ struct film_record path_tracer_record(const struct settings *settings) {
  * so that a picture does not depend on how many samples follow. The mean over the samples filters the rest. */
 static const double footprint_share = 0.125;
 
-/* Of a pixel, at most. */
-static uint32_t samples_of(const struct settings *settings) {
-    if (settings->path_samples > 0)
-        return (uint32_t)settings->path_samples;
-    return settings->noise > 0        ? PATH_SAMPLES_NOISE
-           : settings->time_limit > 0 ? PATH_SAMPLES_MAX
-                                      : PATH_SAMPLES_DEFAULT;
-}
-
 /* Storage for the parts of a batch of samples, one for each worker. */
 static bool make_sample_parts(struct path_tracer *tracer, struct renderer *renderer) {
     for (int i = 0; i < pool_workers(renderer->pool); i++) {
@@ -72,7 +63,7 @@ static bool find_photon_lights(struct path_tracer *tracer, const struct world *w
 bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, struct render_statistics *statistics,
                         struct error *error) {
     const struct settings *settings = &renderer->job->settings;
-    tracer->samples = samples_of(settings);
+    tracer->samples = settings_path_samples(settings);
     renderer->pass = (struct sample_pass){.end = tracer->samples};
     tracer->max_depth = settings->max_depth;
     tracer->roulette_depth = settings->roulette_depth;

@@ -251,6 +251,8 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
 }
 
 static void add_statistics(const struct renderer *renderer, int workers, struct render_statistics *out) {
+    out->noisy = renderer->job->settings.noise > 0 && atomic_load(&renderer->unsatisfied);
+    out->out_of_time = out->out_of_time && out->noisy;
     for (int i = 0; i < workers; i++) {
         const struct worker *worker = &renderer->workers[i];
         out->camera_rays += worker->camera_rays;
@@ -425,6 +427,7 @@ static bool make_passes(struct renderer *renderer, struct render_statistics *sta
     if (!renderer_make_passes(renderer))
         return false;
     statistics->passes_samples = renderer->pass.end;
+    statistics->out_of_time = renderer->pass.end < renderer->pass.limit;
     bool ok = show_denoised(renderer);
     end_passes(renderer);
     return ok;

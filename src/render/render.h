@@ -20,6 +20,8 @@ struct render_statistics {
     uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
     uint64_t photons, photons_landed, photon_rays;
     uint64_t passes_samples; /* of each pixel where the samples came in passes, else 0 */
+    bool noisy;              /* with --noise: a tile did not reach it, because of the limit of samples or time */
+    bool out_of_time;        /* noisy because of the time */
     uint64_t clamped;        /* not 0: light beyond the largest float is clamped to it */
     /* Photons are part of the render, their map is part of them. */
     double build_seconds, render_seconds, photon_seconds, photon_map_seconds;

@@ -198,6 +198,14 @@ static inline double settings_line_width(const struct settings *settings) {
     double of_style = settings->style == STYLE_NONE ? 0 : LINE_WIDTH_DEFAULT;
     return settings->line_width < 0 ? of_style : settings->line_width;
 }
+/* With the integrator path: samples of a pixel, at most. */
+static inline uint32_t settings_path_samples(const struct settings *settings) {
+    if (settings->path_samples > 0)
+        return (uint32_t)settings->path_samples;
+    return settings->noise > 0        ? PATH_SAMPLES_NOISE
+           : settings->time_limit > 0 ? PATH_SAMPLES_MAX
+                                      : PATH_SAMPLES_DEFAULT;
+}
 
 static inline bool settings_linear(const struct settings *settings) {
     return settings->colour == COLOUR_LINEAR ||

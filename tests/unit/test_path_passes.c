@@ -176,6 +176,29 @@ TEST(spp_is_the_limit_of_samples_where_the_noise_asks_for_more) {
     stage_end(&s);
 }
 
+TEST(statistics_state_what_ended_a_picture_with_noise) {
+    struct stage s;
+    begin(&s, 2);
+    s.settings.noise = 1;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(!s.statistics.noisy && !s.statistics.out_of_time);
+    s.settings.time_limit = 1000;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(!s.statistics.noisy && !s.statistics.out_of_time);
+    s.settings.noise = 1e-9;
+    s.settings.path_samples = 3;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(s.statistics.noisy && !s.statistics.out_of_time);
+    s.settings.time_limit = 0;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(s.statistics.noisy && !s.statistics.out_of_time);
+    s.settings.path_samples = 0;
+    s.settings.time_limit = 0.1;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    CHECK(s.statistics.noisy && s.statistics.out_of_time);
+    stage_end(&s);
+}
+
 /* If the noise is c / sqrt(N), a tile ends at the first check with c <= wanted sqrt(N). */
 TEST(the_samples_of_a_tile_are_expected_from_the_square_root_of_their_number) {
     static const double factors[] = {0.3, 1, 2.5, 7};
