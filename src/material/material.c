@@ -7,6 +7,7 @@
 #include "material/material_eval.h"
 #include "material/microfacet_internal.h"
 #include "material/openpbr.h"
+#include "material/rough_lobes_internal.h"
 
 const struct material *material_origin(const struct material *material) {
     return material->origin ? material->origin : material;
@@ -176,16 +177,33 @@ double material_specular(const struct material *material) {
     return amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
 }
 
+/* Of metal, F82 with a tint above 1 (blue of brass) is at most Schlick's formula and -edge c (1 - c)^6; Schlick's
+ * formula is at least 5 (1 - f0) c (1 - c)^6 below 1. */
+static double metal_albedo_bound(struct vec3 f0, struct vec3 tint) {
+    struct bsdf_facets facets = {.roughness = 1};
+    bsdf_facets_metal(&facets, f0, tint);
+    double bound = vec3_max_abs(f0);
+    for (int c = 0; c < 3; c++) {
+        if (-vec3_get(facets.edge, c) > 5 * (1 - vec3_get(f0, c)))
+            bound = fmax(bound, vec3_get(tint, c));
+    }
+    return bound;
+}
+
 /* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */
 double material_albedo_bound(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
     const struct texture *texture = material_texture(material, INPUT_KD);
-    double diffuse =
-        vec3_max_abs(texture ? texture_estimate(texture, material->textures, numbers, TEXTURE_LARGEST) : numbers->kd);
+    struct vec3 colour =
+        texture ? texture_estimate(texture, material->textures, numbers, TEXTURE_LARGEST) : numbers->kd;
+    double diffuse = vec3_max_abs(colour);
     double specular = material_specular(material), exponent = numbers->shininess > 0 ? numbers->shininess : 0;
     if (numbers->unlit)
         return 0;
-    if (material->openpbr)
+    const struct openpbr *openpbr = material->openpbr;
+    if (openpbr && openpbr->base_metalness >= 1 && !material_texture(material, INPUT_METALNESS))
+        return metal_albedo_bound(vec3_scale(colour, openpbr->base_weight), numbers->ks);
+    if (openpbr)
         return fmax(diffuse, vec3_max_abs(numbers->ks));
     return diffuse + (specular > 0 ? specular : vec3_max_abs(numbers->ks) * 2 / (exponent + 1));
 }

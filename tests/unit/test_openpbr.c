@@ -205,6 +205,39 @@ TEST(the_table_of_metals_has_the_colours_of_metals) {
     CHECK(known >= 10);
 }
 
+/* Tints above 1 (gold, brass) reflect no more light than arrives, if the colour leaves room for them. */
+TEST(the_albedo_bound_of_metal_is_above_1_only_where_its_fresnel_reflectance_is) {
+    const struct {
+        double colour, tint;
+    } cases[] = {{0.4225, 1.0212}, {0.73, 1.0037}, {1, 0.9895}, {0.9, 1.1},
+                 {0.99, 1.1},      {1, 1.01},      {0.5, 1.3},  {1.2, 1}};
+#define ROW(name, r, g, b, tint_r, tint_g, tint_b) {{r, g, b}, {tint_r, tint_g, tint_b}},
+    static const double metals[][2][3] = {METALS(ROW)};
+#undef ROW
+    struct layers metal;
+    layers_init(&metal);
+    metal.numbers.base_metalness = 1;
+    for (size_t i = 0; i < sizeof metals / sizeof *metals; i++) {
+        const double *colour = metals[i][0], *tint = metals[i][1];
+        metal.material.phong.kd = vec3_make(colour[0], colour[1], colour[2]);
+        metal.material.phong.ks = vec3_make(tint[0], tint[1], tint[2]);
+        CHECK(material_albedo_bound(&metal.material) <= 1);
+    }
+    int gains = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct bsdf_facets facets = {.roughness = 1};
+        double largest = 0;
+        metal.material.phong.kd = vec3_all(cases[i].colour);
+        metal.material.phong.ks = vec3_all(cases[i].tint);
+        bsdf_facets_metal(&facets, metal.material.phong.kd, metal.material.phong.ks);
+        for (int k = 0; k <= 4000; k++)
+            largest = fmax(largest, bsdf_metal_fresnel(&facets, k / 4000.0).x);
+        CHECK((largest > 1 + 1e-12) == (material_albedo_bound(&metal.material) > 1));
+        gains += largest > 1 + 1e-12;
+    }
+    CHECK_EQ_INT(gains, 5);
+}
+
 /* --- closed forms of layers --- */
 
 static struct vec3 weight_of(const struct bsdf *bsdf, enum lobe_kind kind) {
