@@ -63,6 +63,14 @@ enum { EXPR_UNLINKED, EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EX
     EXPR_CASES_BOTH(X2, LESS_EQUAL)                                                                                    \
     EXPR_CASES_3(X3, 0)                                                                                                \
     EXPR_CASES_3(X3, 1)
+/* The table of jumps of an evaluator: by link, the addresses of the labels that these cases make of the names, such as
+ * ADD_L_R_1. */
+#define EXPR_LINK_ADDRESSES                                                                                            \
+    [EXPR_UNLINKED] = &&UNLINKED, EXPR_LINK_CASES(EXPR_ADDRESS_1, EXPR_ADDRESS_2, EXPR_ADDRESS_3)
+#define EXPR_ADDRESS_1(operation, oa, stored) [EXPR_LINK_1(operation, oa, stored)] = &&operation##_##oa##_##stored,
+#define EXPR_ADDRESS_2(operation, oa, ob, stored)                                                                      \
+    [EXPR_LINK_2(operation, oa, ob, stored)] = &&operation##_##oa##_##ob##_##stored,
+#define EXPR_ADDRESS_3(oa, ob, oc, stored) [EXPR_LINK_3(oa, ob, oc, stored)] = &&SELECT_##oa##_##ob##_##oc##_##stored,
 #define EXPR_CASES_BOTH(X, operation) EXPR_CASES_2(X, operation, 0) EXPR_CASES_2(X, operation, 1)
 
 struct expr_link_range {

@@ -2,53 +2,63 @@
  * for each of them, VECTORS, which is their number, and RUN_LINKED, the name of the function. The result of the
  * instruction before is in x0, x1, ..., which the compiler keeps in processor registers. Undefines all three. */
 
-#define FROM_R(k, operand) LOAD(values + (size_t)in->operand * EXPR_BATCH + (k)*WIDTH)
-#define FROM_K(k, operand) ALL(program->constants[in->operand].f)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic" /* addresses of labels */
+
+#define FROM_R(k, operand) LOAD(operand + (k)*WIDTH)
+#define FROM_K(k, operand) ALL(constants[in->operand].f)
 #define FROM_L(k, operand) x##k
 #define KEEP(k, to) STORE(to + (k)*WIDTH, x##k);
 #define KEEP_0
 #define KEEP_1                                                                                                         \
     double *const to = values + (size_t)in->out * EXPR_BATCH;                                                          \
     EACH(KEEP, to)
+/* The row of an operand. The compiler shall keep its address in a processor register. */
+#define ROW_R(operand)                                                                                                 \
+    const double *operand = values + (size_t)in->operand * EXPR_BATCH;                                                 \
+    __asm__("" : "+r"(operand));
+#define ROW_K(operand)
+#define ROW_L(operand)
 
 #define OPERATE_1(k, operation, oa) x##k = LINKED_##operation(FROM_##oa(k, a));
 #define OPERATE_2(k, operation, oa, ob) x##k = LINKED_##operation(FROM_##oa(k, a), FROM_##ob(k, b));
 #define OPERATE_3(k, oa, ob, oc) x##k = LINKED_SELECT(FROM_##oa(k, a), FROM_##ob(k, b), FROM_##oc(k, c));
-#define CASE_1(operation, oa, stored)                                                                                  \
-    case EXPR_LINK_1(operation, oa, stored): {                                                                         \
-        EACH(OPERATE_1, operation, oa)                                                                                 \
-        KEEP_##stored;                                                                                                 \
-        break;                                                                                                         \
+#define TARGET_1(operation, oa, stored)                                                                                \
+    operation##_##oa##_##stored : {                                                                                    \
+        ROW_##oa(a) EACH(OPERATE_1, operation, oa) KEEP_##stored;                                                      \
+        NEXT                                                                                                           \
     }
-#define CASE_2(operation, oa, ob, stored)                                                                              \
-    case EXPR_LINK_2(operation, oa, ob, stored): {                                                                     \
-        EACH(OPERATE_2, operation, oa, ob)                                                                             \
-        KEEP_##stored;                                                                                                 \
-        break;                                                                                                         \
+#define TARGET_2(operation, oa, ob, stored)                                                                            \
+    operation##_##oa##_##ob##_##stored : {                                                                             \
+        ROW_##oa(a) ROW_##ob(b) EACH(OPERATE_2, operation, oa, ob) KEEP_##stored;                                      \
+        NEXT                                                                                                           \
     }
-#define CASE_3(oa, ob, oc, stored)                                                                                     \
-    case EXPR_LINK_3(oa, ob, oc, stored): {                                                                            \
-        EACH(OPERATE_3, oa, ob, oc)                                                                                    \
-        KEEP_##stored;                                                                                                 \
-        break;                                                                                                         \
+#define TARGET_3(oa, ob, oc, stored)                                                                                   \
+    SELECT_##oa##_##ob##_##oc##_##stored : {                                                                           \
+        ROW_##oa(a) ROW_##ob(b) ROW_##oc(c) EACH(OPERATE_3, oa, ob, oc) KEEP_##stored;                                 \
+        NEXT                                                                                                           \
     }
+/* Each instruction jumps to the next one itself, which processors predict better than one jump for all of them. */
+#define NEXT                                                                                                           \
+    if (++in >= end)                                                                                                   \
+        return;                                                                                                        \
+    goto *targets[in->link];
 #define DECLARE(k, zero) vector x##k = zero;
 #define FORGET(k, zero) x##k = zero;
 
 static void RUN_LINKED(const struct expr_program *program, double *rows) {
+    static const void *const targets[] = {EXPR_LINK_ADDRESSES};
+    const union expr_value *const constants = program->constants;
     double *const values = rows - (size_t)program->constant_count * EXPR_BATCH;
+    const struct expr_instruction *in = program->code, *const end = in + program->count;
     EACH(DECLARE, ALL(0.0))
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        switch (in->link) {
-        case EXPR_UNLINKED:
-            in = run_rows(program, in, VECTORS * WIDTH, rows);
-            EACH(FORGET, ALL(0.0)) /* not saved over the call */
-            break;
-            EXPR_LINK_CASES(CASE_1, CASE_2, CASE_3)
-        default:
-            __builtin_unreachable();
-        }
-    }
+    if (in < end)
+        goto *targets[in->link];
+    return;
+UNLINKED:
+    in = run_rows(program, in, VECTORS * WIDTH, rows);
+    EACH(FORGET, ALL(0.0)) /* not saved over the call */
+    NEXT EXPR_LINK_CASES(TARGET_1, TARGET_2, TARGET_3)
 }
 
 #undef FROM_R
@@ -60,11 +70,13 @@ static void RUN_LINKED(const struct expr_program *program, double *rows) {
 #undef OPERATE_1
 #undef OPERATE_2
 #undef OPERATE_3
-#undef CASE_1
-#undef CASE_2
-#undef CASE_3
+#undef TARGET_1
+#undef TARGET_2
+#undef TARGET_3
+#undef NEXT
 #undef DECLARE
 #undef FORGET
 #undef EACH
 #undef VECTORS
 #undef RUN_LINKED
+#pragma GCC diagnostic pop

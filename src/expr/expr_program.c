@@ -444,18 +444,22 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
 #define LINKED_LESS(a, b) truth((a) < (b))
 #define LINKED_LESS_EQUAL(a, b) truth((a) <= (b))
 #define LINKED_SELECT(a, b, c) is_true(a) ? (b) : (c)
-#define SINGLE_CASE_1(operation, oa, stored)                                                                           \
-    case EXPR_LINK_1(operation, oa, stored):                                                                           \
-        values[in->out].f = last = LINKED_##operation(SINGLE_##oa(a));                                                 \
-        break;
-#define SINGLE_CASE_2(operation, oa, ob, stored)                                                                       \
-    case EXPR_LINK_2(operation, oa, ob, stored):                                                                       \
-        values[in->out].f = last = LINKED_##operation(SINGLE_##oa(a), SINGLE_##ob(b));                                 \
-        break;
-#define SINGLE_CASE_3(oa, ob, oc, stored)                                                                              \
-    case EXPR_LINK_3(oa, ob, oc, stored):                                                                              \
-        values[in->out].f = last = LINKED_SELECT(SINGLE_##oa(a), SINGLE_##ob(b), SINGLE_##oc(c));                      \
-        break;
+/* Each instruction jumps to the next one itself: with one jump for all of them, a point takes 1.5 times as long. */
+#define NEXT                                                                                                           \
+    if (++in >= end)                                                                                                   \
+        return;                                                                                                        \
+    goto *targets[in->link];
+#define SINGLE_1(operation, oa, stored)                                                                                \
+    operation##_##oa##_##stored : values[in->out].f = last = LINKED_##operation(SINGLE_##oa(a));                       \
+    NEXT
+#define SINGLE_2(operation, oa, ob, stored)                                                                            \
+    operation##_##oa##_##ob##_##stored : values[in->out].f = last =                                                    \
+        LINKED_##operation(SINGLE_##oa(a), SINGLE_##ob(b));                                                            \
+    NEXT
+#define SINGLE_3(oa, ob, oc, stored)                                                                                   \
+    SELECT_##oa##_##ob##_##oc##_##stored : values[in->out].f = last =                                                  \
+        LINKED_SELECT(SINGLE_##oa(a), SINGLE_##ob(b), SINGLE_##oc(c));                                                 \
+    NEXT
 
 static inline double truth(bool x) {
     union expr_value value = {.i = -(int64_t)x};
@@ -521,19 +525,22 @@ static const struct expr_instruction *run_unlinked(const struct expr_program *pr
     return in;
 }
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic" /* addresses of labels */
+
 static void run_code(const struct expr_program *program, union expr_value *values) {
+    static const void *const targets[] = {EXPR_LINK_ADDRESSES};
+    const struct expr_instruction *in = program->code, *const end = in + program->count;
     double last = 0;
-    for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++) {
-        switch (in->link) {
-        case EXPR_UNLINKED:
-            in = run_unlinked(program, in, values);
-            break;
-            EXPR_LINK_CASES(SINGLE_CASE_1, SINGLE_CASE_2, SINGLE_CASE_3)
-        default:
-            __builtin_unreachable();
-        }
-    }
+    if (in >= end)
+        return;
+    goto *targets[in->link];
+UNLINKED:
+    in = run_unlinked(program, in, values);
+    NEXT EXPR_LINK_CASES(SINGLE_1, SINGLE_2, SINGLE_3)
 }
+
+#pragma GCC diagnostic pop
 
 void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_INPUT_COUNT],
                    double outputs[EXPR_OUTPUTS]) {
