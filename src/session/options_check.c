@@ -152,22 +152,30 @@ static bool check_time(const struct options *options, struct error *error) {
     return true;
 }
 
-static bool check_name(const struct options *options, struct error *error) {
-    return !options->output || !output_name_numbered_twice(options->output) ||
-           error_set(error, ERROR_USAGE, "-o %.600s: a name has one number: %%d, %%04d or ####", options->output);
-}
-
-/* By the extension; a name with a number is that of single pictures. */
+/* By the extension. */
 static enum animation_format animation_of(const char *output) {
     static const char *const endings[] = {ANIMATION_FORMATS(LIST_WORD)};
     const char *dot = output ? strrchr(output, '.') : NULL;
-    if (!dot || strchr(dot, '/') || output_name_numbered(output))
+    if (!dot || strchr(dot, '/'))
         return ANIMATION_NONE;
     for (int i = ANIMATION_NONE + 1; i < LIST_COUNT(ANIMATION_FORMATS); i++) {
         if (strcasecmp(dot, endings[i]) == 0)
             return (enum animation_format)i;
     }
     return ANIMATION_NONE;
+}
+
+static bool check_name(const struct options *options, struct error *error) {
+    const char *output = options->output;
+    if (!output || !output_name_numbered(output))
+        return true;
+    if (output_name_numbered_twice(output))
+        return error_set(error, ERROR_USAGE, "-o %.600s: a name has one number: %%d, %%04d or ####", output);
+    return animation_of(output) == ANIMATION_NONE ||
+           error_set(error, ERROR_USAGE,
+                     "-o %.600s: %s is one file of all frames, without a number; names with a number end in .png, "
+                     ".pfm, .hdr or .exr",
+                     output, strrchr(output, '.'));
 }
 
 /* Frames are kept until the animation is complete, as if --checkpoint auto were given. */

@@ -620,6 +620,8 @@ TEST(every_picture_of_an_old_script_is_a_frame) {
     gives("$gray -q old.lua -o x.png", 2,
           "several pictures are rendered, so the name needs %d, or an ending of animations such as .gif or .mp4");
     gives("$gray -q old.lua -o x%04d%d.png", 2, "-o x%04d%d.png: a name has one number: %d, %04d or ####");
+    gives("$gray -q old.lua -o x%d.gif", 2,
+          "-o x%d.gif: .gif is one file of all frames, without a number; names with a number end in .png, ");
     gives("$gray -q old.lua -o x.####.####.png; ls x*", 2, "-o x.####.####.png: a name has one number");
     gives("cat > two.lua <<'END'\n"
           "local node = gr.node('r')\nnode:add_child(gr.sphere{})\n"
