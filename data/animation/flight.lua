@@ -38,7 +38,7 @@ local FPS, SECONDS, KEYS = 20, 4, 8
 local keys = { curve = 'catmull' }
 for k = -2, KEYS + 2 do
     local a = 2 * math.pi * k / KEYS
-    local far, high = 10.2 + 1.6 * math.cos(2 * a), 2.2 + 1.1 * math.sin(a) + 0.5 * math.cos(3 * a)
+    local far, high = 10.9 + 1.2 * math.cos(2 * a), 2.6 + 0.7 * math.sin(a) + 0.4 * math.cos(3 * a)
     keys[#keys + 1] = { SECONDS * k / KEYS, {
         eye = { far * math.sin(a), high, far * math.cos(a) },
         target = { 3.2 * math.sin(a + 1.3), 1.3, 3.2 * math.cos(a + 1.3) },
