@@ -133,22 +133,32 @@ static void make_whole(lua_State *L, int index) {
     lua_replace(L, index);
 }
 
-static int call_original(lua_State *L) {
-    lua_pushvalue(L, lua_upvalueindex(1));
-    lua_insert(L, 1);
-    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
-    return lua_gettop(L);
+/* Runs Lua's own function in the place of this one, so that its errors name the line of the script and the function.
+ * Upvalue 1: that of Lua's own function, the state of the random numbers. Upvalue 2: Lua's own function. */
+static int run_original(lua_State *L) {
+    return lua_tocfunction(L, lua_upvalueindex(2))(L);
 }
 
-/* math.random(7 / 2) is math.random(3). Upvalue 1: Lua's own. */
+static void wrap_with_upvalue(lua_State *L, const char *library, const char *name, lua_CFunction function) {
+    lua_getglobal(L, library);
+    lua_getfield(L, -1, name);
+    if (!lua_getupvalue(L, -1, 1))
+        lua_pushnil(L);
+    lua_insert(L, -2);
+    lua_pushcclosure(L, function, 2);
+    lua_setfield(L, -2, name);
+    lua_pop(L, 1);
+}
+
+/* math.random(7 / 2) is math.random(3). */
 static int math_random(lua_State *L) {
     make_whole(L, 1);
     if (lua_gettop(L) >= 2)
         make_whole(L, 2);
-    return call_original(L);
+    return run_original(L);
 }
 
-/* string.format('%d', 2.7) is "2". Upvalue 1: Lua's own. */
+/* string.format('%d', 2.7) is "2". */
 static int string_format(lua_State *L) {
     const char *format = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : "";
     int top = lua_gettop(L), argument = 1;
@@ -164,7 +174,7 @@ static int string_format(lua_State *L) {
         if (strchr("cdiouxX", *c))
             make_whole(L, argument);
     }
-    return call_original(L);
+    return run_original(L);
 }
 
 /* loadstring(text, name). Upvalue 1: load. */
@@ -348,8 +358,8 @@ void compat_open(lua_State *L) {
     lua_pushcclosure(L, load_string, 1);
     lua_setglobal(L, "loadstring");
 
-    wrap_function(L, "math", "random", math_random);
-    wrap_function(L, "string", "format", string_format);
+    wrap_with_upvalue(L, "math", "random", math_random);
+    wrap_with_upvalue(L, "string", "format", string_format);
 
     lua_getglobal(L, "math");
     lua_getfield(L, -1, "randomseed");

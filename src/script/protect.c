@@ -68,8 +68,16 @@ static int call_and_pass_on(lua_State *L) {
     return lua_gettop(L);
 }
 
+/* coroutine.resume and coroutine.close. Bad arguments are found here, because Lua's own function, which this one calls,
+ * would not know the line of the script. */
+static int use_coroutine(lua_State *L) {
+    luaL_checktype(L, 1, LUA_TTHREAD);
+    return call_and_pass_on(L);
+}
+
 /* coroutine.wrap(f): as Lua's own, with our resume. Upvalue of the result: Lua's own result. */
 static int wrap_coroutine(lua_State *L) {
+    luaL_checktype(L, 1, LUA_TFUNCTION);
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
     lua_call(L, lua_gettop(L) - 1, 1);
@@ -108,6 +116,8 @@ static int set_metatable(lua_State *L) {
 
 /* load(chunk, name, mode, environment), the mode always "t". */
 static int load_text(lua_State *L) {
+    if (!lua_isstring(L, 1))
+        luaL_checktype(L, 1, LUA_TFUNCTION);
     if (lua_gettop(L) < 3)
         lua_settop(L, 3);
     lua_pushliteral(L, "t");
@@ -128,8 +138,8 @@ void protect_open(lua_State *L) {
     lua_setglobal(L, "pcall");
     lua_pushcfunction(L, protected_call_with_handler);
     lua_setglobal(L, "xpcall");
-    wrap_function(L, "coroutine", "resume", call_and_pass_on);
-    wrap_function(L, "coroutine", "close", call_and_pass_on);
+    wrap_function(L, "coroutine", "resume", use_coroutine);
+    wrap_function(L, "coroutine", "close", use_coroutine);
     wrap_function(L, "coroutine", "wrap", wrap_coroutine);
     if (context_of(L)->options->no_sandbox) {
         wrap_function(L, LUA_GNAME, "load", call_and_pass_on);

@@ -221,6 +221,17 @@ _Noreturn static void raise_text(lua_State *L, int index) {
     __builtin_unreachable();
 }
 
+_Noreturn static void raise_too_many_paths(lua_State *L, int function) {
+    lua_pushfstring(
+        L,
+        "the function has more than %d paths; gr.where(x, a, b), gr.step, gr.min and gr.max choose without a "
+        "path each, and gr.loop(n, state, f) repeats",
+        RECORD_PATHS);
+    name_function(L, function);
+    lua_error(L);
+    __builtin_unreachable();
+}
+
 static struct path_result record_paths(lua_State *L, int function, int first) {
     struct recorder *recorder = context_of(L)->recorder;
     struct record_frame *frame = &recorder->frames[0];
@@ -244,10 +255,7 @@ static struct path_result record_paths(lua_State *L, int function, int first) {
         last->if_true = result;
         last->answer = false;
         if (frame->count == RECORD_PATHS)
-            record_give_up(L,
-                           "the function has more than %d paths; gr.where(x, a, b), gr.step, gr.min and gr.max choose "
-                           "without a path each, and gr.loop(n, state, f) repeats",
-                           RECORD_PATHS);
+            raise_too_many_paths(L, function);
     }
 }
 
@@ -349,7 +357,8 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
     char text[RECORD_ERROR];
     (void)snprintf(text, sizeof text,
                    "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded %s; "
-                   "it must depend only on its arguments, and x == 0 cannot be recorded (write x >= 0 and x <= 0)",
+                   "it must depend only on its arguments, and x == 0 cannot be recorded (write x >= 0 and x <= 0), nor "
+                   "can t[x] = y and tostring(x)",
                    where.linedefined, inputs[0], inputs[1], inputs[2], a, b);
     lua_pushstring(L, text);
     lua_error(L);

@@ -284,15 +284,31 @@ static void refuse_zero(lua_State *L, struct number divisor, const char *message
         luaL_error(L, message);
 }
 
-/* A symbol in front of a vector. */
-static int by_vector(lua_State *L, int operator) {
+/* A symbol in front of a table for which the script defines this operator: as for a number, the table's is called. */
+static bool by_operator_of_table(lua_State *L, const char *event) {
     lua_settop(L, 2);
-    return vector_arithmetic(L, operator);
+    if (lua_type(L, 2) != LUA_TTABLE || luaL_getmetafield(L, 2, event) == LUA_TNIL)
+        return false;
+    if (lua_iscfunction(L, -1)) { /* of a vector */
+        lua_pop(L, 1);
+        return false;
+    }
+    lua_insert(L, 1);
+    lua_call(L, 2, 1);
+    return true;
+}
+
+/* A symbol in front of a table, which is a vector unless it has its own operator. */
+static int by_table(lua_State *L, int operator) {
+    static const char *const events[] = {
+        [LUA_OPADD] = "__add", [LUA_OPSUB] = "__sub", [LUA_OPMUL] = "__mul",  [LUA_OPMOD] = "__mod",
+        [LUA_OPPOW] = "__pow", [LUA_OPDIV] = "__div", [LUA_OPIDIV] = "__idiv"};
+    return by_operator_of_table(L, events[operator]) ? 1 : vector_arithmetic(L, operator);
 }
 
 static int arithmetic(lua_State *L, int operator, enum expr_operation of_floats, enum expr_operation of_integers) {
     if (lua_type(L, 2) == LUA_TTABLE)
-        return by_vector(L, operator);
+        return by_table(L, operator);
     struct number a = number_at(L, 1), b = number_at(L, 2);
     if (are_floats(L, &a, &b))
         return give(L, make_float(record_operation(L, of_floats, a.node, b.node, EXPR_NONE)));
@@ -330,14 +346,14 @@ static int of_two_floats(lua_State *L, enum expr_operation operation) {
 
 static int symbol_divide(lua_State *L) {
     if (lua_type(L, 2) == LUA_TTABLE)
-        return by_vector(L, LUA_OPDIV);
+        return by_table(L, LUA_OPDIV);
     return of_two_floats(L, EXPR_DIVIDE);
 }
 
 /* Lua computes x ^ 2 as x * x. */
 static int symbol_power(lua_State *L) {
     if (lua_type(L, 2) == LUA_TTABLE)
-        return by_vector(L, LUA_OPPOW);
+        return by_table(L, LUA_OPPOW);
     uint32_t a = float_of(L, number_at(L, 1)), b = float_of(L, number_at(L, 2));
     uint32_t two = record_node(L, expr_float(&recorder_of(L)->graph, 2));
     uint32_t is_two = record_operation(L, EXPR_EQUAL, b, two, EXPR_NONE);
@@ -415,18 +431,20 @@ static const struct comparison by_less_equal = {EXPR_LESS_EQUAL, EXPR_INTEGER_LE
                                                 EXPR_MIXED_GREATER_EQUAL};
 static const struct comparison by_equal = {EXPR_EQUAL, EXPR_INTEGER_EQUAL, EXPR_MIXED_EQUAL, EXPR_MIXED_EQUAL};
 
-static int decided(lua_State *L, const struct comparison *by) {
+static int decided(lua_State *L, const struct comparison *by, const char *event) {
+    if (by_operator_of_table(L, event))
+        return 1;
     uint32_t condition = compare(L, number_at(L, 1), number_at(L, 2), by);
     lua_pushboolean(L, record_decide(L, condition));
     return 1;
 }
 
 static int symbol_less(lua_State *L) {
-    return decided(L, &by_less);
+    return decided(L, &by_less, "__lt");
 }
 
 static int symbol_less_equal(lua_State *L) {
-    return decided(L, &by_less_equal);
+    return decided(L, &by_less_equal, "__le");
 }
 
 static int symbol_equal(lua_State *L) {
@@ -434,7 +452,7 @@ static int symbol_equal(lua_State *L) {
         lua_pushboolean(L, 0);
         return 1;
     }
-    return decided(L, &by_equal);
+    return decided(L, &by_equal, "__eq");
 }
 
 static int symbol_text(lua_State *L) {
@@ -633,6 +651,12 @@ static int type_of(lua_State *L) {
     return 1;
 }
 
+static int to_number(lua_State *L) {
+    if (lua_type(L, 1) != LUA_TUSERDATA || !is_symbol(L, 1) || lua_gettop(L) > 1)
+        return lua_tocfunction(L, lua_upvalueindex(1))(L);
+    return 1;
+}
+
 void symbols_open(lua_State *L) {
     static const luaL_Reg operators[] = {{"__add", symbol_add},
                                          {"__sub", symbol_subtract},
@@ -664,4 +688,5 @@ void symbols_open(lua_State *L) {
 #define WRAP_FUNCTION(name, of_symbols) wrap_function(L, "math", #name, math_##name);
     MATH_FUNCTIONS(WRAP_FUNCTION)
     wrap_function(L, LUA_GNAME, "type", type_of);
+    wrap_function(L, LUA_GNAME, "tonumber", to_number);
 }

@@ -60,6 +60,10 @@ TEST(library_functions_and_those_of_users_are_recorded_with_the_bits_of_lua) {
     claims_hold("claims_functions");
 }
 
+TEST(functions_that_students_write_are_recorded_or_refused_with_their_line) {
+    claims_hold("claims_student_functions");
+}
+
 TEST(library_solids_of_functions_are_distances_or_bounds_of_them) {
     claims_hold("claims_sdf");
 }

@@ -20,6 +20,13 @@ static const struct corner corners[] = {
     {"assert(math.ldexp(1, 20000) == math.huge and math.ldexp(1, -20000) == 0 and math.ldexp(3, 2) == 12)", NULL},
     {"math.randomseed(1e300) math.randomseed(1.5) math.randomseed(3) math.randomseed()", NULL},
     {"assert(string.format('%d %5.1f%%', 3.0, 2) == '3   2.0%')", NULL},
+    /* errors of replaced functions name the line and the function, as those of Lua do */
+    {"math.random(0, -1)", "scene.lua:2: bad argument #1 to 'random' (interval is empty)"},
+    {"string.format('%.2f', {})", "scene.lua:2: bad argument #2 to 'format' (number expected, got table)"},
+    {"load()", "scene.lua:2: bad argument #1 to 'load' (function expected, got no value)"},
+    {"coroutine.resume(1)", "scene.lua:2: bad argument #1 to 'resume' (thread expected, got number)"},
+    {"coroutine.wrap(1)", "scene.lua:2: bad argument #1 to 'wrap' (function expected, got number)"},
+    {"math.randomseed(3) local x = math.random(1e6) math.randomseed(3) assert(math.random(1e6 + 0.5) == x)", NULL},
     {"assert(not pcall(string.format, '%5') and not pcall(string.format, '%d', 1e300))", NULL},
     {"assert(not pcall(string.format, '%d', 0 / 0) and string.format('%d', 1.0) == '1')", NULL},
     /* environments */
