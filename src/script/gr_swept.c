@@ -128,7 +128,15 @@ static bool gr_sweep(struct script_context *context, const struct script_value *
     return shape.sweep && give_node(context, args, "sweep", &shape, result, error);
 }
 
-enum { IMPLICIT_F = SHAPE_FIRST, IMPLICIT_BOUNDS, IMPLICIT_RADIUS, IMPLICIT_CENTRE, IMPLICIT_OPEN };
+enum {
+    IMPLICIT_F = SHAPE_FIRST,
+    IMPLICIT_BOUNDS,
+    IMPLICIT_RADIUS,
+    IMPLICIT_CENTRE,
+    IMPLICIT_OPEN,
+    IMPLICIT_LIPSCHITZ,
+    IMPLICIT_DISTANCE
+};
 static const struct script_parameter implicit_parameters[] = {
     SHAPE("implicit"),
     [IMPLICIT_F] = {"f", KIND_FUNCTION, 0, ANY, NULL, NULL, "A function of a point that is negative inside."},
@@ -138,12 +146,48 @@ static const struct script_parameter implicit_parameters[] = {
                          "Radius of a ball that bounds it, instead of bounds."},
     [IMPLICIT_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Centre of that ball."},
     [IMPLICIT_OPEN] = {"open", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether there are no caps on the bounds."},
+    [IMPLICIT_LIPSCHITZ] = {"lipschitz", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,
+                            "A bound of the slope of f: |f(a) - f(b)| <= lipschitz |a - b|."},
+    [IMPLICIT_DISTANCE] = {"distance", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                           "Whether |f| is at most the distance to the surface: lipschitz = 1."},
 };
 
 static void use_in_bounds(struct script_context *context, const struct expr_program *program,
                           const struct shape *shape) {
     const struct box bounds = shape_bounds(shape);
     record_use(context, program, &bounds);
+}
+
+/* Operations for a line of an implicit solid. A picture of 640 x 480 needs minutes above the first number, and hours
+ * above the second. */
+static const double slow_line = 20000, refused_line = 200000;
+#define ADVICE                                                                                                         \
+    "declare distance = true if |f| is at most the distance to the surface, or lipschitz = L, a bound of the slope "   \
+    "of f"
+
+/* Reports a Lipschitz bound that does not hold, an empty solid, and bounds of values that are too wide. */
+static bool examine_implicit(struct script_context *context, const struct implicit_input *in,
+                             const struct implicit *solid, struct error *error) {
+    struct implicit_findings found;
+    if (!implicit_examine(solid, &found, error))
+        return false;
+    const struct vec3 at = found.steepest_at;
+    if (found.line_work > refused_line)
+        return error_set(
+            error, ERROR_SCENE,
+            "the bounds of f are too wide to find its surface in reasonable time, as of fractals: " ADVICE);
+    if (found.line_work > slow_line)
+        context_warn(context, "the bounds of f are wide, so that rays need %.0f operations each: " ADVICE,
+                     found.line_work);
+    if (found.is_empty)
+        context_warn(context, "f is negative at none of the points that were examined: if it is an estimate that stays "
+                              "above 0, subtract a small distance from it");
+    if (found.steep_points > 0)
+        context_warn(context,
+                     "the slope of f is above lipschitz = %.4g at %u of %u points (%.3g at {%.4g, %.4g, %.4g}), so "
+                     "parts of the surface may be missing: declare a larger bound, or divide f by it",
+                     in->lipschitz, found.steep_points, found.points, found.steepest, at.x, at.y, at.z);
+    return true;
 }
 
 static bool gr_implicit(struct script_context *context, const struct script_value *args, struct script_result *result,
@@ -153,7 +197,12 @@ static bool gr_implicit(struct script_context *context, const struct script_valu
                                 .is_ball = radius->given,
                                 .centre = args[IMPLICIT_CENTRE].vector,
                                 .radius = radius->number,
-                                .open = args[IMPLICIT_OPEN].boolean};
+                                .open = args[IMPLICIT_OPEN].boolean,
+                                .lipschitz = args[IMPLICIT_LIPSCHITZ].given    ? args[IMPLICIT_LIPSCHITZ].number
+                                             : args[IMPLICIT_DISTANCE].boolean ? 1
+                                                                               : 0};
+    if (args[IMPLICIT_LIPSCHITZ].given && args[IMPLICIT_DISTANCE].boolean)
+        return error_set(error, ERROR_SCENE, "lipschitz and distance exclude each other; distance means lipschitz = 1");
     if (bounds->given == radius->given)
         return error_set(error, ERROR_SCENE,
                          radius->given ? "bounds and radius exclude each other"
@@ -167,6 +216,8 @@ static bool gr_implicit(struct script_context *context, const struct script_valu
         in.bounds = (struct box){vec3_make(bounds->points[0][0], bounds->points[0][1], bounds->points[0][2]),
                                  vec3_make(bounds->points[1][0], bounds->points[1][1], bounds->points[1][2])};
     struct shape shape = {.kind = SHAPE_IMPLICIT, .implicit = implicit_build(&context->scene.arena, &in, error)};
+    if (shape.implicit && !examine_implicit(context, &in, shape.implicit, error))
+        return false;
     if (shape.implicit)
         use_in_bounds(context, in.program, &shape);
     return shape.implicit && give_node(context, args, "implicit", &shape, result, error);

@@ -5,26 +5,27 @@
  * - A stretch whose ends have different signs has one crossing if the slope has one sign. It is found by the method of
  *   Chandrupatla.
  * - Every other stretch is divided into eight parts, whose bounds are computed at once.
- * Thin walls are found down to the resolution.
+ * Thin walls are found down to the resolution. With a Lipschitz bound, the line is marched in steps without a crossing.
  *
  * The search keeps track of the side of the surface, so entries and exits alternate. It searches every region from end
  * to end, also for rays that begin or end in it. So the nearest hit has the bits of the first crossing of the list.
  *
  * R. E. Moore, "Interval Analysis", 1966; J. Snyder, "Interval Analysis for Computer Graphics", SIGGRAPH 1992;
- * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997. */
+ * T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm", Advances in Engineering Software 28, 1997;
+ * J. Hart, "Sphere Tracing", The Visual Computer 12, 1996; B. Keinert et al., "Enhanced Sphere Tracing", STAG 2014. */
 #include "shape/implicit_internal.h"
 
 #include <math.h>
 
 /* Fractions of the size. Two crossings that are closer than the resolution may be missed together. A crossing is
  * located to the accuracy. */
-static const double resolution = 0x1p-25, accuracy = 0x1p-46;
+static const double resolution = 0x1p-25;
+/* The smallest step of a march; twice as long after as many steps of that length in a region. */
+static const double march_resolution = 0x1p-20;
+enum { MARCH_SMALLEST = 64 };
 /* WORK: the limit of operations of the function for one line; an interval operation counts as ten. Beyond the limit,
- * segments are not divided further. GUESS: room for crossings in the scratch memory. */
-enum { WORK = 4000000, GUESS = 64 };
-/* Parts of crossings: on a side of the bounds its axis, on a ball, between regions. All others are numbers of regions.
- */
-enum { PART_WHOLE = 0x7fffffe0, PART_BOX = 0x7ffffff0, PART_BALL = PART_BOX + 3 };
+ * segments are not divided further. */
+enum { WORK = 4000000 };
 
 struct search {
     const struct implicit *solid;
@@ -34,14 +35,15 @@ struct search {
     uint32_t begin_part, end_part; /* where it meets them */
     bool inside;                   /* before the current place */
     double at, value;              /* of the function, where it was evaluated last */
-    uint64_t work;
+    uint64_t work, limit;
     struct crossing waiting; /* not returned yet; the next one may cancel it */
     bool has_waiting, has_found, is_done, is_full;
     bool is_any;           /* any crossing does */
     bool is_unknown;       /* `inside` is not valid, because the segments before were skipped */
     const struct ray *ray; /* of a nearest hit: its interval; then `found` */
     struct crossing *found;
-    struct geom_scratch *scratch; /* of a list */
+    struct geom_scratch *scratch;
+    bool is_list;
 };
 
 /* Slopes along the line. */
@@ -65,11 +67,11 @@ static bool clip_box(struct search *search, const struct box *box) {
         double near = (d > 0 ? lo : hi) / d, far = (d > 0 ? hi : lo) / d;
         if (near > search->begin) {
             search->begin = near;
-            search->begin_part = PART_BOX + (uint32_t)axis;
+            search->begin_part = IMPLICIT_PART_BOX + (uint32_t)axis;
         }
         if (far < search->end) {
             search->end = far;
-            search->end_part = PART_BOX + (uint32_t)axis;
+            search->end_part = IMPLICIT_PART_BOX + (uint32_t)axis;
         }
     }
     return search->begin < search->end;
@@ -84,7 +86,7 @@ static bool clip_ball(struct search *search, struct vec3 centre, double radius) 
         return false;
     search->begin = foot - sqrt(room);
     search->end = foot + sqrt(room);
-    search->begin_part = search->end_part = PART_BALL;
+    search->begin_part = search->end_part = IMPLICIT_PART_BALL;
     return search->begin < search->end;
 }
 
@@ -95,9 +97,9 @@ static void give_out(struct search *search) {
         return;
     search->has_waiting = false;
     const struct crossing *crossing = &search->waiting;
-    if (search->solid->in.open && crossing->part >= PART_BOX)
+    if (search->solid->in.open && crossing->part >= IMPLICIT_PART_BOX)
         return;
-    if (search->scratch) {
+    if (search->is_list) {
         search->is_full = !geom_scratch_push(search->scratch, *crossing);
         search->is_done = search->is_full;
         return;
@@ -134,14 +136,27 @@ static double evaluate(struct search *search, const struct expr_program *program
     return outputs[0];
 }
 
+/* Memory on top of the scratch, which the next crossing overwrites. NULL: it is too small. */
+static void *borrow_memory(struct search *search, size_t size) {
+    struct geom_scratch *scratch = search->scratch;
+    if ((size_t)(scratch->capacity - scratch->used) * sizeof *scratch->items >= size + IMPLICIT_ALIGNMENT)
+        return implicit_aligned(scratch->items + scratch->used);
+    scratch->overflow = search->is_full = search->is_done = true;
+    return NULL;
+}
+
 /* Bounds of the function and of its slope over each of the eight parts, or over all of them in each case of its
- * discontinuities. */
-static void bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
+ * discontinuities. False: the scratch is too small. */
+static bool bound_eighths(struct search *search, const struct expr_program *program, const double ends[EXPR_LANES + 1],
                           bool are_cases, struct expr_lane_range *out) {
-    unsigned char memory[expr_lanes_size(program) + IMPLICIT_ALIGNMENT];
+    const size_t size = expr_lanes_size(program);
+    unsigned char memory[size <= IMPLICIT_STACK ? size + IMPLICIT_ALIGNMENT : 1];
+    void *rows = size <= IMPLICIT_STACK ? implicit_aligned(memory) : borrow_memory(search, size);
     struct expr_lane_inputs inputs;
     struct expr_lane_range outputs[EXPR_OUTPUTS];
     struct expr_directions directions;
+    if (!rows)
+        return false;
     double margin = search->solid->size * 0x1p-50;
     directions.count = 1;
     inputs.are_cases = are_cases;
@@ -157,8 +172,9 @@ static void bound_eighths(struct search *search, const struct expr_program *prog
         directions.seeds[EXPR_POINT_X + k][0] = d;
     }
     search->work += 10 * expr_work(program);
-    expr_evaluate_slopes_lanes(program, &inputs, &directions, outputs, NULL, implicit_aligned(memory));
+    expr_evaluate_slopes_lanes(program, &inputs, &directions, outputs, NULL, rows);
     *out = outputs[0];
+    return true;
 }
 
 static struct slope slope_in(const struct search *search, const struct implicit_region *region) {
@@ -179,7 +195,7 @@ static struct slope slope_in(const struct search *search, const struct implicit_
 /* Where the sign changes between a and b, which have different signs. */
 static double find_change(struct search *search, const struct expr_program *program, double a, double fa, double b,
                           double fb) {
-    double tolerance = search->solid->size * accuracy, c = a, fc = fa, t = fa / (fa - fb);
+    double tolerance = search->solid->size * implicit_accuracy(search->solid), c = a, fc = fa, t = fa / (fa - fb);
     for (int step = 0; step < 200; step++) {
         double limit = tolerance / fabs(b - a);
         if (!(limit < 0.5))
@@ -242,7 +258,8 @@ static enum side side_of_lane(const struct expr_lane_range *range, int lane) {
 static enum side side_of_cases(struct search *search, const struct expr_program *program, double a, double b) {
     const double ends[EXPR_LANES + 1] = {[0] = a, [EXPR_LANES] = b};
     struct expr_lane_range range;
-    bound_eighths(search, program, ends, true, &range);
+    if (!bound_eighths(search, program, ends, true, &range))
+        return SIDE_UNKNOWN;
     enum side side = side_of_lane(&range, 0);
     for (int i = 1; i < EXPR_LANES; i++)
         side = side_of_lane(&range, i) == side ? side : SIDE_UNKNOWN;
@@ -275,7 +292,7 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
 static void search_part(struct search *search, uint32_t number, const struct part *part, struct slope slope) {
     bool changes = (part->fa < 0) != (part->fb < 0);
     bool is_known = changes ? slope.low >= 0 || slope.high <= 0 : stays(search, part, slope);
-    if (!is_known && part->b - part->a > search->solid->size * resolution && search->work < WORK)
+    if (!is_known && part->b - part->a > search->solid->size * resolution && search->work < search->limit)
         search_eighths(search, number, part, slope);
     else if (changes)
         pass_change(search, number, part);
@@ -296,12 +313,15 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
     for (int i = 0; i < EXPR_LANES; i++)
         ends[i] = part->a + (part->b - part->a) * ((double)i / EXPR_LANES);
     ends[EXPR_LANES] = part->b;
-    bound_eighths(search, program, ends, false, &range);
+    if (!bound_eighths(search, program, ends, false, &range))
+        return;
     for (int i = 0; i < EXPR_LANES && !search->is_done; i++) {
         enum side side = side_of_lane(&range, i);
         struct slope here = {range.slopes[0].low[i], range.slopes[0].high[i]};
         if (side == SIDE_UNKNOWN && !(here.low > -INFINITY && here.high < INFINITY))
             side = side_of_cases(search, program, ends[i], ends[i + 1]);
+        if (search->is_full)
+            return;
         if (side != SIDE_UNKNOWN) {
             settle(search, side == SIDE_INSIDE, ends[i], number, number);
             continue;
@@ -314,6 +334,43 @@ static void search_eighths(struct search *search, uint32_t number, const struct 
         settle(search, eighth.fa < 0, ends[i], number, number);
         if (!search->is_done)
             search_part(search, number, &eighth, here);
+    }
+}
+
+/* The part from s0 to s1 with a Lipschitz bound. Around a point there is no crossing within |f| / lipschitz. If the
+ * function grows along the line, the spheres of the next point reach back, so the step may be longer: it is tried,
+ * and repeated if both spheres do not meet. A march begins at the region, so that it does not depend on the ray. */
+static void march(struct search *search, uint32_t number, double s0, double s1) {
+    const struct expr_program *program = &search->solid->programs[search->solid->regions[number].program];
+    const double lipschitz = search->solid->in.lipschitz;
+    double smallest = search->solid->size * march_resolution, trend = -1; /* of |f| / lipschitz along the line */
+    int smallest_steps = 0;
+    struct part part = {.a = s0, .fa = value_at(search, program, s0)};
+    settle(search, part.fa < 0, s0, number, search->begin_part);
+    while (part.a < s1 && !search->is_done) {
+        double clear = fabs(part.fa) / lipschitz;
+        clear = clear < INFINITY ? clear : 0; /* or NaN */
+        double step = clear > smallest ? clear : smallest, longer = 1.9 * clear / (1 - trend);
+        bool is_longer = longer > step;
+        part.b = fmin(part.a + (is_longer ? longer : step), s1);
+        part.fb = value_at(search, program, part.b);
+        bool changes = (part.fa < 0) != (part.fb < 0);
+        if (is_longer && (changes || !(fabs(part.fa) + fabs(part.fb) >= lipschitz * (part.b - part.a)))) {
+            part.b = fmin(part.a + step, s1);
+            part.fb = value_at(search, program, part.b);
+            changes = (part.fa < 0) != (part.fb < 0);
+        }
+        smallest_steps += step <= smallest;
+        if (smallest_steps == MARCH_SMALLEST) {
+            smallest *= 2;
+            smallest_steps = 0;
+        }
+        trend = (fabs(part.fb) - fabs(part.fa)) / (lipschitz * (part.b - part.a));
+        trend = trend > -1 && !changes ? fmin(trend, 0.8) : -1; /* or NaN */
+        if (changes)
+            pass_change(search, number, &part);
+        part.a = part.b;
+        part.fa = part.fb;
     }
 }
 
@@ -345,6 +402,23 @@ static enum side side_by_slopes(const struct search *search, const struct implic
     return highs[0] < 0 && highs[1] < 0 ? SIDE_INSIDE : SIDE_UNKNOWN;
 }
 
+/* Whether the sphere around the centre of the region, in which the function has the sign of the centre, contains
+ * both ends and so the segment. */
+static enum side side_by_sphere(const struct search *search, const struct implicit_region *region,
+                                const struct node_box *box, double s0, double s1) {
+    double squares[2] = {0, 0};
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++) {
+            double off = search->origin[k] + vec3_get(search->line.direction, k) * (end == 0 ? s0 : s1) -
+                         region_middle(box->lo[k], box->hi[k]);
+            squares[end] += off * off;
+        }
+    double change = search->solid->in.lipschitz * sqrt(squares[0] > squares[1] ? squares[0] : squares[1]) * (1 + 1e-9);
+    if ((double)region->middle_low > change)
+        return SIDE_OUTSIDE;
+    return (double)region->middle_high < -change ? SIDE_INSIDE : SIDE_UNKNOWN;
+}
+
 static void pass_surface(struct search *search, uint32_t number, double s0, double s1) {
     const struct implicit_region *region = &search->solid->regions[number];
     const struct expr_program *program = &search->solid->programs[region->program];
@@ -371,12 +445,16 @@ static void pass_region(struct search *search, uint32_t node, const struct node_
     } else {
         enum region_kind kind = (enum region_kind)(value & 3);
         enum side side = kind == REGION_INSIDE ? SIDE_INSIDE : SIDE_OUTSIDE;
+        const bool is_marched = search->solid->in.lipschitz > 0;
         if (kind == REGION_SURFACE)
-            side = side_by_slopes(search, &search->solid->regions[number], box, s0, s1);
-        if (side == SIDE_UNKNOWN)
+            side = (is_marched ? side_by_sphere : side_by_slopes)(search, &search->solid->regions[number], box, s0, s1);
+        if (side == SIDE_UNKNOWN && is_marched)
+            march(search, number, s0, s1);
+        else if (side == SIDE_UNKNOWN)
             pass_surface(search, number, s0, s1);
         else
-            settle(search, side == SIDE_INSIDE, s0, kind == REGION_SURFACE ? number : PART_WHOLE, search->begin_part);
+            settle(search, side == SIDE_INSIDE, s0, kind == REGION_SURFACE ? number : IMPLICIT_PART_WHOLE,
+                   search->begin_part);
     }
     if (!search->ray || search->is_done)
         return;
@@ -428,15 +506,12 @@ static void pass_node(struct search *search, uint32_t node, const struct node_bo
 
 /* --- lines --- */
 
-static struct vec3 middle_of(const struct implicit *solid) {
-    const struct box *box = &solid->in.bounds;
-    return solid->in.is_ball ? solid->in.centre : vec3_add(vec3_scale(box->min, 0.5), vec3_scale(box->max, 0.5));
-}
-
 /* False: the line is off the bounds. */
-static bool search_begin(struct search *search, const struct implicit *solid, const struct ray *ray) {
+static bool search_begin(struct search *search, const struct implicit *solid, const struct ray *ray,
+                         struct geom_scratch *scratch) {
     search->solid = solid;
-    if (!line_init(&search->line, ray, middle_of(solid)) || !line_meets_box(&search->line, &solid->tight))
+    search->scratch = scratch;
+    if (!line_init(&search->line, ray, implicit_middle(solid)) || !line_meets_box(&search->line, &solid->tight))
         return false;
     for (int k = 0; k < 3; k++) {
         double d = vec3_get(search->line.direction, k);
@@ -444,12 +519,12 @@ static bool search_begin(struct search *search, const struct implicit *solid, co
         search->inverse[k] = fabs(d) > 0x1p-1000 ? 1 / d : 0;
     }
     search->inside = search->is_unknown = search->has_waiting = search->has_found = search->is_done = search->is_full =
-        search->is_any = false;
+        search->is_any = search->is_list = false;
     search->work = 0;
+    search->limit = WORK;
     search->at = (double)NAN;
     search->ray = NULL;
     search->found = NULL;
-    search->scratch = NULL;
     return solid->in.is_ball ? clip_ball(search, solid->in.centre, solid->in.radius)
                              : clip_box(search, &solid->in.bounds);
 }
@@ -468,9 +543,9 @@ bool implicit_crossings(const struct implicit *solid, const struct ray *ray, str
                         struct crossing_list *out) {
     struct search search;
     *out = (struct crossing_list){scratch->used, 0};
-    if (!search_begin(&search, solid, ray))
+    if (!search_begin(&search, solid, ray, scratch))
         return true;
-    search.scratch = scratch;
+    search.is_list = true;
     search_run(&search);
     if (search.is_full) {
         scratch->used = out->first;
@@ -480,9 +555,23 @@ bool implicit_crossings(const struct implicit *solid, const struct ray *ray, str
     return true;
 }
 
-static bool find_first(const struct implicit *solid, const struct ray *ray, bool is_any, struct crossing *out) {
+uint64_t implicit_line_work(const struct implicit *solid, const struct ray *ray, uint64_t limit,
+                            struct geom_scratch *scratch) {
     struct search search;
-    if (!search_begin(&search, solid, ray) || line_t(&search.line, search.begin) >= ray->t_max ||
+    const uint32_t used = scratch->used;
+    if (!search_begin(&search, solid, ray, scratch))
+        return 0;
+    search.is_list = true;
+    search.limit = limit;
+    search_run(&search);
+    scratch->used = used;
+    return search.work;
+}
+
+static bool find_first(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch, bool is_any,
+                       struct crossing *out) {
+    struct search search;
+    if (!search_begin(&search, solid, ray, scratch) || line_t(&search.line, search.begin) >= ray->t_max ||
         line_t(&search.line, search.end) <= ray->t_min)
         return false;
     search.ray = ray;
@@ -492,140 +581,12 @@ static bool find_first(const struct implicit *solid, const struct ray *ray, bool
     return search.has_found;
 }
 
-bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out) {
-    return find_first(solid, ray, false, out);
+bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
+                      struct crossing *out) {
+    return find_first(solid, ray, scratch, false, out);
 }
 
-bool implicit_any(const struct implicit *solid, const struct ray *ray) {
+bool implicit_any(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch) {
     struct crossing ignored;
-    return find_first(solid, ray, true, &ignored);
-}
-
-/* --- points --- */
-
-bool implicit_contains(const struct implicit *solid, struct vec3 point) {
-    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
-    const struct box *box = &solid->in.bounds;
-    for (int k = 0; k < 3; k++) {
-        double x = vec3_get(point, k);
-        if (!(x > vec3_get(box->min, k) && x < vec3_get(box->max, k)))
-            return false;
-        inputs[EXPR_POINT_X + k] = x;
-    }
-    struct vec3 from_centre = vec3_sub(point, solid->in.centre);
-    if (solid->in.is_ball && !(vec3_dot(from_centre, from_centre) < solid->in.radius * solid->in.radius))
-        return false;
-    expr_evaluate(solid->in.program, inputs, outputs);
-    return outputs[0] < 0;
-}
-
-/* The function at a point, and its gradient. */
-static double gradient_at(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
-    unsigned char memory[expr_gradient_size(program) + IMPLICIT_ALIGNMENT];
-    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS], gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS];
-    inputs[EXPR_POINT_X] = point.x;
-    inputs[EXPR_POINT_Y] = point.y;
-    inputs[EXPR_POINT_Z] = point.z;
-    expr_evaluate_gradient(program, inputs, expr_gradient_seeds, outputs, gradients, implicit_aligned(memory));
-    *gradient = vec3_make(gradients[0][0], gradients[0][1], gradients[0][2]);
-    return outputs[0];
-}
-
-/* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side. At a
- * discontinuity there is no gradient, and the direction of the ray is used. */
-static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
-    struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
-    double length = vec3_length(normal);
-    if (!(length > 0) || !isfinite(length))
-        return out;
-    struct vec3 unit = vec3_scale(normal, 1 / length);
-    double cosine = vec3_dot(unit, out);
-    if (cosine >= 0)
-        return unit;
-    return cosine > -0.1 ? vec3_normalize(vec3_add_scaled(unit, out, -cosine)) : out;
-}
-
-static void describe_cap(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
-                         struct surface *out) {
-    struct vec3 point = ray_at(ray, crossing->t), middle = middle_of(solid), normal = {0, 0, 0};
-    if (crossing->part == PART_BALL) {
-        normal = vec3_normalize(vec3_sub(point, middle));
-        point = vec3_add_scaled(middle, normal, solid->in.radius);
-    } else {
-        const struct box *box = &solid->in.bounds;
-        double *const points[3] = {&point.x, &point.y, &point.z}, *const normals[3] = {&normal.x, &normal.y, &normal.z};
-        int axis = (int)(crossing->part - PART_BOX);
-        bool is_upper = (vec3_get(ray->direction, axis) > 0) != crossing->enter;
-        *normals[axis] = is_upper ? 1 : -1;
-        *points[axis] = vec3_get(is_upper ? box->max : box->min, axis);
-    }
-    surface_make(out, point, normal, 0x1p-48 * (solid->size + vec3_max_abs(middle)));
-}
-
-void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
-                       struct surface *out) {
-    if (crossing->part >= PART_BOX) {
-        describe_cap(solid, ray, crossing, out);
-    } else {
-        uint32_t program = crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0;
-        struct vec3 point = ray_at(ray, crossing->t), gradient;
-        double off = gradient_at(&solid->programs[program], point, &gradient);
-        double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
-        /* One step along the gradient removes the rounding error of the ray, unless the function is discontinuous here.
-         * */
-        double error = solid->size * 2 * accuracy;
-        if (square > 0 && fabs(off) < room * sqrt(square))
-            point = vec3_add_scaled(point, gradient, -off / square);
-        else
-            error = room;
-        surface_make(out, point, usable_normal(gradient, ray, crossing->enter), error);
-    }
-    surface_mapping_sphere(middle_of(solid), out);
-}
-
-/* --- the solid --- */
-
-const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error) {
-    struct implicit *solid = arena_alloc(arena, sizeof *solid);
-    if (!solid) {
-        (void)error_no_memory(error, "an implicit solid");
-        return NULL;
-    }
-    solid->in = *in;
-    if (in->is_ball) {
-        struct vec3 radius = vec3_all(in->radius);
-        solid->in.bounds = (struct box){vec3_sub(in->centre, radius), vec3_add(in->centre, radius)};
-    }
-    for (int k = 0; k < 3; k++) {
-        double lo = vec3_get(solid->in.bounds.min, k), hi = vec3_get(solid->in.bounds.max, k);
-        if (!(lo < hi && hi - lo < HUGE_VAL)) {
-            (void)error_set(error, ERROR_SCENE, "the bounds must have a length, a width and a height, and end");
-            return NULL;
-        }
-        solid->size = hi - lo > solid->size ? hi - lo : solid->size;
-    }
-    for (int k = 0; k < in->program->input_count; k++)
-        if (in->program->inputs[k].input > EXPR_POINT_Z) {
-            (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid may depend only on p",
-                            expr_input_name((enum expr_input)in->program->inputs[k].input));
-            return NULL;
-        }
-    if (in->program->output_count != 1) {
-        (void)error_set(error, ERROR_SCENE, "the function returns a colour; a solid needs one number, negative inside");
-        return NULL;
-    }
-    return implicit_regions_build(arena, solid, error) ? solid : NULL;
-}
-
-struct box implicit_bounds(const struct implicit *solid) {
-    return box_pad(solid->tight);
-}
-
-bool implicit_is_closed(const struct implicit *solid) {
-    return !solid->in.open;
-}
-
-uint32_t implicit_scratch_need(const struct implicit *solid) {
-    (void)solid;
-    return GUESS;
+    return find_first(solid, ray, scratch, true, &ignored);
 }

@@ -16,21 +16,37 @@ struct implicit_input {
     struct vec3 centre;
     double radius; /* > 0 */
     bool open;     /* without caps on the bounds */
+    /* 0, or a promise: |f(a) - f(b)| <= lipschitz |a - b| for all points of the bounds, but for jumps without a change
+     * of sign. It replaces the bounds of values and slopes: for functions whose bounds are too wide, as of fractals. */
+    double lipschitz;
 };
 
 struct implicit;
 
 /* NULL and error: no memory, or the program is not of p alone. The work is bounded. */
 const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error);
+/* What some points and lines show of a solid. */
+struct implicit_findings {
+    /* With a Lipschitz bound: how many points, at how many of them the slope of the function is above the bound, and
+     * the largest slope. */
+    uint32_t points, steep_points;
+    double steepest;
+    struct vec3 steepest_at;
+    bool is_empty;    /* it is below 0 at none of them, nor at the centre of a region */
+    double line_work; /* without a Lipschitz bound: the mean number of operations for a line, if it is below 10^6 */
+};
+/* The same findings for the same solid. False and an error: no memory. */
+bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error);
 struct box implicit_bounds(const struct implicit *solid);
 bool implicit_is_closed(const struct implicit *solid);
 /* The same as shape_crossings and shape_nearest. A crossing is at most 1e-9 of the size of the solid from the point
  * where the sign changes. Two crossings that are closer than 1e-7 of the size may be missed together. */
 bool implicit_crossings(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
                         struct crossing_list *out);
-bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct crossing *out);
+bool implicit_nearest(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch,
+                      struct crossing *out);
 /* Whether there is a crossing in the ray's interval. Faster than implicit_nearest: it does not locate the crossing. */
-bool implicit_any(const struct implicit *solid, const struct ray *ray);
+bool implicit_any(const struct implicit *solid, const struct ray *ray, struct geom_scratch *scratch);
 bool implicit_contains(const struct implicit *solid, struct vec3 point);
 void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
                        struct surface *out);

@@ -40,6 +40,25 @@ static inline void *implicit_aligned(void *memory) {
     return (void *)(((uintptr_t)memory + IMPLICIT_ALIGNMENT - 1) / IMPLICIT_ALIGNMENT * IMPLICIT_ALIGNMENT);
 }
 
+/* Parts of crossings: on a side of the bounds its axis, on a ball, between regions. All others are numbers of regions.
+ */
+enum { IMPLICIT_PART_WHOLE = 0x7fffffe0, IMPLICIT_PART_BOX = 0x7ffffff0, IMPLICIT_PART_BALL = IMPLICIT_PART_BOX + 3 };
+
+/* Larger memory for bounds is taken from the scratch, not from the stack. */
+enum { IMPLICIT_STACK = 1 << 18 };
+
+/* The share of the size to which a crossing is located. */
+static inline double implicit_accuracy(const struct implicit *solid) {
+    return solid->in.lipschitz > 0 ? 0x1p-38 : 0x1p-46;
+}
+
+struct vec3 implicit_middle(const struct implicit *solid);
+/* The function at a point, and its gradient. program: one of the solid's. */
+double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient);
+/* The operations that the search for all crossings of a line needs, beyond `limit` about that number. */
+uint64_t implicit_line_work(const struct implicit *solid, const struct ray *ray, uint64_t limit,
+                            struct geom_scratch *scratch);
+
 /* Fills nodes, regions, programs and tight from the rest. */
 bool implicit_regions_build(struct arena *arena, struct implicit *solid, struct error *error);
 

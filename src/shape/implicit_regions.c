@@ -17,6 +17,9 @@
 /* Limits of the work and of the memory: nodes, instructions that are evaluated over regions, and instructions of
  * shortened programs. Beyond KEPT, regions use the program of a larger region, up to twice KEPT in all. */
 enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
+/* With a Lipschitz bound, regions are bounded by values at their centres. Bounds over boxes only shorten programs; they
+ * are computed until a program has not become shorter for as many levels. A point costs less than a box. */
+enum { MARCH_LEVELS = 7, SHORTENING_LEVELS = 3, POINTS_OF_A_BOX = 8 };
 /* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
 static const double slope_spread = 0.4;
 
@@ -33,6 +36,7 @@ struct candidate {
     struct expr_program program;
     uint32_t parent; /* the candidate that it is a part of */
     uint32_t kept;   /* its number among the programs, or NOT_KEPT */
+    int level;       /* of the node */
 };
 #define NOT_KEPT UINT32_MAX
 
@@ -96,8 +100,9 @@ static bool shorten(struct building *b, const struct expr_program *whole, int la
            out->count + out->count / 16 < whole->count;
 }
 
-static bool add_candidate(struct building *b, const struct expr_program *program, uint32_t parent, uint32_t *out) {
-    struct candidate candidate = {.parent = parent, .kept = NOT_KEPT};
+static bool add_candidate(struct building *b, const struct expr_program *program, uint32_t parent, int level,
+                          uint32_t *out) {
+    struct candidate candidate = {.parent = parent, .kept = NOT_KEPT, .level = level};
     if (!expr_keep(program, &b->candidate_arena, &candidate.program) ||
         !reserve((void **)&b->candidates, &b->candidate_capacity, b->candidate_count, 1, sizeof *b->candidates))
         return false;
@@ -257,18 +262,109 @@ static bool decide(struct building *b, uint32_t node, const struct box *box, con
     bool has_room = here->level < LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED;
     if (has_room && (here->level < FIRST_LEVELS || !is_simple)) {
         b->evaluated += 8 * (uint64_t)after;
-        return (!is_shorter || add_candidate(b, &shorter, here->candidate, &here->candidate)) && add_parts(b, node);
+        return (!is_shorter || add_candidate(b, &shorter, here->candidate, here->level, &here->candidate)) &&
+               add_parts(b, node);
     }
     return add_region(b, node, is_shorter ? &shorter : NULL, slopes);
 }
 
+/* --- with a Lipschitz bound --- */
+
+/* Values at the centres of eight nodes. */
+static void evaluate_centres(struct building *b, const struct expr_program *program, uint32_t first,
+                             double out[EXPR_LANES]) {
+    double points[3][EXPR_LANES];
+    const double *inputs[EXPR_INPUT_COUNT] = {NULL};
+    double *outputs[EXPR_OUTPUTS] = {out};
+    for (int k = 0; k < 3; k++) {
+        for (uint32_t i = 0; i < EXPR_LANES; i++) {
+            const struct box *box = &b->pending[first + i].box;
+            points[k][i] = region_middle(vec3_get(box->min, k), vec3_get(box->max, k));
+        }
+        inputs[EXPR_POINT_X + k] = points[k];
+    }
+    b->evaluated += EXPR_LANES * expr_work(program) / POINTS_OF_A_BOX;
+    expr_evaluate_batch(program, EXPR_LANES, inputs, outputs, implicit_aligned(b->rows));
+}
+
+/* Bounds of the values over eight boxes, and the choices. */
+static void bound_boxes(struct building *b, const struct expr_program *program, const struct box boxes[EXPR_LANES],
+                        struct expr_bounds *out) {
+    double low[3][EXPR_LANES], high[3][EXPR_LANES];
+    struct expr_boxes inputs = {.count = EXPR_LANES};
+    struct expr_bounds outputs[EXPR_OUTPUTS];
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < EXPR_LANES; i++) {
+            low[k][i] = vec3_get(boxes[i].min, k);
+            high[k][i] = vec3_get(boxes[i].max, k);
+        }
+        inputs.low[EXPR_POINT_X + k] = low[k];
+        inputs.high[EXPR_POINT_X + k] = high[k];
+    }
+    b->evaluated += EXPR_LANES * expr_work(program);
+    expr_evaluate_intervals(program, &inputs, outputs, b->choices, implicit_aligned(b->rows));
+    *out = outputs[0];
+}
+
+static enum region_kind kind_of_bounds(const struct expr_bounds *bounds, int lane) {
+    if (bounds->low[lane] >= 0)
+        return REGION_OUTSIDE;
+    return bounds->high[lane] < 0 && !(bounds->may_be_nan >> lane & 1) ? REGION_INSIDE : REGION_SURFACE;
+}
+
+/* Decides the kind of a node by the value at its centre, or by its bounds in one lane; bounds is NULL if they are not
+ * known. */
+static bool decide_by_sphere(struct building *b, uint32_t node, double value, const struct expr_bounds *bounds,
+                             int lane) {
+    struct implicit *solid = b->solid;
+    struct pending *here = &b->pending[node];
+    const struct box box = wider(solid, &here->box);
+    const double lipschitz = solid->in.lipschitz;
+    const double change = lipschitz * vec3_length(vec3_sub(box.max, box.min)) * 0.5 * (1 + 1e-9);
+    enum region_kind kind = bounds ? kind_of_bounds(bounds, lane) : REGION_SURFACE;
+    if (kind == REGION_SURFACE && fabs(value) > change && fabs(value) < INFINITY)
+        kind = value < 0 ? REGION_INSIDE : REGION_OUTSIDE;
+    if (solid->in.is_ball && !meets_ball(&solid->in, &box))
+        kind = REGION_OUTSIDE;
+    b->nodes[node] = kind;
+    if (kind != REGION_OUTSIDE)
+        solid->tight = box_join(solid->tight, box);
+    if (kind != REGION_SURFACE)
+        return true;
+    const struct expr_program *program = &b->candidates[here->candidate].program;
+    struct expr_program shorter;
+    bool is_shorter = bounds && shorten(b, program, lane, &shorter);
+    if (here->level < MARCH_LEVELS && b->node_count + 8 <= NODES && b->evaluated < EVALUATED)
+        return (!is_shorter || add_candidate(b, &shorter, here->candidate, here->level, &here->candidate)) &&
+               add_parts(b, node);
+    const struct expr_interval slope = {-lipschitz, lipschitz, false};
+    return add_region(b, node, is_shorter ? &shorter : NULL,
+                      (struct expr_interval[EXPR_DIRECTIONS]){slope, slope, slope});
+}
+
+/* --- all nodes --- */
+
 /* Decides the eight parts of a node. */
 static bool decide_parts(struct building *b, uint32_t first) {
     struct box boxes[EXPR_LANES];
-    struct expr_lane_range range;
+    const struct expr_program *program = &b->candidates[b->pending[first].candidate].program;
     for (uint32_t k = 0; k < EXPR_LANES; k++)
         boxes[k] = wider(b->solid, &b->pending[first + k].box);
-    evaluate_boxes(b, &b->candidates[b->pending[first].candidate].program, boxes, false, &range);
+    if (b->solid->in.lipschitz > 0) {
+        double values[EXPR_LANES];
+        struct expr_bounds bounds;
+        const int shortened = b->candidates[b->pending[first].candidate].level;
+        const bool is_bounded = b->pending[first].level <= shortened + SHORTENING_LEVELS;
+        evaluate_centres(b, program, first, values);
+        if (is_bounded)
+            bound_boxes(b, program, boxes, &bounds);
+        for (uint32_t k = 0; k < EXPR_LANES; k++)
+            if (!decide_by_sphere(b, first + k, values[k], is_bounded ? &bounds : NULL, (int)k))
+                return false;
+        return true;
+    }
+    struct expr_lane_range range;
+    evaluate_boxes(b, program, boxes, false, &range);
     for (uint32_t k = 0; k < EXPR_LANES; k++)
         if (!decide(b, first + k, &boxes[k], &range, (int)k))
             return false;
@@ -289,7 +385,12 @@ static bool build(struct building *b) {
     size_t room = (size_t)program->count + 1;
     b->choices = mem_alloc_zero(room, sizeof *b->choices);
     b->code = mem_alloc_zero(room, sizeof *b->code);
-    b->rows = mem_alloc_zero(expr_lanes_size(program) + 64, 1);
+    size_t rows = expr_lanes_size(program);
+    if (solid->in.lipschitz > 0) {
+        const size_t points = expr_batch_size(program), boxes = expr_intervals_size(program);
+        rows = points > boxes ? points : boxes;
+    }
+    b->rows = mem_alloc_zero(rows + 64, 1);
     b->scratch = mem_alloc_zero(expr_shorten_size(program) + 64, 1);
     if (!b->choices || !b->code || !b->rows || !b->scratch || !add_nodes(b, 1) ||
         !reserve((void **)&b->programs, &b->program_capacity, 0, 1, sizeof *b->programs) ||

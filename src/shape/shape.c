@@ -474,7 +474,7 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
         return listed_nearest(shape, ray, scratch, out);
     case SHAPE_IMPLICIT: /* the same crossings, but only the requested ones */
         scratch->shape_tests++;
-        return implicit_nearest(shape->implicit, ray, out);
+        return implicit_nearest(shape->implicit, ray, scratch, out);
     case SHAPE_HEIGHT_FIELD: /* the same crossings, without those that come later */
         scratch->shape_tests++;
         return height_field_nearest(shape->height_field, ray, scratch, out);
@@ -509,7 +509,7 @@ bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scr
     }
     case SHAPE_IMPLICIT:
         scratch->shape_tests++;
-        return implicit_any(shape->implicit, ray);
+        return implicit_any(shape->implicit, ray, scratch);
     case SHAPE_HEIGHT_FIELD: {
         struct crossing ignored;
         scratch->shape_tests++;

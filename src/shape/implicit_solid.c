@@ -1,0 +1,232 @@
+/* An implicit solid: its making, the points in it, its surface at a crossing (implicit.c finds the crossings), and what
+ * is reported of it. */
+#include "base/random.h"
+#include "shape/implicit_internal.h"
+
+#include <math.h>
+
+/* Room for crossings in the scratch memory. */
+enum { GUESS = 64 };
+
+struct vec3 implicit_middle(const struct implicit *solid) {
+    const struct box *box = &solid->in.bounds;
+    return solid->in.is_ball ? solid->in.centre : vec3_add(vec3_scale(box->min, 0.5), vec3_scale(box->max, 0.5));
+}
+
+/* --- points --- */
+
+bool implicit_contains(const struct implicit *solid, struct vec3 point) {
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+    const struct box *box = &solid->in.bounds;
+    for (int k = 0; k < 3; k++) {
+        double x = vec3_get(point, k);
+        if (!(x > vec3_get(box->min, k) && x < vec3_get(box->max, k)))
+            return false;
+        inputs[EXPR_POINT_X + k] = x;
+    }
+    struct vec3 from_centre = vec3_sub(point, solid->in.centre);
+    if (solid->in.is_ball && !(vec3_dot(from_centre, from_centre) < solid->in.radius * solid->in.radius))
+        return false;
+    expr_evaluate(solid->in.program, inputs, outputs);
+    return outputs[0] < 0;
+}
+
+double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
+    unsigned char memory[expr_gradient_size(program) + IMPLICIT_ALIGNMENT];
+    double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS], gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS];
+    inputs[EXPR_POINT_X] = point.x;
+    inputs[EXPR_POINT_Y] = point.y;
+    inputs[EXPR_POINT_Z] = point.z;
+    expr_evaluate_gradient(program, inputs, expr_gradient_seeds, outputs, gradients, implicit_aligned(memory));
+    *gradient = vec3_make(gradients[0][0], gradients[0][1], gradients[0][2]);
+    return outputs[0];
+}
+
+/* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side. At a
+ * discontinuity there is no gradient, and the direction of the ray is used. */
+static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
+    struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
+    double length = vec3_length(normal);
+    if (!(length > 0) || !isfinite(length))
+        return out;
+    struct vec3 unit = vec3_scale(normal, 1 / length);
+    double cosine = vec3_dot(unit, out);
+    if (cosine >= 0)
+        return unit;
+    return cosine > -0.1 ? vec3_normalize(vec3_add_scaled(unit, out, -cosine)) : out;
+}
+
+static void describe_cap(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                         struct surface *out) {
+    struct vec3 point = ray_at(ray, crossing->t), middle = implicit_middle(solid), normal = {0, 0, 0};
+    if (crossing->part == IMPLICIT_PART_BALL) {
+        normal = vec3_normalize(vec3_sub(point, middle));
+        point = vec3_add_scaled(middle, normal, solid->in.radius);
+    } else {
+        const struct box *box = &solid->in.bounds;
+        double *const points[3] = {&point.x, &point.y, &point.z}, *const normals[3] = {&normal.x, &normal.y, &normal.z};
+        int axis = (int)(crossing->part - IMPLICIT_PART_BOX);
+        bool is_upper = (vec3_get(ray->direction, axis) > 0) != crossing->enter;
+        *normals[axis] = is_upper ? 1 : -1;
+        *points[axis] = vec3_get(is_upper ? box->max : box->min, axis);
+    }
+    surface_make(out, point, normal, 0x1p-48 * (solid->size + vec3_max_abs(middle)));
+}
+
+void implicit_describe(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
+                       struct surface *out) {
+    if (crossing->part >= IMPLICIT_PART_BOX) {
+        describe_cap(solid, ray, crossing, out);
+    } else {
+        uint32_t program = crossing->part < solid->region_count ? solid->regions[crossing->part].program : 0;
+        struct vec3 point = ray_at(ray, crossing->t), gradient;
+        double off = implicit_gradient(&solid->programs[program], point, &gradient);
+        double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
+        /* One step along the gradient removes the rounding error of the ray, unless the function is discontinuous here.
+         * */
+        double error = solid->size * 2 * implicit_accuracy(solid);
+        if (square > 0 && fabs(off) < room * sqrt(square))
+            point = vec3_add_scaled(point, gradient, -off / square);
+        else
+            error = room;
+        surface_make(out, point, usable_normal(gradient, ray, crossing->enter), error);
+    }
+    surface_mapping_sphere(implicit_middle(solid), out);
+}
+
+/* --- the solid --- */
+
+const struct implicit *implicit_build(struct arena *arena, const struct implicit_input *in, struct error *error) {
+    struct implicit *solid = arena_alloc(arena, sizeof *solid);
+    if (!solid) {
+        (void)error_no_memory(error, "an implicit solid");
+        return NULL;
+    }
+    solid->in = *in;
+    if (in->is_ball) {
+        struct vec3 radius = vec3_all(in->radius);
+        solid->in.bounds = (struct box){vec3_sub(in->centre, radius), vec3_add(in->centre, radius)};
+    }
+    for (int k = 0; k < 3; k++) {
+        double lo = vec3_get(solid->in.bounds.min, k), hi = vec3_get(solid->in.bounds.max, k);
+        if (!(lo < hi && hi - lo < HUGE_VAL)) {
+            (void)error_set(error, ERROR_SCENE, "the bounds must have a length, a width and a height, and end");
+            return NULL;
+        }
+        solid->size = hi - lo > solid->size ? hi - lo : solid->size;
+    }
+    for (int k = 0; k < in->program->input_count; k++)
+        if (in->program->inputs[k].input > EXPR_POINT_Z) {
+            (void)error_set(error, ERROR_SCENE, "the function reads %s, but a solid may depend only on p",
+                            expr_input_name((enum expr_input)in->program->inputs[k].input));
+            return NULL;
+        }
+    if (in->program->output_count != 1) {
+        (void)error_set(error, ERROR_SCENE, "the function returns a colour; a solid needs one number, negative inside");
+        return NULL;
+    }
+    return implicit_regions_build(arena, solid, error) ? solid : NULL;
+}
+
+struct box implicit_bounds(const struct implicit *solid) {
+    return box_pad(solid->tight);
+}
+
+bool implicit_is_closed(const struct implicit *solid) {
+    return !solid->in.open;
+}
+
+uint32_t implicit_scratch_need(const struct implicit *solid) {
+    const size_t size = expr_lanes_size(solid->in.program);
+    return GUESS + (size <= IMPLICIT_STACK ? 0 : (uint32_t)((size + IMPLICIT_ALIGNMENT) / sizeof(struct crossing)) + 1);
+}
+
+/* --- whether a Lipschitz bound holds, and whether bounds are too wide ---
+ *
+ * Points and lines are the same for all solids with the same bounds. */
+
+enum { POINTS = 1000, LINES = 64 };
+/* Operations for one line, and for all of them. */
+static const uint64_t line_limit = 1000000, all_limit = 4000000;
+
+/* Of slopes, relative. */
+static const double rounding = 1e-6;
+
+static struct vec3 random_point(const struct box *box, uint64_t index) {
+    double u[3];
+    for (uint64_t k = 0; k < 3; k++)
+        u[k] = random_unit(random_combine(random_combine(18, index), k));
+    return vec3_make(box->min.x + (box->max.x - box->min.x) * u[0], box->min.y + (box->max.y - box->min.y) * u[1],
+                     box->min.z + (box->max.z - box->min.z) * u[2]);
+}
+
+static void examine_point(const struct implicit *solid, struct vec3 point, struct implicit_findings *out) {
+    struct vec3 gradient;
+    double value = implicit_gradient(solid->in.program, point, &gradient), slope = vec3_length(gradient);
+    out->is_empty = out->is_empty && !(value < 0);
+    out->points++;
+    out->steep_points += slope > solid->in.lipschitz * (1 + rounding) && slope < INFINITY;
+    if (slope > out->steepest && slope < INFINITY) {
+        out->steepest = slope;
+        out->steepest_at = point;
+    }
+}
+
+/* Values at the centres of all regions, and slopes at every `stride`-th of them. */
+static void examine_node(const struct implicit *solid, uint32_t node, const struct box *box, uint32_t stride,
+                         struct implicit_findings *out) {
+    const uint32_t value = solid->nodes[node], number = value >> 2;
+    const struct vec3 middle = {region_middle(box->min.x, box->max.x), region_middle(box->min.y, box->max.y),
+                                region_middle(box->min.z, box->max.z)};
+    switch ((enum region_kind)(value & 3)) {
+    case REGION_OUTSIDE:
+        return;
+    case REGION_INSIDE:
+        out->is_empty = false;
+        return;
+    case REGION_SURFACE:
+        out->is_empty = out->is_empty && !(solid->regions[number].middle_low < 0);
+        if (number % stride == 0)
+            examine_point(solid, middle, out);
+        return;
+    case REGION_SPLIT:
+        for (uint32_t k = 0; k < 8; k++) {
+            struct box part = *box;
+            *(k & 1 ? &part.min.x : &part.max.x) = middle.x;
+            *(k & 2 ? &part.min.y : &part.max.y) = middle.y;
+            *(k & 4 ? &part.min.z : &part.max.z) = middle.z;
+            examine_node(solid, number + k, &part, stride, out);
+        }
+        return;
+    }
+}
+
+static bool examine_lines(const struct implicit *solid, struct implicit_findings *out) {
+    struct geom_scratch scratch;
+    uint64_t sum = 0, lines = 0;
+    if (!geom_scratch_init(&scratch, implicit_scratch_need(solid)))
+        return false;
+    while (lines < LINES && sum < all_limit) {
+        const struct vec3 a = random_point(&solid->tight, 2 * lines), b = random_point(&solid->tight, 2 * lines + 1);
+        const struct ray line = {.origin = a, .direction = vec3_sub(b, a), .t_min = -INFINITY, .t_max = INFINITY};
+        sum += implicit_line_work(solid, &line, line_limit, &scratch);
+        lines++;
+        if (scratch.overflow && !geom_scratch_grow(&scratch)) {
+            geom_scratch_destroy(&scratch);
+            return false;
+        }
+    }
+    out->line_work = (double)sum / (double)lines;
+    geom_scratch_destroy(&scratch);
+    return true;
+}
+
+bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error) {
+    *out = (struct implicit_findings){.is_empty = solid->in.lipschitz > 0};
+    if (!(solid->in.lipschitz > 0))
+        return examine_lines(solid, out) || error_no_memory(error, "an implicit solid");
+    for (uint64_t k = 0; k < POINTS; k++)
+        examine_point(solid, random_point(&solid->in.bounds, k), out);
+    examine_node(solid, 0, &solid->in.bounds, solid->region_count / POINTS + 1, out);
+    return true;
+}

@@ -1,0 +1,198 @@
+/* Implicit solids with a declared Lipschitz bound: against solids whose surface is found by bounds, and against their
+ * functions at points all along lines. */
+#include "scene/node.h"
+#include "shape/shape.h"
+#include "tests/unit/script_host.h"
+
+#include <math.h>
+
+static struct vec3 random_point(struct test_random *random, double half) {
+    double x = test_uniform(random, -half, half), y = test_uniform(random, -half, half);
+    return vec3_make(x, y, test_uniform(random, -half, half));
+}
+
+/* A line through two points of the bounds, which begins outside of them. */
+static struct ray random_line(struct test_random *random, double half) {
+    struct vec3 a = random_point(random, half), b = random_point(random, half);
+    struct vec3 direction = vec3_scale(vec3_normalize(vec3_sub(b, a)), test_uniform(random, 0.3, 3));
+    return (struct ray){vec3_add_scaled(a, direction, -20), direction, .t_min = 0, .t_max = INFINITY};
+}
+
+/* The solids of a script, in the order of the children of its node. */
+static void see_solids(const char *text, void (*seen)(struct listener *listener, const struct render_request *request),
+                       char *said, size_t size) {
+    struct listener listener = {.seen = seen};
+    struct error error;
+    test_write_file(test_path("solids.lua"), text, strlen(text));
+    CHECK(listen_to(&listener, test_path("solids.lua"), NULL, &error, NULL));
+    CHECK_TEXT(error.text, "");
+    CHECK_EQ_INT(listener.renders, 1);
+    (void)snprintf(said, size, "%s", listener.said);
+}
+
+#define BEGIN "local abs, min, max, sqrt = math.abs, gr.min, gr.max, math.sqrt local root = gr.node 'root' "
+#define END " gr.render{node = root, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}} "
+
+/* --- distances --- */
+
+enum { LIST = 256 };
+
+/* The crossings of a line without pairs that are closer than the smallest steps; returns their number. */
+static uint32_t read_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                               double out[LIST]) {
+    struct crossing_list list;
+    uint32_t count = 0;
+    double length = vec3_length(ray->direction);
+    CHECK(shape_crossings(shape, ray, scratch, &list) && list.count < LIST);
+    for (uint32_t k = 0; k < list.count; k++) {
+        double t = scratch->items[list.first + k].t * length;
+        CHECK(scratch->items[list.first + k].enter == (k % 2 == 0));
+        if (count > 0 && t - out[count - 1] < 1e-3)
+            count--;
+        else
+            out[count++] = t;
+    }
+    scratch->used = list.first;
+    return count;
+}
+
+/* Every two children are the same solid. */
+static void compare_pairs(struct listener *listener, const struct render_request *request) {
+    struct geom_scratch scratch;
+    struct test_random random = {18};
+    int number = 0;
+    (void)listener;
+    CHECK(geom_scratch_init(&scratch, 100000));
+    for (const struct node_child *link = request->root->first_child; link; link = link->next->next, number++) {
+        const struct shape *bounded = &link->node->shape, *marched = &link->next->node->shape;
+        long found = 0, wrong = 0;
+        for (int i = 0; i < 400; i++) {
+            struct ray ray = random_line(&random, 1.5);
+            double a[LIST], b[LIST];
+            uint32_t count = read_crossings(bounded, &ray, &scratch, a);
+            bool same = read_crossings(marched, &ray, &scratch, b) == count;
+            for (uint32_t k = 0; same && k < count; k++)
+                same = fabs(a[k] - b[k]) < 1e-8;
+            found += count;
+            wrong += !same;
+        }
+        if (found < 50 || wrong > 0)
+            test_fail(__FILE__, __LINE__, "solid %d: %ld crossings, %ld lines differ", number, found, wrong);
+    }
+    CHECK_EQ_INT(number, 24);
+    geom_scratch_destroy(&scratch);
+}
+
+TEST(solids_with_declared_distances_are_crossed_where_bounds_find_them) {
+    char said[8192];
+    see_solids(BEGIN
+               "local sdf = require 'sdf' local both = sdf.box{0.5, 0.8, 0.3} local ball = sdf.sphere(0.9) "
+               "for _, f in ipairs{ball, both, sdf.torus(0.8, 0.3), sdf.cylinder(0.6, 0.7), sdf.capsule({-0.5, 0, 0}, "
+               "{0.5, 0.4, 0.2}, 0.3), sdf.plane({1, 2, 0}, 0.2), sdf.ellipsoid{1, 0.6, 0.8}, "
+               "sdf.extrude(sdf.polygon(5, 0.8), 0.4), sdf.extrude(sdf.rectangle(0.4, 0.7), 0.5), "
+               "sdf.revolve(sdf.circle(0.3), 0.7), sdf.union(both, sdf.translate(ball, {0.6, 0, 0})), "
+               "sdf.intersection(both, ball), sdf.difference(ball, both), "
+               "sdf.smooth_union(0.2, both, sdf.translate(sdf.sphere(0.4), {0.7, 0.3, 0})), "
+               "sdf.smooth_intersection(0.2, both, ball), sdf.smooth_difference(0.1, ball, both), "
+               "sdf.round(both, 0.2), sdf.shell(ball, 0.05), sdf.shell(both, 0.01), sdf.rotate(both, 'x', 30), "
+               "sdf.scale(sdf.torus(0.8, 0.3), 1.3), sdf.mirror(sdf.translate(ball, {0.4, 0, 0})), "
+               "sdf.repeated(sdf.sphere(0.2), {0.6, 0.6, 0.6}, {1, 1, 1}), "
+               "sdf.union(both, sdf.translate(sdf.sphere(0.2), {0, 0, 1.4}))} do "
+               "for _, d in ipairs{false, true} do root:add_child(gr.implicit{f = f, bounds = {{-1.5, -1.5, -1.5}, "
+               "{1.5, 1.5, 1.5}}, distance = d}) end end" END,
+               compare_pairs, said, sizeof said);
+    CHECK_TEXT(said, "");
+}
+
+/* --- fractals --- */
+
+static long samples, wrong_samples, crossings;
+
+/* Whether lines are inside where the function is below 0, at places all along them, and the nearest crossing from any
+ * place is that of the list. */
+static void check_sides(struct listener *listener, const struct render_request *request) {
+    struct geom_scratch scratch;
+    struct test_random random = {5};
+    (void)listener;
+    CHECK(geom_scratch_init(&scratch, 100000));
+    samples = wrong_samples = crossings = 0;
+    for (const struct node_child *link = request->root->first_child; link; link = link->next) {
+        const struct shape *shape = &link->node->shape;
+        for (int i = 0; i < 100; i++) {
+            struct ray ray = random_line(&random, 1);
+            struct crossing_list list;
+            struct crossing nearest;
+            CHECK(shape_crossings(shape, &ray, &scratch, &list));
+            CHECK(list.count % 2 == 0);
+            const struct crossing *items = &scratch.items[list.first];
+            const double length = vec3_length(ray.direction), begin = 20 - 2.6 / length, end = 20 + 2.6 / length;
+            crossings += list.count;
+            for (uint32_t k = 0, before = 0; k < 1000; k++) {
+                double t = begin + (end - begin) * (k + 0.5) / 1000;
+                while (before < list.count && items[before].t < t)
+                    before++;
+                double back = before > 0 ? t - items[before - 1].t : INFINITY;
+                double next = before < list.count ? items[before].t - t : INFINITY;
+                if (fmin(back, next) * length < 1e-5)
+                    continue;
+                bool inside = shape_contains(shape, ray_at(&ray, t), &scratch);
+                samples += inside || before % 2 == 1;
+                wrong_samples += inside != (before % 2 == 1);
+            }
+            ray.t_min = begin + (end - begin) * test_uniform(&random, 0, 1);
+            uint32_t first = 0;
+            while (first < list.count && !(items[first].t > ray.t_min))
+                first++;
+            bool found = shape_nearest(shape, &ray, &scratch, &nearest);
+            CHECK(found == (first < list.count));
+            CHECK(!found || (nearest.t == items[first].t && nearest.part == items[first].part));
+            CHECK(shape_any(shape, &ray, &scratch) == found);
+            scratch.used = list.first;
+        }
+    }
+    geom_scratch_destroy(&scratch);
+}
+
+#define CUBE "bounds = {{-1.2, -1.2, -1.2}, {1.2, 1.2, 1.2}}"
+/* The distance from a Menger sponge of some levels (I. Quilez, "Menger fractal", 2011). */
+#define MENGER                                                                                                         \
+    "local function menger(levels) return function(p) local x, y, z = abs(p.x), abs(p.y), abs(p.z) "                   \
+    "local d, s = max(x, y, z) - 1, 1 for k = 1, levels do local function fold(u) u = (u * s) % 2 - 1 "                \
+    "return abs(1 - 3 * abs(u)) end local a, b, c = fold(p.x), fold(p.y), fold(p.z) s = 3 * s "                        \
+    "d = max(d, (min(max(a, b), max(b, c), max(c, a)) - 1) / s) end return d end end "
+
+TEST(lines_are_inside_of_folded_fractals_where_their_distance_is_below_zero) {
+    char said[8192];
+    see_solids(
+        BEGIN MENGER
+        "root:add_child(gr.implicit{f = menger(2), " CUBE ", distance = true}) "
+        "root:add_child(gr.implicit{f = menger(4), " CUBE ", lipschitz = 1}) "
+        /* a tetrahedron of Sierpinski, by reflections; with a loop, which is not unrolled */
+        "root:add_child(gr.implicit{f = function(p) local k, x, y, z = gr.loop(12, 1, p.x, p.y, p.z, function(i, _, x, "
+        "y, z) x, y = max(x, -y), max(y, -x) x, z = max(x, -z), max(z, -x) y, z = max(y, -z), max(z, -y) "
+        "return 1, 2 * x - 1, 2 * y - 1, 2 * z - 1 end) "
+        "return (sqrt(x * x + y * y + z * z) - 2) / 2 ^ 12 end, " CUBE ", distance = true})" END,
+        check_sides, said, sizeof said);
+    CHECK_TEXT(said, "");
+    CHECK(crossings > 1000 && samples > 10000);
+    CHECK_EQ_INT(wrong_samples, 0);
+}
+
+TEST(estimates_of_the_distance_of_escaping_points_show_their_sets) {
+    char said[8192];
+    see_solids(
+        BEGIN
+        "local function bulb(p) local x, y, z, r, d = p.x, p.y, p.z, 0.0, 1.0 for i = 1, 4 do "
+        "r = sqrt(x * x + y * y + z * z) if r > 2 then break end local a, b, q = 8 * math.acos(z / r), "
+        "8 * math.atan(y, x), r ^ 7 d = 8 * q * d + 1 q = q * r x, y, z = q * math.sin(a) * math.cos(b) + p.x, "
+        "q * math.sin(a) * math.sin(b) + p.y, q * math.cos(a) + p.z end return 0.5 * math.log(r) * r / d - 0.002 end "
+        "root:add_child(gr.implicit{f = bulb, " CUBE ", lipschitz = 4}) "
+        "local function julia(p) local x, y, z, w, d, r = p.x, p.y, p.z, 0.0, 1.0, 0.0 for i = 1, 8 do "
+        "d = 2 * sqrt(x * x + y * y + z * z + w * w) * d x, y, z, w = x * x - y * y - z * z - w * w - 0.2, "
+        "2 * x * y + 0.8, 2 * x * z, 2 * x * w end r = sqrt(x * x + y * y + z * z + w * w) "
+        "return 0.5 * math.log(r) * r / d - 0.002 end "
+        "root:add_child(gr.implicit{f = julia, " CUBE ", lipschitz = 4}) " END,
+        check_sides, said, sizeof said);
+    CHECK(crossings > 100 && samples > 5000);
+    CHECK(wrong_samples < samples / 1000);
+}
