@@ -37,7 +37,7 @@ struct render_process {
     struct pool *pool;  /* made for the first picture */
     struct arena job;   /* memory of the current picture */
     struct assets assets;
-    struct accel_cache accel_cache;  /* of the frame before, in an animation */
+    struct world_cache world_cache;  /* of the frame before, in an animation */
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
     uint64_t played;                 /* those of them that are frames in a window: nothing is written */
@@ -289,6 +289,14 @@ static bool is_frame(const struct picture_work *work) {
     return work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE;
 }
 
+/* The scene notes what the script changes from frame to frame; changes of the window and of gr.change_... are others.
+ */
+static bool notes_changes(const struct picture_work *work) {
+    const struct render_process *process = work->process;
+    return process->animates && work->request->frame.number > 0 && !work->asked.in_window && !work->request->changed &&
+           !process->options->script.lenient;
+}
+
 static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
                         struct error *error) {
     struct render_process *process = work->process;
@@ -306,7 +314,8 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                                       .accel = work->job.settings.accel,
                                       .linear_colours = settings_linear(&work->job.settings),
                                       .encodes = work->job.settings.tone.srgb,
-                                      .cache = is_frame(work) ? &process->accel_cache : NULL,
+                                      .cache = is_frame(work) ? &process->world_cache : NULL,
+                                      .keeps_tables = notes_changes(work),
                                       .warn = warn_of_scene,
                                       .warn_context = process};
     bool ok = work->built = world_build(&work->world, &input, &process->job, process->pool, error);
@@ -399,9 +408,12 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
 static void clear_picture(struct picture_work *work) {
     struct render_process *process = work->process;
     (void)mem_charge(process->account);
-    if (work->ok && work->built && is_frame(work))
-        world_keep_accel(&work->world, &process->accel_cache);
-    world_destroy(&work->world);
+    if (work->ok && work->built && is_frame(work)) {
+        world_keep(&work->world, &process->world_cache);
+    } else {
+        world_destroy(&work->world);
+        world_cache_drop_tables(&process->world_cache);
+    }
     if (process->job.total > LARGE_JOB)
         arena_destroy(&process->job);
     else
@@ -579,10 +591,9 @@ static void init_work(struct picture_work *work, struct render_process *process,
 /* A frame of gr.frames that another one follows: the script goes on while its files are written. Outside the sandbox,
  * a script can read them in ways that wait_for_files does not see. */
 static bool is_written_early(const struct picture_work *work) {
-    const struct render_process *process = work->process;
-    const struct script_options *options = &process->options->script;
+    const struct script_options *options = &work->process->options->script;
     const struct frame *frame = &work->request->frame;
-    return process->animates && frame->number > 0 && !work->asked.check && !work->asked.in_window &&
+    return work->process->animates && frame->number > 0 && !work->asked.check && !work->asked.in_window &&
            !options->no_sandbox && frame_after(&options->frames.selection, frame) > 0;
 }
 
@@ -606,16 +617,15 @@ static bool render_job_run(struct render_process *process, const struct render_r
     /* A display shows passes of paths, unless finished tiles are wanted as they come. */
     const struct options *options = process->options;
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout;
-    bool ok = make_picture(&work, error);
-    if (ok && is_written_early(&work)) {
-        ok = services->done(services->context, &work.report, true, error);
+    bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
+    if (!early)
         clear_picture(&work);
-        return ok;
-    }
-    clear_picture(&work);
     if (ok && !work.asked.check)
-        return services->done(services->context, &work.report, false, error);
-    services->abandon(services->context);
+        ok = services->done(services->context, &work.report, early, error);
+    else
+        services->abandon(services->context);
+    if (early)
+        clear_picture(&work);
     return ok;
 }
 
@@ -703,7 +713,7 @@ static void begin_memory(struct render_process *process) {
     process->assets.memory += process->memory.held > 0 ? (uint64_t)process->memory.held : 0;
     if (process->assets.memory > script_picture_memory(&process->options->script)) {
         assets_destroy(&process->assets);
-        accel_cache_destroy(&process->accel_cache);
+        world_cache_destroy(&process->world_cache);
     }
     process->account = NULL;
     process->memory = (struct mem_account){.option = "--script-memory", .words = "--script-memory is the limit"};
@@ -809,7 +819,7 @@ static int run_script(struct render_process *process, const char *path) {
     }
     process->skips = repeats && !frame_is_selected(selection, frame.number);
     (void)mem_charge(process->account);
-    accel_cache_destroy(&process->accel_cache);
+    world_cache_destroy(&process->world_cache);
     (void)mem_charge(NULL);
     uint64_t first = process->pictures, before = first;
     int status = run_once(process, path, &frame, false);
@@ -883,7 +893,7 @@ void render_process_run(const struct options *options, const struct host_service
     pool_destroy(process.pool);
     arena_destroy(&process.job);
     assets_destroy(&process.assets);
-    accel_cache_destroy(&process.accel_cache);
+    world_cache_destroy(&process.world_cache);
     file_read_log_destroy(&process.read_log);
     file_set_destroy(&process.reported);
 }

@@ -142,7 +142,17 @@ static bool compose_separately(struct scene *scene, struct node *node, enum node
     return true;
 }
 
+static void note_pose(struct scene *scene, const struct node *node) {
+    struct scene_changes *changes = &scene->changes;
+    if (changes->other || (changes->posed_count > 0 && changes->posed[changes->posed_count - 1] == node))
+        return;
+    changes->other = changes->posed_count == SCENE_POSED_MAX;
+    if (!changes->other)
+        changes->posed[changes->posed_count++] = node;
+}
+
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by) {
+    note_pose(scene, node);
     switch (scene->order) {
     case ORDER_NEW:
         node->parent_from_node = transform_compose(by, &node->parent_from_node);
@@ -156,7 +166,9 @@ bool node_transform(struct scene *scene, struct node *node, enum node_step step,
     return true;
 }
 
-void node_reset_transform(struct node *node) {
+void node_reset_transform(struct scene *scene, struct node *node) {
+    note_pose(scene, node);
+    scene->changes.other = scene->changes.other || node->singular;
     node->parent_from_node = transform_identity();
     node->singular = false;
     for (int i = 0; node->separate && i < NODE_STEPS; i++)

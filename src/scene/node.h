@@ -159,6 +159,14 @@ struct own_material {
     struct own_material *next;
 };
 
+/* What has changed since a world was built from the scene (world/world_cache.h). */
+enum { SCENE_POSED_MAX = 1024 };
+struct scene_changes {
+    bool other; /* something else than transforms of nodes, or transforms of more nodes */
+    uint32_t posed_count;
+    const struct node *posed[SCENE_POSED_MAX]; /* nodes with other transforms; a node may be here several times */
+};
+
 enum { SCENE_NAMES = 64 };
 struct scene {
     struct arena arena;
@@ -174,6 +182,7 @@ struct scene {
     struct material *last_material; /* they are linked from the newest to the oldest */
     uint32_t kept_nodes;            /* of a snapshot: nodes with a smaller index are older */
     bool escaped;                   /* an older object refers to a newer one */
+    struct scene_changes changes;
     enum transform_order order;
     const char *file; /* of the script: nodes that are made get them; line 0: unknown */
     uint32_t line;
@@ -197,8 +206,14 @@ struct scene_snapshot {
 struct scene_snapshot scene_snapshot(struct scene *scene);
 /* Newer meshes of tables leave the store, too; meshes of files stay. */
 void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot);
+/* Must be called when a node that may be part of a world changes, except for its transforms. (Changes of
+ * scene/change.h are never part of a world that is kept.) */
+static inline void scene_note_change(struct scene *scene) {
+    scene->changes.other = true;
+}
 /* Must be called when a node gets a reference, or memory of its own. */
 static inline void scene_note_reference(struct scene *scene, uint32_t node_index) {
+    scene_note_change(scene);
     scene->escaped = scene->escaped || node_index < scene->kept_nodes;
 }
 
@@ -214,7 +229,7 @@ struct node *scene_combine(struct scene *scene, const char *name, enum node_csg 
 /* Applies one transform in the scene's order. False: no memory (only ORDER_SEPARATE needs any). */
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
 /* Forgets all transforms. */
-void node_reset_transform(struct node *node);
+void node_reset_transform(struct scene *scene, struct node *node);
 /* Everything from the node to its parent, joint angles included (y after x). */
 struct transform node_parent_from_node(const struct node *node);
 /* Of geometry: a mesh without triangles has none. */

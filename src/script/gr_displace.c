@@ -33,6 +33,7 @@ static bool displace_mesh(const struct displacing *d, struct node *node, struct 
     mesh_tables_destroy(&own);
     if (mesh)
         node->shape.mesh = mesh;
+    scene_note_change(&d->context->scene);
     return mesh != NULL;
 }
 
@@ -92,6 +93,7 @@ static bool displace_field(const struct displacing *d, struct node *node, struct
     const struct height_field *field = height_field_build(&d->context->scene.arena, &grid, error);
     if (field)
         node->shape.height_field = field;
+    scene_note_change(&d->context->scene);
     return field != NULL;
 }
 

@@ -85,7 +85,8 @@ static struct vec3 step_of(const struct script_value *args) {
 
 bool gr_velocity(struct script_context *context, const struct script_value *args, struct script_result *result,
                  struct error *error) {
-    (void)context, (void)result, (void)error;
+    (void)result, (void)error;
+    scene_note_change(&context->scene);
     args[SELF].node->velocity = step_of(args);
     return true;
 }
@@ -98,6 +99,7 @@ bool gr_spin(struct script_context *context, const struct script_value *args, st
     struct vec3 about = direction->given ? direction->vector : unit;
     if (vec3_max_abs(about) == 0)
         return error_set(error, ERROR_SCENE, "direction has length 0");
+    scene_note_change(&context->scene);
     args[SELF].node->spin = NULL;
     if (args[SPIN_DEGREES].number == 0)
         return true;
@@ -112,8 +114,8 @@ bool gr_spin(struct script_context *context, const struct script_value *args, st
 
 bool gr_reset(struct script_context *context, const struct script_value *args, struct script_result *result,
               struct error *error) {
-    (void)context, (void)result, (void)error;
-    node_reset_transform(args[SELF].node);
+    (void)result, (void)error;
+    node_reset_transform(&context->scene, args[SELF].node);
     return true;
 }
 
@@ -133,6 +135,7 @@ bool gr_scale(struct script_context *context, const struct script_value *args, s
     double min = fmin(fmin(fabs(factors.x), fabs(factors.y)), fabs(factors.z));
     if (!isfinite(1 / min)) {
         context_warn_once(context, WARNED_OTHER, "a factor is %g, so nothing under this node is drawn", min);
+        scene_note_change(&context->scene);
         args[SELF].node->singular = true;
         return true;
     }
@@ -188,13 +191,15 @@ bool gr_pose(struct script_context *context, const struct script_value *args, st
         [NODE_SCALE] = transform_scale(singular ? vec3_all(1) : factors),
     };
     static const enum node_step forward[] = {NODE_SCALE, NODE_ROTATE, NODE_TRANSLATE};
-    node_reset_transform(node);
+    node_reset_transform(&context->scene, node);
     for (int i = 0; i < NODE_STEPS; i++) {
         enum node_step kind = forward[context->scene.order == ORDER_OLD ? NODE_STEPS - 1 - i : i];
         if (!node_transform(&context->scene, node, kind, &steps[kind]))
             return error_no_memory(error, "a transform");
     }
     node->singular = singular;
+    if (singular)
+        scene_note_change(&context->scene);
     return true;
 }
 

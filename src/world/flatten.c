@@ -282,10 +282,58 @@ static bool instantiate_node(struct flattening *f, const struct node *node, cons
     return true;
 }
 
+/* --- the log --- */
+
+void flatten_log_clear(struct flatten_log *log) {
+    mem_free(log->records);
+    mem_free(log->inside);
+    linear_table_destroy(log->linear_table);
+    *log = (struct flatten_log){.on = false};
+}
+
+/* The operands of a solid are part of its prototype. */
+static bool mark_inside(struct flattening *f, const struct node *solid) {
+    struct flatten_log *log = f->log;
+    struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true, .inside = true};
+    enum scene_event event = SCENE_NO_MEMORY;
+    if (!log->inside)
+        log->inside = mem_alloc_zero(f->scene->node_total, 1);
+    scene_traversal_begin(&t, solid);
+    while (log->inside && (event = scene_traversal_next(&t)) < SCENE_END) {
+        const struct node *node = scene_traversal_node(&t);
+        if (event != SCENE_ENTER || node == solid)
+            continue;
+        if (log->inside[node->index])
+            scene_traversal_skip(&t);
+        log->inside[node->index] = 1;
+    }
+    scene_traversal_end(&t);
+    return event == SCENE_END;
+}
+
+/* Without memory nothing is recorded, which is no error. Moving nodes, clips and bounds affect what is below them. */
+static void add_record(struct flattening *f, const struct flatten_record *record) {
+    struct flatten_log *log = f->log;
+    enum { RECORDS_MAX = 1 << 22 };
+    if (!log || !log->on)
+        return;
+    bool fits = log->count < RECORDS_MAX && !node_moves(record->node) && !node_is_placing(record->node) &&
+                (record->node->kind != NODE_CSG || mark_inside(f, record->node));
+    struct flatten_record *records =
+        fits ? room_for_one(log->records, log->count, &log->capacity, sizeof *records) : NULL;
+    if (!records) {
+        flatten_log_clear(log);
+        return;
+    }
+    log->records = records;
+    records[log->count++] = *record;
+}
+
 /* Data of every node on the path. Clips and bounds of an operand do not apply to the children of the node.
  */
 struct instance_frame {
     struct pose pose, of_children;
+    uint32_t record;
     const struct graphics_state *state_of_operand, *state; /* NULL: no ancestor has a state */
 };
 
@@ -390,7 +438,14 @@ static bool instantiate_all(struct flattening *f, struct scene_traversal *t) {
         bool operand = above && scene_traversal_operand(t) != SCENE_CHILD;
         const struct pose *parent = !above ? &ground : operand ? &above->pose : &above->of_children;
         const struct graphics_state *state = !above ? NULL : operand ? above->state_of_operand : above->state;
-        if (!enter_node(f, scene_traversal_node(t), parent, state, frame))
+        const struct node *node = scene_traversal_node(t);
+        frame->record = f->log ? f->log->count : 0;
+        add_record(f, &(struct flatten_record){.node = node,
+                                               .index = node->index,
+                                               .above = above ? above->record : RECORD_NONE,
+                                               .placement = above ? t->steps[t->depth - 2].placement : 0,
+                                               .first = f->world->primitive_count});
+        if (!enter_node(f, node, parent, state, frame))
             return false;
     }
     return event == SCENE_END || error_no_memory(f->error, "flattening the scene");
@@ -422,7 +477,11 @@ bool flatten_scene(struct flattening *f, const struct node *root) {
     if (!f->primitives)
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->primitive_capacity);
     f->world->primitives = f->primitives;
+    if (f->log)
+        *f->log = (struct flatten_log){.on = true, .node_total = f->scene->node_total};
     bool ok = instantiate_scene(f, root);
     flatten_map_end(f);
+    if (f->log && f->log->on)
+        f->log->primitives = f->primitives;
     return ok;
 }

@@ -28,6 +28,28 @@ struct graphics_state {
     struct box limit;                 /* in the world: contains everything below */
 };
 
+/* How the primitives of a scene were made: the nodes that were visited, in order, so that the primitives of nodes with
+ * other transforms can be updated. Zero value: nothing is recorded. */
+struct flatten_record {
+    const struct node *node;
+    uint32_t index;     /* of the node */
+    uint32_t above;     /* number of the record of the node above it, or RECORD_NONE */
+    uint32_t placement; /* of the node above it, as in struct scene_step */
+    uint32_t first;     /* its own primitives begin here; those of the next record follow */
+};
+#define RECORD_NONE UINT32_MAX
+struct flatten_log {
+    bool on; /* false, also after a part of the scene whose primitives cannot be updated */
+    struct flatten_record *records;
+    uint32_t count, capacity;
+    uint8_t *inside; /* by node->index below node_total: the node is an operand, or below one; NULL: none is */
+    uint32_t node_total;
+    struct primitive *primitives;           /* those of the world */
+    struct linear_table *linear_table;      /* of the world's maps, which have room for linear_capacity */
+    uint32_t linear_capacity, linear_count; /* linear_count: when it was flattened */
+};
+void flatten_log_clear(struct flatten_log *log);
+
 struct flattening {
     struct arena *arena; /* of the job: owns all results */
     struct scene *scene; /* its nodes are only read */
@@ -44,6 +66,7 @@ struct flattening {
     uint32_t *prototype_of;            /* by node->index: index of its first prototype */
     struct linear_table *linear_table; /* the maps by their bits */
     struct material_table *materials;
+    struct flatten_log *log; /* or NULL */
 };
 
 /* Fills world->primitives, prototypes, linear_maps, moving, links, and authored. Errors: cycles, too many primitives,
@@ -71,6 +94,12 @@ bool flatten_check_transform(struct flattening *f, const struct node *node, cons
 bool flatten_mesh_accel(struct flattening *f, const struct shape *shape);
 /* Sets shifts and linear map of a placement. Maps that are equal to the bit are stored once. */
 bool flatten_map(struct flattening *f, const struct transform *world_from_object, struct primitive *out);
-void flatten_map_end(struct flattening *f); /* frees memory that only flattening needs */
+void flatten_map_end(struct flattening *f); /* frees memory that only flattening needs, or gives it to the log */
+void linear_table_destroy(struct linear_table *table);
+
+/* Updates the primitives and boxes of a world, which a log belongs to, after the transforms of nodes have changed.
+ * *done: false if the world must be built anew; then it may have been changed. Errors: a transform that is not finite,
+ * no memory. */
+bool flatten_update(struct flattening *f, const struct scene_changes *changes, bool *done);
 
 #endif

@@ -112,7 +112,16 @@ void world_scratch_destroy(struct world_scratch *scratch);
 /* Called with one line for warnings (a geometry node without material ...). */
 typedef void world_warning(void *context, const char *text);
 
-/* The input of a world; it is only read, except that the scene records which nodes it has warned of. */
+/* What a frame takes over from the frame before: the accelerator, and with keeps_tables the tables of everything that
+ * has not changed. Zero value: nothing. Owner: the caller; world_cache_destroy frees it. */
+struct world_cache {
+    struct accel_cache accel;
+    struct kept_tables *tables;
+    uint64_t taken; /* number of worlds that took over tables */
+};
+
+/* The input of a world; it is only read, except that the scene records which nodes it has warned of, and forgets the
+ * changes that a world with kept tables now shows. */
 struct world_input {
     struct scene *scene;
     const struct node *root; /* everything under it in its current state */
@@ -123,7 +132,8 @@ struct world_input {
     enum accel_kind accel;     /* of the world and of the meshes */
     bool linear_colours;       /* pictures and display colours are decoded (docs/colour.md) */
     bool encodes;              /* the sRGB function is applied to the result */
-    struct accel_cache *cache; /* of the frame before, or NULL */
+    struct world_cache *cache; /* of the frame before, or NULL */
+    bool keeps_tables;         /* the scene has noted all its changes since then (scene/node.h) */
     world_warning *warn;       /* or NULL */
     void *warn_context;
 };
@@ -132,10 +142,13 @@ struct world_input {
  * nothing is left to destroy then. Lights and sky are copied. */
 bool world_build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                  struct error *error);
+/* Instead of world_destroy: keeps it for the next frame. The script must not have ended then. */
+void world_keep(struct world *world, struct world_cache *cache);
+/* Frees the tables, but not the accelerator: the next frame is not one of this scene. */
+void world_cache_drop_tables(struct world_cache *cache);
+void world_cache_destroy(struct world_cache *cache);
 /* Copies the numbers of the scene's materials again, after changes that keep the world (change_keeps_world). */
 void world_update_materials(struct world *world);
-/* The accelerator moves to the world of the next frame; this world can answer no more queries. */
-void world_keep_accel(struct world *world, struct accel_cache *cache);
 void world_destroy(struct world *world); /* memory outside the arena */
 /* Bytes of placements with what they share and their boxes. */
 size_t world_primitive_memory(const struct world *world);

@@ -49,6 +49,13 @@ static bool make_materials(struct flattening *f) {
     return true;
 }
 
+static bool make_boxes(struct flattening *f) {
+    struct world *world = f->world;
+    world->boxes = arena_alloc_array(f->arena, world->primitive_count, sizeof *world->boxes);
+    return world->boxes ? world_primitive_boxes(world, f->limits, f->pool, f->error)
+                        : error_no_memory(f->error, "the boxes of the scene");
+}
+
 /* On failure the caller destroys partial results. */
 static bool build(struct world *world, const struct world_input *input, struct arena *arena, struct pool *pool,
                   struct error *error) {
@@ -60,7 +67,6 @@ static bool build(struct world *world, const struct world_input *input, struct a
         if (input->linear_colours)
             light_decode(&copied[i]);
     }
-    world->lights = copied;
     struct flattening flattening = {.arena = arena,
                                     .scene = input->scene,
                                     .world = world,
@@ -70,20 +76,22 @@ static bool build(struct world *world, const struct world_input *input, struct a
                                     .warn = input->warn,
                                     .warn_context = input->warn_context,
                                     .error = error};
-    if (!flatten_scene(&flattening, input->root) ||
-        !light_lists_resolve(world, input->lights, copied, arena, input->root, error) ||
-        !mesh_lights_resolve(&flattening, input->lights, copied, input->root))
+    bool taken;
+    if (!kept_tables_take(&flattening, input, &taken) || (!taken && !flatten_scene(&flattening, input->root)))
         return false;
-    world->boxes = arena_alloc_array(arena, world->primitive_count, sizeof *world->boxes);
-    if (!world->boxes)
-        return error_no_memory(error, "the boxes of the scene");
-    if (input->linear_colours && !sky_decode(&world->sky, error))
+    struct arena *of_tables = flattening.arena;
+    flattening.arena = arena;
+    world->lights = copied;
+    if (!light_lists_resolve(world, input->lights, copied, arena, input->root, error) ||
+        !mesh_lights_resolve(&flattening, input->lights, copied, input->root) ||
+        (input->linear_colours && !sky_decode(&world->sky, error)))
         return false;
-    if (!make_materials(&flattening) || !world_primitive_boxes(world, flattening.limits, pool, error))
+    flattening.arena = of_tables;
+    if (!taken && (!make_boxes(&flattening) || !make_materials(&flattening)))
         return false;
     add_up_meshes(world, input->scene->assets);
-    bool taken = input->cache &&
-                 accel_cache_take(input->cache, world->mesh_accel, world->boxes, world->primitive_count, &world->accel);
+    taken = input->cache && accel_cache_take(&input->cache->accel, world->mesh_accel, world->boxes,
+                                             world->primitive_count, &world->accel);
     if (!taken &&
         !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
         return false;
@@ -99,10 +107,6 @@ bool world_build(struct world *world, const struct world_input *input, struct ar
     if (!ok)
         world_destroy(world);
     return ok;
-}
-
-void world_keep_accel(struct world *world, struct accel_cache *cache) {
-    accel_cache_keep(cache, world->mesh_accel, world->boxes, world->primitive_count, &world->accel);
 }
 
 void world_destroy(struct world *world) {

@@ -74,6 +74,16 @@ static struct box primitive_bounds(const struct world *world, uint32_t primitive
     return box_pad(geometry_bounds_under(geometry, &world_from_object.forward));
 }
 
+bool world_update_box(struct world *world, uint32_t primitive) {
+    bool exact = world->triangles <= EXACT_IN_ALL; /* then those of all meshes are, up to EXACT_AT_ONCE */
+    uint32_t at_once = EXACT_AT_ONCE;
+    if (!exact && geometry_mesh(primitive_geometry(world, primitive)))
+        return false;
+    struct box box = primitive_bounds(world, primitive, &at_once);
+    world->boxes[primitive] = box_is_empty(&box) ? box_empty() : box;
+    return true;
+}
+
 /* What a run over chunks of primitives and prototypes finds. */
 enum { CHUNK = 4096 };
 struct box_chunk {
@@ -251,10 +261,22 @@ bool flatten_map(struct flattening *f, const struct transform *world_from_object
     return true;
 }
 
+void linear_table_destroy(struct linear_table *table) {
+    if (table)
+        mem_free(table->slots);
+    mem_free(table);
+}
+
 void flatten_map_end(struct flattening *f) {
-    if (f->linear_table)
-        mem_free(f->linear_table->slots);
-    mem_free(f->linear_table);
+    struct flatten_log *log = f->log;
+    if (log && log->on) {
+        log->linear_table = f->linear_table;
+        log->linear_capacity = f->linear_capacity;
+        log->linear_count = f->world->linear_count;
+        f->linear_table = NULL;
+        return;
+    }
+    linear_table_destroy(f->linear_table);
     f->linear_table = NULL;
     /* Frees the unused part of the list; on failure it is kept. */
     struct world *world = f->world;

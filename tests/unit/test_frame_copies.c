@@ -5,6 +5,7 @@
 #include "scene/scene_digest.h"
 #include "script/table_internal.h"
 #include "tests/unit/script_host.h"
+#include "world/world.h"
 
 #include <math.h>
 #include <sys/wait.h>
@@ -112,6 +113,84 @@ TEST(every_method_of_nodes_changes_the_digest_of_their_scene) {
         if (function->owner == OWNER_NODE && !reads && !strstr(methods, call))
             test_fail(__FILE__, __LINE__, "node:%s is in no step of this test", function->name);
     }
+}
+
+/* The world that keeps its tables from picture to picture, beside a new one. */
+static struct world_cache cache_of_methods;
+static int wrong_worlds;
+
+static uint64_t digest_of_world(const struct world *world) {
+    struct digest_sum sum = {.count = 0};
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
+        struct transform pose = world_placement(world, i, 0.5);
+        const struct prototype *prototype = primitive_prototype(world, i);
+        digest_sum_add_numbers(&sum, pose.forward.m[0], 12);
+        digest_sum_add_numbers(&sum, pose.inverse.m[0], 12);
+        digest_sum_add_numbers(&sum, &world->boxes[i].min.x, 6);
+        digest_sum_add(&sum, (uint64_t)(uintptr_t)geometry_mesh(&prototype->geometry));
+        digest_sum_add_numbers(&sum, &world->materials[prototype->material].phong.kd.x, 3);
+        digest_sum_add(&sum, material_has_image(&world->materials[prototype->material]));
+        digest_sum_add(&sum, material_has_bump(&world->materials[prototype->material]));
+    }
+    return digest_sum_end(&sum).a;
+}
+
+static void see_world(struct listener *listener, const struct render_request *request) {
+    struct world_input input = {.scene = request->scene,
+                                .root = request->root,
+                                .lights = request->lights,
+                                .light_count = request->light_count,
+                                .sky = &request->sky,
+                                .shutter = {0, 1},
+                                .cache = &cache_of_methods,
+                                .keeps_tables = true};
+    struct arena arena = {0};
+    struct world kept, made;
+    struct error error;
+    char warning[256];
+    struct pool *pool = pool_create(1, warning);
+    listener->files[0] = '\0';
+    CHECK(pool != NULL);
+    bool is_kept = world_build(&kept, &input, &arena, pool, &error);
+    input.cache = NULL;
+    bool is_made = world_build(&made, &input, &arena, pool, &error);
+    if (!is_made)
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    wrong_worlds += is_kept != is_made || (is_made && digest_of_world(&kept) != digest_of_world(&made));
+    if (is_kept)
+        world_keep(&kept, &cache_of_methods);
+    if (is_made)
+        world_destroy(&made);
+    arena_destroy(&arena);
+    pool_destroy(pool);
+}
+
+/* Each step above in a scene of its own, between two pictures; the ball is not an operand, which must not move. */
+TEST(after_every_method_of_nodes_the_world_has_the_tables_of_a_new_one) {
+    struct listener listener = {.seen = see_world};
+    const struct script_options options = {.transform_order = SCRIPT_ORDER_NEW, .library_folder = "lua"};
+    struct error error;
+    const char *solid = strstr(methods, "root:add_child(gr.csg"), *show = strstr(methods, "local function show()"),
+               *end = strstr(methods, "show() show()\n");
+    char *text = NULL;
+    CHECK(solid && show && end);
+    if (asprintf(&text,
+                 "local function scene()\n%.*sroot:add_child(gr.csg_difference('cut', gr.cube{}, gr.sphere{}))\n%.*s"
+                 "ball:rotate('y', 5) arm:translate(0, 1, 0)\nreturn show, steps\nend\n"
+                 "for k = 1, #select(2, scene()) do\nlocal show, steps = scene()\n"
+                 "show() show() steps[k]() show() show() end",
+                 (int)(solid - methods), methods, (int)(end - show), show) < 0)
+        exit(1);
+    wrong_worlds = 0;
+    cache_of_methods = (struct world_cache){.tables = NULL};
+    write_images();
+    if (!listen_to_text(&listener, text, &options, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    CHECK_EQ_INT(wrong_worlds, 0);
+    CHECK(listener.renders > 80);
+    CHECK(cache_of_methods.taken > 30); /* equal pictures, and those after transforms */
+    world_cache_destroy(&cache_of_methods);
+    free(text);
 }
 
 /* Two values of a kind of parameter, as Lua text; NULL: this test has none. */
