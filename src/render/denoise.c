@@ -5,9 +5,10 @@
  * the features. The weight of each pixel is its similarity to p in the other half (cross-filtering): weights and
  * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
  * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
- * on every second row and column are enough. This is done for several windows and bandwidths of the similarity, and
- * each pixel prefers those with the smallest error. In windows where all pixels have the same weight, the features
- * alone separate surfaces: pixels on edges and details have few pixels that are like them.
+ * on every second row and column are enough. This is done for several windows and weights, and each pixel prefers
+ * those with the smallest error. A large window in which similar colours count more is for surfaces. Smaller windows
+ * and weights by the similarity of features are for silhouettes, small objects and the rims of glass, where few pixels
+ * are alike; the noisy colour itself is the last candidate.
  *
  * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
  * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
@@ -29,8 +30,9 @@ enum {
     LOCAL = DENOISE_LOCAL,
     MARGIN = DENOISE_MARGIN,
     CHOICE = DENOISE_CHOICE,
-    INNER = DENOISE_INNER,
-    BANDWIDTHS = DENOISE_BANDWIDTHS,
+    REGRESSIONS = DENOISE_REGRESSIONS,
+    CANDIDATES = DENOISE_CANDIDATES,
+    ALIGNMENT = 4, /* of blocks in the whole picture: steps between centres divide it */
     LEVELS = 2,
     STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
@@ -42,12 +44,11 @@ _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARI
                "the same of features");
 
 /* Found by measurement (bench/denoise.sh). */
-static const float colour_noise = 1e-3F; /* of the squared colours: the unit in which errors are compared */
-static const struct denoise_bandwidth bandwidths[BANDWIDTHS] = {
-    {DENOISE_WINDOW, 2, 0}, {5, 3, 0}, {DENOISE_WINDOW, 0, 0}, {2, 0, 0.2F}};
+static const struct denoise_regression regressions[REGRESSIONS] = {
+    {DENOISE_WINDOW, 2, 2.4F, 0}, {3, 2, 3, 0.3F}, {DENOISE_WINDOW, 4, 0, 0.3F}, {2, 2, 0, 0}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
-static const float choice_slope = 4;        /* how strongly the bandwidth with the smallest error is preferred */
+static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
 
 /* A picture as planes of floats. */
 struct level {
@@ -69,7 +70,7 @@ struct denoiser {
     float *sampled[3];           /* the variance of a half, from its samples */
     float *mean[3], *noise[3];   /* of a group of features: measured values and their variance */
     int first_feature, group;    /* which, and how many */
-    struct denoise_pixel *rows;  /* one of each worker */
+    struct denoise_pixel *rows;  /* three of each worker */
     struct denoise_scratch *scratch;
     const struct denoise_kernels *kernels;
 };
@@ -100,9 +101,9 @@ static float bounded(float x) {
     return fabsf(x) <= limit ? x : x > limit ? limit : x < -limit ? -limit : 0;
 }
 
-/* The pixels of a row. */
-static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int worker) {
-    struct denoise_pixel *row = d->rows + (size_t)worker * (size_t)d->levels[0].width;
+/* The pixels of a row; slot 0 to 2: of the rows that the worker keeps, the one that is replaced. */
+static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int worker, int slot) {
+    struct denoise_pixel *row = d->rows + (3 * (size_t)worker + (size_t)slot) * (size_t)d->levels[0].width;
     d->source->row(d->source->context, y, row);
     return row;
 }
@@ -111,7 +112,7 @@ static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int w
 
 static void load_colours(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
-    const struct denoise_pixel *row = get_row(d, y, worker);
+    const struct denoise_pixel *row = get_row(d, y, worker, 0);
     for (int x = 0; x < d->level->width; x++)
         for (int h = 0; h < 2; h++)
             for (int c = 0; c < 3; c++)
@@ -207,7 +208,7 @@ static void estimate_variance(void *context, uint32_t y, int worker) {
 
 static void load_features(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
-    const struct denoise_pixel *row = get_row(d, y, worker);
+    const struct denoise_pixel *row = get_row(d, y, worker, 0);
     for (int x = 0; x < d->level->width; x++) {
         size_t at = pixel_at(d->level, x, (int)y);
         for (int i = 0; i < d->group; i++) {
@@ -240,98 +241,60 @@ static void filter_features(void *context, uint32_t item, int worker) {
 
 /* --- regressions --- */
 
-/* The position of a pixel of the inner part in the planes of the scratch. */
+/* The position of a pixel of the block in the planes of the scratch. */
 static int local_of(int x, int y) {
-    return (y + MARGIN - CHOICE) * LOCAL + x + MARGIN - CHOICE;
+    return (y + MARGIN) * LOCAL + x + MARGIN;
 }
 
 /* For one half: the mean of the predictions. A pixel without predictions keeps its colour. */
-static void keep_estimates(struct denoise_scratch *s, int bandwidth, int half) {
+static void keep_estimates(struct denoise_scratch *s, int regression, int half) {
     const float own = 0.01F;
     for (int c = 0; c < 3; c++) {
-        for (int y = 0; y < INNER; y++) {
-            for (int at = local_of(0, y); at < local_of(INNER, y); at++) {
+        for (int y = -CHOICE; y < BLOCK + CHOICE; y++) {
+            for (int at = local_of(-CHOICE, y); at < local_of(BLOCK + CHOICE, y); at++) {
                 float colour = s->colour[half][c][at];
                 float value = (s->sums[c][at] + own * colour) / (s->sums[3][at] + own);
-                s->estimates[bandwidth][half][c][at] = isfinite(value) ? value : colour;
+                s->estimates[regression][half][c][at] = isfinite(value) ? value : colour;
             }
         }
     }
-    memcpy(s->support[bandwidth][half], s->sums[3], sizeof s->sums[3]);
+    memcpy(s->support[regression][half], s->sums[3], sizeof s->sums[3]);
 }
 
 /* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
 static void regress_half(const struct denoiser *d, struct denoise_scratch *s, int half, struct denoise_bounds bounds) {
     d->kernels->compare(s, 1 - half);
-    for (int b = 0; b < BANDWIDTHS; b++) {
-        d->kernels->regress(s, half, bandwidths[b], bounds);
+    for (int b = 0; b < REGRESSIONS; b++) {
+        d->kernels->regress(s, half, regressions[b], bounds);
         keep_estimates(s, b, half);
     }
 }
 
-/* --- choice of the bandwidth --- */
+/* --- choice of the candidate --- */
 
-/* The difference between an estimate of one half and the values of the other half contains the errors of both. So
- * the difference of two such squares is the difference of the squared errors of two estimates (Bitterli et al. 2016,
- * section 5.4). Here they are those of each bandwidth and of the first one, in units of the variance. */
-static void compare_bandwidths(struct denoise_scratch *s) {
-    for (int y = 0; y < INNER; y++) {
-        for (int x = 0; x < INNER; x++) {
-            int at = local_of(x, y);
-            float errors[BANDWIDTHS] = {0}, scale = FLT_MIN;
-            for (int c = 0; c < 3; c++) {
-                for (int h = 0; h < 2; h++) {
-                    float other = s->colour[1 - h][c][at], first = s->estimates[0][h][c][at] - other;
-                    for (int b = 1; b < BANDWIDTHS; b++) {
-                        float own = s->estimates[b][h][c][at] - other;
-                        errors[b] += own * own - first * first;
-                    }
-                    scale += s->variance[c][at] + colour_noise * other * other;
-                }
-            }
-            for (int b = 0; b < BANDWIDTHS; b++)
-                s->errors[b][y][x] = errors[b] / scale + bandwidths[b].margin;
-        }
-    }
-}
-
-/* The mean errors around the pixels of a row of the block. */
-static void average_errors(float (*errors)[INNER], int y, float means[BLOCK]) {
-    float columns[INNER] = {0};
-    for (int j = 0; j <= 2 * CHOICE; j++)
-        for (int x = 0; x < INNER; x++)
-            columns[x] += errors[y + j][x];
-    for (int x = 0; x < BLOCK; x++) {
-        float sum = 0;
-        for (int i = 0; i <= 2 * CHOICE; i++)
-            sum += columns[x + i];
-        means[x] = sum / ((2 * CHOICE + 1) * (2 * CHOICE + 1));
-    }
-}
-
-/* The weights of the bandwidths at the pixels of a row of the block: the larger its error, the smaller the weight. */
-static void choose_bandwidths(struct denoise_scratch *s, int y, float shares[BANDWIDTHS][BLOCK]) {
-    for (int b = 0; b < BANDWIDTHS; b++)
-        average_errors(s->errors[b], y, shares[b]);
+/* The weights of the candidates at the pixels of a row of the block: the larger the score, the smaller the weight. */
+static void choose_candidates(const struct denoiser *d, struct denoise_scratch *s, int y,
+                              float shares[CANDIDATES][BLOCK]) {
+    d->kernels->score_candidates(s, y, shares);
     for (int x = 0; x < BLOCK; x++) {
         float smallest = shares[0][x], sum = 0;
-        for (int b = 1; b < BANDWIDTHS; b++)
+        for (int b = 1; b < CANDIDATES; b++)
             smallest = shares[b][x] < smallest ? shares[b][x] : smallest;
-        for (int b = 0; b < BANDWIDTHS; b++) {
+        for (int b = 0; b < CANDIDATES; b++) {
             float share = 1 - choice_slope * (shares[b][x] - smallest);
             shares[b][x] = share > 0 ? share : 0;
             sum += shares[b][x];
         }
-        for (int b = 0; b < BANDWIDTHS; b++)
-            shares[b][x] = sum > 0 ? shares[b][x] / sum : 1.0F / BANDWIDTHS;
+        for (int b = 0; b < CANDIDATES; b++)
+            shares[b][x] = sum > 0 ? shares[b][x] / sum : 1.0F / CANDIDATES;
     }
 }
 
 /* The half that speaks for a half at a pixel: the other one if few pixels were like it there, since a bright path made
  * the other one unlike all. */
-static int supported_half(const struct denoise_scratch *s, int bandwidth, int half, int at) {
+static int supported_half(const struct denoise_scratch *s, int regression, int half, int at) {
     const float few = 2, many = 8;
-    bool unsupported = s->support[bandwidth][half][at] < few && s->support[bandwidth][1 - half][at] > many;
+    bool unsupported = s->support[regression][half][at] < few && s->support[regression][1 - half][at] > many;
     return unsupported ? 1 - half : half;
 }
 
@@ -339,22 +302,22 @@ static void store_pixel(const struct level *level, const struct denoise_scratch 
                         float (*shares)[BLOCK], int x) {
     for (int half = 0; half < 2; half++) {
         float sum[3] = {0};
-        for (int b = 0; b < BANDWIDTHS; b++) {
+        for (int b = 0; b < REGRESSIONS; b++) {
             int speaker = supported_half(s, b, half, from);
             for (int c = 0; c < 3; c++)
                 sum[c] += shares[b][x] * s->estimates[b][speaker][c][from];
         }
         for (int c = 0; c < 3; c++)
-            level->estimate[half][c][to] = sum[c];
+            level->estimate[half][c][to] = sum[c] + shares[REGRESSIONS][x] * s->colour[half][c][from];
     }
 }
 
-/* Blocks begin where centres have even coordinates in the whole picture. */
+/* Blocks begin where coordinates in the whole picture are multiples of ALIGNMENT, and so do centres. */
 static void regress_block(void *context, uint32_t item, int worker) {
     struct denoiser *d = context;
     struct denoise_scratch *s = d->scratch + worker;
-    float shares[BANDWIDTHS][BLOCK];
-    int left = -(int)(d->level->x0 % DENOISE_STEP), top = -(int)(d->level->y0 % DENOISE_STEP);
+    float shares[CANDIDATES][BLOCK];
+    int left = -(int)(d->level->x0 % ALIGNMENT), top = -(int)(d->level->y0 % ALIGNMENT);
     int across = (d->level->width - left + BLOCK - 1) / BLOCK;
     int bx = left + (int)item % across * BLOCK, by = top + (int)item / across * BLOCK;
     int x0 = bx - MARGIN, y0 = by - MARGIN;
@@ -368,12 +331,11 @@ static void regress_block(void *context, uint32_t item, int worker) {
         copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
     for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
         regress_half(d, s, half, bounds);
-    compare_bandwidths(s);
+    d->kernels->compare_candidates(s);
     for (int y = by > 0 ? by : 0; y < by + BLOCK && y < d->level->height; y++) {
-        choose_bandwidths(s, y - by, shares);
+        choose_candidates(d, s, y - by, shares);
         for (int x = bx > 0 ? bx : 0; x < bx + BLOCK && x < d->level->width; x++)
-            store_pixel(d->level, s, local_of(x - bx + CHOICE, y - by + CHOICE), pixel_at(d->level, x, y), shares,
-                        x - bx);
+            store_pixel(d->level, s, local_of(x - bx, y - by), pixel_at(d->level, x, y), shares, x - bx);
     }
 }
 
@@ -490,36 +452,67 @@ static float mean_of_halves(const struct level *level, int c, size_t at) {
     return 0.5F * (level->estimate[0][c][at] + level->estimate[1][c][at]);
 }
 
+static float albedo_of(const struct denoise_pixel *pixel, int c) {
+    const float black = 0.02F;
+    float albedo =
+        0.5F * (bounded(pixel->features[0][DENOISE_ALBEDO + c]) + bounded(pixel->features[1][DENOISE_ALBEDO + c]));
+    return albedo > 0 ? albedo + black : black;
+}
+
 /* The mean of the halves. A pixel that is brighter or darker than all of its neighbours is so in both of them, by more
  * than its samples explain: few bright paths in a pixel bring a mean that is hardly larger than its standard error,
- * a detail of the scene is found by many. error: the standard error of the pixel's mean. */
-static float supported_mean(const struct level *level, int c, int x, int y, float error) {
+ * a detail of the scene is found by many. A detail of a texture is no brighter than its neighbours would be with its
+ * albedo. rows: those around the pixel. error: the standard error of the pixel's mean. */
+static float supported_mean(const struct level *level, const struct denoise_pixel *const rows[3], int c, int x, int y,
+                            float error) {
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
     float margin = support_errors * error, high = (a < b ? a : b) - margin, low = (a < b ? b : a) + margin;
+    float albedo = albedo_of(&rows[1][x], c);
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
-            size_t q = nearest_at(level, x + i, y + j);
-            if (q == at)
+            int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
+            if (qx == x && qy == y)
                 continue;
-            float other = mean_of_halves(level, c, q);
+            float other = mean_of_halves(level, c, pixel_at(level, qx, qy));
+            float like = other * (albedo / albedo_of(&rows[1 + j][qx], c));
             high = other > high ? other : high;
+            high = like > high ? like : high;
             low = other < low ? other : low;
+            low = like < low ? like : low;
         }
     }
     return mean > high ? high : mean < low ? low : mean;
 }
 
+/* No sample of the pixel met a surface: it has no noise, and no neighbour knows better. */
+static bool is_empty(const struct denoise_pixel *pixel) {
+    for (int half = 0; half < 2; half++) {
+        for (int f = 0; f < DENOISE_FEATURES; f++)
+            if (pixel->features[half][f] != 0)
+                return false;
+        for (int c = 0; c < 3; c++)
+            if (pixel->colour[half][c] != pixel->glow[half][c])
+                return false;
+    }
+    return true;
+}
+
 /* The mean of the halves, plus glow. */
 static void finish_row(void *context, uint32_t y, int worker) {
     struct denoiser *d = context;
-    const struct denoise_pixel *row = get_row(d, y, worker);
+    const struct denoise_pixel *rows[3];
+    for (int j = 0; j < 3; j++)
+        rows[j] = get_row(d, (uint32_t)clamp_int((int)y + j - 1, 0, d->level->height - 1), worker, j);
     for (int x = 0; x < d->level->width; x++) {
-        float share = row[x].share;
-        for (int c = 0; c < 3; c++)
+        const struct denoise_pixel *pixel = &rows[1][x];
+        bool empty = is_empty(pixel);
+        for (int c = 0; c < 3; c++) {
+            float error = sqrtf(fabsf(bounded(pixel->variance[c])));
+            float value = empty ? 0 : supported_mean(d->level, rows, c, x, (int)y, error);
             d->out[pixel_at(d->level, x, (int)y)][c] =
-                supported_mean(d->level, c, x, (int)y, sqrtf(fabsf(bounded(row[x].variance[c])))) +
-                (share * row[x].glow[0][c] + (1 - share) * row[x].glow[1][c]);
+                value + (pixel->share * pixel->glow[0][c] + (1 - pixel->share) * pixel->glow[1][c]);
+        }
     }
 }
 
@@ -613,8 +606,8 @@ static bool make_estimates(struct denoiser *d, struct error *error) {
             if (!make_plane(d->level, &d->level->estimate[half][c]))
                 return no_memory(error);
     uint32_t width = (uint32_t)d->level->width, height = (uint32_t)d->level->height;
-    uint32_t across = (width + d->level->x0 % DENOISE_STEP + BLOCK - 1) / BLOCK;
-    uint32_t down = (height + d->level->y0 % DENOISE_STEP + BLOCK - 1) / BLOCK;
+    uint32_t across = (width + d->level->x0 % ALIGNMENT + BLOCK - 1) / BLOCK;
+    uint32_t down = (height + d->level->y0 % ALIGNMENT + BLOCK - 1) / BLOCK;
     return run(d, across * down, regress_block, error);
 }
 
@@ -638,7 +631,7 @@ static bool make_coarse(struct denoiser *d, struct error *error) {
 static bool denoise_all(struct denoiser *d, struct error *error) {
     const struct denoise_source *source = d->source;
     size_t workers = (size_t)pool_workers(d->pool);
-    d->rows = mem_alloc_zero(workers * source->width, sizeof *d->rows);
+    d->rows = mem_alloc_zero(3 * workers * source->width, sizeof *d->rows);
     d->scratch = mem_alloc_zero(workers, sizeof *d->scratch);
     if (!d->rows || !d->scratch)
         return no_memory(error);

@@ -13,7 +13,7 @@ enum {
     DENOISE_LANES = 16,                                 /* of a row of a window, of which the last does not count */
     DENOISE_PATCH = 3,                                  /* radius of the patches that are compared */
     DENOISE_STEP = 2,                                   /* between centres of regressions */
-    DENOISE_CHOICE = 2,                                 /* radius of the mean that chooses between bandwidths */
+    DENOISE_CHOICE = 2,                                 /* radius of the mean that chooses between candidates */
     DENOISE_INNER = DENOISE_BLOCK + 2 * DENOISE_CHOICE, /* side of a block with what this mean reads */
     DENOISE_MARGIN = DENOISE_CHOICE + 2 * DENOISE_WINDOW + DENOISE_PATCH,
     DENOISE_LOCAL = DENOISE_BLOCK + 2 * DENOISE_MARGIN, /* side of a block with everything that it reads */
@@ -27,13 +27,17 @@ enum {
     DENOISE_FEATURE_WINDOW = 4,                   /* radius of the filter of features */
     DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
     DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
-    DENOISE_BANDWIDTHS = 4,
+    DENOISE_REGRESSIONS = 4,
+    DENOISE_WIDE = 2, /* this one uses a large window and needs no margin where candidates are compared */
+    DENOISE_CANDIDATES = DENOISE_REGRESSIONS + 1, /* the last one is the noisy colour */
 };
 
-struct denoise_bandwidth {
-    int radius;   /* of the window, at most DENOISE_WINDOW */
-    float scale;  /* of distances; 0: all pixels of the window have the same weight */
-    float margin; /* added to its error where bandwidths are compared: few pixels leave noise that looks like detail */
+/* A regression: its window, and how it weights the pixels there. */
+struct denoise_regression {
+    int radius;     /* of the window, at most DENOISE_WINDOW */
+    int step;       /* between centres, a multiple of DENOISE_STEP that divides DENOISE_BLOCK */
+    float colours;  /* scale of the distances between patches; 0: they do not count */
+    float features; /* the same of the distances between features */
 };
 
 typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
@@ -44,9 +48,11 @@ typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
 struct denoise_scratch {
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
     denoise_plane sums[4]; /* of weighted colours, and of weights */
-    denoise_plane estimates[DENOISE_BANDWIDTHS][2][3], support[DENOISE_BANDWIDTHS][2]; /* support: sums of weights */
-    float errors[DENOISE_BANDWIDTHS][DENOISE_INNER][DENOISE_INNER]; /* compared with those of the first bandwidth */
-    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES];    /* between patches */
+    denoise_plane estimates[DENOISE_REGRESSIONS][2][3], support[DENOISE_REGRESSIONS][2]; /* support: sums of weights */
+    /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
+    float errors[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
+    float doubts[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
+    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */
     float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
     float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
     denoise_feature_plane feature_mean[3], feature_noise[3];
@@ -66,8 +72,12 @@ struct denoise_kernels {
     /* The distances of all centres from their windows, in the colours of a half. */
     void (*compare)(struct denoise_scratch *s, int half);
     /* Adds up what the regressions of all centres say about the colours of a half. */
-    void (*regress)(struct denoise_scratch *s, int half, struct denoise_bandwidth bandwidth,
+    void (*regress)(struct denoise_scratch *s, int half, struct denoise_regression regression,
                     struct denoise_bounds bounds);
+    /* Fills errors and doubts from the estimates. */
+    void (*compare_candidates)(struct denoise_scratch *s);
+    /* The scores of the candidates at the pixels of a row of the block: the smallest is the best. */
+    void (*score_candidates)(const struct denoise_scratch *s, int y, float scores[DENOISE_CANDIDATES][DENOISE_BLOCK]);
 };
 
 extern const struct denoise_kernels denoise_kernels_base, denoise_kernels_avx2, denoise_kernels_avx512;

@@ -31,6 +31,15 @@ static const float unlikeness_limit = 4; /* of each pixel of a patch */
 static const float own_limit = 4,
                    own_share = 0.5F; /* of the pixel itself: the threshold of its distance, and its weight */
 static const double ridge = 5e-4;    /* of the sum of weights */
+/* Factors of squared differences of features: their sum is the distance. That of the depth is a relative one. */
+static const float albedo_unit = 50, normal_unit = 10, depth_unit = 400;
+/* Two pixels count half for each other if their features have this distance. */
+static const float similar_limit = 10;
+/* Half of `detail_margin` remains where the largest distance between the features around a pixel is this. */
+static const float change_limit = 0.22F;
+static const float detail_margin = 1;   /* added to the error of candidates that use few pixels */
+static const float colour_margin = 1;   /* added to that of the noisy colour */
+static const float doubt_errors = 1.4F; /* standard errors that are added to the error of a candidate */
 
 typedef int32_t mask __attribute__((vector_size(WIDTH * sizeof(int32_t)))); /* -1 for true, 0 */
 
@@ -228,6 +237,39 @@ static void weigh(struct denoise_scratch *s, const struct window *w, denoise_win
     }
 }
 
+/* The smaller one of the differences to the pixels before and after. */
+static float slope_of(const float *plane, int at, int step) {
+    float before = fabsf(plane[at] - plane[at - step]), after = fabsf(plane[at + step] - plane[at]);
+    return before < after ? before : after;
+}
+
+/* Multiplies the weights by the similarity of features. A plane is similar to itself at any angle: the depth at a
+ * distance of some pixels may differ by as much as the slope explains. */
+static void weigh_features(struct denoise_scratch *s, const struct window *w, float scale) {
+    const vector none = {0};
+    int centre = w->y * LOCAL + w->x;
+    const float *depth = s->feature[DENOISE_DEPTH];
+    float z = depth[centre], across = 2 * slope_of(depth, centre, 1), down = 2 * slope_of(depth, centre, LOCAL);
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector dx = load(s->columns[TERMS - 2][0] + at) * (DENOISE_WINDOW * across);
+        for (int r = w->row0; r < w->row1; r++) {
+            float dy = (float)(r - DENOISE_WINDOW) * down;
+            vector sum = none;
+            for (int f = 0; f < DENOISE_DEPTH; f++) {
+                vector difference = load(s->feature[f] + row_at(w, r) + at) - s->feature[f][centre];
+                sum += difference * difference * (f < DENOISE_NORMAL ? albedo_unit : normal_unit);
+            }
+            vector difference = load(depth + row_at(w, r) + at) - z;
+            sum += difference * difference / (dx * dx + (dy * dy + z * z / depth_unit + FLT_MIN));
+            vector x = larger(1 - scale * sum * 0.125F, none);
+            x *= x;
+            x *= x;
+            x *= x * load(s->weights[r] + at);
+            store(s->weights[r] + at, choose(x > 1e-3F, x, none));
+        }
+    }
+}
+
 /* Differences of a feature to the centre; returns the largest one among the pixels with a weight. */
 static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature) {
     const float *plane = s->feature[feature];
@@ -409,7 +451,7 @@ static void regress_centre(struct denoise_scratch *s, int half, const struct win
     }
 }
 
-static void regress(struct denoise_scratch *s, int half, struct denoise_bandwidth bandwidth,
+static void regress(struct denoise_scratch *s, int half, struct denoise_regression regression,
                     struct denoise_bounds bounds) {
     memset(s->sums, 0, sizeof s->sums);
     for (int r = 0; r < DENOISE_SIDE; r++) {
@@ -422,12 +464,112 @@ static void regress(struct denoise_scratch *s, int half, struct denoise_bandwidt
     for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
         int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
         int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP;
+        if ((cx - DENOISE_MARGIN) % regression.step != 0 || (cy - DENOISE_MARGIN) % regression.step != 0)
+            continue;
         if (cx < bounds.x0 || cy < bounds.y0 || cx >= bounds.x1 || cy >= bounds.y1)
             continue;
-        struct window w = find_window(cx, cy, bandwidth.radius, bounds);
-        weigh(s, &w, &s->distances[i], bandwidth.scale);
+        struct window w = find_window(cx, cy, regression.radius, bounds);
+        weigh(s, &w, &s->distances[i], regression.colours);
+        if (regression.features > 0)
+            weigh_features(s, &w, regression.features);
         regress_centre(s, half, &w);
     }
 }
 
-const struct denoise_kernels KERNELS = {filter_features, compare, regress};
+/* --- choice of the candidate --- */
+
+/* The position of a pixel of the inner part in the planes of the scratch. */
+static int local_of(int x, int y) {
+    return (y + DENOISE_MARGIN - DENOISE_CHOICE) * LOCAL + x + DENOISE_MARGIN - DENOISE_CHOICE;
+}
+
+/* The difference between an estimate of one half and the values of the other half contains the errors of both. So
+ * the difference of two such squares is the difference of the squared errors of two estimates (Bitterli et al. 2016,
+ * section 5.4). Here they are those of each candidate and of the first one, in units of the variance. Its noise is that
+ * of the other half times twice the difference of the estimates. */
+static void compare_candidates(struct denoise_scratch *s) {
+    enum { SIDE = DENOISE_INNER };
+    for (int y = 0; y < SIDE; y++) {
+        int from = local_of(0, y);
+        float scale[SIDE];
+        for (int x = 0; x < SIDE; x++)
+            scale[x] = FLT_MIN;
+        for (int c = 0; c < 3; c++)
+            for (int h = 0; h < 2; h++)
+                for (int x = 0; x < SIDE; x++) {
+                    float other = s->colour[1 - h][c][from + x];
+                    scale[x] += s->variance[c][from + x] + colour_noise * other * other;
+                }
+        for (int b = 0; b < DENOISE_CANDIDATES; b++) {
+            float *errors = s->errors[b][y], *doubts = s->doubts[b][y];
+            memset(errors, 0, SIDE * sizeof *errors);
+            memset(doubts, 0, SIDE * sizeof *doubts);
+            for (int c = 0; c < 3; c++) {
+                for (int h = 0; h < 2; h++) {
+                    const float *own = b < DENOISE_REGRESSIONS ? s->estimates[b][h][c] : s->colour[h][c];
+                    const float *first = s->estimates[0][h][c], *other = s->colour[1 - h][c];
+                    for (int x = 0; x < SIDE; x++) {
+                        float a = own[from + x] - other[from + x], e = first[from + x] - other[from + x];
+                        errors[x] += (a * a - e * e) / scale[x];
+                        doubts[x] += 4 * (a - e) * (a - e) / scale[x] * (s->variance[c][from + x] / scale[x]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/* The distances between the features of the pixels of a row of the block and those at an offset. */
+static void compare_surfaces(const struct denoise_scratch *s, int y, int dx, int dy, float distances[DENOISE_BLOCK]) {
+    int p = local_of(DENOISE_CHOICE, y + DENOISE_CHOICE), q = p + dy * LOCAL + dx;
+    for (int x = 0; x < DENOISE_BLOCK; x++) {
+        float z = s->feature[DENOISE_DEPTH][p + x], difference = s->feature[DENOISE_DEPTH][q + x] - z;
+        distances[x] = difference * difference / (z * z / depth_unit + FLT_MIN);
+    }
+    for (int f = 0; f < DENOISE_DEPTH; f++) {
+        float unit = f < DENOISE_NORMAL ? albedo_unit : normal_unit;
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float difference = s->feature[f][q + x] - s->feature[f][p + x];
+            distances[x] += difference * difference * unit;
+        }
+    }
+}
+
+/* Means of errors over 5 x 5 pixels, in which pixels with other features count less. Two additions prevent that noise
+ * chooses: the standard error of the mean, and a margin for candidates that use few pixels where the features do not
+ * change, since such candidates are for silhouettes and small objects. */
+static void score_candidates(const struct denoise_scratch *s, int y, float scores[DENOISE_CANDIDATES][DENOISE_BLOCK]) {
+    enum { SIDE = 2 * DENOISE_CHOICE + 1 };
+    static const float kernel[SIDE] = {1, 4, 6, 4, 1};
+    float sums[DENOISE_BLOCK] = {0}, squares[DENOISE_CANDIDATES][DENOISE_BLOCK] = {0}, largest[DENOISE_BLOCK] = {0};
+    memset(scores, 0, DENOISE_CANDIDATES * sizeof *scores);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int dx = i % SIDE, dy = i / SIDE;
+        float distances[DENOISE_BLOCK], weights[DENOISE_BLOCK];
+        compare_surfaces(s, y, dx - DENOISE_CHOICE, dy - DENOISE_CHOICE, distances);
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float distance = distances[x] / similar_limit;
+            weights[x] = kernel[dx] * kernel[dy] / (1 + distance * distance);
+            largest[x] = distances[x] > largest[x] ? distances[x] : largest[x];
+            sums[x] += weights[x];
+        }
+        for (int b = 1; b < DENOISE_CANDIDATES; b++) {
+            const float *errors = s->errors[b][y + dy] + dx, *doubts = s->doubts[b][y + dy] + dx;
+            for (int x = 0; x < DENOISE_BLOCK; x++) {
+                scores[b][x] += weights[x] * errors[x];
+                squares[b][x] += weights[x] * weights[x] * doubts[x];
+            }
+        }
+    }
+    for (int b = 1; b < DENOISE_CANDIDATES; b++) {
+        float margin = b == DENOISE_WIDE ? 0 : detail_margin, always = b == DENOISE_REGRESSIONS ? colour_margin : 0;
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float change = largest[x] / change_limit;
+            scores[b][x] = (scores[b][x] + doubt_errors * sqrtf(squares[b][x])) / sums[x] +
+                           margin / (1 + change * change) + always;
+        }
+    }
+}
+_Static_assert((int)DENOISE_CHOICE == 2, "the kernel of score_candidates has five numbers");
+
+const struct denoise_kernels KERNELS = {filter_features, compare, regress, compare_candidates, score_candidates};

@@ -135,6 +135,42 @@ TEST(edges_of_albedo_and_depth_keep_their_contrast_in_noise_as_large_as_they_are
     }
 }
 
+TEST(bright_and_dark_dots_of_a_texture_keep_their_contrast) {
+    static struct synthetic s;
+    double dots = 0;
+    int count = 0;
+    begin(&s, 0.3F, 0.05F);
+    for (int i = 0; i < PIXELS; i++) {
+        bool dot = i % SIDE % 4 == 1 && i / SIDE % 4 == 2, bright = i % SIDE < 48;
+        for (int c = 0; c < 3 && dot; c++) {
+            s.albedo[i][c] = bright ? 0.8F : 0.2F;
+            s.truth[i][c] = bright ? 0.48F : 0.12F;
+        }
+    }
+    measure(&s, 31);
+    run_part(&s, 2, 0, 0);
+    for (int i = SIDE; i < PIXELS - SIDE; i++) {
+        if (i % SIDE % 4 != 1 || i / SIDE % 4 != 2)
+            continue;
+        dots += fabs((double)s.out[i][1] - (double)(s.out[i - 1][1] + s.out[i + 1][1]) / 2);
+        count++;
+    }
+    CHECK_NEAR(dots / count, 0.18, 0.05 * 0.18);
+}
+
+TEST(a_pixel_that_sees_no_surface_takes_nothing_from_its_neighbours) {
+    static struct synthetic s;
+    begin(&s, 0.3F, 0.2F);
+    measure(&s, 32);
+    for (int i = 0; i < PIXELS; i++)
+        if (i % SIDE >= 48)
+            s.pixels[i] = (struct denoise_pixel){.share = 0.5F};
+    run_part(&s, 2, 0, 0);
+    for (int i = 0; i < PIXELS; i++)
+        for (int c = 0; c < 3 && i % SIDE >= 48; c++)
+            CHECK(s.out[i][c] == 0);
+}
+
 TEST(an_edge_that_no_feature_shows_keeps_nine_tenths_of_its_contrast_of_eight_deviations) {
     static struct synthetic s;
     begin(&s, 0.2F, 0.05F);
