@@ -40,6 +40,18 @@ static struct vec3 trace_from_eye(struct renderer *renderer, struct worker *work
     return integrator_radiance(renderer, worker, ray, key);
 }
 
+/* Red comes from the left eye, green and blue from the right one; normal and depth from the left one. */
+static struct path_parts parts_of_eyes(const struct path_parts *left, const struct path_parts *right) {
+    struct path_parts both = *left;
+    for (int channel = 1; channel < 3; channel++) {
+        both.features[PATH_ALBEDO + channel] = right->features[PATH_ALBEDO + channel];
+        both.features[PATH_GLOW + channel] = right->features[PATH_GLOW + channel];
+    }
+    for (int i = 0; i < PATH_LIGHT_GROUPS; i++)
+        both.light[i] = vec3_make(left->light[i].x, right->light[i].y, right->light[i].z);
+    return both;
+}
+
 /* Through a lens, in another projection, for two eyes. */
 static struct vec3 sample_through(struct renderer *renderer, struct worker *worker, const struct camera_frame *camera,
                                   struct sample2 at, double time, double share) {
@@ -55,7 +67,14 @@ static struct vec3 sample_through(struct renderer *renderer, struct worker *work
         return colour;
     (void)camera_ray_through(camera, at.x, at.y, position, 1, &right_ray);
     right_ray.time = time;
+    struct path_parts *parts = worker->state.parts, left_parts;
+    if (parts) {
+        left_parts = *parts;
+        *parts = (struct path_parts){0};
+    }
     struct vec3 right = trace_from_eye(renderer, worker, &right_ray, share, sampler_right_eye(&sampler));
+    if (parts)
+        *parts = parts_of_eyes(&left_parts, parts);
     return vec3_make(colour.x, right.y, right.z);
 }
 

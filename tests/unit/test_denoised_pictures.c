@@ -134,7 +134,7 @@ static const float *layer(const struct stage *s, enum aov aov, size_t at) {
 
 /* Diffuse, glossy, mirroring and clear balls under a lamp, in a box that closes the scene. The picture and each layer
  * are rounded to float: 8 roundings of at most 2^-24 of the picture. */
-TEST(the_sum_of_the_layers_of_light_is_the_picture) {
+static void check_layers_of_light(enum stereo stereo) {
     enum { SIZE = 40 };
     struct stage s;
     stage_begin(&s, 2);
@@ -151,6 +151,7 @@ TEST(the_sum_of_the_layers_of_light_is_the_picture) {
     s.settings.integrator = INTEGRATOR_PATH;
     s.settings.path_samples = 16;
     s.settings.aov = AOV_PATH;
+    s.settings.lens.stereo = stereo;
     CHECK(stage_render(&s, SIZE, SIZE));
     double sums[AOV_COUNT] = {0};
     for (size_t i = 0; i < SIZE * SIZE; i++)
@@ -167,6 +168,14 @@ TEST(the_sum_of_the_layers_of_light_is_the_picture) {
     for (int aov = AOV_EMISSION; aov < AOV_COUNT; aov++)
         CHECK(aov == AOV_TRANSMISSION_DIRECT || sums[aov] > 0);
     stage_end(&s);
+}
+
+TEST(the_sum_of_the_layers_of_light_is_the_picture) {
+    check_layers_of_light(STEREO_NONE);
+}
+
+TEST(the_sum_of_the_layers_of_light_is_the_picture_for_two_eyes_in_two_colours) {
+    check_layers_of_light(STEREO_ANAGLYPH);
 }
 
 /* At depth 1 there is no indirect light, at depth 0 only emission. */
