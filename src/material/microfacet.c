@@ -142,8 +142,9 @@ double facet_distribution_escape(const struct facet_distribution *facets, struct
 }
 
 /* See albedo_internal.h. Nodes are even in the square root of the cosine, in the roughness, and in the square root of
- * (n - 1) / (n + 1), where albedos change about evenly. Between them go the cubics of Catmull and Rom; at both ends the
- * parabola through the last three nodes goes on. */
+ * (n - 1) / (n + 1), where albedos change about evenly. From inside, half of the cosines are beyond the angle of total
+ * reflection, whatever the index, and the nodes are dense on both sides of it. Between nodes go the cubics of Catmull
+ * and Rom; at both ends the parabola through the last three nodes goes on. */
 
 /* Weights of four nodes in a row; the position is between nodes `low` and low + 1 of them. */
 struct taps {
@@ -193,6 +194,15 @@ static struct taps of_cosine(double cosine) {
     return taps_at(sqrt(cosine > 0 ? cosine : 0), ALBEDO_COSINES);
 }
 
+/* From inside: eta > 1. */
+static struct taps of_cosine_inside(double cosine, double eta) {
+    double critical = sqrt(1 - 1 / (eta * eta));
+    if (cosine >= critical)
+        return taps_at(0.5 + 0.5 * sqrt((cosine - critical) / (1 - critical)), ALBEDO_COSINES);
+    double x = cosine > 0 ? cosine / critical : 0;
+    return taps_at(x < 0.5 ? 0.5 * sqrt(0.5 * x) : 0.5 - 0.5 * sqrt(0.5 * (1 - x)), ALBEDO_COSINES);
+}
+
 static struct taps of_roughness(double roughness) {
     return taps_at(roughness, ALBEDO_ROUGHNESSES);
 }
@@ -214,21 +224,24 @@ double albedo_mirror_average(double roughness) {
 
 static double block(const uint16_t (*values)[ALBEDO_ROUGHNESSES][ALBEDO_COSINES], double cosine, double roughness,
                     double eta) {
-    struct taps c = of_cosine(cosine), r = of_roughness(roughness), k = of_index(eta);
+    struct taps c = eta > 1 ? of_cosine_inside(cosine, eta) : of_cosine(cosine);
+    struct taps r = of_roughness(roughness), k = of_index(eta);
     double sum = 0;
     for (int i = 0; i < 4 && eta <= 1; i++)
         sum += k.weight[i] * plane(values[k.first + i], &r, &c);
     for (int i = 0; i < 16 && eta > 1; i++)
         sum += k.weight[i / 4] * r.weight[i % 4] * row_limited(values[k.first + i / 4][r.first + i % 4], &c);
-    return share(sum);
+    return sum;
 }
 
+/* The table has the difference to a smooth boundary, which varies less with the index. */
 double albedo_reflection(double cosine, double roughness, double eta) {
-    return block(reflection_table[eta > 1], cosine, roughness, eta);
+    double more = 2 * block(reflection_table[eta > 1], cosine, roughness, eta) - 65535;
+    return share(more + 65535 * dielectric_fresnel(cosine, eta));
 }
 
 double albedo_boundary(double cosine, double roughness, double eta) {
-    return block(boundary_table[eta > 1], cosine, roughness, eta);
+    return share(block(boundary_table[eta > 1], cosine, roughness, eta));
 }
 
 double albedo_boundary_average(double roughness, double eta) {

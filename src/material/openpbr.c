@@ -20,6 +20,10 @@
 /* Surfaces with a lower roughness are smooth. */
 static const double smooth_roughness = 0x1p-10;
 
+/* Beside the angle of total reflection the tables have errors of a few percent: a share that is far too small would
+ * make light that is transmitted there rare and bright. */
+static const double min_glass_share = 1.0 / 32;
+
 struct openpbr openpbr_defaults(void) {
     return (struct openpbr){.base_weight = 1,
                             .specular_weight = 1,
@@ -122,13 +126,6 @@ static struct bsdf_facets *add_facets(struct layering *l, struct vec3 tangent, d
     struct bsdf_facets *facets = &l->bsdf->facets[l->facets++];
     bsdf_facets_shape(facets, l->bsdf->side, is_black(tangent) ? l->dpdu : tangent, roughness, anisotropy);
     return facets;
-}
-
-/* The share of light that facets keep from the base below them. Inside of glass the table has no node at the angle of
- * total reflection; there, facets of little roughness reflect as a smooth boundary does. */
-static double reflected_before_base(double cosine, double roughness, double eta, double table) {
-    double smooth = fmin(fmax(16 * (0.1875 - roughness), 0), 1);
-    return eta > 1 ? table + smooth * (dielectric_fresnel(cosine, eta) - table) : table;
 }
 
 static void add_fuzz(struct layering *l) {
@@ -276,14 +273,14 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
         add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
         if (clear > 0) {
             double lack = 1 - albedo_boundary(l->cosine, facets->roughness, eta);
-            add(l, LOBE_GLASS, tinted, 1 - reflected - lack);
+            add(l, LOBE_GLASS, tinted, fmax(1 - reflected - lack, min_glass_share));
             add(l, LOBE_FACETS_MULTIPLE, through, lack * (1 - facets->through));
             add(l, LOBE_FACETS_THROUGH, tinted, lack * facets->through);
         }
     }
     double opaque = v->thin_walled ? 1 : 1 - clear;
     if (opaque > 0)
-        add_diffuse(l, vec3_scale(all, opaque * (1 - reflected_before_base(l->cosine, roughness, eta, reflected))));
+        add_diffuse(l, vec3_scale(all, opaque * (1 - reflected)));
 }
 
 /* Of an opaque base: relative to the surrounding medium or to the coat. A coat that is denser than the base would

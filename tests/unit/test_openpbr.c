@@ -97,8 +97,7 @@ TEST(tables_of_albedos_are_sums_over_facets) {
         bsdf = one_lobe(&glass, LOBE_GLASS, cosine, front);
         through = albedo_of(&bsdf, BSDF_ALL, wo, 9, 200).mean;
         CHECK_NEAR(albedo_boundary(cosine, roughness, eta), reflected + through, front ? 3e-3 : 1.5e-2);
-        if (front)
-            CHECK_NEAR(albedo_reflection(cosine, roughness, eta), reflected, 3e-3);
+        CHECK_NEAR(albedo_reflection(cosine, roughness, eta), reflected, front ? 1e-3 : 5e-2);
     }
 }
 
@@ -380,9 +379,7 @@ static const struct furnace furnaces[] = {
 };
 
 /* In light that is 1 from everywhere a white surface sends 1 everywhere: a loss below half a percent, an excess below
- * four standard errors, in the mean over views. The tables of albedos are interpolated: errors below 1e-4 count as
- * 1e-4.
- */
+ * four standard errors, in the mean over views. Rounding counts as an error of 1e-9. */
 static struct estimate furnace_mean(const struct furnace *furnace, double roughness, bool front, uint32_t views,
                                     uint32_t n, uint32_t seed) {
     double sum = 0, variance = 0;
@@ -408,7 +405,7 @@ static struct estimate check_furnace(const struct furnace *furnace, double step,
         for (double roughness = 0; roughness <= 1; roughness += step) {
             struct estimate e = furnace_mean(furnace, roughness, front, views, n, seed);
             min = e.mean < min.mean ? e : min;
-            if (!(e.mean > 0.995 && e.mean < 1 + 4 * fmax(e.error, 1e-4) && e.error <= precision))
+            if (!(e.mean > 0.995 && e.mean < 1 + 4 * fmax(e.error, 1e-9) && e.error <= precision))
                 test_fail(__FILE__, __LINE__, "%s of roughness %g, from %s: %.5f +- %.5f", furnace->name, roughness,
                           front ? "outside" : "inside", e.mean, e.error);
         }
@@ -426,7 +423,9 @@ TEST(white_glass_of_little_roughness_sends_all_light_back_or_on_from_inside) {
     for (size_t i = 0; i < sizeof furnaces / sizeof *furnaces; i++) {
         for (double roughness = 0.0625; roughness < 0.2 && furnaces[i].solid; roughness += 0.0625) {
             struct estimate e = furnace_mean(&furnaces[i], roughness, false, 100, 40, 5);
-            CHECK(e.mean > 0.995 && e.mean < 1 + 4 * e.error);
+            if (!(e.mean > 0.995 && e.mean < 1 + 4 * e.error))
+                test_fail(__FILE__, __LINE__, "%s of roughness %g: %.5f +- %.5f", furnaces[i].name, roughness, e.mean,
+                          e.error);
         }
     }
 }
