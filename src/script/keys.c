@@ -316,10 +316,12 @@ static bool push_part(lua_State *L, int key, const char *name) {
 static void read_time(const struct reader *reader, int key) {
     struct keys *keys = reader->keys;
     lua_State *L = reader->L;
-    double time = lua_rawgeti(L, key, 1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
+    bool is_number = lua_rawgeti(L, key, 1) == LUA_TNUMBER;
+    double time = is_number ? lua_tonumber(L, -1) : NAN;
     lua_pop(L, 1);
     if (!isfinite(time))
-        luaL_error(L, "gr.keys: keys[%d] must be {seconds, value}", (int)reader->key + 1);
+        luaL_error(L, "gr.keys: keys[%d] must be {seconds, value}%s", (int)reader->key + 1,
+                   is_number ? ", with a finite number of seconds" : "");
     keys->numbers[reader->key] = time;
     if (reader->key > 0 && !(time > keys->numbers[reader->key - 1]))
         luaL_error(L, "gr.keys: the time of keys[%d] is %f, not later than that of keys[%d], %f", (int)reader->key + 1,
@@ -468,7 +470,10 @@ static double eased(lua_State *L, double share) {
 static int value_at(lua_State *L) {
     struct keys *keys = lua_touserdata(L, lua_upvalueindex(1));
     double row[WIDTH_MAX];
-    double time = lua_isnoneornil(L, 1) ? frame_time(&context_of(L)->frame) : luaL_checknumber(L, 1);
+    bool given = !lua_isnoneornil(L, 1);
+    if (given && !lua_isnumber(L, 1))
+        luaL_error(L, "gr.keys: the time must be a number of seconds, not %s", value_words(L, 1));
+    double time = given ? lua_tonumber(L, 1) : frame_time(&context_of(L)->frame);
     if (isnan(time))
         luaL_error(L, "gr.keys: the time is not a number (nan)");
     /* low: the last key that is not later; high: the first key that is later. */
@@ -517,13 +522,15 @@ static enum key_curve read_curve(lua_State *L) {
     return curve;
 }
 
-static void check_fields(lua_State *L) {
+static void check_fields(lua_State *L, lua_Unsigned count) {
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1)) {
-        if (lua_isinteger(L, -2))
+        if (lua_isinteger(L, -2) && lua_tointeger(L, -2) > (lua_Integer)count)
+            luaL_error(L, "gr.keys: keys[%d] is missing", (int)count + 1);
+        if (lua_isinteger(L, -2) && lua_tointeger(L, -2) > 0)
             continue;
         const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : "";
         if (strcmp(name, "curve") != 0 && strcmp(name, "ease") != 0)
-            luaL_error(L, "gr.keys: unknown field '%s'; the fields are curve, ease", name);
+            luaL_error(L, "gr.keys: unknown field '%s'; the fields are curve, ease", luaL_tolstring(L, -2, NULL));
     }
 }
 
@@ -534,7 +541,7 @@ int make_keys(lua_State *L) {
     lua_Unsigned count = lua_rawlen(L, 1);
     if (count == 0 || count > KEYS_MAX)
         return luaL_error(L, "gr.keys: 1 to %d keys {seconds, value} are needed", KEYS_MAX);
-    check_fields(L);
+    check_fields(L, count);
     struct keys described = {.count = (uint32_t)count, .curve = read_curve(L)};
     lua_newtable(L);
     struct reader reader = {.L = L, .keys = &described, .names = lua_gettop(L), .at = "the value"};

@@ -167,6 +167,10 @@ TEST(wrong_keys_are_errors_that_name_the_key) {
         {"{{0, 1}, {1, 2}, {0.5, 2}}", "the time of keys[3] is 0.5, not later than that of keys[2], 1.0"},
         {"{{0 / 0, 1}}", "keys[1] must be {seconds, value}"},
         {"{{math.huge, 1}}", "keys[1] must be {seconds, value}"},
+        {"{['1'] = {0, 1}, {0, 1}}", "unknown field '1'"},
+        {"{[0] = {0, 1}, {1, 2}}", "unknown field '0'"},
+        {"{[1] = {0, 1}, [9] = {1, 2}}", "keys[2] is missing"},
+        {"{{1 / 0, 1}}", "keys[1] must be {seconds, value}, with a finite number of seconds"},
         {"{{0}}", "the value of keys[1] must be a number"},
         {"{{0, 'red'}}", "the value of keys[1] must be a number"},
         {"{{0, '#12'}}", "'#12' is not a colour"},
@@ -189,7 +193,7 @@ TEST(wrong_keys_are_errors_that_name_the_key) {
         {"{{0, 1}, loop = true}", "unknown field 'loop'; the fields are curve, ease"},
     };
     static const struct corner calls[] = {
-        {"gr.keys{{0, 1}}('x')", "number expected"},
+        {"gr.keys{{0, 1}}('x')", "gr.keys: the time must be a number of seconds, not a string"},
         {"gr.keys{{0, 1}}(0 / 0)", "the time is not a number"},
         {"gr.keys{{0, 1}, {1, 2}, ease = function() end}(0.5)", "ease(0.5) must be a finite number"},
         {"gr.keys{{0, 1}, {1, 2}, ease = function() error('no') end}(0.5)", "no"},
