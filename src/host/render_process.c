@@ -12,6 +12,7 @@
 #include "base/terminal_text.h"
 #include "image/image.h"
 #include "inspect/inspect.h"
+#include "output/picture_files.h"
 #include "output/progress.h"
 #include "render/aov.h"
 #include "render/denoise.h"
@@ -68,6 +69,7 @@ struct picture_work {
     bool built; /* the world is complete */
     bool ok;    /* the film is */
     struct picture_report report;
+    char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
 };
 
 static bool is_cancelled(void *context) {
@@ -241,7 +243,7 @@ static void print_piece(void *context, const char *text) {
 
 static bool answer_questions(const struct picture_work *work, struct error *error) {
     const struct options *options = work->process->options;
-    struct inspected picture = {.file = work->request->file,
+    struct inspected picture = {.file = work->name,
                                 .job = &work->job,
                                 .root = work->request->root,
                                 .pool = work->process->pool,
@@ -259,25 +261,25 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
 static void report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
-    char line[4096 + 512];
+    char line[2 * NAME_LIMIT];
     if (!integrator_traits(settings->integrator).progressive || work->asked.in_window || rays->pixels == 0)
         return;
     double mean = (double)rays->samples / (double)rays->pixels;
     if (settings->noise > 0 && !rays->noisy)
         (void)snprintf(line, sizeof line, "%s: %s: %.1f samples per pixel, for a noise of %g", work->process->script,
-                       work->request->file, mean, settings->noise);
+                       work->name, mean, settings->noise);
     else if (settings->noise > 0 && rays->out_of_time)
         (void)snprintf(line, sizeof line,
                        "%s: %s: %.1f samples per pixel in %.1f s (--time-limit); parts have more noise than %g",
-                       work->process->script, work->request->file, mean, rays->render_seconds, settings->noise);
+                       work->process->script, work->name, mean, rays->render_seconds, settings->noise);
     else if (settings->noise > 0)
-        (void)snprintf(
-            line, sizeof line, "%s: %s: %.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
-            work->process->script, work->request->file, mean, settings_path_samples(settings), settings->noise);
+        (void)snprintf(line, sizeof line,
+                       "%s: %s: %.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
+                       work->process->script, work->name, mean, settings_path_samples(settings), settings->noise);
     else if (settings->time_limit > 0)
         (void)snprintf(line, sizeof line,
                        "%s: %s: %llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
-                       work->process->script, work->request->file, (unsigned long long)rays->passes_samples,
+                       work->process->script, work->name, (unsigned long long)rays->passes_samples,
                        rays->render_seconds, (unsigned long long)rays->passes_samples);
     else
         return;
@@ -400,7 +402,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     if (ok && !is_asked(process->options) && !process->options->check)
         report_samples(work);
     if (ok)
-        report_world(process, work->request->file, report);
+        report_world(process, work->name, report);
     return ok;
 }
 
@@ -524,6 +526,10 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes",
                          sizeof asked->file - 1);
     memcpy(asked->file, file, length);
+    memcpy(work->name, file, length + 1);
+    struct error ignored;
+    if (work->request->frame.number > 0 && length + 128 < NAME_LIMIT) /* longer names have no number here */
+        (void)picture_files_number_frame(work->request->frame.number, work->name, &ignored);
     asked->keep = work->request->keep;
     if (!render_prepare(job, &area, warning, error))
         return false;

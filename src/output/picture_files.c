@@ -176,8 +176,7 @@ static bool name_in_folder(const char *animation, unsigned number, char name[NAM
     return fits || name_is_too_long(error);
 }
 
-/* If the name of a frame comes from a script and has no %d, the number is inserted before the extension. */
-static bool number_frame(unsigned number, char name[NAME_LIMIT], struct error *error) {
+bool picture_files_number_frame(unsigned number, char name[NAME_LIMIT], struct error *error) {
     char pattern[NAME_LIMIT + 8];
     const char *last = last_part(name), *dot = strrchr(last, '.');
     int length = dot ? (int)(dot - name) : (int)strlen(name);
@@ -210,7 +209,7 @@ bool picture_files_name(struct picture_files *files, const struct picture_label 
         return false;
     }
     return name_from_script(files, label->from_script, name, notice, error) &&
-           (label->frame == 0 || number_frame(label->frame, name, error));
+           (label->frame == 0 || picture_files_number_frame(label->frame, name, error));
 }
 
 bool picture_files_prefixed(const char *name, const char *prefix, char out[NAME_LIMIT], struct error *error) {

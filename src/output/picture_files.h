@@ -50,6 +50,8 @@ struct picture_label {
 /* Its name. notice: a line to report, or empty. */
 bool picture_files_name(struct picture_files *files, const struct picture_label *label, char name[NAME_LIMIT],
                         char notice[NAME_LIMIT + 128], struct error *error);
+/* Puts the number of a frame into a name of a script: for %d or ####, else before the extension. */
+bool picture_files_number_frame(unsigned number, char name[NAME_LIMIT], struct error *error);
 /* The folder for the frames of an animation, and its contact sheet. */
 bool animation_folder(const char *animation, char out[NAME_LIMIT]);
 bool animation_sheet_name(const char *animation, char out[NAME_LIMIT], struct error *error);

@@ -166,6 +166,21 @@ TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_
     free(result.err);
 }
 
+TEST(traces_and_dumps_of_frames_have_the_names_of_their_files) {
+    struct test_result result =
+        test_gray_scene(PLAIN "show.file = nil gr.frames{count = 12, draw = function() return show end}\n",
+                        "--frames 9-12/3 --pixel 1,1 scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK(strstr(result.out, "scene.0009.png, pixel 1,1 of 4 x 3") == result.out);
+    CHECK(strstr(result.out, "\nscene.0012.png, pixel 1,1 of 4 x 3") != NULL);
+    free(result.out);
+    free(result.err);
+    result = test_gray_scene(PLAIN "gr.render(show)\n", "--turntable 2 --dump-scene --json scene.lua", NULL);
+    CHECK(strstr(result.out, "\"picture\":\"x.0002.png\"") != NULL);
+    free(result.out);
+    free(result.err);
+}
+
 TEST(wrong_animations_are_errors_that_name_the_frame) {
     static const struct {
         const char *text, *words;
