@@ -261,28 +261,26 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
 static void report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
-    char line[2 * NAME_LIMIT];
-    if (!integrator_traits(settings->integrator).progressive || work->asked.in_window || rays->pixels == 0)
+    char line[2 * NAME_LIMIT + 256], words[256];
+    bool has_limit = settings->noise > 0 || settings->time_limit > 0;
+    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->asked.in_window ||
+        rays->pixels == 0)
         return;
     double mean = (double)rays->samples / (double)rays->pixels;
-    if (settings->noise > 0 && !rays->noisy)
-        (void)snprintf(line, sizeof line, "%s: %s: %.1f samples per pixel, for a noise of %g", work->process->script,
-                       work->name, mean, settings->noise);
-    else if (settings->noise > 0 && rays->out_of_time)
-        (void)snprintf(line, sizeof line,
-                       "%s: %s: %.1f samples per pixel in %.1f s (--time-limit); parts have more noise than %g",
-                       work->process->script, work->name, mean, rays->render_seconds, settings->noise);
-    else if (settings->noise > 0)
-        (void)snprintf(line, sizeof line,
-                       "%s: %s: %.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
-                       work->process->script, work->name, mean, settings_path_samples(settings), settings->noise);
-    else if (settings->time_limit > 0)
-        (void)snprintf(line, sizeof line,
-                       "%s: %s: %llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
-                       work->process->script, work->name, (unsigned long long)rays->passes_samples,
-                       rays->render_seconds, (unsigned long long)rays->passes_samples);
+    unsigned long long samples = rays->passes_samples;
+    if (!(settings->noise > 0))
+        (void)snprintf(words, sizeof words, "%llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
+                       samples, rays->render_seconds, samples);
+    else if (!rays->noisy)
+        (void)snprintf(words, sizeof words, "%.1f samples per pixel, for a noise of %g", mean, settings->noise);
+    else if (rays->out_of_time)
+        (void)snprintf(words, sizeof words,
+                       "%.1f samples per pixel in %.1f s (--time-limit); parts have more noise than %g", mean,
+                       rays->render_seconds, settings->noise);
     else
-        return;
+        (void)snprintf(words, sizeof words, "%.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
+                       mean, settings_path_samples(settings), settings->noise);
+    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, work->name, words);
     report_scene(work->process, LINE_NOTICE, line);
 }
 
@@ -527,9 +525,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
                          sizeof asked->file - 1);
     memcpy(asked->file, file, length);
     memcpy(work->name, file, length + 1);
-    struct error ignored;
     if (work->request->frame.number > 0 && length + 128 < NAME_LIMIT) /* longer names have no number here */
-        (void)picture_files_number_frame(work->request->frame.number, work->name, &ignored);
+        (void)picture_files_number_frame(work->request->frame.number, work->name, error);
     asked->keep = work->request->keep;
     if (!render_prepare(job, &area, warning, error))
         return false;
@@ -797,12 +794,10 @@ static int run_once(struct render_process *process, const char *path, const stru
 }
 
 static void report_no_picture(struct render_process *process, const char *path) {
-    struct arena arena = {0};
-    const char *line =
-        arena_format(&arena, "%s: no picture was rendered, because the script did not call gr.render", path);
-    if (line)
-        message(process, SCRIPT_NOTICE, line);
-    arena_destroy(&arena);
+    char line[2 * NAME_LIMIT];
+    (void)snprintf(line, sizeof line, "%.4095s: no picture was rendered, because the script did not call gr.render",
+                   path);
+    message(process, SCRIPT_NOTICE, line);
 }
 
 /* Runs a script; returns the exit status. With --frames, a script that does not call gr.frames runs again for each
