@@ -22,7 +22,7 @@ enum {
     DENOISE_FIRST = DENOISE_MARGIN - DENOISE_EXTENT / DENOISE_STEP * DENOISE_STEP,
     DENOISE_CENTRES = (DENOISE_MARGIN + DENOISE_BLOCK - 1 + DENOISE_EXTENT - DENOISE_FIRST) / DENOISE_STEP + 1,
     DENOISE_COMPARED = (DENOISE_CENTRES - 1) * DENOISE_STEP + 1 + 2 * DENOISE_PATCH,
-    DENOISE_TERMS = 1 + DENOISE_FEATURES + 2,     /* of the linear function: constant, features, position */
+    DENOISE_TERMS = 1 + DENOISE_FEATURES + 2,     /* of the linear function: constant, position, features */
     DENOISE_COLUMNS = DENOISE_TERMS + 3,          /* and the colour that it explains */
     DENOISE_FEATURE_WINDOW = 4,                   /* radius of the filter of features */
     DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
@@ -47,7 +47,8 @@ typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
 /* Memory of a worker. */
 struct denoise_scratch {
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
-    denoise_plane sums[4]; /* of weighted colours, and of weights */
+    denoise_plane total_variance, unit; /* of pixels that are compared: sums over the channels */
+    denoise_plane sums[4];              /* of weighted colours, and of weights */
     denoise_plane estimates[DENOISE_REGRESSIONS][2][3], support[DENOISE_REGRESSIONS][2]; /* support: sums of weights */
     /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
     float errors[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];

@@ -13,6 +13,7 @@ enum {
     LANES = DENOISE_LANES,
     TERMS = DENOISE_TERMS,
     COLUMNS = DENOISE_COLUMNS,
+    FIRST_FEATURE = 3, /* terms before the features: constant, x, y */
 #if defined(__AVX512F__)
     WIDTH = 16
 #elif defined(__AVX2__)
@@ -29,8 +30,9 @@ static const float colour_noise = 1e-3F; /* the same for the square of colours *
 /* A patch beside an edge resembles patches without one, but a pixel that differs strongly itself is not similar. */
 static const float unlikeness_limit = 4; /* of each pixel of a patch */
 static const float own_limit = 4,
-                   own_share = 0.5F; /* of the pixel itself: the threshold of its distance, and its weight */
-static const double ridge = 5e-4;    /* of the sum of weights */
+                   own_share = 0.5F;       /* of the pixel itself: the threshold of its distance, and its weight */
+static const double ridge = 5e-4;          /* of the sum of weights */
+static const float feature_change = 1e-4F; /* the ridge suppresses albedo and normals that change less */
 /* Factors of squared differences of features: their sum is the distance. That of the depth is a relative one. */
 static const float albedo_unit = 50, normal_unit = 10, depth_unit = 400;
 /* Two pixels count half for each other if their features have this distance. */
@@ -139,24 +141,38 @@ static void filter_features(struct denoise_scratch *s, int group, bool depth, st
 
 /* --- distances of patches --- */
 
+/* The sums over the channels that distances need of each pixel: its variance, and its part of their unit. */
+static void sum_channels(struct denoise_scratch *s, int half) {
+    for (int x = 0; x < LOCAL * LOCAL; x++) {
+        float total = 0, unit = 0;
+        for (int c = 0; c < 3; c++) {
+            float u = s->colour[half][c][x], v = s->variance[c][x];
+            total += v;
+            unit += noise_scale * v + colour_noise * (u * u);
+        }
+        s->total_variance[x] = total;
+        s->unit[x] = unit;
+    }
+}
+
 /* The dissimilarity between the pixels of the block and those at an offset of (dx, dy): squared difference of
  * colours minus the part that variance explains, in units of the variance (Rousselle et al. 2012, equation 9). */
 static void compare_pixels(struct denoise_scratch *s, int half, int dx, int dy) {
     enum { FIRST = DENOISE_FIRST - DENOISE_PATCH };
     for (int y = 0; y < COMPARED; y++) {
         int p = (FIRST + y) * LOCAL + FIRST, q = p + dy * LOCAL + dx;
-        float above[COMPARED] = {0}, below[COMPARED] = {0}, own[COMPARED], *out = s->unlikeness + y * COMPARED;
-        for (int c = 0; c < 3; c++) {
-            const float *up = s->colour[half][c] + p, *uq = s->colour[half][c] + q;
-            const float *vp = s->variance[c] + p, *vq = s->variance[c] + q;
-            for (int x = 0; x < COMPARED; x++) {
-                float delta = up[x] - uq[x];
-                above[x] += delta * delta - (vp[x] + (vp[x] < vq[x] ? vp[x] : vq[x]));
-                below[x] += noise_scale * (vp[x] + vq[x]) + colour_noise * (up[x] * up[x] + uq[x] * uq[x]);
-            }
+        float own[COMPARED], *out = s->unlikeness + y * COMPARED;
+        const float *r = s->colour[half][0], *g = s->colour[half][1], *b = s->colour[half][2];
+        const float *vr = s->variance[0], *vg = s->variance[1], *vb = s->variance[2];
+        const float *total = s->total_variance + p, *up = s->unit + p, *uq = s->unit + q;
+        for (int x = 0; x < COMPARED; x++) {
+            float dr = r[p + x] - r[q + x], dg = g[p + x] - g[q + x], db = b[p + x] - b[q + x];
+            float lr = vr[p + x] < vr[q + x] ? vr[p + x] : vr[q + x];
+            float lg = vg[p + x] < vg[q + x] ? vg[p + x] : vg[q + x];
+            float lb = vb[p + x] < vb[q + x] ? vb[p + x] : vb[q + x];
+            float above = ((dr * dr - lr) + (dg * dg - lg)) + ((db * db - lb) - total[x]);
+            own[x] = above / (up[x] + uq[x] + FLT_MIN);
         }
-        for (int x = 0; x < COMPARED; x++)
-            own[x] = above[x] / (below[x] + FLT_MIN);
         for (int x = 0; x < COMPARED; x++)
             out[x] = own[x] < unlikeness_limit ? own[x] : unlikeness_limit;
         int row = y - DENOISE_PATCH;
@@ -186,6 +202,7 @@ static void average_patches(struct denoise_scratch *s, int row, int lane) {
 _Static_assert((int)DENOISE_PATCH == 3, "the sums of average_patches are of seven numbers");
 
 static void compare(struct denoise_scratch *s, int half) {
+    sum_channels(s, half);
     for (int row = 0; row < DENOISE_SIDE; row++) {
         for (int lane = 0; lane < DENOISE_SIDE; lane++) {
             compare_pixels(s, half, lane - DENOISE_WINDOW, row - DENOISE_WINDOW);
@@ -251,7 +268,7 @@ static void weigh_features(struct denoise_scratch *s, const struct window *w, fl
     const float *depth = s->feature[DENOISE_DEPTH];
     float z = depth[centre], across = 2 * slope_of(depth, centre, 1), down = 2 * slope_of(depth, centre, LOCAL);
     for (int at = 0; at < LANES; at += WIDTH) {
-        vector dx = load(s->columns[TERMS - 2][0] + at) * (DENOISE_WINDOW * across);
+        vector dx = load(s->columns[1][0] + at) * (DENOISE_WINDOW * across);
         for (int r = w->row0; r < w->row1; r++) {
             float dy = (float)(r - DENOISE_WINDOW) * down;
             vector sum = none;
@@ -271,7 +288,7 @@ static void weigh_features(struct denoise_scratch *s, const struct window *w, fl
 }
 
 /* Differences of a feature to the centre; returns the largest one among the pixels with a weight. */
-static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature) {
+static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature, int column) {
     const float *plane = s->feature[feature];
     float middle = plane[w->y * LOCAL + w->x], result = 0, lanes[LANES];
     vector found[LANES / WIDTH];
@@ -280,7 +297,7 @@ static float fill_feature(struct denoise_scratch *s, const struct window *w, int
         for (int r = w->row0; r < w->row1; r++) {
             vector difference = load(plane + row_at(w, r) + at) - middle;
             vector size = larger(difference, -difference);
-            store(s->columns[1 + feature][r] + at, difference);
+            store(s->columns[column][r] + at, difference);
             largest = larger(choose(load(s->weights[r] + at) > 0, size, largest), largest);
         }
         found[at / WIDTH] = largest;
@@ -317,16 +334,19 @@ static void fill_colour(struct denoise_scratch *s, const struct window *w, int h
     }
 }
 
-/* The sums over the window of weight * column i * column j, for j >= i, by lane. */
+/* The sums over the window of weight * column i * column j, by lane, for terms j from i to below `terms` and for the
+ * colours. */
 static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, int row0, int row1, int i,
-                                                           float sums[COLUMNS][LANES]) {
+                                                           int terms, float sums[COLUMNS][LANES]) {
     for (int at = 0; at < LANES; at += WIDTH) {
         vector sum[COLUMNS];
         for (int j = i; j < COLUMNS; j++)
             sum[j] = (vector){0};
         for (int r = row0; r < row1; r++) {
             vector weighted = load(s->weights[r] + at) * load(s->columns[i][r] + at);
-            for (int j = i; j < COLUMNS; j++)
+            for (int j = i; j < terms; j++)
+                sum[j] += weighted * load(s->columns[j][r] + at);
+            for (int j = TERMS; j < COLUMNS; j++)
                 sum[j] += weighted * load(s->columns[j][r] + at);
         }
         for (int j = i; j < COLUMNS; j++)
@@ -344,10 +364,14 @@ static inline float sum_lanes(const float lanes[LANES]) {
 }
 
 /* The normal equations, with terms in units of `scale`: the lower triangle of the matrix, and three right sides. */
-static void build_equations(const struct denoise_scratch *s, const struct window *w, const double scale[TERMS],
-                            double matrix[TERMS][TERMS], double right[TERMS][3]) {
+static inline __attribute__((always_inline)) void build_equations(const struct denoise_scratch *s,
+                                                                  const struct window *w, int terms,
+                                                                  const double scale[TERMS],
+                                                                  double matrix[TERMS][TERMS], double right[TERMS][3]) {
     float sums[TERMS][COLUMNS][LANES];
-#define MULTIPLY(i) multiply(s, w->row0, w->row1, i, sums[i])
+#define MULTIPLY(i)                                                                                                    \
+    if (i < terms)                                                                                                     \
+    multiply(s, w->row0, w->row1, i, terms, sums[i])
     MULTIPLY(0);
     MULTIPLY(1);
     MULTIPLY(2);
@@ -360,8 +384,8 @@ static void build_equations(const struct denoise_scratch *s, const struct window
     MULTIPLY(9);
 #undef MULTIPLY
     _Static_assert((int)TERMS == 10, "a line for each term");
-    for (int i = 0; i < TERMS; i++) {
-        for (int j = i; j < TERMS; j++)
+    for (int i = 0; i < terms; i++) {
+        for (int j = i; j < terms; j++)
             matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
         for (int c = 0; c < 3; c++)
             right[i][c] = (double)sum_lanes(sums[i][TERMS + c]) * scale[i];
@@ -370,9 +394,9 @@ static void build_equations(const struct denoise_scratch *s, const struct window
 
 /* Cholesky; the matrix is symmetric and positive, and its lower triangle is replaced. Solves for three right sides in
  * place. */
-static bool solve(double m[TERMS][TERMS], double r[TERMS][3]) {
+static bool solve(int terms, double m[TERMS][TERMS], double r[TERMS][3]) {
     double inverse[TERMS]; /* of the diagonal */
-    for (int i = 0; i < TERMS; i++) {
+    for (int i = 0; i < terms; i++) {
         for (int j = 0; j < i; j++) {
             double sum = m[i][j];
             for (int k = 0; k < j; k++)
@@ -386,17 +410,17 @@ static bool solve(double m[TERMS][TERMS], double r[TERMS][3]) {
             return false;
         inverse[i] = 1 / sqrt(sum);
     }
-    for (int i = 0; i < TERMS; i++)
+    for (int i = 0; i < terms; i++)
         for (int c = 0; c < 3; c++) {
             double sum = r[i][c];
             for (int k = 0; k < i; k++)
                 sum -= m[i][k] * r[k][c];
             r[i][c] = sum * inverse[i];
         }
-    for (int i = TERMS - 1; i >= 0; i--)
+    for (int i = terms - 1; i >= 0; i--)
         for (int c = 0; c < 3; c++) {
             double sum = r[i][c];
-            for (int k = i + 1; k < TERMS; k++)
+            for (int k = i + 1; k < terms; k++)
                 sum -= m[k][i] * r[k][c];
             r[i][c] = sum * inverse[i];
         }
@@ -405,50 +429,77 @@ static bool solve(double m[TERMS][TERMS], double r[TERMS][3]) {
 
 /* Adds the predictions of a regression for the pixels of its window. They are limited to the range of the pixels
  * that it used, because regressions overshoot beside lights. */
-static void predict(struct denoise_scratch *s, const struct window *w, int channel, double right[TERMS][3],
-                    const float range[2]) {
+static inline __attribute__((always_inline)) void predict(struct denoise_scratch *s, const struct window *w, int terms,
+                                                          int channel, double right[TERMS][3], const float range[2]) {
     vector factor[TERMS], low = all(range[0]), high = all(range[1]);
-    for (int i = 0; i < TERMS; i++)
+    for (int i = 0; i < terms; i++)
         factor[i] = all((float)right[i][channel]);
     for (int r = w->row0; r < w->row1; r++) {
         float *to = s->sums[channel] + row_at(w, r);
         for (int at = 0; at < LANES; at += WIDTH) {
             vector value = factor[0];
-            for (int i = 1; i < TERMS; i++)
+            for (int i = 1; i < terms; i++)
                 value += factor[i] * load(s->columns[i][r] + at);
             store(to + at, load(to + at) + load(s->weights[r] + at) * smaller(larger(value, low), high));
         }
     }
 }
 
-static void regress_centre(struct denoise_scratch *s, int half, const struct window *w) {
-    double scale[TERMS], matrix[TERMS][TERMS], right[TERMS][3];
-    float range[3][2];
-    scale[0] = scale[TERMS - 2] = scale[TERMS - 1] = 1;
-    for (int f = 0; f < DENOISE_FEATURES; f++) {
-        /* In units of the largest difference, or of a minimum if that is larger: 0.02 for albedo and normals, 1/200
-         * of a depth. */
-        float middle = s->feature[f][w->y * LOCAL + w->x], largest = fill_feature(s, w, f);
-        float smallest = f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
-        scale[1 + f] = 1 / (double)(largest > smallest ? largest : smallest);
+/* Fills the columns of features that change in the window: albedo, normal, depth. Returns the number of terms. */
+static int fill_features(struct denoise_scratch *s, const struct window *w, double scale[TERMS]) {
+    static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
+    int terms = FIRST_FEATURE;
+    for (int g = 0; g < 3; g++) {
+        float change = 0;
+        for (int i = 0; i < groups[g][1]; i++) {
+            /* In units of the largest difference, or of a minimum if that is larger: 0.02 for albedo and normals, 1/200
+             * of a depth. */
+            int f = groups[g][0] + i;
+            float middle = s->feature[f][w->y * LOCAL + w->x], largest = fill_feature(s, w, f, terms + i);
+            float smallest = f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
+            scale[terms + i] = 1 / (double)(largest > smallest ? largest : smallest);
+            change = largest > change ? largest : change;
+        }
+        if (g == 2 || change > feature_change)
+            terms += groups[g][1];
     }
+    return terms;
+}
+
+/* The regression with a number of terms that the compiler knows. */
+static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, int half, const struct window *w,
+                                                      int terms, const double scale[TERMS]) {
+    double matrix[TERMS][TERMS], right[TERMS][3];
+    float range[3][2];
     for (int c = 0; c < 3; c++)
         fill_colour(s, w, half, c, range[c]);
-    build_equations(s, w, scale, matrix, right);
-    for (int i = 1; i < TERMS; i++)
+    build_equations(s, w, terms, scale, matrix, right);
+    for (int i = 1; i < terms; i++)
         matrix[i][i] += ridge * matrix[0][0]; /* keeps terms small that the window does not determine */
-    if (!solve(matrix, right))
+    if (!solve(terms, matrix, right))
         return;
-    for (int i = 0; i < TERMS; i++)
+    for (int i = 0; i < terms; i++)
         for (int c = 0; c < 3; c++)
             right[i][c] *= scale[i];
     for (int c = 0; c < 3; c++)
-        predict(s, w, c, right, range[c]);
+        predict(s, w, terms, c, right, range[c]);
     for (int r = w->row0; r < w->row1; r++) {
         float *to = s->sums[3] + row_at(w, r);
         for (int at = 0; at < LANES; at += WIDTH)
             store(to + at, load(to + at) + load(s->weights[r] + at));
     }
+}
+
+/* Most windows are on one surface, where only the depth changes, and need a fifth of the multiplications. */
+static void regress_centre(struct denoise_scratch *s, int half, const struct window *w) {
+    double scale[TERMS] = {1, 1, 1};
+    int terms = fill_features(s, w, scale);
+    if (terms == TERMS)
+        fit(s, half, w, TERMS, scale);
+    else if (terms == TERMS - 3)
+        fit(s, half, w, TERMS - 3, scale);
+    else
+        fit(s, half, w, TERMS - 6, scale);
 }
 
 static void regress(struct denoise_scratch *s, int half, struct denoise_regression regression,
@@ -457,8 +508,8 @@ static void regress(struct denoise_scratch *s, int half, struct denoise_regressi
     for (int r = 0; r < DENOISE_SIDE; r++) {
         for (int l = 0; l < LANES; l++) {
             s->columns[0][r][l] = 1;
-            s->columns[TERMS - 2][r][l] = (float)(l - DENOISE_WINDOW) / DENOISE_WINDOW;
-            s->columns[TERMS - 1][r][l] = (float)(r - DENOISE_WINDOW) / DENOISE_WINDOW;
+            s->columns[1][r][l] = (float)(l - DENOISE_WINDOW) / DENOISE_WINDOW;
+            s->columns[2][r][l] = (float)(r - DENOISE_WINDOW) / DENOISE_WINDOW;
         }
     }
     for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
