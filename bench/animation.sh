@@ -46,7 +46,7 @@ alone, _ = run('--no-fork')
 stats, whole = run()
 for name, clock, seconds in (('clock', '_seconds', whole[0]), ('processors', '_processor_seconds', whole[1])):
     trace, write = (mean(alone, part, clock) for part in ('render', 'write'))
-    print(f'{name:<11} a frame: {1000 * seconds / frames:.1f} ms, build {mean(stats, "build", clock):.1f} ms; '
-          f'alone: trace {trace:.1f} ms, write {write:.1f} ms; the frame over both: '
-          f'{1000 * seconds / frames / (trace + write):.3f}')
+    parts = ', '.join(f'{part} {mean(stats, part, clock):.1f}' for part in ('build', 'render', 'write'))
+    print(f'{name:<11} a frame: {1000 * seconds / frames:.1f} ms ({parts}); alone: trace {trace:.1f} ms, '
+          f'write {write:.1f} ms; the frame over both: {1000 * seconds / frames / (trace + write):.3f}')
 END

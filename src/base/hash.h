@@ -76,6 +76,11 @@ static inline void digest_sum_add(struct digest_sum *sum, uint64_t word) {
 
 /* Numbers are compared by their bits: 0 and -0 differ. */
 static inline void digest_sum_add_numbers(struct digest_sum *sum, const double *numbers, size_t count) {
+    if (count < DIGEST_SUM_WORDS - sum->count) { /* one copy */
+        memcpy(&sum->words[sum->count], numbers, count * sizeof *numbers);
+        sum->count += (uint32_t)count;
+        return;
+    }
     for (size_t i = 0; i < count; i++) {
         uint64_t word;
         memcpy(&word, &numbers[i], sizeof word);

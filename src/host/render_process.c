@@ -301,6 +301,8 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                         struct error *error) {
     struct render_process *process = work->process;
     struct control *control = process->services->control;
+    if (!notes_changes(work))
+        world_cache_drop_tables(&process->world_cache);
     process->building = true;
     process->runs_before = pool_progress(process->pool).runs;
     atomic_store(&control->build_done, 0);
@@ -408,12 +410,10 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
 static void clear_picture(struct picture_work *work) {
     struct render_process *process = work->process;
     (void)mem_charge(process->account);
-    if (work->ok && work->built && is_frame(work)) {
+    if (work->ok && work->built && is_frame(work))
         world_keep(&work->world, &process->world_cache);
-    } else {
+    else
         world_destroy(&work->world);
-        world_cache_drop_tables(&process->world_cache);
-    }
     if (process->job.total > LARGE_JOB)
         arena_destroy(&process->job);
     else

@@ -22,6 +22,8 @@ static uint32_t triangles_of(const struct world *world, uint32_t primitive) {
 static bool is_worthwhile(const struct world *world, uint32_t *triangles) {
     uint32_t members = 0;
     *triangles = 0;
+    if (world->triangles == 0)
+        return false;
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         uint32_t count = triangles_of(world, i);
         if (count > MAX_TRIANGLES - *triangles)
