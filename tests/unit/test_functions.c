@@ -270,7 +270,8 @@ TEST(a_choice_by_a_constant_is_a_float_where_lua_has_one) {
          "fn(function(p) return 7 // gr.where(-1, p.x, 3) end)");
 }
 
-/* A function of random statements: locals, branches, loops, tables, closures. What is rounded is limited before:
+/* A function of random statements: locals, branches, early returns, loops over constants, gr.loop, tables, metatables,
+ * closures, variable arguments, goto, integers and their bits. What is rounded is limited before:
  * integers beyond 64 bits are a limit of recordings (docs/functions.md). Zeros are floats: Lua computes x - 0 as x + 0,
  * which is another zero for x = -0, also where it has folded the 0 of numbers. */
 static const char generator[] =
@@ -300,9 +301,10 @@ static const char generator[] =
     "  local function condition()\n"
     "    paths = paths * 2\n"
     "    return value(1) .. pick(' < ', ' <= ', ' > ', ' >= ') .. value(1)\n"
-    "  end\n"
+    "  end\n";
+static const char generator_of_statements[] =
     "  local function statement(depth)\n"
-    "    local kind = math.random(5)\n"
+    "    local kind = math.random(15)\n"
     "    if kind == 1 or #names < 8 then\n"
     "      count = count + 1\n"
     "      lines[#lines + 1] = 'local v' .. count .. ' = ' .. value(2)\n"
@@ -325,6 +327,54 @@ static const char generator[] =
     "        .. value(1) .. ' end'\n"
     "    elseif kind == 4 and paths < 16 then\n"
     "      lines[#lines + 1] = target .. ' = ' .. condition() .. ' and ' .. value(1) .. ' or ' .. value(1)\n"
+    "    elseif kind == 5 then\n"
+    "      lines[#lines + 1] = '_, ' .. target .. ' = gr.loop(' .. pick(1, 3, 40, 400) .. ', 1.0, 0.0 + ' .. target .. "
+    "', "
+    "function(i, _, x)'\n"
+    "        .. ' if x > ' .. value(1) .. ' then return ' .. pick('0.0', '1.0', 'x') .. ', x * 0.5 end'\n"
+    "        .. ' return ' .. pick('1.0', 'x + 1.0', '2.5 - i') .. ', x * 0.5 + ' .. value(1) .. ' end)'\n"
+    "    elseif kind == 6 then\n"
+    "      lines[#lines + 1] = '_, ' .. target .. ' = gr.loop(' .. pick(2, 5, 300) .. ', 9, whole(' .. value(1) .. '), "
+    "function(i, n, k)'\n"
+    "        .. ' return n - 1, (k * ' .. pick(3, -7, 31) .. ' ~ (k >> ' .. pick(1, 5) .. ')) + whole(' .. value(1) .. "
+    "') & "
+    "0xffff end)'\n"
+    "    elseif kind == 7 then\n"
+    "      lines[#lines + 1] = 'do local t = {' .. value(1) .. ', ' .. value(1) .. ', ' .. target .. '} t[2] = t[1] * "
+    "t[3] "
+    "t[#t + 1] = '\n"
+    "        .. value(1) .. ' for k, v in ipairs(t) do ' .. target .. ' = ' .. target .. ' * 0.5 + v * k end end'\n"
+    "    elseif kind == 8 then\n"
+    "      lines[#lines + 1] = target .. ' = (whole(' .. value(1) .. ') * 7 ' .. pick('~', '|', '&') .. ' whole(' .. "
+    "value(1) .. ') '\n"
+    "        .. pick('>> 3', '<< 2', '% 13 & 0xff', '// 5 ~ 1', '+ 1 & 3') .. ') ' .. pick('& 255', '% 17', '// 3')\n"
+    "    elseif kind == 9 and paths < 16 then\n"
+    "      paths = paths * 2\n"
+    "      lines[#lines + 1] = 'do local a, b = pair(' .. value(1) .. ', ' .. value(1) .. ') ' .. target .. ' = a + b "
+    "* 0.25 "
+    "end'\n";
+static const char generator_of_functions[] =
+    "    elseif kind == 10 then\n"
+    "      lines[#lines + 1] = target .. ' = total(' .. value(1) .. ', ' .. value(1) .. ', ' .. value(0) .. ')'\n"
+    "    elseif kind == 11 and paths < 16 and depth == 2 then\n"
+    "      lines[#lines + 1] = 'if ' .. condition() .. ' then return ' .. pick(value(1), '{' .. value(1) .. ', 0.5, ' "
+    ".. "
+    "value(0) .. '}') .. ' end'\n"
+    "    elseif kind == 12 then\n"
+    "      lines[#lines + 1] = 'do local k = 0 while k < 4 do k = k + 1 if k == ' .. math.random(4) .. ' then goto "
+    "continue "
+    "end '\n"
+    "        .. target .. ' = ' .. target .. ' * 0.25 - k * ' .. value(1) .. ' ::continue:: end end'\n"
+    "    elseif kind == 13 then\n"
+    "      lines[#lines + 1] = target .. ' = (' .. pick('box(' .. value(1) .. ')', '2') .. ' * box(' .. value(1) .. "
+    "')).v'\n"
+    "    elseif kind == 14 and paths < 16 then\n"
+    "      lines[#lines + 1] = target .. ' = ({one = ' .. value(1) .. ', two = ' .. value(1) .. \"})[\" .. condition() "
+    ".. \" "
+    "and 'one' or 'two']\"\n"
+    "    elseif kind == 15 then\n"
+    "      lines[#lines + 1] = target .. ' = gr.lookup({' .. value(1) .. ', 0.5, ' .. value(1) .. '}, ' .. value(1) .. "
+    "')'\n"
     "    else\n"
     "      lines[#lines + 1] = target .. ' = ' .. value(2)\n"
     "    end\n"
@@ -334,13 +384,21 @@ static const char generator[] =
     "  return 'local function whole(x) return math.floor(gr.min(1e9, gr.max(-1e9, x))) end '\n"
     "    .. 'local function twice(x) return x * 2 end local list = {twice, math.cos, function(x) return x - 1 "
     "end}\\n'\n"
+    "    .. 'local function pair(a, b) if a < b then return a, b end return b, a end '\n"
+    "    .. 'local function total(...) local s = 0.0 for i = 1, select(\"#\", ...) do s = s + select(i, ...) end "
+    "return s end "
+    "'\n"
+    "    .. 'local Box = {} local function box(x) return setmetatable({v = x}, Box) end '\n"
+    "    .. 'Box.__mul = function(a, b) return box((type(a) == \"table\" and a.v or a) * (type(b) == \"table\" and b.v "
+    "or b)) "
+    "end local _\\n'\n"
     "    .. 'return function(p, s)\\n' .. table.concat(lines, '\\n') .. '\\nreturn ' .. result .. '\\nend'\n"
     "end\n";
 
 static void check_generated(int count, int seed) {
-    char text[8192];
+    char text[16384];
     (void)snprintf(text, sizeof text,
-                   "%smath.randomseed(%d)\n"
+                   "%s%s%smath.randomseed(%d)\n"
                    "for i = 1, %d do\n"
                    "  local source = generate()\n"
                    "  local good, why = pcall(gr.fn, assert(load(source))())\n"
@@ -351,7 +409,7 @@ static void check_generated(int count, int seed) {
                    "  if good then taken = (taken or 0) + 1 end\n"
                    "end\n"
                    "assert(taken > %d * 0.8, taken)\n",
-                   generator, seed, count, count);
+                   generator, generator_of_statements, generator_of_functions, seed, count, count);
     struct listener listener = {.renders = 0};
     struct error error = {0};
     const struct script_options options = {.library_folder = "lua", .no_sandbox = true};
