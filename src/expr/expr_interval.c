@@ -712,6 +712,16 @@ void expr_interval_loop(const struct expr_loop *loop, uint32_t step, struct expr
     memcpy(l.states, l.ended, size * sizeof *l.ended);
 }
 
+void expr_interval_loop_rest(const struct expr_loop *loop, uint32_t step, bool has_ended, struct expr_interval *ended,
+                             struct expr_interval *values) {
+    struct looping l = {
+        .loop = loop, .values = values, .states = values + loop->body.constant_count, .has_ended = has_ended};
+    if (has_ended)
+        memcpy(l.ended, ended, loop->state_count * sizeof *ended);
+    run_others(&l, step);
+    memcpy(ended, l.ended, loop->state_count * sizeof *ended);
+}
+
 /* --- many boxes --- */
 
 size_t expr_intervals_size(const struct expr_program *program) {

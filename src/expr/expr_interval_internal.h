@@ -26,6 +26,11 @@ struct expr_choice expr_interval_decide(enum expr_operation operation, struct ex
  * its arguments, which become the final states: for each state all values that a point of the box may end with. */
 void expr_interval_loop(const struct expr_loop *loop, uint32_t step, struct expr_interval *values);
 
+/* All steps from `step` on at once, over one box in whose loop these steps are too many to be bounded one by one.
+ * values: as above. `ended`: bounds of the states of points that have ended, if has_ended; finally, of all points. */
+void expr_interval_loop_rest(const struct expr_loop *loop, uint32_t step, bool has_ended, struct expr_interval *ended,
+                             struct expr_interval *values);
+
 /* Whether a point whose first state has these bounds may end, and whether it may go on. */
 static inline bool expr_may_end(struct expr_interval first) {
     return first.may_be_nan || !(first.low > 0);

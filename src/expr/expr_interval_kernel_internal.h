@@ -1,9 +1,11 @@
 /* Bounds over many boxes, compiled for the instruction set of the file that includes this one: arithmetic and choices
- * on vectors of boxes, everything else box by box with expr_interval_apply. The steps are those of expr_interval.c, and
- * so are the results. */
+ * on vectors of boxes, everything else box by box with expr_interval_apply. Loops repeat their bodies over all boxes.
+ * The steps are those of expr_interval.c, and so are the results. */
 #include "expr/expr_interval_internal.h"
 #include "expr/expr_vector_internal.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* A number in all boxes: its ends, where a constant has the same vector for all of them, and whether it may be NaN. */
@@ -26,19 +28,28 @@ struct machine {
     struct spare spare[3];
 };
 
-static inline struct ends number_of(struct machine *m, uint16_t value, int operand) {
+static inline struct ends ends_of(struct machine *m, uint16_t value, int operand, bool is_float) {
     const uint32_t constants = m->program->constant_count;
     if (value >= constants) {
         const double *low = m->rows + (size_t)(value - constants) * 2 * EXPR_BOXES;
         return (struct ends){low, low + EXPR_BOXES, UINT32_MAX, m->flags[value - constants].first};
     }
-    struct expr_interval x = expr_interval_of_float(m->program->constants[value].f);
+    const union expr_value constant = m->program->constants[value];
+    struct expr_interval x = is_float ? expr_interval_of_float(constant.f) : expr_interval_of_integer(constant.i);
     struct spare *spare = &m->spare[operand];
     for (int i = 0; i < 8; i++) {
         spare->low[i] = x.low;
         spare->high[i] = x.high;
     }
     return (struct ends){spare->low, spare->high, 0, -(uint64_t)x.may_be_nan};
+}
+
+static inline struct ends number_of(struct machine *m, uint16_t value, int operand) {
+    return ends_of(m, value, operand, true);
+}
+
+static inline struct ends integer_of(struct machine *m, uint16_t value, int operand) {
+    return ends_of(m, value, operand, false);
 }
 
 static inline struct expr_flags truth_of(const struct machine *m, uint16_t value) {
@@ -92,36 +103,15 @@ static struct expr_flags run_singly(const struct machine *m, const struct expr_i
     return out;
 }
 
-/* Of a loop, box by box. The ends of its arguments are in rows, those of truth values too. low: of the result. */
-static struct expr_flags run_loop_operation(const struct machine *m, const struct expr_instruction *in, double *low) {
+/* One of the instructions before and after a loop. The ends of its arguments are in rows, those of truth values too.
+ * low: of the result. */
+static struct expr_flags run_loop_access(const struct machine *m, const struct expr_instruction *in,
+                                         const struct expr_loop_access *at, double *low) {
     const enum expr_operation operation = (enum expr_operation)in->operation;
-    const struct expr_loop_access at = expr_loop_access(m->program, in);
-    const struct expr_loop *loop = at.loop;
-    const uint32_t slot = loop->offset + at.slot, values = loop->body.constant_count;
+    const uint32_t slot = at->loop->offset + at->slot;
     double *rows = m->rows + (size_t)slot * 2 * EXPR_BOXES;
     struct expr_flags out = {0, 0};
-    if (operation == EXPR_LOOP) {
-        struct expr_interval *of_box =
-            (struct expr_interval *)(void *)(rows + (size_t)(expr_loop_rows(loop) / 2) * 2 * EXPR_BOXES);
-        for (uint32_t box = 0; box < m->width; box++) {
-            for (uint32_t k = 0; k < loop->argument_count; k++) {
-                const double *from = rows + (size_t)k * 2 * EXPR_BOXES;
-                bool may_be_nan = m->flags[slot + k].first >> box & 1;
-                of_box[values + k] = (struct expr_interval){from[box], from[box + EXPR_BOXES], may_be_nan};
-            }
-            expr_interval_loop(loop, loop->first, of_box);
-            for (uint32_t k = 0; k < loop->state_count; k++) {
-                double *to = rows + (size_t)k * 2 * EXPR_BOXES;
-                struct expr_interval state = of_box[values + k];
-                to[box] = state.low;
-                to[box + EXPR_BOXES] = state.high;
-                m->flags[slot + k].first =
-                    (m->flags[slot + k].first & ~((uint64_t)1 << box)) | (uint64_t)state.may_be_nan << box;
-            }
-        }
-        return out;
-    }
-    if (!at.puts) {
+    if (!at->puts) {
         memcpy(low, rows, 2 * EXPR_BOXES * sizeof *low);
         out.first = operation == EXPR_TAKE_TRUTH ? 0 : m->flags[slot].first;
         for (uint32_t box = 0; operation == EXPR_TAKE_TRUTH && box < m->width; box++) {
@@ -130,14 +120,239 @@ static struct expr_flags run_loop_operation(const struct machine *m, const struc
         }
         return out;
     }
-    m->flags[slot].first = 0;
+    m->flags[slot] = (struct expr_flags){0, 0};
     for (uint32_t box = 0; box < m->width; box++) {
         struct expr_interval x = single(m, expr_operand_type(operation, 1), in->b, box);
         rows[box] = x.low;
         rows[box + EXPR_BOXES] = x.high;
         m->flags[slot].first |= (uint64_t)x.may_be_nan << box;
+        if (operation == EXPR_PUT_TRUTH)
+            m->flags[slot].first |= (uint64_t)(x.low > 0) << box;
+        if (operation == EXPR_PUT_TRUTH)
+            m->flags[slot].second |= (uint64_t)(x.high > 0) << box;
     }
     return out;
+}
+
+/* --- loops --- */
+
+/* A loop over many boxes. Lane i of the first m.width is the box boxes[i]. As in a batch of points, boxes that have
+ * ended leave: the others move to the first lanes. */
+struct looping {
+    const struct expr_loop *loop;
+    struct machine m;                            /* of the body; its first rows are the states */
+    double *ended;                               /* rows of the final states, by box */
+    uint64_t may_be_nan[EXPR_STATES], has_ended; /* of `ended`, by box */
+    uint64_t active;                             /* lanes whose boxes have points that go on */
+    uint32_t boxes[EXPR_BOXES];
+};
+
+static inline double *state_row(const struct looping *l, uint32_t k) {
+    return l->m.rows + (size_t)k * 2 * EXPR_BOXES;
+}
+
+/* An argument in a lane. The second flag is that of truth values only, and set where the first one is. */
+static inline struct expr_interval argument_of(const struct looping *l, uint32_t k, uint32_t lane) {
+    const double *row = state_row(l, k);
+    const struct expr_flags flags = l->m.flags[k];
+    return (struct expr_interval){row[lane], row[lane + EXPR_BOXES], (flags.first & ~flags.second) >> lane & 1};
+}
+
+/* The final states of a box, with those that points have which end now in this lane. */
+static void end_with(struct looping *l, uint32_t lane, const struct expr_interval *first) {
+    const uint32_t box = l->boxes[lane];
+    const bool has_ended = l->has_ended >> box & 1;
+    for (uint32_t k = 0; k < l->loop->state_count; k++) {
+        const struct expr_interval state = first && k == 0 ? *first : argument_of(l, k, lane);
+        double *row = l->ended + (size_t)k * 2 * EXPR_BOXES;
+        row[box] = has_ended ? fmin(row[box], state.low) : state.low;
+        row[box + EXPR_BOXES] = has_ended ? fmax(row[box + EXPR_BOXES], state.high) : state.high;
+        l->may_be_nan[k] |= (uint64_t)state.may_be_nan << box;
+    }
+    l->has_ended |= (uint64_t)1 << box;
+}
+
+/* Lanes whose row of these numbers is below (or, for -1, above) a limit. */
+static inline uint64_t lanes_beyond(const double *row, double sign, double limit, uint32_t width) {
+    uint64_t lanes = 0;
+    for (uint32_t i = 0; i < width; i += WIDTH)
+        lanes |= IS_LESS(LOAD(row + i) * ALL(sign), ALL(limit)) << i;
+    return lanes;
+}
+
+/* Ends the points whose first state is not > 0. */
+static void end_some(struct looping *l) {
+    double *low = state_row(l, 0), *high = low + EXPR_BOXES;
+    const bool is_integer = l->loop->type[0] == EXPR_TYPE_I;
+    const uint64_t may_be_nan = is_integer ? 0 : l->m.flags[0].first;
+    uint64_t may_end = (may_be_nan | ~lanes_beyond(low, -1, 0, l->m.width)) & l->active;
+    for (; may_end; may_end &= may_end - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctzll(may_end);
+        const uint64_t bit = (uint64_t)1 << lane;
+        struct expr_interval first = {low[lane], high[lane], (may_be_nan & bit) != 0};
+        const bool goes_on = expr_may_go_on(first);
+        first.high = fmin(first.high, fmax(first.low, 0));
+        end_with(l, lane, &first);
+        if (goes_on) {
+            low[lane] = fmax(first.low, is_integer);
+            l->m.flags[0].first &= ~bit;
+        } else
+            l->active &= ~bit;
+    }
+}
+
+/* Lanes with a number of which nothing is known. */
+static uint64_t lost_lanes(const struct looping *l) {
+    uint64_t lost = 0;
+    for (uint32_t k = 0; k < l->loop->state_count; k++)
+        if (l->loop->type[k] == EXPR_TYPE_F)
+            lost |= lanes_beyond(state_row(l, k), 1, -DBL_MAX, l->m.width) &
+                    lanes_beyond(state_row(l, k) + EXPR_BOXES, -1, -DBL_MAX, l->m.width);
+    return lost & l->active;
+}
+
+/* All other steps at once in these lanes, one after the other. */
+static void run_rest(struct looping *l, uint64_t lanes, uint32_t step) {
+    const struct expr_loop *loop = l->loop;
+    struct expr_interval ended[EXPR_STATES];
+    struct expr_interval *values =
+        (struct expr_interval *)(void *)(l->ended + (size_t)loop->state_count * 2 * EXPR_BOXES);
+    l->active &= ~lanes;
+    for (; lanes; lanes &= lanes - 1) {
+        const uint32_t lane = (uint32_t)__builtin_ctzll(lanes), box = l->boxes[lane];
+        for (uint32_t k = 0; k < loop->argument_count; k++)
+            values[loop->body.constant_count + k] = argument_of(l, k, lane);
+        for (uint32_t k = 0; k < loop->state_count; k++) {
+            const double *row = l->ended + (size_t)k * 2 * EXPR_BOXES;
+            ended[k] = (struct expr_interval){row[box], row[box + EXPR_BOXES], l->may_be_nan[k] >> box & 1};
+        }
+        expr_interval_loop_rest(loop, step, l->has_ended >> box & 1, ended, values);
+        for (uint32_t k = 0; k < loop->state_count; k++) {
+            double *row = l->ended + (size_t)k * 2 * EXPR_BOXES;
+            row[box] = ended[k].low;
+            row[box + EXPR_BOXES] = ended[k].high;
+            l->may_be_nan[k] = (l->may_be_nan[k] & ~((uint64_t)1 << box)) | (uint64_t)ended[k].may_be_nan << box;
+        }
+    }
+}
+
+/* Moves the active lanes to the first ones; those up to a multiple of 8 repeat the first. */
+static void pack(struct looping *l) {
+    uint32_t from[EXPR_BOXES], count = 0;
+    for (uint64_t lanes = l->active; lanes; lanes &= lanes - 1)
+        from[count++] = (uint32_t)__builtin_ctzll(lanes);
+    const uint32_t width = (count + 7) & ~7U;
+    for (uint32_t i = count; i < width; i++)
+        from[i] = from[0];
+    for (uint32_t k = 0; k < l->loop->argument_count; k++) {
+        double *low = state_row(l, k);
+        const struct expr_flags old = l->m.flags[k];
+        struct expr_flags packed = {0, 0};
+        for (uint32_t i = 0; i < width; i++) { /* from[i] >= i, but for those that repeat the first */
+            packed.first |= (old.first >> from[i] & 1) << i;
+            packed.second |= (old.second >> from[i] & 1) << i;
+            low[i] = low[i < count ? from[i] : 0];
+            low[i + EXPR_BOXES] = low[(i < count ? from[i] : 0) + EXPR_BOXES];
+        }
+        l->m.flags[k] = packed;
+    }
+    for (uint32_t i = 0; i < count; i++)
+        l->boxes[i] = l->boxes[from[i]];
+    l->active = count < EXPR_BOXES ? ((uint64_t)1 << count) - 1 : UINT64_MAX;
+    l->m.width = width;
+}
+
+/* The next value of a state becomes the state. */
+static void write_state(struct looping *l, uint32_t k) {
+    const struct expr_program *body = &l->loop->body;
+    const uint16_t next = l->loop->next[k];
+    const enum expr_type type = l->loop->type[k];
+    double *row = state_row(l, k);
+    if (next == body->constant_count + k)
+        return;
+    if (type != EXPR_TYPE_B && next >= body->constant_count) {
+        memcpy(row, l->m.rows + (size_t)(next - body->constant_count) * 2 * EXPR_BOXES, 2 * EXPR_BOXES * sizeof *row);
+        l->m.flags[k] = l->m.flags[next - body->constant_count];
+        return;
+    }
+    struct expr_flags flags = type == EXPR_TYPE_B ? truth_of(&l->m, next) : (struct expr_flags){0, 0};
+    for (uint32_t lane = 0; lane < l->m.width; lane++) {
+        struct expr_interval x = single(&l->m, type, next, lane);
+        row[lane] = x.low;
+        row[lane + EXPR_BOXES] = x.high;
+        flags.first |= (uint64_t)x.may_be_nan << lane;
+    }
+    l->m.flags[k] = flags;
+}
+
+static void run_step(struct looping *l, uint32_t step) {
+    double *row = state_row(l, l->loop->argument_count);
+    for (uint32_t lane = 0; lane < l->m.width; lane++)
+        row[lane] = row[lane + EXPR_BOXES] = step;
+    l->m.flags[l->loop->argument_count] = (struct expr_flags){0, 0};
+    KERNEL(run_intervals)(&l->loop->body, l->m.width, l->m.rows, l->m.flags, NULL);
+    for (uint32_t k = 0; k < l->loop->state_count; k++)
+        write_state(l, k);
+}
+
+/* The steps are those of expr_interval_loop in each box. */
+static void run_steps(struct looping *l) {
+    const struct expr_loop *loop = l->loop;
+    for (uint32_t step = loop->first;; step++) {
+        if (step > 1 && loop->ends)
+            end_some(l);
+        if (step > loop->last) {
+            for (; l->active; l->active &= l->active - 1)
+                end_with(l, (uint32_t)__builtin_ctzll(l->active), NULL);
+            return;
+        }
+        if (step - loop->first >= EXPR_EXACT_STEPS)
+            run_rest(l, l->active, step);
+        else if (step - loop->first >= 32)
+            run_rest(l, lost_lanes(l), step);
+        if (!l->active)
+            return;
+        if (((uint32_t)__builtin_popcountll(l->active) + 7) / 8 <= l->m.width / 16)
+            pack(l);
+        run_step(l, step);
+    }
+}
+
+/* One box after the other, which is faster without vectors. */
+static void run_box_by_box(struct looping *l) {
+    const struct expr_loop *loop = l->loop;
+    struct expr_interval *values =
+        (struct expr_interval *)(void *)(l->ended + (size_t)loop->state_count * 2 * EXPR_BOXES);
+    struct expr_interval *arguments = values + loop->body.constant_count;
+    for (uint32_t box = 0; box < l->m.width; box++) {
+        for (uint32_t k = 0; k < loop->argument_count; k++)
+            arguments[k] = argument_of(l, k, box);
+        expr_interval_loop(loop, loop->first, values);
+        for (uint32_t k = 0; k < loop->state_count; k++) {
+            double *row = l->ended + (size_t)k * 2 * EXPR_BOXES;
+            row[box] = arguments[k].low;
+            row[box + EXPR_BOXES] = arguments[k].high;
+            l->may_be_nan[k] |= (uint64_t)arguments[k].may_be_nan << box;
+        }
+    }
+}
+
+static void run_loop(const struct machine *m, const struct expr_loop *loop) {
+    double *rows = m->rows + (size_t)loop->offset * 2 * EXPR_BOXES;
+    struct expr_flags *flags = m->flags + loop->offset;
+    struct looping l = {.loop = loop,
+                        .m = {.program = &loop->body, .rows = rows, .flags = flags, .width = m->width},
+                        .ended = rows + (size_t)(expr_loop_rows(loop) / 2) * 2 * EXPR_BOXES,
+                        .active = m->width < EXPR_BOXES ? ((uint64_t)1 << m->width) - 1 : UINT64_MAX};
+    for (uint32_t i = 0; i < m->width; i++)
+        l.boxes[i] = i;
+    if (WIDTH > 1)
+        run_steps(&l);
+    else
+        run_box_by_box(&l);
+    memcpy(rows, l.ended, (size_t)loop->state_count * 2 * EXPR_BOXES * sizeof *rows);
+    for (uint32_t k = 0; k < loop->state_count; k++)
+        flags[k] = (struct expr_flags){l.may_be_nan[k], 0};
 }
 
 /* Where the flag is set any number is possible, and NaN. */
@@ -160,6 +375,17 @@ static void set_unknown(uint64_t unknown, double *low) {
         STORE(low + i, lo);                                                                                            \
         STORE(low + EXPR_BOXES + i, hi);                                                                               \
     }
+#define COMPARE(body)                                                                                                  \
+    for (uint32_t i = 0; i < width; i += WIDTH) {                                                                      \
+        const vector al = LOAD(a.low + (i & a.mask)), ah = LOAD(a.high + (i & a.mask));                                \
+        const vector bl = LOAD(b.low + (i & b.mask)), bh = LOAD(b.high + (i & b.mask));                                \
+        body;                                                                                                          \
+    }
+/* Ends of integers that doubles do not represent exactly mean any integer. */
+#define INTEGERS                                                                                                       \
+    const lanes_mask is_exact = BOTH(LESS_EQUAL(ALL(-0x1p53), lo), LESS_EQUAL(hi, ALL(0x1p53)));                       \
+    lo = PICK(is_exact, lo, ALL(-0x1p63));                                                                             \
+    hi = PICK(is_exact, hi, ALL(0x1p63))
 /* A result that is not a number, or both infinities, may be anything. */
 #define UNKNOWN(v) unknown |= IS_NAN(v) << i
 #define BOXES(bits) ((bits) >> i)
@@ -169,6 +395,7 @@ static void set_unknown(uint64_t unknown, double *low) {
 #define TWO                                                                                                            \
     struct ends a = number_of(m, in->a, 0), b = number_of(m, in->b, 1);                                                \
     out.first = a.may_be_nan | b.may_be_nan
+#define TWO_INTEGERS struct ends a = integer_of(m, in->a, 0), b = integer_of(m, in->b, 1)
 #define ONE                                                                                                            \
     struct ends a = number_of(m, in->a, 0), b = a;                                                                     \
     out.first = a.may_be_nan
@@ -244,18 +471,61 @@ static inline __attribute__((always_inline)) void run_boxes(struct machine *m, c
             out.first = a.may_be_nan;
             break;
         }
-        case EXPR_SELECT: {
+        case EXPR_FLOOR: {
+            ONE;
+            EACH(lo = FLOOR_OF(al); hi = FLOOR_OF(ah))
+            break;
+        }
+        case EXPR_INTEGER_ADD: {
+            TWO_INTEGERS;
+            EACH(lo = al + bl; hi = ah + bh; INTEGERS)
+            break;
+        }
+        case EXPR_INTEGER_SUBTRACT: {
+            TWO_INTEGERS;
+            EACH(lo = al - bh; hi = ah - bl; INTEGERS)
+            break;
+        }
+        case EXPR_TO_FLOAT: {
+            struct ends a = integer_of(m, in->a, 0), b = a;
+            EACH(lo = al; hi = ah)
+            break;
+        }
+        case EXPR_LESS: {
+            TWO;
+            const uint64_t may_be_nan = out.first;
+            out.first = 0;
+            COMPARE(out.first |= LANES_OF(IS_LESS(ah, bl)); out.second |= LANES_OF(IS_LESS(al, bh)))
+            out.first &= ~may_be_nan;
+            break;
+        }
+        case EXPR_LESS_EQUAL: {
+            TWO;
+            const uint64_t may_be_nan = out.first;
+            out.first = 0;
+            COMPARE(out.first |= LANES_OF(IS_LESS_EQUAL(ah, bl)); out.second |= LANES_OF(IS_LESS_EQUAL(al, bh)))
+            out.first &= ~may_be_nan;
+            break;
+        }
+        case EXPR_SELECT:
+        case EXPR_INTEGER_SELECT: {
+            const bool is_float = in->operation == EXPR_SELECT;
             const struct expr_flags holds = truth_of(m, in->a);
-            struct ends a = number_of(m, in->b, 0), b = number_of(m, in->c, 1);
+            struct ends a = ends_of(m, in->b, 0, is_float), b = ends_of(m, in->c, 1, is_float);
             decided = (struct expr_choice){holds.first, ~holds.second};
             out.first = (a.may_be_nan & holds.second) | (b.may_be_nan & ~holds.first);
             EACH(lo = CHOOSE(BOXES(holds.first), al, CHOOSE(BOXES(holds.second), MIN_OF(al, bl), bl));
                  hi = CHOOSE(BOXES(holds.first), ah, CHOOSE(BOXES(holds.second), MAX_OF(ah, bh), bh)))
             break;
         }
-        EXPR_LOOP_CASES:
-            out = run_loop_operation(m, in, low);
+        EXPR_LOOP_CASES : {
+            const struct expr_loop_access at = expr_loop_access(program, in);
+            if (in->operation == EXPR_LOOP)
+                run_loop(m, at.loop);
+            else
+                out = run_loop_access(m, in, &at, low);
             break;
+        }
         default:
             out = run_singly(m, in, low, &decided);
         }

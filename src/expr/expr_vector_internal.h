@@ -24,6 +24,7 @@ typedef __mmask8 lanes_mask;
 #define LESS(a, b) _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ)
 #define LESS_EQUAL(a, b) _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ)
 #define NAN_LANES(a) _mm512_cmp_pd_mask(a, a, _CMP_UNORD_Q)
+#define BOTH(a, b) (lanes_mask)((a) & (b))
 #define PICK(mask, a, b) _mm512_mask_blend_pd(mask, b, a)
 #define BITS(mask) (uint64_t)(mask)
 #elif defined(__AVX2__)
@@ -44,6 +45,7 @@ typedef __m256d lanes_mask;
 #define LESS(a, b) _mm256_cmp_pd(a, b, _CMP_LT_OQ)
 #define LESS_EQUAL(a, b) _mm256_cmp_pd(a, b, _CMP_LE_OQ)
 #define NAN_LANES(a) _mm256_cmp_pd(a, a, _CMP_UNORD_Q)
+#define BOTH(a, b) _mm256_and_pd(a, b)
 #define PICK(mask, a, b) _mm256_blendv_pd(b, a, mask)
 #define BITS(mask) (uint64_t) _mm256_movemask_pd(mask)
 static inline vector choose_lanes(uint64_t mask, vector a, vector b) {
@@ -68,6 +70,7 @@ typedef int lanes_mask;
 #define LESS(a, b) ((a) < (b))
 #define LESS_EQUAL(a, b) ((a) <= (b))
 #define NAN_LANES(a) ((a) != (a))
+#define BOTH(a, b) ((a) & (b))
 #define PICK(mask, a, b) ((mask) ? (a) : (b))
 #define BITS(mask) (uint64_t)(mask)
 #endif
