@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum { COSINES = 16, ROUGHNESSES = 24, INDICES = 8, POINTS = 128 };
+enum { COSINES = 17, ROUGHNESSES = 24, INDICES = 8, POINTS = 128 };
 static const double pi = 3.14159265358979323846;
 
 static double fresnel(double cosine, double eta) {
@@ -149,7 +149,8 @@ int main(void) {
     for (int what = 0; what < 2; what++) {
         printf("\n/* Of a boundary, seen from outside and from inside: %s. */\n"
                "static const uint16_t %s_table[2][ALBEDO_INDICES][ALBEDO_ROUGHNESSES][ALBEDO_COSINES] = {\n",
-               what == 0 ? "(1 + r - s) / 2 for the reflected shares r of a rough boundary and s of a smooth one"
+               what == 0 ? "what is reflected; from outside (1 + r - s) / 2 for the shares r and s\n"
+                           " * that a rough and a smooth boundary reflect"
                          : "what is reflected or transmitted",
                what == 0 ? "reflection" : "boundary");
         for (int side = 0; side < 2; side++) {
@@ -160,8 +161,9 @@ int main(void) {
                     for (int m = 0; m < COSINES; m++) {
                         double eta = side == 0 ? 1 / index_of(k) : index_of(k), cosine = cosine_of(m, eta);
                         struct shares shares = facets(cosine, alpha_of(r), eta);
-                        row[m] = what == 0 ? (1 + shares.reflected - fresnel(cosine, eta)) / 2
-                                           : shares.reflected + shares.transmitted;
+                        row[m] = shares.reflected + (what == 0 ? 0 : shares.transmitted);
+                        if (what == 0 && side == 0)
+                            row[m] = (1 + shares.reflected - fresnel(cosine, eta)) / 2;
                     }
                     print_row(row, COSINES, ",\n");
                 }

@@ -234,10 +234,15 @@ static double block(const uint16_t (*values)[ALBEDO_ROUGHNESSES][ALBEDO_COSINES]
     return sum;
 }
 
-/* The table has the difference to a smooth boundary, which varies less with the index. */
+/* From outside, the table has the difference to a smooth boundary, which varies less with the index. From inside, that
+ * difference has a cusp at the angle of total reflection; facets of little roughness reflect as a smooth boundary. */
 double albedo_reflection(double cosine, double roughness, double eta) {
-    double more = 2 * block(reflection_table[eta > 1], cosine, roughness, eta) - 65535;
-    return share(more + 65535 * dielectric_fresnel(cosine, eta));
+    double units = block(reflection_table[eta > 1], cosine, roughness, eta);
+    double rough = eta > 1 ? fmin(fmax(16 * roughness - 1, 0), 1) : 0;
+    if (rough == 1)
+        return share(units);
+    double smooth = 65535 * dielectric_fresnel(cosine, eta);
+    return share(eta > 1 ? smooth + rough * (units - smooth) : 2 * units - 65535 + smooth);
 }
 
 double albedo_boundary(double cosine, double roughness, double eta) {
