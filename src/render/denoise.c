@@ -45,7 +45,7 @@ _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARI
 
 /* Found by measurement (bench/denoise.sh). */
 static const struct denoise_regression regressions[REGRESSIONS] = {
-    {DENOISE_WINDOW, 2, 2.4F, 0}, {3, 2, 3, 0.3F}, {DENOISE_WINDOW, 4, 0, 0.3F}, {2, 2, 0, 0}};
+    {DENOISE_WINDOW, 2, 2.4F, 0}, {4, 2, 5, 0.5F}, {DENOISE_WINDOW, 4, 0, 0.3F}, {2, 2, 0, 0}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
 static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
