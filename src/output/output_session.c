@@ -404,9 +404,9 @@ static bool check_own(struct output_session *output, const struct picture_reques
         return true;
     if (request->frame.number > 0 && output->options->output)
         return error_set(error, ERROR_USAGE,
-                         "-o %.600s: frame %u is rendered twice, and %.600s is the only name for it; without -o, "
-                         "pictures have the names of the script",
-                         output->options->output, request->frame.number, written);
+                         "-o %.600s: %.600s, the only name for frame %u, is already another picture of this run; "
+                         "without -o, pictures have the names of the script",
+                         output->options->output, written, request->frame.number);
     (void)snprintf(notice, sizeof notice,
                    "gray: notice: %s replaces a picture that this run wrote before under the same name", written);
     output_report(output, LINE_NOTICE, notice);

@@ -150,7 +150,8 @@ TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_
         struct test_result result = test_gray_scene(texts[i], "--frames 3 -o x.##.png scene.lua", NULL);
         CHECK_EQ_INT(result.status, 2);
         CHECK(
-            strstr(result.err, "gray: -o x.##.png: frame 1 is rendered twice, and x.01.png is the only name for it") ==
+            strstr(result.err,
+                   "gray: -o x.##.png: x.01.png, the only name for frame 1, is already another picture of this run") ==
             result.err);
         free(result.out);
         free(result.err);
