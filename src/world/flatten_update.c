@@ -97,7 +97,7 @@ static bool update_record(struct update *u, uint32_t record, bool *done) {
     return true;
 }
 
-/* Stops where a new world costs no more: many nodes differ, or most linear maps are out of use. */
+/* Stops where most linear maps are out of use. */
 static bool update_records(struct update *u, bool *done) {
     const struct flatten_log *log = u->f->log;
     const struct world *world = u->f->world;
@@ -108,7 +108,7 @@ static bool update_records(struct update *u, bool *done) {
         if (!u->posed[r->index] && (r->above == RECORD_NONE || u->number[r->above] == RECORD_NONE))
             continue;
         ok = update_record(u, i, done);
-        *done = *done && u->count <= 64 + log->count / 4 && world->linear_count <= 4096 + 2 * log->linear_count;
+        *done = *done && world->linear_count <= 4096 + 2 * log->linear_count;
     }
     return ok;
 }
