@@ -472,7 +472,8 @@ static int value_at(lua_State *L) {
     double row[WIDTH_MAX];
     bool given = !lua_isnoneornil(L, 1);
     if (given && !lua_isnumber(L, 1))
-        luaL_error(L, "gr.keys: the time must be a number of seconds, not %s", value_words(L, 1));
+        luaL_error(L, "gr.keys: the time must be a number of seconds, not %s",
+                   is_symbol(L, 1) ? "a number of a recorded function" : value_words(L, 1));
     double time = given ? lua_tonumber(L, 1) : frame_time(&context_of(L)->frame);
     if (isnan(time))
         luaL_error(L, "gr.keys: the time is not a number (nan)");

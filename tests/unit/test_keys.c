@@ -194,6 +194,8 @@ TEST(wrong_keys_are_errors_that_name_the_key) {
     };
     static const struct corner calls[] = {
         {"gr.keys{{0, 1}}('x')", "gr.keys: the time must be a number of seconds, not a string"},
+        {"local k = gr.keys{{0, 1}} gr.material{kd = function(p) return k(p.x) end}",
+         "the time must be a number of seconds, not a number of a recorded function"},
         {"gr.keys{{0, 1}}(0 / 0)", "the time is not a number"},
         {"gr.keys{{0, 1}, {1, 2}, ease = function() end}(0.5)", "ease(0.5) must be a finite number"},
         {"gr.keys{{0, 1}, {1, 2}, ease = function() error('no') end}(0.5)", "no"},
