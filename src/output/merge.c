@@ -151,10 +151,10 @@ static int report_error(struct output_session *output, const struct error *error
     return (int)error->kind > status ? (int)error->kind : status;
 }
 
-/* `gray merge -o x.gif frame.png ...`: frames of --shard-pictures or of other programs. */
+/* `gray merge -o x.gif frame.png ...`: frames of --shard-pictures or of other runs. */
 static bool are_frames(const struct options *options) {
     const char *dot = strrchr(options->scripts[0], '.');
-    return options->animation != ANIMATION_NONE && dot && strcmp(dot, ".png") == 0;
+    return dot && strcmp(dot, ".png") == 0;
 }
 
 static int merge_frames(const struct options *options, struct output_session *output) {
@@ -164,6 +164,17 @@ static int merge_frames(const struct options *options, struct output_session *ou
         status = report_error(output, &error, status);
     if (!output_finish(output, status == 0, &error))
         status = report_error(output, &error, status);
+    return status;
+}
+
+static int refuse_frames(const struct options *options, struct output_session *output) {
+    struct error error;
+    (void)error_set(&error, ERROR_USAGE,
+                    "gray: %.600s is a picture: gray merge makes animations of pictures (-o x.gif), and pictures of "
+                    "parts (.part)",
+                    options->scripts[0]);
+    int status = report_error(output, &error, 0);
+    (void)output_finish(output, false, &error);
     return status;
 }
 
@@ -209,7 +220,10 @@ int merge_run(const struct options *options) {
         return ERROR_MACHINE;
     }
     output_init(output, options, &control);
-    int status = are_frames(options) ? merge_frames(options, output) : merge_parts(options, output);
+    bool animates = options->animation != ANIMATION_NONE;
+    int status = !are_frames(options) ? merge_parts(options, output)
+                 : animates           ? merge_frames(options, output)
+                                      : refuse_frames(options, output);
     mem_free(output);
     return status;
 }

@@ -138,6 +138,8 @@ TEST(merge_says_which_parts_are_missing_double_or_foreign) {
           "the picture was divided differently");
     gives("$gray merge nowhere.part", 1, "nowhere.part: cannot be read");
     gives("$gray merge scene.lua", 1, "scene.lua: is not a file of tiles");
+    gives("echo > scene.png; $gray merge scene.png scene.png -o x.png", 2,
+          "gray: scene.png is a picture: gray merge makes animations of pictures (-o x.gif), and pictures of parts ");
     gives("$gray merge", 2, "gray: no parts to merge were given");
     CHECK(!exists("out.png"));
     gives("$gray merge out.png.[1234]-of-4.part", 0, NULL);
