@@ -248,7 +248,7 @@ static int local_of(int x, int y) {
 
 /* For one half: the mean of the predictions. A pixel without predictions keeps its colour. */
 static void keep_estimates(struct denoise_scratch *s, int regression, int half) {
-    const float own = 0.01F;
+    const float own = 0.01F, few = 2, many = 8;
     for (int c = 0; c < 3; c++) {
         for (int y = -CHOICE; y < BLOCK + CHOICE; y++) {
             for (int at = local_of(-CHOICE, y); at < local_of(BLOCK + CHOICE, y); at++) {
@@ -258,7 +258,10 @@ static void keep_estimates(struct denoise_scratch *s, int regression, int half) 
             }
         }
     }
-    memcpy(s->support[regression][half], s->sums[3], sizeof s->sums[3]);
+    for (int at = 0; at < LOCAL * LOCAL; at++)
+        s->support[regression][half][at] = s->sums[3][at] < few     ? DENOISE_FEW
+                                           : s->sums[3][at] <= many ? DENOISE_SOME
+                                                                    : DENOISE_MANY;
 }
 
 /* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
@@ -293,8 +296,8 @@ static void choose_candidates(const struct denoiser *d, struct denoise_scratch *
 /* The half that speaks for a half at a pixel: the other one if few pixels were like it there, since a bright path made
  * the other one unlike all. */
 static int supported_half(const struct denoise_scratch *s, int regression, int half, int at) {
-    const float few = 2, many = 8;
-    bool unsupported = s->support[regression][half][at] < few && s->support[regression][1 - half][at] > many;
+    bool unsupported =
+        s->support[regression][half][at] == DENOISE_FEW && s->support[regression][1 - half][at] == DENOISE_MANY;
     return unsupported ? 1 - half : half;
 }
 

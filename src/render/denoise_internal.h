@@ -44,12 +44,16 @@ typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
 typedef float denoise_feature_plane[DENOISE_FEATURE_LOCAL * DENOISE_FEATURE_LOCAL];
 typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
 
+/* How many pixels made an estimate: the sum of their weights. */
+enum denoise_support { DENOISE_FEW, DENOISE_SOME, DENOISE_MANY };
+
 /* Memory of a worker. */
 struct denoise_scratch {
     denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
     denoise_plane total_variance, unit; /* of pixels that are compared: sums over the channels */
     denoise_plane sums[4];              /* of weighted colours, and of weights */
-    denoise_plane estimates[DENOISE_REGRESSIONS][2][3], support[DENOISE_REGRESSIONS][2]; /* support: sums of weights */
+    denoise_plane estimates[DENOISE_REGRESSIONS][2][3];
+    uint8_t support[DENOISE_REGRESSIONS][2][DENOISE_LOCAL * DENOISE_LOCAL]; /* enum denoise_support */
     /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
     float errors[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
     float doubts[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
