@@ -291,6 +291,14 @@ void flatten_log_clear(struct flatten_log *log) {
     *log = (struct flatten_log){.on = false};
 }
 
+void flatten_log_begin(struct flatten_log *log, uint32_t node_total) {
+    struct flatten_record *records = log->records;
+    uint32_t capacity = log->capacity;
+    log->records = NULL;
+    flatten_log_clear(log);
+    *log = (struct flatten_log){.on = true, .records = records, .capacity = capacity, .node_total = node_total};
+}
+
 /* The operands of a solid are part of its prototype. */
 static bool mark_inside(struct flattening *f, const struct node *solid) {
     struct flatten_log *log = f->log;
@@ -478,7 +486,7 @@ bool flatten_scene(struct flattening *f, const struct node *root) {
         return error_set(f->error, ERROR_MACHINE, "out of memory for %u placed primitives", f->primitive_capacity);
     f->world->primitives = f->primitives;
     if (f->log)
-        *f->log = (struct flatten_log){.on = true, .node_total = f->scene->node_total};
+        flatten_log_begin(f->log, f->scene->node_total);
     bool ok = instantiate_scene(f, root);
     flatten_map_end(f);
     if (f->log && f->log->on)

@@ -24,7 +24,6 @@ static void empty(struct kept_tables *tables) {
     if (tables->full)
         world_destroy(&tables->world);
     tables->full = false;
-    flatten_log_clear(&tables->log);
     if (tables->arena.total > LARGE)
         arena_destroy(&tables->arena);
     else
@@ -120,6 +119,7 @@ void world_keep(struct world *world, struct world_cache *cache) {
 void world_cache_drop_tables(struct world_cache *cache) {
     if (cache->tables) {
         empty(cache->tables);
+        flatten_log_clear(&cache->tables->log);
         arena_destroy(&cache->tables->arena);
     }
     mem_free(cache->tables);
