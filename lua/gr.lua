@@ -782,7 +782,7 @@ function gr.blob(material, spheres, cylinders, threshold) end
 ---@field centre? gr.triple centre (a point {x, y, z}; default {0, 0, 0}): Centre of that ball.
 ---@field open? boolean open (true or false; default false): Whether there are no caps on the bounds.
 ---@field lipschitz? number lipschitz (a number, > 0; optional): A bound of the slope of f: |f(a) - f(b)| <= lipschitz |a - b|.
----@field distance? boolean distance (true or false; default false): Whether |f| is at most the distance to the surface: lipschitz = 1.
+---@field distance? boolean distance (true or false; default false): Whether |f| is at most the distance to the surface.
 
 ---An implicit solid: the points in a box or a ball where a function is negative.
 ---@param material gr.material material (a material; default plain gray): Material of the surface.

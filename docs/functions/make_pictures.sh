@@ -10,6 +10,7 @@ landscape 400x240
 lamp 240x240
 creature 300x200
 fractals 360x225
+julia 360x203
 END
 for picture in docs/functions/*.png; do
     command -v convert >/dev/null && convert "$picture" -dither FloydSteinberg -colors 128 -strip "PNG8:$picture"

@@ -149,7 +149,7 @@ static const struct script_parameter implicit_parameters[] = {
     [IMPLICIT_LIPSCHITZ] = {"lipschitz", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, NULL,
                             "A bound of the slope of f: |f(a) - f(b)| <= lipschitz |a - b|."},
     [IMPLICIT_DISTANCE] = {"distance", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
-                           "Whether |f| is at most the distance to the surface: lipschitz = 1."},
+                           "Whether |f| is at most the distance to the surface."},
 };
 
 static void use_in_bounds(struct script_context *context, const struct expr_program *program,
@@ -182,7 +182,12 @@ static bool examine_implicit(struct script_context *context, const struct implic
     if (found.is_empty)
         context_warn(context, "f is negative at none of the points that were examined: if it is an estimate that stays "
                               "above 0, subtract a small distance from it");
-    if (found.steep_points > 0)
+    if (found.steep_points > 0 && in->is_distance)
+        context_warn(context,
+                     "|f| is above the distance to the surface at %u of %u points (%.3g times at {%.4g, %.4g, %.4g}), "
+                     "so parts of the surface may be missing: divide f, or declare lipschitz instead of distance",
+                     found.steep_points, found.points, found.steepest, at.x, at.y, at.z);
+    else if (found.steep_points > 0)
         context_warn(context,
                      "the slope of f is above lipschitz = %.4g at %u of %u points (%.3g at {%.4g, %.4g, %.4g}), so "
                      "parts of the surface may be missing: declare a larger bound, or divide f by it",
@@ -201,8 +206,9 @@ static bool gr_implicit(struct script_context *context, const struct script_valu
                                 .lipschitz = args[IMPLICIT_LIPSCHITZ].given    ? args[IMPLICIT_LIPSCHITZ].number
                                              : args[IMPLICIT_DISTANCE].boolean ? 1
                                                                                : 0};
-    if (args[IMPLICIT_LIPSCHITZ].given && args[IMPLICIT_DISTANCE].boolean)
-        return error_set(error, ERROR_SCENE, "lipschitz and distance exclude each other; distance means lipschitz = 1");
+    in.is_distance = args[IMPLICIT_DISTANCE].boolean;
+    if (args[IMPLICIT_LIPSCHITZ].given && in.is_distance)
+        return error_set(error, ERROR_SCENE, "lipschitz and distance exclude each other");
     if (bounds->given == radius->given)
         return error_set(error, ERROR_SCENE,
                          radius->given ? "bounds and radius exclude each other"

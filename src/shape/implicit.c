@@ -345,6 +345,12 @@ static void march(struct search *search, uint32_t number, double s0, double s1) 
     const double lipschitz = search->solid->in.lipschitz;
     double smallest = search->solid->size * march_resolution, trend = -1; /* of |f| / lipschitz along the line */
     int smallest_steps = 0;
+    const double first = search->is_any ? (search->ray->t_min - search->line.t0) * search->line.speed : s0;
+    if (first > s0 && first < s1) { /* where the crossing is does not matter */
+        s0 = first;
+        search->is_unknown = true;
+        search->has_waiting = false;
+    }
     struct part part = {.a = s0, .fa = value_at(search, program, s0)};
     settle(search, part.fa < 0, s0, number, search->begin_part);
     while (part.a < s1 && !search->is_done) {
@@ -369,6 +375,8 @@ static void march(struct search *search, uint32_t number, double s0, double s1) 
         trend = trend > -1 && !changes ? fmin(trend, 0.8) : -1; /* or NaN */
         if (changes)
             pass_change(search, number, &part);
+        if (search->has_waiting && search->waiting.t < line_t(&search->line, part.b) && !search->is_done)
+            give_out(search); /* at once: the steps inside are short */
         part.a = part.b;
         part.fa = part.fb;
     }

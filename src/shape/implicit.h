@@ -17,8 +17,11 @@ struct implicit_input {
     double radius; /* > 0 */
     bool open;     /* without caps on the bounds */
     /* 0, or a promise: |f(a) - f(b)| <= lipschitz |a - b| for all points of the bounds, but for jumps without a change
-     * of sign. It replaces the bounds of values and slopes: for functions whose bounds are too wide, as of fractals. */
+     * of sign. It replaces the bounds of values and slopes: for functions whose bounds are too wide, as of fractals.
+     * The search only needs that |f| / lipschitz is at most the distance from the surface; is_distance promises no
+     * more. */
     double lipschitz;
+    bool is_distance;
 };
 
 struct implicit;
@@ -28,7 +31,7 @@ const struct implicit *implicit_build(struct arena *arena, const struct implicit
 /* What some points and lines show of a solid. */
 struct implicit_findings {
     /* With a Lipschitz bound: how many points, at how many of them the slope of the function is above the bound, and
-     * the largest slope. */
+     * the largest slope. Of distances: at how many of them the surface is closer, and the largest ratio. */
     uint32_t points, steep_points;
     double steepest;
     struct vec3 steepest_at;

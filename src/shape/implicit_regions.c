@@ -19,7 +19,7 @@
 enum { NODES = 1 << 18, EVALUATED = 24000000, KEPT = 1000000, LEVELS = 8, FIRST_LEVELS = 2 };
 /* With a Lipschitz bound, regions are bounded by values at their centres. Bounds over boxes only shorten programs; they
  * are computed until a program has not become shorter for as many levels. A point costs less than a box. */
-enum { MARCH_LEVELS = 7, SHORTENING_LEVELS = 3, POINTS_OF_A_BOX = 8 };
+enum { MARCH_LEVELS = 7, SHORTENING_LEVELS = 2, POINTS_OF_A_BOX = 8 };
 /* The largest deviation of the slopes from their middle, of its length, in a region that is flat. */
 static const double slope_spread = 0.4;
 

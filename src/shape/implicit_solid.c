@@ -160,10 +160,35 @@ static struct vec3 random_point(const struct box *box, uint64_t index) {
                      box->min.z + (box->max.z - box->min.z) * u[2]);
 }
 
+/* |f| by the distance of a point where the sign is another one, if there is one among 16 points that |f| promises to
+ * be of one sign, the first of them along the gradient; else 0. */
+static double ratio_to_distance(const struct implicit *solid, struct vec3 point, double value, struct vec3 gradient,
+                                uint64_t index) {
+    const double radius = fabs(value) / solid->in.lipschitz;
+    const struct box ball = {vec3_all(-1), vec3_all(1)};
+    double ratio = 0;
+    for (uint64_t k = 0; k < 16 && radius < solid->size; k++) {
+        double share = k == 0 ? 1 : sqrt(random_unit(random_combine(random_combine(20, index), k)));
+        struct vec3 direction = k == 0 ? vec3_scale(gradient, value < 0 ? 1 : -1) : random_point(&ball, 16 * index + k);
+        struct vec3 other = vec3_add_scaled(point, vec3_normalize(direction), 0.999 * share * radius);
+        double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+        if (!box_contains(&solid->in.bounds, other))
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            inputs[EXPR_POINT_X + axis] = vec3_get(other, axis);
+        expr_evaluate(solid->in.program, inputs, outputs);
+        if ((outputs[0] < 0) != (value < 0) && 1 / (0.999 * share) > ratio)
+            ratio = 1 / (0.999 * share);
+    }
+    return ratio;
+}
+
 static void examine_point(const struct implicit *solid, struct vec3 point, struct implicit_findings *out) {
     struct vec3 gradient;
     double value = implicit_gradient(solid->in.program, point, &gradient), slope = vec3_length(gradient);
     out->is_empty = out->is_empty && !(value < 0);
+    if (solid->in.is_distance)
+        slope = ratio_to_distance(solid, point, value, gradient, out->points);
     out->points++;
     out->steep_points += slope > solid->in.lipschitz * (1 + rounding) && slope < INFINITY;
     if (slope > out->steepest && slope < INFINITY) {

@@ -188,7 +188,7 @@ TEST(an_implicit_half_space_in_a_box_is_crossed_at_the_plane_and_at_the_sides) {
 /* The function in the middles of `count` equal parts of a line, a batch at a time; from the part `first` on. */
 static uint32_t values_at(const struct expr_program *program, const struct ray *ray, const double ends[2], int first,
                           int count, double *out) {
-    _Alignas(64) unsigned char rows[32768];
+    _Alignas(64) unsigned char rows[1 << 19];
     double p[3][EXPR_BATCH];
     const double *in[EXPR_INPUT_COUNT] = {p[0], p[1], p[2]};
     double *outs[EXPR_OUTPUTS] = {out, NULL, NULL, NULL};
@@ -469,6 +469,39 @@ TEST(an_implicit_solid_of_a_heavy_function_is_built_with_bounded_work_and_memory
     struct holes holes = {0};
     check_line(&shape, in.program, &ray, 1000, &scratch, &holes);
     CHECK_EQ_INT(holes.lengths, 0);
+    geom_scratch_destroy(&scratch);
+    arena_destroy(&arena);
+}
+
+TEST(bounds_of_functions_with_many_values_at_once_need_no_stack) {
+    enum { WAVES = 500 };
+    struct arena arena = {0};
+    struct geom_scratch scratch;
+    struct test_random random = {21};
+    struct function_maker m;
+    function_begin(&m);
+    uint32_t waves[WAVES], sum = fn_number(&m, 0), all = fn_less(&m, fn_of(&m, EXPR_ABS, m.p[1]), 0.6);
+    for (int k = 0; k < WAVES; k++) {
+        waves[k] = fn_of(&m, EXPR_SIN, fn_add(&m, fn_scaled(&m, 1 + 0.01 * k, m.p[0]), m.p[2]));
+        sum = fn_add(&m, sum, waves[k]);
+    }
+    for (int k = 0; k < WAVES; k++) /* reads every wave again after the sum */
+        all = fn_add(&m, all, fn_scaled(&m, 1e-6, fn_mul(&m, waves[k], sum)));
+    struct implicit_input in = {.program = function_end(&m, all, &arena), .bounds = unit};
+    struct shape shape = implicit_shape(&arena, &in);
+    CHECK(expr_lanes_size(in.program) > IMPLICIT_STACK);
+    CHECK(geom_scratch_init(&scratch, 4));
+    struct holes holes = {0};
+    for (int i = 0; i < 20; i++) {
+        struct ray ray = random_ray(&random);
+        struct crossing_list list;
+        while (!shape_crossings(&shape, &ray, &scratch, &list))
+            CHECK(scratch.overflow && geom_scratch_grow(&scratch));
+        scratch.used = list.first;
+        check_line(&shape, in.program, &ray, 20, &scratch, &holes);
+    }
+    CHECK(scratch.capacity <= 4 * shape_scratch_need(&shape));
+    CHECK_EQ_INT(holes.sides + holes.nearest + holes.lengths, 0);
     geom_scratch_destroy(&scratch);
     arena_destroy(&arena);
 }

@@ -196,3 +196,42 @@ TEST(estimates_of_the_distance_of_escaping_points_show_their_sets) {
     CHECK(crossings > 100 && samples > 5000);
     CHECK(wrong_samples < samples / 1000);
 }
+
+/* --- reports --- */
+
+/* Runs `text` with the solid, and checks that a message has the words. */
+static void reports(const char *fields, const char *words) {
+    char text[2048];
+    struct listener listener = {.renders = 0};
+    struct error error;
+    (void)snprintf(text, sizeof text, "gr.implicit{%s}", fields);
+    bool done = listen_to_text(&listener, text, NULL, &error);
+    const char *said = done ? listener.said : error.text;
+    if (words ? !strstr(said, words) : said[0] != '\0')
+        test_fail(__FILE__, __LINE__, "%s: %s", fields, said);
+}
+
+TEST(bounds_of_slopes_and_distances_that_do_not_hold_are_reported_with_a_point) {
+    reports("f = function(p) return 3 * gr.length(p) - 1 end, radius = 1, lipschitz = 3.0001", NULL);
+    reports("f = function(p) return 3 * gr.length(p) - 1 end, radius = 1, lipschitz = 2",
+            "the slope of f is above lipschitz = 2 at ");
+    reports("f = function(p) return 3 * gr.length(p) - 1 end, radius = 1, lipschitz = 2", "(3 at {");
+    reports("f = function(p) return gr.length(p) - 0.5 end, radius = 1, distance = true", NULL);
+    reports("f = function(p) return (gr.length(p) - 0.5) * 1.3 end, radius = 1, distance = true",
+            "|f| is above the distance to the surface at ");
+    /* steep, but not above the distance, far from the surface */
+    reports("f = function(p) local d = gr.length(p) - 0.5 return d * (1 - 0.5 * math.sin(40 * d) ^ 2) end, radius = 1, "
+            "distance = true",
+            NULL);
+    reports("f = function(p) return gr.length(p) + 0.1 end, radius = 1, distance = true",
+            "f is negative at none of the points that were examined");
+    reports("f = function(p) return gr.length(p) end, radius = 1, distance = true, lipschitz = 2",
+            "lipschitz and distance exclude each other");
+}
+
+TEST(fractals_without_a_declared_bound_are_refused_with_advice) {
+    reports("f = function(p) local x, y, z = p.x, p.y, p.z for i = 1, 10 do x, y, z = x * x - y * y - z * z - 0.2, "
+            "2 * x * y + 0.8, 2 * x * z end return x * x + y * y + z * z - 4 end, radius = 1.5",
+            "the bounds of f are too wide to find its surface in reasonable time, as of fractals: declare distance = "
+            "true if |f| is at most the distance to the surface, or lipschitz = L");
+}
