@@ -464,27 +464,35 @@ static float albedo_of(const struct denoise_pixel *pixel, int c) {
 
 /* The mean of the halves. A pixel that is brighter or darker than all of its neighbours is so in both of them, by more
  * than its samples explain: few bright paths in a pixel bring a mean that is hardly larger than its standard error,
- * a detail of the scene is found by many. A detail of a texture is no brighter than its neighbours would be with its
- * albedo. rows: those around the pixel. error: the standard error of the pixel's mean. */
-static float supported_mean(const struct level *level, const struct denoise_pixel *const rows[3], int c, int x, int y,
-                            float error) {
+ * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
+ * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
+ * average with its albedo. rows: those around the pixel. */
+static float supported_mean(const struct level *level, const struct denoise_pixel *const rows[3], int c, int x, int y) {
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
-    float margin = support_errors * error, high = (a < b ? a : b) - margin, low = (a < b ? b : a) + margin;
-    float albedo = albedo_of(&rows[1][x], c);
+    float darkest = mean_of_halves(level, c, nearest_at(level, x > 0 ? x - 1 : x + 1, y)), brightest = darkest;
+    float albedo = albedo_of(&rows[1][x], c), like = 0, variance = 0;
     for (int j = -1; j <= 1; j++) {
         for (int i = -1; i <= 1; i++) {
             int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
-            if (qx == x && qy == y)
+            if (i == 0 && j == 0)
                 continue;
             float other = mean_of_halves(level, c, pixel_at(level, qx, qy));
-            float like = other * (albedo / albedo_of(&rows[1 + j][qx], c));
-            high = other > high ? other : high;
-            high = like > high ? like : high;
-            low = other < low ? other : low;
-            low = like < low ? like : low;
+            const struct denoise_pixel *pixel = &rows[1 + j][qx];
+            like += 0.125F * other * (albedo / albedo_of(pixel, c));
+            variance += 0.125F * fabsf(bounded(pixel->variance[c]));
+            if (qx == x && qy == y)
+                continue;
+            brightest = other > brightest ? other : brightest;
+            darkest = other < darkest ? other : darkest;
         }
     }
+    float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
+    float high = (a < b ? a : b) - support_errors * sqrtf(own), low = (a < b ? b : a) + support_errors * sqrtf(others);
+    high = brightest > high ? brightest : high;
+    high = like > high ? like : high;
+    low = darkest < low ? darkest : low;
+    low = like < low ? like : low;
     return mean > high ? high : mean < low ? low : mean;
 }
 
@@ -511,8 +519,7 @@ static void finish_row(void *context, uint32_t y, int worker) {
         const struct denoise_pixel *pixel = &rows[1][x];
         bool empty = is_empty(pixel);
         for (int c = 0; c < 3; c++) {
-            float error = sqrtf(fabsf(bounded(pixel->variance[c])));
-            float value = empty ? 0 : supported_mean(d->level, rows, c, x, (int)y, error);
+            float value = empty ? 0 : supported_mean(d->level, rows, c, x, (int)y);
             d->out[pixel_at(d->level, x, (int)y)][c] =
                 value + (pixel->share * pixel->glow[0][c] + (1 - pixel->share) * pixel->glow[1][c]);
         }
