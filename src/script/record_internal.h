@@ -98,6 +98,8 @@ uint32_t record_node(lua_State *L, uint32_t node);
 uint32_t record_operation(lua_State *L, enum expr_operation operation, uint32_t a, uint32_t b, uint32_t c);
 /* a where the condition holds, else b. */
 struct number record_select(lua_State *L, uint32_t condition, struct number a, struct number b);
+/* A number that is an integer or a float, as one of the two: a decision of the path. */
+struct number record_settled(lua_State *L, struct number number);
 /* Begins a frame for the paths of a step of a loop; begins the next path of the innermost frame; ends that frame. They
  * raise errors at the limits. */
 struct record_frame *record_begin_paths(lua_State *L);

@@ -238,8 +238,7 @@ struct number record_select(lua_State *L, uint32_t condition, struct number a, s
     return make_float(record_operation(L, EXPR_SELECT, condition, float_of(L, a), float_of(L, b)));
 }
 
-/* Which of the two it is, decided. */
-static struct number settled(lua_State *L, struct number number) {
+struct number record_settled(lua_State *L, struct number number) {
     if (number.type != NUMBER_EITHER)
         return number;
     if (!record_decide(L, number.is_integer))
@@ -267,8 +266,8 @@ static int give(lua_State *L, struct number number) {
 static bool are_floats(lua_State *L, struct number *a, struct number *b) {
     bool is_float = a->type == NUMBER_FLOAT || b->type == NUMBER_FLOAT;
     if (!is_float) {
-        *a = settled(L, *a);
-        *b = settled(L, *b);
+        *a = record_settled(L, *a);
+        *b = record_settled(L, *b);
         is_float = a->type == NUMBER_FLOAT || b->type == NUMBER_FLOAT;
     }
     if (is_float) {
@@ -363,7 +362,7 @@ static int symbol_power(lua_State *L) {
 }
 
 static int symbol_negate(lua_State *L) {
-    struct number a = settled(L, number_at(L, 1));
+    struct number a = record_settled(L, number_at(L, 1));
     if (a.type == NUMBER_INTEGER)
         return give(L, make_integer(record_operation(L, EXPR_INTEGER_NEGATE, a.node, EXPR_NONE, EXPR_NONE)));
     return give(L, make_float(record_operation(L, EXPR_NEGATE, a.node, EXPR_NONE, EXPR_NONE)));
@@ -511,7 +510,7 @@ static int times(lua_State *L, double factor) {
 }
 
 static int rounded(lua_State *L, enum expr_operation operation) {
-    struct number a = settled(L, number_at(L, 1));
+    struct number a = record_settled(L, number_at(L, 1));
     if (a.type == NUMBER_INTEGER)
         return give(L, a);
     uint32_t whole = record_operation(L, operation, a.node, EXPR_NONE, EXPR_NONE);
@@ -587,7 +586,7 @@ static int unsigned_less(lua_State *L) {
 }
 
 static int type_name(lua_State *L) {
-    lua_pushstring(L, settled(L, number_at(L, 1)).type == NUMBER_INTEGER ? "integer" : "float");
+    lua_pushstring(L, record_settled(L, number_at(L, 1)).type == NUMBER_INTEGER ? "integer" : "float");
     return 1;
 }
 

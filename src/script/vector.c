@@ -323,7 +323,12 @@ static void push_select(lua_State *L, uint32_t condition, int a, int b) {
     for (int k = 1; k <= (has_vector ? 3 : 1); k++) {
         push_component(L, a, k);
         push_component(L, b, k);
-        struct number out = record_select(L, condition, number_at(L, -2), number_at(L, -1));
+        struct number x = number_at(L, -2), y = number_at(L, -1);
+        if (x.type != NUMBER_FLOAT && y.type != NUMBER_FLOAT) { /* an integer where both are */
+            x = record_settled(L, x);
+            y = record_settled(L, y);
+        }
+        struct number out = record_select(L, condition, x, y);
         lua_pop(L, 2);
         push_symbol(L, out);
     }
@@ -357,6 +362,14 @@ static bool is_integer_at(lua_State *L, int index) {
     return is_symbol(L, index) ? number_at(L, index).type == NUMBER_INTEGER : lua_isinteger(L, index);
 }
 
+/* A number on top becomes a float. */
+static void make_top_float(lua_State *L) {
+    if (is_symbol(L, -1))
+        push_symbol(L, (struct number){NUMBER_FLOAT, number_float(recorder_of(L), number_at(L, -1)), EXPR_NONE});
+    else if (lua_type(L, -1) == LUA_TNUMBER)
+        lua_pushnumber(L, lua_tonumber(L, -1));
+}
+
 /* where(x, a, b): a where x > 0, else b; an integer only where both are. */
 static int where(lua_State *L) {
     lua_settop(L, 3);
@@ -366,11 +379,8 @@ static int where(lua_State *L) {
     }
     bool positive = luaL_checknumber(L, 1) > 0;
     lua_pushvalue(L, positive ? 2 : 3);
-    bool is_float = !is_integer_at(L, 2) || !is_integer_at(L, 3);
-    if (is_float && is_symbol(L, -1))
-        push_symbol(L, (struct number){NUMBER_FLOAT, number_float(recorder_of(L), number_at(L, -1)), EXPR_NONE});
-    else if (is_float && lua_type(L, -1) == LUA_TNUMBER)
-        lua_pushnumber(L, lua_tonumber(L, -1));
+    if (!is_integer_at(L, 2) || !is_integer_at(L, 3))
+        make_top_float(L);
     make_top_vector(L);
     return 1;
 }
@@ -392,16 +402,18 @@ static void push_entry(lua_State *L, uint32_t i, int first, int last) {
     lua_settop(L, top - 1);
 }
 
-/* lookup(t, i): t[i], i rounded down and kept between 1 and #t. */
+/* lookup(t, i): t[i], i rounded down and kept between 1 and #t; an integer only where all entries are. */
 static int lookup(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_settop(L, 2);
     lua_Unsigned count = lua_rawlen(L, 1);
+    bool are_integers = true;
     luaL_argcheck(L, count > 0 && count <= RECORD_LOOP, 1, "a table of 1 to 10000 entries is needed");
     for (lua_Unsigned k = 1; k <= count; k++) {
         lua_rawgeti(L, 1, (lua_Integer)k);
         luaL_argcheck(L, is_number(L, -1) || (lua_istable(L, -1) && lua_rawlen(L, -1) == 3), 1,
                       "entries must be numbers or vectors");
+        are_integers = are_integers && is_integer_at(L, -1);
         lua_pop(L, 1);
     }
     if (is_symbol(L, 2)) {
@@ -411,6 +423,8 @@ static int lookup(lua_State *L) {
     }
     double i = luaL_checknumber(L, 2);
     lua_rawgeti(L, 1, !(i < (double)count) ? (lua_Integer)count : i < 2 ? 1 : (lua_Integer)floor(i));
+    if (!are_integers)
+        make_top_float(L);
     make_top_vector(L);
     return 1;
 }

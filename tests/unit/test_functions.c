@@ -262,7 +262,17 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
 }
 
+TEST(an_entry_of_a_table_is_a_float_where_one_of_them_is) {
+    runs("fn(function(p) return -gr.lookup({floor(p.x), 0.5, 2}, p.y) end) "
+         "fn(function(p) return -gr.lookup({0, 0.5, 2}, p.y) - gr.lookup({0, -1, 2}, p.y) / 3 end) "
+         "fn(function(p) return 1 / -gr.lookup({math.min(0, p.x), 0.5, 2}, p.y) end) "
+         "fn(function(p) return 1 / -gr.lookup({math.min(0, p.x), 3, 2}, p.y) end) "
+         "fn(function(p) return -gr.lookup({0, floor(p.z), p.x}, 1) end) "
+         "assert(math.type(gr.lookup({1, 2}, 1)) == 'integer' and math.type(gr.lookup({1, 0.5}, 1)) == 'float')");
+}
+
 TEST(a_choice_by_a_constant_is_a_float_where_lua_has_one) {
+    runs("fn(function(p) return 1 / -gr.where(p.y, math.min(0, p.x), 3) end)");
     runs("fn(function(p) return -gr.where(0.5, floor(-2 - p.y), 0.0) end) "
          "fn(function(p) return -math.abs(gr.where(0, p.x, 1 - floor(p.y))) end) "
          "fn(function(p) return 2 // math.min(gr.where(1, floor(p.z), p.x), 1) end) "
