@@ -88,6 +88,7 @@ struct recorder {
 /* symbol.c: symbols, and the functions of math and type that know them. */
 void symbols_open(lua_State *L);
 bool is_symbol(lua_State *L, int index);
+/* Raises an error for a node that could not be made. */
 void push_symbol(lua_State *L, struct number number);
 /* The number at a stack index as part of the recording. Raises an error where there is none. */
 struct number number_at(lua_State *L, int index);

@@ -38,6 +38,7 @@ bool is_symbol(lua_State *L, int index) {
 
 void push_symbol(lua_State *L, struct number number) {
     const struct recorder *recorder = recorder_of(L);
+    number.node = record_node(L, number.node);
     const union expr_value *constant = expr_constant(&recorder->graph, number.node);
     if (constant && number.type == NUMBER_FLOAT) {
         lua_pushnumber(L, constant->f);
