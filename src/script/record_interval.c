@@ -69,14 +69,24 @@ static struct expr_interval meet(struct expr_interval a, struct expr_interval b)
     return out.low <= out.high ? out : a; /* empty intersection: no point takes this path */
 }
 
-/* visits: the remaining number. A texel has an address among its operands, which is exact as a constant. */
+/* What the decisions of the path leave of the bounds. */
+static struct expr_interval within_path(const struct recorder *recorder, uint32_t node, struct expr_interval bounds) {
+    if (!recorder->narrowed)
+        return bounds;
+    const struct path_bounds *narrowed = &recorder->narrowed[node];
+    bool is_here = narrowed->path == record_path(recorder) && narrowed->serial == recorder->serial;
+    return is_here ? meet(bounds, narrowed->bounds) : bounds;
+}
+
+/* visits: the remaining number; constants need none. A texel has an address among its operands, which is exact as a
+ * constant. */
 static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t at, int *visits) {
     const struct expr_node *node = &recorder->graph.nodes[at];
     struct expr_interval operands[3] = {{0, 1, false}, {0, 1, false}, {0, 1, false}}, out;
-    if (--*visits < 0)
-        return unknown(node->type);
     if (node->operation == EXPR_CONSTANT)
         return of_constant(node);
+    if (--*visits < 0)
+        return within_path(recorder, at, unknown(node->type));
     if (node->operation > EXPR_OPERATION_COUNT) {
         out = unknown(node->type);
     } else if (expr_is_symbol(node)) {
@@ -92,16 +102,18 @@ static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t 
         out = is_unread ? unknown(node->type)
                         : expr_interval_apply(node->operation, operands[0], operands[1], operands[2]);
     }
-    const struct path_bounds none = {{0, 0, false}, 0, 0},
-                             *narrowed = recorder->narrowed ? &recorder->narrowed[at] : &none;
-    bool is_here = narrowed->path == record_path(recorder) && narrowed->serial == recorder->serial;
-    return is_here ? meet(out, narrowed->bounds) : out;
+    return within_path(recorder, at, out);
 }
 
 int record_bounds_prove(const struct recorder *recorder, uint32_t condition) {
     int visits = MAX_VISITS;
     struct expr_interval truth = bounds_of(recorder, condition, &visits);
     return truth.low > 0 ? 1 : truth.high > 0 ? -1 : 0;
+}
+
+/* The next integer above or below a bound of integers that differ: bounds up to 2^53 are exact. */
+static double beyond(double bound, double step) {
+    return fabs(bound) < 0x1p53 ? bound + step : bound;
 }
 
 static void narrow(struct recorder *recorder, uint32_t node, struct expr_interval bounds) {
@@ -133,8 +145,9 @@ bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool an
         less = node.operands[1];
         more = node.operands[0];
     }
-    const struct expr_interval below = {is_equal ? b.low : -(double)INFINITY, b.high, false};
-    const struct expr_interval above = {a.low, is_equal ? a.high : (double)INFINITY, false};
+    double step = answer ? node.operation == EXPR_INTEGER_LESS : node.operation == EXPR_INTEGER_LESS_EQUAL;
+    const struct expr_interval below = {is_equal ? b.low : -(double)INFINITY, beyond(b.high, -step), false};
+    const struct expr_interval above = {beyond(a.low, step), is_equal ? a.high : (double)INFINITY, false};
     narrow(recorder, less, meet(a, below));
     narrow(recorder, more, meet(b, above));
     return true;
