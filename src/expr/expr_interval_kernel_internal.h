@@ -381,6 +381,13 @@ static void set_unknown(uint64_t unknown, double *low) {
         const vector bl = LOAD(b.low + (i & b.mask)), bh = LOAD(b.high + (i & b.mask));                                \
         body;                                                                                                          \
     }
+/* Of numbers: true for all of both intervals, and for some; a NaN makes it false. */
+#define ORDER(is)                                                                                                      \
+    TWO;                                                                                                               \
+    const uint64_t may_be_nan = out.first;                                                                             \
+    out.first = 0;                                                                                                     \
+    COMPARE(out.first |= LANES_OF(is(ah, bl)); out.second |= LANES_OF(is(al, bh)))                                     \
+    out.first &= ~may_be_nan;
 /* Ends of integers that doubles do not represent exactly mean any integer. */
 #define INTEGERS                                                                                                       \
     const lanes_mask is_exact = BOTH(LESS_EQUAL(ALL(-0x1p53), lo), LESS_EQUAL(hi, ALL(0x1p53)));                       \
@@ -492,19 +499,11 @@ static inline __attribute__((always_inline)) void run_boxes(struct machine *m, c
             break;
         }
         case EXPR_LESS: {
-            TWO;
-            const uint64_t may_be_nan = out.first;
-            out.first = 0;
-            COMPARE(out.first |= LANES_OF(IS_LESS(ah, bl)); out.second |= LANES_OF(IS_LESS(al, bh)))
-            out.first &= ~may_be_nan;
+            ORDER(IS_LESS)
             break;
         }
         case EXPR_LESS_EQUAL: {
-            TWO;
-            const uint64_t may_be_nan = out.first;
-            out.first = 0;
-            COMPARE(out.first |= LANES_OF(IS_LESS_EQUAL(ah, bl)); out.second |= LANES_OF(IS_LESS_EQUAL(al, bh)))
-            out.first &= ~may_be_nan;
+            ORDER(IS_LESS_EQUAL)
             break;
         }
         case EXPR_SELECT:
