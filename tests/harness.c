@@ -148,6 +148,21 @@ char *test_read_file(const char *path, size_t *size) {
     return data;
 }
 
+void test_shell(const char *line, int status, const char *says) {
+    char *command = NULL, binary[4096];
+    const char *named = getenv("GRAY_TEST_BINARY");
+    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; } >out.txt 2>&1", test_folder(), binary, line) < 0)
+        exit(1);
+    int how = system(command), got = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    char *said = test_read_file(test_path("out.txt"), NULL);
+    if (got != status || !said || !strstr(said, says))
+        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\":\n%s", line, got, status, says,
+                  said ? said : "");
+    free(said);
+    free(command);
+}
+
 /* Collects two streams of a child until both end. */
 static void collect(int out, int err, struct test_result *result) {
     struct pollfd streams[2] = {{.fd = out, .events = POLLIN}, {.fd = err, .events = POLLIN}};

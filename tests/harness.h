@@ -96,6 +96,9 @@ struct test_result {
     char *out, *err;
 };
 struct test_result test_gray(const char *folder, const char *arguments);
+/* A line of the shell in test_folder(), where $gray is the program under test, ends with `status`; out.txt has what it
+ * prints, `says` among it. */
+void test_shell(const char *line, int status, const char *says);
 /* The same with an environment addition "NAME=value" (or NULL) and a scene text written to scene.lua first (or NULL).
  */
 struct test_result test_gray_scene(const char *scene_text, const char *arguments, const char *environment);

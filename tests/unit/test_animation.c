@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #ifdef HAVE_WEBP
 #include <webp/demux.h>
 #endif
@@ -431,19 +430,8 @@ TEST(frames_are_read_back_to_the_byte_and_damaged_ones_are_refused) {
     "end}\n"
 
 static void gives(const char *line, int status, const char *says) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
     test_write_text(test_path("scene.lua"), SCENE);
-    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; } >err.txt 2>&1", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command), got = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    if (got != status || !said || !strstr(said, says))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\":\n%s", line, got, status, says,
-                  said ? said : "");
-    free(said);
-    free(command);
+    test_shell(line, status, says);
 }
 
 /* Runs end after `milliseconds`, one after the other, until one is complete. */

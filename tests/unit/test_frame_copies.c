@@ -8,7 +8,6 @@
 #include "world/world.h"
 
 #include <math.h>
-#include <sys/wait.h>
 
 /* --- the digest --- */
 
@@ -394,18 +393,8 @@ static const char ping_pong[] =
 
 /* A shell's line, in the test's folder, with scene.lua there; it prints `says`, among others. */
 static void gives(const char *scene, const char *line, const char *says) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
     test_write_text(test_path("scene.lua"), scene);
-    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; } >out.txt 2>&1", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command), status = WIFEXITED(how) ? WEXITSTATUS(how) : 128;
-    char *said = test_read_file(test_path("out.txt"), NULL);
-    if (status != 0 || !said || !strstr(said, says))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, or not \"%s\":\n%s", line, status, says, said ? said : "");
-    free(said);
-    free(command);
+    test_shell(line, 0, says);
 }
 
 TEST(frames_that_show_the_same_are_copied_with_the_same_bytes) {

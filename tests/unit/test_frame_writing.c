@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
 /* BODY runs in draw before the frame; the pictures are large enough that writing them takes some milliseconds. */
 #define SCENE                                                                                                          \
@@ -30,21 +29,6 @@ static void put_scene(const char *body, const char *end) {
     free(text);
 }
 
-static void gives(const char *line, int status, const char *says) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; } >out.txt 2>&1", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command), got = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
-    char *said = test_read_file(test_path("out.txt"), NULL);
-    if (got != status || !said || !strstr(said, says))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\":\n%s", line, got, status, says,
-                  said ? said : "");
-    free(said);
-    free(command);
-}
-
 TEST(a_script_that_reads_the_frame_before_finds_its_whole_file) {
     static const char *const reads[] = {
         "if k > 1 then local f = assert(io.open(name(k - 1), 'rb')) local text = f:read('a') f:close()\n"
@@ -55,23 +39,25 @@ TEST(a_script_that_reads_the_frame_before_finds_its_whole_file) {
         "end"};
     for (size_t i = 0; i < sizeof reads / sizeof *reads; i++) {
         put_scene(reads[i], "all()");
-        gives("rm -f x.*; $gray -q scene.lua -o 'x.####.png' && mv x.0004.png last.png && "
-              "$gray -q --no-sandbox scene.lua -o 'x.####.png' 2>/dev/null && cmp x.0004.png last.png && "
-              "$gray -q --no-fork scene.lua -o 'x.####.png' && cmp x.0004.png last.png",
-              0, "");
+        test_shell("rm -f x.*; $gray -q scene.lua -o 'x.####.png' && mv x.0004.png last.png && "
+                   "$gray -q --no-sandbox scene.lua -o 'x.####.png' 2>/dev/null && cmp x.0004.png last.png && "
+                   "$gray -q --no-fork scene.lua -o 'x.####.png' && cmp x.0004.png last.png",
+                   0, "");
     }
     put_scene("", "all() local f = assert(io.open(name(4), 'rb')) assert(f:read('a'):find('IEND', -8, true))");
-    gives("rm -f x.*; $gray -q scene.lua -o 'x.####.png'", 0, "");
+    test_shell("rm -f x.*; $gray -q scene.lua -o 'x.####.png'", 0, "");
 }
 
 TEST(what_a_script_prints_comes_after_the_statistics_of_the_frame_before) {
     put_scene("print('draw ' .. k)", "all() print('end')");
-    gives("rm -f x.*; $gray -q --stats=json scene.lua -o 'x.####.png' >lines; sed 's/^{.*/frame/' lines | tr '\\n' ' '",
-          0, "draw 1 frame draw 2 frame draw 3 frame draw 4 frame end ");
+    test_shell(
+        "rm -f x.*; $gray -q --stats=json scene.lua -o 'x.####.png' >lines; sed 's/^{.*/frame/' lines | tr '\\n' ' '",
+        0, "draw 1 frame draw 2 frame draw 3 frame draw 4 frame end ");
     put_scene("io.stderr:write('draw ', k, '\\n')", "all()");
-    gives("$gray --stats scene.lua -o 'x.####.png' 2>&1 | grep -o 'draw .\\|^x.000[1-4].png' | uniq | tr '\\n' ' '", 0,
-          "draw 1 x.0001.png draw 2 x.0002.png draw 3 x.0003.png draw 4 "
-          "x.0004.png ");
+    test_shell(
+        "$gray --stats scene.lua -o 'x.####.png' 2>&1 | grep -o 'draw .\\|^x.000[1-4].png' | uniq | tr '\\n' ' '", 0,
+        "draw 1 x.0001.png draw 2 x.0002.png draw 3 x.0003.png draw 4 "
+        "x.0004.png ");
 }
 
 /* One of the two processes is killed: while the script of frame 4 runs, which does not end, or while the supervisor is
@@ -85,7 +71,7 @@ TEST(a_kill_in_the_script_of_a_frame_loses_no_frame_before_it) {
                  {2, "kill -STOP $p; sleep 0.3; kill -9 $(pgrep -P $p); kill -CONT $p; wait $p; test $? = 3"},
                  {2, "kill -STOP $p; sleep 0.3; kill -9 $p; wait $p"}};
     put_scene("while k == 4 and not package.searchpath('go', '?', '') do end", "all()");
-    gives("touch go && $gray -q scene.lua -o one.gif", 0, "");
+    test_shell("touch go && $gray -q scene.lua -o one.gif", 0, "");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char line[1024];
         (void)snprintf(line, sizeof line,
@@ -94,7 +80,7 @@ TEST(a_kill_in_the_script_of_a_frame_loses_no_frame_before_it) {
                        "sleep 0.1; test $(ls x.gif.frames/*.png | wc -l) -ge %d && touch go && "
                        "$gray -q scene.lua -o x.gif --resume && cmp x.gif one.gif && rm x.gif",
                        cases[i].written, cases[i].kill, cases[i].written);
-        gives(line, 0, "");
+        test_shell(line, 0, "");
     }
 }
 
@@ -117,7 +103,7 @@ TEST(a_frame_that_cannot_be_written_is_named_whatever_the_script_does_next) {
                  {"print(k)", "all()", 2},
                  {"if k == 3 then os.exit() end", "all()", 1}};
     put_scene("", "all()");
-    gives("mkdir whole && cd whole && $gray -q ../scene.lua -o 'x.####.png'", 0, "");
+    test_shell("mkdir whole && cd whole && $gray -q ../scene.lua -o 'x.####.png'", 0, "");
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char line[1200], says[128];
         put_scene(cases[i].body, cases[i].end);
@@ -127,7 +113,7 @@ TEST(a_frame_that_cannot_be_written_is_named_whatever_the_script_does_next) {
                        cases[i].kept);
         (void)snprintf(says, sizeof says, "x.000%d.png: cannot be written: No space left on device\n",
                        cases[i].kept + 1);
-        gives(line, 3, says);
+        test_shell(line, 3, says);
         (void)snprintf(says, sizeof says, "%d\n", cases[i].kept);
         char *said = test_read_file(test_path("out.txt"), NULL);
         CHECK(said && strlen(said) > 2 && strcmp(said + strlen(said) - 2, says) == 0);
