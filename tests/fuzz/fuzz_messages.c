@@ -48,8 +48,8 @@ static bool take(struct output_session *output, const struct message *message) {
 }
 
 static void talk(struct output_session *output, struct channel ends[2], const uint8_t *data, size_t size) {
-    static uint8_t body[MESSAGE_SIZE_LIMIT];
     static struct message message;
+    static uint8_t body[sizeof message.body]; /* the largest body of any kind */
     for (size_t at = 0; size - at >= 3;) {
         size_t length = data[at] | (size_t)data[at + 1] << 8;
         uint32_t kind = data[at + 2];

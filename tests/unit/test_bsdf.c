@@ -471,7 +471,9 @@ TEST(smooth_boundaries_send_light_where_snell_says_with_the_square_of_the_index)
             CHECK_NEAR(sample.weight.x, 0.25, 0);
             uint32_t refraction = bsdf_lobes_with(&bsdf, BSDF_TRANSMITS);
             CHECK(bsdf_sample(&bsdf, refraction, BSDF_RADIANCE, hit.view, (struct sample2){0, 0}, &sample));
-            CHECK_NEAR(sample.direction.z * up, sine < 1 ? -sqrt(1 - sine * sine) : hit.view.z * up, 1e-15);
+            double cosine = sine < 1 ? sqrt(1 - sine * sine) : -hit.view.z * up;
+            /* An error of the sine is divided by the cosine: near the critical angle the cosine has fewer digits. */
+            CHECK_NEAR(sample.direction.z * up, -cosine, 1e-15 / fabs(cosine));
             CHECK_NEAR(sample.weight.x, sine < 1 ? 0.75 * eta * eta : 0.75, 1e-15);
             CHECK(bsdf_sample(&bsdf, refraction, BSDF_IMPORTANCE, hit.view, (struct sample2){0, 0}, &sample));
             CHECK_NEAR(sample.weight.x, 0.75, 0);

@@ -187,8 +187,12 @@ TEST(merge_refuses_parts_of_another_record_and_takes_those_of_one) {
     struct test_result result = test_gray(NULL, "merge 1.part other.part");
     CHECK_EQ_INT(result.status, 1);
     CHECK(strstr(result.err, "does not belong to 1.part: its pixels have records of another size") != NULL);
+    free(result.out);
+    free(result.err);
     result = test_gray(NULL, "merge 1.part 2.part");
     CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
     struct test_picture picture = test_read_picture(test_path("a.png"));
     struct film film = painted(plain);
     uint8_t line[3 * SIDE];
@@ -196,5 +200,6 @@ TEST(merge_refuses_parts_of_another_record_and_takes_those_of_one) {
         film_row_toned(&film, FILM_FINAL, &(struct tone){0}, y, line);
         CHECK(memcmp(line, picture.rgb + (size_t)3 * SIDE * y, sizeof line) == 0);
     }
+    free(picture.rgb);
     free(film.pixels);
 }
