@@ -586,19 +586,57 @@ static struct expr_interval slope_of_root(struct expr_interval by_chain, struct 
     return out.low <= out.high ? out : by_chain;
 }
 
+/* Whether a power with a NaN or a negative base is NaN everywhere. NaN^0 and 1^NaN are 1. */
+static bool is_nan_power(const struct expr_range *base, const struct expr_range *exponent) {
+    const struct expr_interval a = base->value, b = exponent->value;
+    const bool is_root = b.low == b.high && b.low != floor(b.low);
+    return (base->is_nan && (b.low > 0 || b.high < 0)) || (exponent->is_nan && (a.low > 1 || a.high < 1)) ||
+           (is_root && a.low > -INFINITY && a.high < 0);
+}
+
 /* Of what is not known to be NaN everywhere, false. Of NaN and a number, min and max give the first. */
 static bool is_always_nan(enum expr_operation operation, const struct expr_rooted *from[3]) {
+    const struct expr_interval a = from[0]->range.value;
     bool first = from[0]->range.is_nan, second = from[1]->range.is_nan;
-    if (operation == EXPR_SQRT)
-        return first || from[0]->range.value.high < 0;
-    if (operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY || operation == EXPR_DIVIDE)
+    switch ((unsigned)operation) { /* no list: false for all others */
+    case EXPR_SQRT:
+    case EXPR_LOG:
+    case EXPR_LOG2:
+    case EXPR_LOG10:
+        return first || a.high < 0;
+    case EXPR_ASIN:
+    case EXPR_ACOS:
+        return first || a.low > 1 || a.high < -1;
+    case EXPR_ADD:
+    case EXPR_SUBTRACT:
+    case EXPR_MULTIPLY:
+    case EXPR_DIVIDE:
+    case EXPR_FLOOR_DIVIDE:
+    case EXPR_MODULO:
+    case EXPR_REMAINDER:
+    case EXPR_ATAN:
         return first || second;
-    if (operation == EXPR_SELECT) {
-        const struct expr_interval condition = from[0]->range.value;
-        return (second || condition.high == 0) && (from[2]->range.is_nan || condition.low == 1);
+    case EXPR_POWER:
+        return is_nan_power(&from[0]->range, &from[1]->range);
+    case EXPR_SELECT:
+        return (second || a.high == 0) && (from[2]->range.is_nan || a.low == 1);
+    case EXPR_NEGATE:
+    case EXPR_ABS:
+    case EXPR_FLOOR:
+    case EXPR_CEIL:
+    case EXPR_MIN:
+    case EXPR_MAX:
+    case EXPR_SIN:
+    case EXPR_COS:
+    case EXPR_TAN:
+    case EXPR_EXP:
+    case EXPR_SINH:
+    case EXPR_COSH:
+    case EXPR_TANH:
+        return first;
+    default:
+        return false;
     }
-    return first && (operation == EXPR_NEGATE || operation == EXPR_ABS || operation == EXPR_MIN ||
-                     operation == EXPR_MAX || operation == EXPR_SIN || operation == EXPR_COS);
 }
 
 /* Of min, max and selections. */

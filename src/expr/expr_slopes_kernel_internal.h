@@ -311,7 +311,7 @@ static void run_exponential(struct machine *run, const struct expr_lanes *from, 
     double __attribute__((aligned(64))) ends[2][EXPR_LANES];
     exponentials_of(from->low, ends[0]);
     exponentials_of(from->high, ends[1]);
-    uint32_t may_be_nan = from->may_be_nan;
+    uint32_t may_be_nan = from->may_be_nan, is_nan = from->is_nan; /* out may be from */
     EACH_VECTOR {
         struct span value = widened((struct span){LOAD(ends[0] + i), LOAD(ends[1] + i)});
         value.low = MAX_OF(value.low, ALL(0));
@@ -320,7 +320,7 @@ static void run_exponential(struct machine *run, const struct expr_lanes *from, 
         put_value(out, i, value);
     }
     out->may_be_nan = may_be_nan;
-    out->is_nan = 0;
+    out->is_nan = is_nan;
     out->has_roots = false;
 }
 

@@ -496,6 +496,8 @@ static void check_slopes(const struct expr_program *program, uint64_t key, uint3
         expr_evaluate(program, b, at_b);
         for (int o = 0; o < program->output_count; o++) {
             double change = at_b[o] - at_a[o], error = 1e-11 * (1 + fabs(at_a[o]) + fabs(at_b[o]));
+            if (ranges[o].is_nan && !(isnan(at_a[o]) && isnan(at_b[o])))
+                test_fail(__FILE__, __LINE__, "%a and %a, not NaN everywhere", at_a[o], at_b[o]);
             if (!isnan(change) &&
                 !(change >= ranges[o].slopes[d].low * t - error && change <= ranges[o].slopes[d].high * t + error))
                 test_fail(__FILE__, __LINE__, "%a changes by %a over %a, not by %a..%a", at_a[o], change, t,
@@ -533,7 +535,8 @@ static void check_slope_lanes(const struct expr_program *program, uint64_t key) 
         expr_evaluate_slopes(program, box, &directions, one, of_one, rows);
         for (int o = 0; o < program->output_count; o++) {
             bool same = is_near(lanes[o].low[i], one[o].value.low) && is_near(lanes[o].high[i], one[o].value.high) &&
-                        (lanes[o].may_be_nan >> i & 1) == one[o].value.may_be_nan;
+                        (lanes[o].may_be_nan >> i & 1) == one[o].value.may_be_nan &&
+                        (lanes[o].is_nan >> i & 1) == one[o].is_nan;
             for (int k = 0; k < 3; k++) { /* of quotients they are closer */
                 double low = lanes[o].slopes[k].low[i], high = lanes[o].slopes[k].high[i];
                 same = same && (low > one[o].slopes[k].low || is_near(low, one[o].slopes[k].low)) &&

@@ -327,6 +327,53 @@ TEST(a_selection_whose_other_side_is_nan_leaves_few_regions) {
     arena_destroy(&arena);
 }
 
+/* A function of the point that is NaN in a part of the unit box. */
+static uint32_t half_nan(struct function_maker *m, int kind) {
+    uint32_t x = fn_add(m, m->p[0], fn_scaled(m, 0.3, m->p[1])), half = fn_number(m, 0.5);
+    switch (kind) {
+    case 0:
+        return fn_add(m, fn_of(m, EXPR_LOG, x), m->p[2]);
+    case 1:
+        return fn_sub(m, fn_of(m, EXPR_ACOS, fn_scaled(m, 1.5, x)), fn_add(m, fn_number(m, 1), m->p[1]));
+    case 2:
+        return fn_add(m, fn_of(m, EXPR_ASIN, fn_less(m, x, 0.7)), m->p[2]);
+    case 3:
+        return fn_sub(m, fn_two(m, EXPR_POWER, x, half), m->p[1]);
+    case 4:
+        return fn_add(m, fn_of(m, EXPR_EXP, fn_two(m, EXPR_POWER, x, fn_number(m, 1.5))), fn_less(m, m->p[2], 1.5));
+    case 5:
+        return fn_add(m, fn_of(m, EXPR_TAN, fn_of(m, EXPR_SQRT, x)), fn_less(m, m->p[2], 1));
+    default:
+        return fn_less(m, fn_two(m, EXPR_MODULO, fn_of(m, EXPR_LOG2, x), fn_number(m, 3)), 1);
+    }
+}
+
+TEST(solids_whose_function_is_nan_in_a_part_of_the_bounds_are_found_with_little_work) {
+    struct test_random random = {9};
+    struct geom_scratch scratch;
+    struct error error = {0};
+    CHECK(geom_scratch_init(&scratch, 1000));
+    for (int kind = 0; kind < 7; kind++) {
+        struct arena arena = {0};
+        struct function_maker m;
+        struct implicit_findings findings;
+        function_begin(&m);
+        struct implicit_input in = {.program = function_end(&m, half_nan(&m, kind), &arena), .bounds = unit};
+        struct shape shape = implicit_shape(&arena, &in);
+        struct holes holes = {0};
+        for (int k = 0; k < 100; k++) {
+            struct ray ray = random_ray(&random);
+            check_line(&shape, in.program, &ray, 100, &scratch, &holes);
+        }
+        CHECK(implicit_examine(shape.implicit, &findings, &error));
+        if (holes.sides + holes.nearest + holes.lengths > 0 || findings.line_work > 20000)
+            test_fail(__FILE__, __LINE__, "kind %d: %ld sides, %ld nearest, %ld lengths are wrong, %.0f operations", kind,
+                      holes.sides, holes.nearest, holes.lengths, findings.line_work);
+        arena_destroy(&arena);
+    }
+    geom_scratch_destroy(&scratch);
+}
+
 TEST(regions_of_a_union_of_hundreds_of_balls_have_the_programs_of_a_few) {
     struct arena arena = {0};
     struct function_maker m;
