@@ -1,6 +1,7 @@
 /* An implicit solid: its making, the points in it, its surface at a crossing (implicit.c finds the crossings), and what
  * is reported of it. */
 #include "base/random.h"
+#include "math/frame.h"
 #include "shape/implicit_internal.h"
 
 #include <math.h>
@@ -15,20 +16,26 @@ struct vec3 implicit_middle(const struct implicit *solid) {
 
 /* --- points --- */
 
-bool implicit_contains(const struct implicit *solid, struct vec3 point) {
+static bool is_below_zero(const struct expr_program *program, struct vec3 point) {
     double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS];
+    inputs[EXPR_POINT_X] = point.x;
+    inputs[EXPR_POINT_Y] = point.y;
+    inputs[EXPR_POINT_Z] = point.z;
+    expr_evaluate(program, inputs, outputs);
+    return outputs[0] < 0;
+}
+
+bool implicit_contains(const struct implicit *solid, struct vec3 point) {
     const struct box *box = &solid->in.bounds;
     for (int k = 0; k < 3; k++) {
         double x = vec3_get(point, k);
         if (!(x > vec3_get(box->min, k) && x < vec3_get(box->max, k)))
             return false;
-        inputs[EXPR_POINT_X + k] = x;
     }
     struct vec3 from_centre = vec3_sub(point, solid->in.centre);
     if (solid->in.is_ball && !(vec3_dot(from_centre, from_centre) < solid->in.radius * solid->in.radius))
         return false;
-    expr_evaluate(solid->in.program, inputs, outputs);
-    return outputs[0] < 0;
+    return is_below_zero(solid->in.program, point);
 }
 
 double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
@@ -42,8 +49,8 @@ double implicit_gradient(const struct expr_program *program, struct vec3 point, 
     return outputs[0];
 }
 
-/* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side. At a
- * discontinuity there is no gradient, and the direction of the ray is used. */
+/* The normal, on the side from which the line crosses. Near silhouettes, rounding may put it on the other side.
+ * Without a normal, it is the direction of the ray. */
 static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool enter) {
     struct vec3 out = vec3_scale(vec3_normalize(ray->direction), enter ? -1 : 1);
     double length = vec3_length(normal);
@@ -54,6 +61,72 @@ static struct vec3 usable_normal(struct vec3 normal, const struct ray *ray, bool
     if (cosine >= 0)
         return unit;
     return cosine > -0.1 ? vec3_normalize(vec3_add_scaled(unit, out, -cosine)) : out;
+}
+
+/* --- jumps --- */
+
+/* Near a crossing of a line, where the sign jumps: two directions across the line, and the room for steps along it. */
+struct jump {
+    const struct expr_program *program;
+    struct vec3 point, along, across[2];
+    double room;
+    bool enter;
+};
+
+/* How far along the line the sign changes, `off` beside the line. False: not within the room. */
+static bool find_beside(const struct jump *jump, int axis, double off, double *out) {
+    const struct vec3 start = vec3_add_scaled(jump->point, jump->across[axis], off);
+    double low = -jump->room, high = jump->room;
+    if (is_below_zero(jump->program, vec3_add_scaled(start, jump->along, low)) == jump->enter ||
+        is_below_zero(jump->program, vec3_add_scaled(start, jump->along, high)) != jump->enter)
+        return false;
+    for (int step = 0; step < 24; step++) {
+        const double middle = 0.5 * (low + high);
+        if (is_below_zero(jump->program, vec3_add_scaled(start, jump->along, middle)) == jump->enter)
+            high = middle;
+        else
+            low = middle;
+    }
+    *out = 0.5 * (low + high);
+    return true;
+}
+
+/* The slope of the surface along one of the directions across the line, which meets it at `from`. The second side is
+ * for edges of the surface, the smaller step for grazing lines. */
+static bool slope_beside(const struct jump *jump, int axis, double from, double *out) {
+    static const double shares[] = {0x1p-4, -0x1p-4, 0x1p-10, -0x1p-10};
+    for (int k = 0; k < 4; k++)
+        if (find_beside(jump, axis, jump->room * shares[k], out)) {
+            *out = (*out - from) / (jump->room * shares[k]);
+            return true;
+        }
+    return false;
+}
+
+/* The normal of the plane through three points where the sign changes. */
+static bool normal_of_jump(const struct jump *jump, struct vec3 *out) {
+    double from, slopes[2];
+    if (!find_beside(jump, 0, 0, &from) || !slope_beside(jump, 0, from, &slopes[0]) ||
+        !slope_beside(jump, 1, from, &slopes[1]))
+        return false;
+    struct vec3 normal = vec3_add_scaled(jump->along, jump->across[0], -slopes[0]);
+    *out = vec3_scale(vec3_add_scaled(normal, jump->across[1], -slopes[1]), jump->enter ? -1 : 1);
+    return true;
+}
+
+/* Where the function jumps over 0, the gradient does not show the normal. If the surface is too rough or too thin, the
+ * normal is not changed. */
+static void describe_jump(const struct implicit *solid, const struct ray *ray, struct vec3 point, bool enter,
+                          struct vec3 *normal) {
+    struct jump jump = {.program = solid->in.program, .point = point, .enter = enter};
+    const double rounding = vec3_max_abs(point) * 0x1p-36;
+    jump.along = vec3_normalize(ray->direction);
+    frame_tangents(jump.along, &jump.across[0], &jump.across[1]);
+    for (double share = 0x1p-20; share >= 0x1p-26; share /= 64) {
+        jump.room = solid->size * share + rounding;
+        if (normal_of_jump(&jump, normal))
+            return;
+    }
 }
 
 static void describe_cap(const struct implicit *solid, const struct ray *ray, const struct crossing *crossing,
@@ -82,13 +155,14 @@ void implicit_describe(const struct implicit *solid, const struct ray *ray, cons
         struct vec3 point = ray_at(ray, crossing->t), gradient;
         double off = implicit_gradient(&solid->programs[program], point, &gradient);
         double square = vec3_dot(gradient, gradient), room = solid->size * 0x1p-36;
-        /* One step along the gradient removes the rounding error of the ray, unless the function is discontinuous here.
-         * */
         double error = solid->size * 2 * implicit_accuracy(solid);
-        if (square > 0 && fabs(off) < room * sqrt(square))
+        if (square > 0 && fabs(off) < room * sqrt(square)) {
+            /* One step along the gradient removes the rounding error of the ray. */
             point = vec3_add_scaled(point, gradient, -off / square);
-        else
+        } else {
             error = room;
+            describe_jump(solid, ray, point, crossing->enter, &gradient);
+        }
         surface_make(out, point, usable_normal(gradient, ray, crossing->enter), error);
     }
     surface_mapping_sphere(implicit_middle(solid), out);
