@@ -17,7 +17,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { RECORD_POINTS = 1000 };
+/* WORK: symbols made, about a quarter of a microsecond each. */
+enum { RECORD_POINTS = 1000, WORK_BEFORE_COUNTING = 300000, WORK_OF_COUNTING = 1000000, FIRST_INPUT = 3 };
 
 /* Indexing a table with a symbol, t[x], gives nil. */
 #define TABLE_HINT "; a number of the recorded function cannot be the index of a table; use gr.lookup(t, i)"
@@ -232,31 +233,88 @@ _Noreturn static void raise_too_many_paths(lua_State *L, int function) {
     __builtin_unreachable();
 }
 
-static struct path_result record_paths(lua_State *L, int function, int first) {
+static void raise_if_given_up(lua_State *L) {
+    const struct recorder *recorder = context_of(L)->recorder;
+    if (!recorder->gave_up)
+        return;
+    lua_pushstring(L, recorder->error);
+    lua_error(L);
+}
+
+/* Records all paths. False: they are not finished after WORK_BEFORE_COUNTING, and `may_stop`. */
+static bool record_paths(lua_State *L, int function, int first, bool may_stop, struct path_result *out) {
     struct recorder *recorder = context_of(L)->recorder;
     struct record_frame *frame = &recorder->frames[0];
     lua_pushnil(L);
     int error = lua_gettop(L);
-    for (frame->depth = 0;;) {
+    for (frame->depth = 0; !may_stop || recorder->work < WORK_BEFORE_COUNTING;) {
         struct path_result result = record_path(L, function, first, error);
-        if (recorder->gave_up) {
-            lua_pushstring(L, recorder->error);
-            lua_error(L);
-        }
+        raise_if_given_up(L);
         while (frame->depth > 0 && !frame->decisions[frame->depth - 1].answer)
             result = join(L, &frame->decisions[--frame->depth], &result);
         if (frame->depth == 0) {
             if (result.count == 0)
                 raise_text(L, error);
             lua_settop(L, error - 1);
-            return result;
+            *out = result;
+            return true;
         }
         struct decision *last = &frame->decisions[frame->depth - 1];
         last->if_true = result;
-        last->answer = false;
-        if (frame->count == RECORD_PATHS)
+        record_turn_last(recorder);
+        if (frame->branches >= RECORD_PATHS)
             raise_too_many_paths(L, function);
     }
+    return false;
+}
+
+/* --- the number of paths --- */
+
+/* A decision of some path. */
+struct branch {
+    uint32_t condition, above, depth; /* above: the decision before it */
+    bool side;                        /* the answer of that one */
+};
+
+/* Makes the path that ends with `false` at the decision `at`. */
+static void begin_with(struct recorder *recorder, const struct branch *branches, uint32_t at) {
+    struct record_frame *frame = &recorder->frames[0];
+    bool answer = false;
+    frame->depth = branches[at].depth + 1;
+    for (uint32_t k = frame->depth; k-- > 0;) {
+        frame->decisions[k] = (struct decision){
+            .condition = branches[at].condition, .serial = ++recorder->decision_serial, .answer = answer};
+        answer = branches[at].side;
+        at = branches[at].above;
+    }
+}
+
+/* Raises the error of too many paths if some calls show that there are more: each decision that they reach makes one
+ * more path. Breadth first, because decisions near the beginning lead to the most others; depth first, thousands of
+ * long paths would come before. */
+static void count_paths(lua_State *L, int function, int first) {
+    struct recorder *recorder = context_of(L)->recorder;
+    struct record_frame *frame = &recorder->frames[0];
+    struct branch *branches = lua_newuserdatauv(L, RECORD_PATHS * sizeof *branches, 0);
+    uint32_t count = 0, next = 0;
+    lua_pushnil(L);
+    int error = lua_gettop(L);
+    frame->depth = 0;
+    do {
+        uint32_t known = frame->depth;
+        (void)record_path(L, function, first, error);
+        raise_if_given_up(L);
+        for (uint32_t k = known; k < frame->depth; k++) {
+            uint32_t above = k > known ? count - 1 : next - 1;
+            if (count + 1 >= RECORD_PATHS)
+                raise_too_many_paths(L, function);
+            branches[count++] = (struct branch){frame->decisions[k].condition, above, k, k > known};
+        }
+        if (next == count)
+            break;
+        begin_with(recorder, branches, next++);
+    } while (recorder->work < WORK_OF_COUNTING);
+    lua_settop(L, error - 2);
 }
 
 /* --- comparison --- */
@@ -379,7 +437,9 @@ static void begin(lua_State *L) {
     memset(recorder->answers, 0, EXPR_NODES * sizeof *recorder->answers);
     recorder->serial++;
     recorder->level = recorder->calls = recorder->loop_depth = 0;
-    recorder->frames[0].count = 0;
+    recorder->work = 0;
+    recorder->frames[0].branches = recorder->frames[0].taken = 0;
+    recorder->frames[0].serial = recorder->decision_serial = 1;
     recorder->has_loop = false;
     recorder->gave_up = false;
     recorder->active = true;
@@ -408,16 +468,28 @@ static void compile(lua_State *L, const struct path_result *result, struct recor
         context_raise_error(context, &error);
 }
 
+/* Begins with an empty graph. The inputs are the values from index 3 on. */
+static void begin_with_inputs(lua_State *L) {
+    struct recorder *recorder = context_of(L)->recorder;
+    lua_settop(L, FIRST_INPUT - 1);
+    begin(L);
+    for (int k = 0; k < EXPR_INPUT_COUNT; k++)
+        push_symbol(L, (struct number){NUMBER_FLOAT, expr_input(&recorder->graph, (enum expr_input)k), EXPR_NONE});
+}
+
 /* Arguments: the function, and the struct recording. */
 static int record_protected(lua_State *L) {
     struct recorder *recorder = context_of(L)->recorder;
     struct recording *recording = lua_touserdata(L, 2);
-    begin(L);
+    struct path_result result;
     luaL_checkstack(L, 2 * EXPR_INPUT_COUNT + 20, "a function");
-    int first = lua_gettop(L) + 1;
-    for (int k = 0; k < EXPR_INPUT_COUNT; k++)
-        push_symbol(L, (struct number){NUMBER_FLOAT, expr_input(&recorder->graph, (enum expr_input)k), EXPR_NONE});
-    struct path_result result = record_paths(L, 1, first);
+    begin_with_inputs(L);
+    if (!record_paths(L, 1, FIRST_INPUT, true, &result)) {
+        begin_with_inputs(L);
+        count_paths(L, 1, FIRST_INPUT);
+        begin_with_inputs(L);
+        (void)record_paths(L, 1, FIRST_INPUT, false, &result);
+    }
     recorder->active = false;
     lua_settop(L, 2);
     compile(L, &result, recording);

@@ -8,6 +8,7 @@
 #ifndef GRAY_SCRIPT_RECORD_INTERNAL_H
 #define GRAY_SCRIPT_RECORD_INTERNAL_H
 
+#include "expr/expr_interval.h"
 #include "expr/expr_program.h"
 #include "math/box.h"
 #include "script/bindings_internal.h"
@@ -37,10 +38,27 @@ struct path_result {
     uint32_t nodes[3];
 };
 
+/* Bounds of a node that follow from a decision; EXPR_NONE: none. */
+struct narrowing {
+    uint32_t node;
+    struct expr_interval bounds;
+};
+
+/* Calls that repeat a decision take what the first one computed. */
 struct decision {
     uint32_t condition;
-    bool answer;
+    uint32_t serial; /* of this answer on this path: equal as long as the path up to here is the same */
+    bool answer, is_narrowed;
+    struct narrowing narrowings[2];
     struct path_result if_true; /* while the answer is false: the result of the paths with true */
+};
+
+/* What is known of a condition: by the decision number `index` of a frame, or by those up to it; 0: without any. It
+ * holds while that decision has this serial, and the call has reached it. */
+struct known_answer {
+    uint32_t serial, index;
+    uint8_t level;
+    bool answer;
 };
 
 /* The calls of a function, or of a step of a loop: the path of the one that runs. */
@@ -48,7 +66,8 @@ struct record_frame {
     struct decision *decisions; /* of the path, RECORD_PATHS of them */
     uint32_t depth, taken;      /* decisions of the path, and the number of decisions that the call has reached */
     uint32_t path;              /* number of the call among all calls of the recording, from 1 */
-    uint32_t count;             /* of calls */
+    uint32_t serial;            /* of the frame, as of a decision */
+    uint32_t branches;          /* decisions of all calls; there are, or will be, one more paths */
 };
 
 /* The first argument of a function: a point, or a unit direction. */
@@ -70,16 +89,18 @@ struct recorder {
     struct expr_graph graph;
     struct record_frame frames[RECORD_LEVELS]; /* of the function, and of the steps that run in it */
     uint32_t level, calls;                     /* the innermost frame; all calls */
+    uint32_t decision_serial;                  /* the last one */
+    uint64_t work;                             /* symbols that were made */
     uint32_t loop_depth;                       /* of loops whose body runs with symbols */
     struct path_bounds *narrowed;              /* record_interval.c; of each node, EXPR_NODES of them */
-    uint32_t *answers; /* of each node: 2 * path + answer, if `path` has decided it; EXPR_NODES of them */
-    uint32_t serial;   /* of the recording: symbols of others are refused */
-    bool active;       /* symbols may be used */
-    bool samples;      /* busy with a tone curve, which is only called */
-    bool busy;         /* a function is recorded or compared: no other function of gr may run */
-    bool has_loop;     /* the recording has a loop of the graph */
-    bool unrolls;      /* the steps of loops are recorded one by one */
-    bool gave_up;      /* at a limit; `error` names it and the line */
+    struct known_answer *answers;              /* of each node, EXPR_NODES of them */
+    uint32_t serial;                           /* of the recording: symbols of others are refused */
+    bool active;                               /* symbols may be used */
+    bool samples;                              /* busy with a tone curve, which is only called */
+    bool busy;                                 /* a function is recorded or compared: no other function of gr may run */
+    bool has_loop;                             /* the recording has a loop of the graph */
+    bool unrolls;                              /* the steps of loops are recorded one by one */
+    bool gave_up;                              /* at a limit; `error` names it and the line */
     char error[RECORD_ERROR];
     const void *symbol_metatable, *vector_metatable;
     struct recorded_function *functions; /* the newest first */
@@ -105,6 +126,8 @@ struct number record_settled(lua_State *L, struct number number);
  * raise errors at the limits. */
 struct record_frame *record_begin_paths(lua_State *L);
 void record_begin_path(lua_State *L);
+/* From now on, the last decision of the path is false. */
+void record_turn_last(struct recorder *recorder);
 void record_end_paths(struct recorder *recorder);
 /* The answer of the path to a condition. */
 bool record_decide(lua_State *L, uint32_t condition);
@@ -148,8 +171,8 @@ void record_compare_in_bounds(lua_State *L, const struct recorded_function *func
 void record_bounds_end(struct recorder *recorder);
 /* 1 if the condition holds for all points of the path, 0 if it holds for none, -1 if for some or not known. */
 int record_bounds_prove(const struct recorder *recorder, uint32_t condition);
-/* On the path, the condition has this answer from now on. False: no memory. */
-bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer);
+/* On the path, the decision has its answer from now on. False: no memory. */
+bool record_bounds_narrow(struct recorder *recorder, struct decision *decision);
 
 /* record_bounds.c */
 /* Stores the function at an absolute index. Raises an error: no memory. */

@@ -116,28 +116,25 @@ static double beyond(double bound, double step) {
     return fabs(bound) < 0x1p53 ? bound + step : bound;
 }
 
-static void narrow(struct recorder *recorder, uint32_t node, struct expr_interval bounds) {
+static void narrow(const struct recorder *recorder, uint32_t node, struct expr_interval bounds, struct narrowing *out) {
     if (recorder->graph.nodes[node].operation != EXPR_CONSTANT)
-        recorder->narrowed[node] = (struct path_bounds){bounds, recorder->serial, record_path(recorder)};
+        *out = (struct narrowing){node, bounds};
 }
 
 /* The effect of a comparison of a with b. If it is false, b is less, or one of them is NaN. */
-bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool answer) {
-    const struct expr_node node = recorder->graph.nodes[condition];
+static void find_narrowings(const struct recorder *recorder, struct decision *decision) {
+    const struct expr_node node = recorder->graph.nodes[decision->condition];
+    bool answer = decision->answer;
     bool is_order = node.operation == EXPR_LESS || node.operation == EXPR_LESS_EQUAL ||
                     node.operation == EXPR_INTEGER_LESS || node.operation == EXPR_INTEGER_LESS_EQUAL;
     bool is_equal = answer && (node.operation == EXPR_EQUAL || node.operation == EXPR_INTEGER_EQUAL);
     if (!is_order && !is_equal)
-        return true;
-    if (!recorder->narrowed)
-        recorder->narrowed = mem_alloc_zero(EXPR_NODES, sizeof *recorder->narrowed);
-    if (!recorder->narrowed)
-        return false;
+        return;
     int visits_a = MAX_VISITS, visits_b = MAX_VISITS;
     uint32_t less = node.operands[0], more = node.operands[1];
     struct expr_interval a = bounds_of(recorder, less, &visits_a), b = bounds_of(recorder, more, &visits_b);
     if (!answer && (a.may_be_nan || b.may_be_nan))
-        return true;
+        return;
     if (!answer) {
         struct expr_interval swapped = a;
         a = b;
@@ -148,7 +145,25 @@ bool record_bounds_narrow(struct recorder *recorder, uint32_t condition, bool an
     double step = answer ? node.operation == EXPR_INTEGER_LESS : node.operation == EXPR_INTEGER_LESS_EQUAL;
     const struct expr_interval below = {is_equal ? b.low : -(double)INFINITY, beyond(b.high, -step), false};
     const struct expr_interval above = {beyond(a.low, step), is_equal ? a.high : (double)INFINITY, false};
-    narrow(recorder, less, meet(a, below));
-    narrow(recorder, more, meet(b, above));
+    narrow(recorder, less, meet(a, below), &decision->narrowings[0]);
+    narrow(recorder, more, meet(b, above), &decision->narrowings[1]);
+}
+
+bool record_bounds_narrow(struct recorder *recorder, struct decision *decision) {
+    if (!recorder->narrowed)
+        recorder->narrowed = mem_alloc_zero(EXPR_NODES, sizeof *recorder->narrowed);
+    if (!recorder->narrowed)
+        return false;
+    if (!decision->is_narrowed) {
+        decision->narrowings[0].node = decision->narrowings[1].node = EXPR_NONE;
+        find_narrowings(recorder, decision);
+        decision->is_narrowed = true;
+    }
+    for (int k = 0; k < 2; k++) {
+        const struct narrowing *narrowing = &decision->narrowings[k];
+        if (narrowing->node != EXPR_NONE)
+            recorder->narrowed[narrowing->node] =
+                (struct path_bounds){narrowing->bounds, recorder->serial, record_path(recorder)};
+    }
     return true;
 }

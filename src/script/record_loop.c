@@ -197,11 +197,11 @@ static void record_step(lua_State *L, int function, struct number step, const st
             capacity = larger;
             lua_replace(L, error + 1);
         }
-        if (frame->count == RECORD_PATHS)
+        if (frame->branches >= RECORD_PATHS)
             record_give_up(L, "a step of gr.loop has more than %d paths; gr.where(x, a, b) chooses without a path",
                            RECORD_PATHS);
         if_true[frame->depth - 1] = *out;
-        frame->decisions[frame->depth - 1].answer = false;
+        record_turn_last(recorder);
     }
     record_end_paths(recorder);
     if (out->count == 0) {

@@ -48,6 +48,7 @@ void push_symbol(lua_State *L, struct number number) {
         lua_pushinteger(L, constant->i);
         return;
     }
+    recorder_of(L)->work++;
     struct symbol *symbol = lua_newuserdatauv(L, sizeof *symbol, 0);
     *symbol = (struct symbol){.serial = recorder->serial, .number = number};
     lua_rawgetp(L, LUA_REGISTRYINDEX, &symbol_key);
@@ -143,11 +144,19 @@ static struct number make_integer(uint32_t node) {
 
 /* On this path, or on a path of the calls around it. */
 static int known_answer(const struct recorder *recorder, uint32_t condition) {
-    uint32_t answer = recorder->answers[condition];
-    for (uint32_t k = 0; k <= recorder->level; k++)
-        if (answer / 2 == recorder->frames[k].path)
-            return (int)(answer & 1);
-    return -1;
+    const struct known_answer *known = &recorder->answers[condition];
+    const struct record_frame *frame = &recorder->frames[known->level];
+    if (known->serial == 0 || known->level > recorder->level || known->index > frame->taken)
+        return -1;
+    uint32_t serial = known->index > 0 ? frame->decisions[known->index - 1].serial : frame->serial;
+    return known->serial == serial ? known->answer : -1;
+}
+
+/* On this path, from here on. */
+static void know_answer(struct recorder *recorder, uint32_t condition, bool answer) {
+    const struct record_frame *frame = &recorder->frames[recorder->level];
+    uint32_t serial = frame->taken > 0 ? frame->decisions[frame->taken - 1].serial : frame->serial;
+    recorder->answers[condition] = (struct known_answer){serial, frame->taken, (uint8_t)recorder->level, answer};
 }
 
 /* What follows from the decisions of the path: a < b excludes b < a and b <= a, and includes a <= b; -1 if nothing. */
@@ -177,7 +186,8 @@ struct record_frame *record_begin_paths(lua_State *L) {
         frame->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *frame->decisions);
     if (!frame->decisions)
         context_raise_no_memory(context_of(L));
-    frame->depth = frame->taken = frame->count = 0;
+    frame->depth = frame->taken = frame->branches = 0;
+    frame->serial = ++recorder->decision_serial;
     recorder->level++;
     return frame;
 }
@@ -188,8 +198,14 @@ void record_begin_path(lua_State *L) {
     if (recorder->calls == RECORD_CALLS)
         record_give_up(L, "the function and the steps of its loops have more than %d paths together", RECORD_CALLS);
     frame->taken = 0;
-    frame->count++;
     frame->path = ++recorder->calls;
+}
+
+void record_turn_last(struct recorder *recorder) {
+    struct record_frame *frame = &recorder->frames[recorder->level];
+    struct decision *last = &frame->decisions[frame->depth - 1];
+    last->answer = last->is_narrowed = false;
+    last->serial = ++recorder->decision_serial;
 }
 
 void record_end_paths(struct recorder *recorder) {
@@ -203,13 +219,13 @@ bool record_decide(lua_State *L, uint32_t condition) {
     if (constant)
         return constant->i != 0;
     int answer = known_answer(recorder, condition);
-    if (answer < 0)
-        answer = implied_answer(L, condition);
     bool is_repeated = frame->taken < frame->depth && frame->decisions[frame->taken].condition == condition;
     if (answer < 0 && !is_repeated) {
-        answer = record_bounds_prove(recorder, condition);
+        answer = implied_answer(L, condition);
+        if (answer < 0)
+            answer = record_bounds_prove(recorder, condition);
         if (answer >= 0)
-            recorder->answers[condition] = 2 * frame->path + (uint32_t)answer;
+            know_answer(recorder, condition, answer == 1);
     }
     if (answer >= 0)
         return answer == 1;
@@ -220,13 +236,14 @@ bool record_decide(lua_State *L, uint32_t condition) {
                        RECORD_PATHS);
     struct decision *decision = &frame->decisions[frame->taken++];
     if (frame->taken > frame->depth) {
-        *decision = (struct decision){.condition = condition, .answer = true};
+        *decision = (struct decision){.condition = condition, .serial = ++recorder->decision_serial, .answer = true};
         frame->depth = frame->taken;
+        frame->branches++;
     } else if (decision->condition != condition) {
         record_give_up(L, "the function is not pure: a second call with the same arguments took another branch");
     }
-    recorder->answers[condition] = 2 * frame->path + (decision->answer ? 1 : 0);
-    if (!record_bounds_narrow(recorder, condition, decision->answer)) {
+    know_answer(recorder, condition, decision->answer);
+    if (!record_bounds_narrow(recorder, decision)) {
         context_of(L)->lua = L;
         context_raise_no_memory(context_of(L));
     }

@@ -262,6 +262,22 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
 }
 
+/* Depth first, 4,096 paths of 1,980 decisions would come before the error. */
+TEST(a_function_of_too_many_long_paths_is_refused_after_few_calls) {
+    runs("local calls = 0 local function count(i) if i == 1 then calls = calls + 1 end end\n"
+         "local good, why = pcall(fn, function(p) local n = 0.0 for i = 1, 660 do count(i)\n"
+         " if gr.noise(p * i) > 0 then n = n + 1 end if sin(p.x * i) > n * p.y then n = n * 0.5 end\n"
+         " if p.z * i - n > p.x then n = n - p.y end end return n end)\n"
+         "assert(not good and why:find('the function has more than 4096 paths; gr.where', 1, true), why)\n"
+         "assert(calls < 100, calls)");
+}
+
+TEST(a_function_of_many_long_paths_is_recorded) {
+    runs("fn(function(p) local x = p.x for i = 1, 40 do x = sin(x) * p.y + p.z end"
+         " for i = 1, 12 do if gr.noise(p * i) > 0.3 then x = x + 2 ^ i end end return x end)");
+    runs("fn(function(p) for i = 1, 700 do if gr.noise(p * i) > 0.3 then return i end end return 0 end)");
+}
+
 TEST(an_entry_of_a_table_is_a_float_where_one_of_them_is) {
     runs("fn(function(p) return -gr.lookup({floor(p.x), 0.5, 2}, p.y) end) "
          "fn(function(p) return -gr.lookup({0, 0.5, 2}, p.y) - gr.lookup({0, -1, 2}, p.y) / 3 end) "
@@ -431,10 +447,22 @@ TEST(generated_functions_are_recorded_as_lua_computes_them) {
     check_generated(150, 1);
 }
 
-TEST_LONG(a_hundred_thousand_generated_functions_are_recorded_as_lua_computes_them) {
-    for (int seed = 2; seed < 102; seed++)
-        check_generated(1000, seed);
-}
+/* Ten tests of 10,000 functions: a run that was stopped goes on with the next one. */
+#define TEN_THOUSAND(first)                                                                                            \
+    TEST_LONG(ten_thousand_generated_functions_from_seed_##first##_are_recorded_as_lua_computes_them) {                \
+        for (int seed = first; seed < first + 10; seed++)                                                              \
+            check_generated(1000, seed);                                                                               \
+    }
+TEN_THOUSAND(2)
+TEN_THOUSAND(12)
+TEN_THOUSAND(22)
+TEN_THOUSAND(32)
+TEN_THOUSAND(42)
+TEN_THOUSAND(52)
+TEN_THOUSAND(62)
+TEN_THOUSAND(72)
+TEN_THOUSAND(82)
+TEN_THOUSAND(92)
 
 static const char stage[] = "local ball = gr.sphere('ball'):set_material(gr.material{%s})\n"
                             "gr.render{node = ball, file = '%s', width = 60, height = 60, eye = {0, 0, 5},"
