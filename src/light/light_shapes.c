@@ -149,10 +149,11 @@ struct vec3 light_sphere_target(const struct light *light, const struct light_co
     double x = radius > 0 ? sine * round.x / radius : 0, y = radius > 0 ? sine * round.y / radius : 0;
     struct vec3 direction = vec3_add_scaled(vec3_scale(context->axis, cosine), context->right, x);
     direction = vec3_add_scaled(direction, context->up, y);
-    /* The near crossing with the sphere. */
+    /* The near crossing with the sphere. From a point on the sphere it is closer than the offset of rays, and the
+     * direction to it from the surface itself would not be exact: the target is farther, as in inside_target. */
     double along = context->distance * cosine, off = context->distance * sine;
-    double half = light->radius * light->radius - off * off;
-    return vec3_add_scaled(context->from, direction, along - (half > 0 ? sqrt(half) : 0));
+    double half = light->radius * light->radius - off * off, near = along - (half > 0 ? sqrt(half) : 0);
+    return vec3_add_scaled(context->from, direction, near > 0x1p-32 * light->radius ? near : light->radius);
 }
 
 bool light_sphere_meets_ray(const struct light *light, const struct ray *ray, double *t) {

@@ -275,6 +275,18 @@ TEST(samples_for_a_point_on_the_inside_of_a_sphere_have_all_directions) {
     CHECK(chi < BINS + 5 * sqrt(2.0 * BINS));
 }
 
+TEST(samples_for_a_point_on_the_outside_of_a_sphere_stay_below_its_horizon) {
+    const struct vec3 outward = vec3_normalize(vec3_make(1, 2, -2));
+    const struct light ball = {.kind = LIGHT_SPHERE, .colour = {1, 1, 1}, .emissive = true, .radius = 8};
+    const struct vec3 point = vec3_scale(outward, 8), from = vec3_scale(outward, 8 + 0x1p-42);
+    struct light_context context;
+    double highest = -1;
+    CHECK(light_context_make(&ball, point, from, &context));
+    for (uint64_t i = 0; i < 100000; i++)
+        highest = fmax(highest, vec3_dot(light_sample(&ball, &context, xi_of(5, i)).direction, outward));
+    CHECK(highest < 1e-5);
+}
+
 /* From near and far, from above the middle and from the side: by solid angle and by area. */
 TEST(samples_of_single_triangles_have_the_density_that_pdf_states) {
     static const struct vec3 points[] = {{0.3, 1.6, 0.4}, {0.5, 1.1, 0.2},  {0.3, 0.6, -0.2},
