@@ -1,7 +1,7 @@
 /* See fog_field.h. The number of steps of a ray in a cell is the uncertainty of its optical depth by the bounds of the
- * cell, divided by `step`, at most STEPS. A step is divided again if its points differ by more than `part`. Steps have
- * two points each (Gauss-Legendre quadrature: exact for cubic densities). The emission of a step is that of a constant
- * density and colour in each of its halves. */
+ * cell, divided by `step`; beyond STEPS it is multiplied by what is left of the light before the cell. A step is
+ * divided again if its points differ by more than `part`. Steps have two points each (Gauss-Legendre quadrature: exact
+ * for cubic densities). The emission of a step is that of a constant density and colour in each of its halves. */
 #include "material/fog_field.h"
 
 #include "base/mem.h"
@@ -14,12 +14,14 @@
 #include <float.h>
 
 /* CELLS: along the longest edge of the box. WORK: instructions times cells for the bounds. VALUES: registers of a
- * program, whose batches are on the stack. STEPS: of a ray in a cell; PARTS: of a step. */
+ * program, whose batches are on the stack. STEPS: of a ray in a cell, VISIBLE_STEPS if light is left; PARTS: of a step.
+ */
 enum {
     CELLS = 32,
     WORK = 1 << 25,
     VALUES = 512,
     STEPS = 4,
+    VISIBLE_STEPS = 256,
     STEPS_AT_ONCE = EXPR_BATCH / 2,
     PARTS = 8,
     CHECKED_POINTS = 1000
@@ -305,10 +307,18 @@ static void add_steps(struct fog_march *march) {
     march->count = 0;
 }
 
-/* The number of steps for a cell; an infinite bound needs the maximum. */
-static uint32_t steps_of(const float bounds[2], double length) {
+/* The number of steps for a cell; an infinite bound needs the maximum. Thin dense layers are in cells that need many
+ * steps, if they are visible: then all steps before are evaluated, for the light that is left. */
+static uint32_t steps_of(struct fog_march *march, const float bounds[2], double length) {
     double uncertain = ((double)bounds[1] - (double)bounds[0]) * length / step;
-    return uncertain < STEPS ? (uint32_t)uncertain + 1 : STEPS;
+    if (uncertain < STEPS)
+        return (uint32_t)uncertain + 1;
+    if (!(uncertain * left_of(march->depth) > STEPS))
+        return STEPS;
+    add_steps(march);
+    double visible =
+        uncertain < VISIBLE_STEPS ? uncertain * left_of(march->depth) : VISIBLE_STEPS * left_of(march->depth);
+    return visible > STEPS ? (uint32_t)visible : STEPS;
 }
 
 double fog_field_transmittance(const struct fog_field *field, const struct fog_line *line, struct vec3 *source) {
@@ -327,7 +337,7 @@ double fog_field_transmittance(const struct fog_field *field, const struct fog_l
         const float *bounds = field->bounds[cell];
         if (!(bounds[1] > 0) || !(to > from))
             continue;
-        uint32_t steps = steps_of(bounds, to - from);
+        uint32_t steps = steps_of(&march, bounds, to - from);
         for (uint32_t i = 0; i < steps; i++) {
             march.length[march.count] = (to - from) / steps;
             march.from[march.count] = from + (to - from) / steps * i;

@@ -109,6 +109,37 @@ TEST(balls_of_fog_transmit_by_their_chords) {
     arena_destroy(&arena);
 }
 
+/* Half of the chord in a ball around the origin of a line at this distance from it. */
+static double half_chord(double radius, double nearest) {
+    return nearest < radius ? sqrt(radius * radius - nearest * nearest) : 0;
+}
+
+/* A layer of a twentieth of a cell. */
+TEST(thin_dense_layers_of_fog_are_not_missed) {
+    struct arena arena = {0};
+    struct test_random random = {13};
+    struct function_maker m;
+    const double width = 0.004, strength = 150;
+    function_begin(&m);
+    uint32_t off = fn_of(&m, EXPR_ABS, fn_ball(&m, vec3_all(0), 1, true));
+    uint32_t is_inside = fn_two(&m, EXPR_LESS, off, fn_number(&m, width / 2));
+    uint32_t density = expr_operation(&m.graph, EXPR_SELECT, is_inside, fn_number(&m, strength), fn_number(&m, 0));
+    const struct fog_field *field = field_of(&arena, function_end(&m, density, &arena), NULL, 1.3);
+    double worst = 0, sum = 0;
+    for (int i = 0; i < 2000; i++) {
+        struct vec3 o = vec3_scale(random_direction(&random), 3), to = vec3_scale(random_direction(&random), 0.9);
+        struct vec3 d = vec3_normalize(vec3_sub(to, o));
+        double nearest = vec3_length(vec3_cross(o, d));
+        double depth = 2 * strength * (half_chord(1 + width / 2, nearest) - half_chord(1 - width / 2, nearest));
+        double error = seen(field, o, d, INFINITY) - exp(-depth);
+        worst = fmax(worst, fabs(error));
+        sum += error;
+    }
+    if (worst > 0.06 || fabs(sum / 2000) > 0.002)
+        test_fail(__FILE__, __LINE__, "errors up to %g, %g in the mean", worst, sum / 2000);
+    arena_destroy(&arena);
+}
+
 /* With density s and colour x along the x axis: the integral of s e^(-s t) (x0 + t) from 0 to L. */
 TEST(fog_with_a_colour_function_adds_the_integral_of_its_emission) {
     struct arena arena = {0};

@@ -361,8 +361,8 @@ TEST(solids_whose_function_is_nan_in_a_part_of_the_bounds_are_found_with_little_
         }
         CHECK(implicit_examine(shape.implicit, &findings, &error));
         if (holes.sides + holes.nearest + holes.lengths > 0 || findings.line_work > 20000)
-            test_fail(__FILE__, __LINE__, "kind %d: %ld sides, %ld nearest, %ld lengths are wrong, %.0f operations", kind,
-                      holes.sides, holes.nearest, holes.lengths, findings.line_work);
+            test_fail(__FILE__, __LINE__, "kind %d: %ld sides, %ld nearest, %ld lengths are wrong, %.0f operations",
+                      kind, holes.sides, holes.nearest, holes.lengths, findings.line_work);
         arena_destroy(&arena);
     }
     geom_scratch_destroy(&scratch);
@@ -398,7 +398,7 @@ TEST(surfaces_where_a_function_jumps_have_the_normals_of_those_surfaces) {
                 double to_wall = fabs(5 * p.x - round(5 * p.x)), to_tread = fabs(5 * p.y - round(5 * p.y));
                 if (kind == 1 && to_wall < 1e-5 && to_tread < 1e-5)
                     continue; /* an edge */
-                struct vec3 expected = kind == 0         ? vec3_normalize(p)
+                struct vec3 expected = kind == 0        ? vec3_normalize(p)
                                        : to_wall < 1e-9 ? (struct vec3){-1, 0, 0}
                                                         : (struct vec3){0, 1, 0};
                 walls += kind == 1 && to_wall < 1e-9;
