@@ -358,30 +358,64 @@ static void make_top_vector(lua_State *L) {
     lua_replace(L, top);
 }
 
-static bool is_integer_at(lua_State *L, int index) {
-    return is_symbol(L, index) ? number_at(L, index).type == NUMBER_INTEGER : lua_isinteger(L, index);
+/* What a function chooses among: numbers and vectors. */
+struct options {
+    bool are_fine, has_vector, has_symbol;
+    bool is_integer[3]; /* each component: the same one of all options is an integer */
+};
+
+/* Adds the value on top. */
+static void add_option(lua_State *L, struct options *options) {
+    int top = lua_gettop(L);
+    bool is_table = lua_type(L, top) == LUA_TTABLE;
+    options->are_fine = options->are_fine && (is_table ? lua_rawlen(L, top) == 3 : is_number(L, top));
+    options->has_vector = options->has_vector || is_table;
+    for (int k = 0; options->are_fine && k < 3; k++) {
+        if (is_table)
+            lua_rawgeti(L, top, k + 1);
+        options->are_fine = is_number(L, -1);
+        options->has_symbol = options->has_symbol || is_symbol(L, -1);
+        options->is_integer[k] = options->is_integer[k] && lua_isinteger(L, -1);
+        lua_settop(L, top);
+    }
 }
 
-/* A number on top becomes a float. */
-static void make_top_float(lua_State *L) {
-    if (is_symbol(L, -1))
-        push_symbol(L, (struct number){NUMBER_FLOAT, number_float(recorder_of(L), number_at(L, -1)), EXPR_NONE});
-    else if (lua_type(L, -1) == LUA_TNUMBER)
+/* Replaces the option on top, without symbols, by what is chosen: a vector if one of all options is a vector. */
+static void make_top_chosen(lua_State *L, const struct options *options) {
+    int top = lua_gettop(L);
+    for (int k = 0; k < (options->has_vector ? 3 : 1); k++) {
+        push_component(L, top, k + 1);
+        if (options->is_integer[k])
+            continue;
         lua_pushnumber(L, lua_tonumber(L, -1));
+        lua_remove(L, -2);
+    }
+    if (options->has_vector)
+        push_vector(L);
+    lua_replace(L, top);
 }
 
 /* where(x, a, b): a where x > 0, else b; an integer only where both are. */
 static int where(lua_State *L) {
+    struct options options = {.are_fine = true, .is_integer = {true, true, true}};
     lua_settop(L, 3);
+    for (int k = 2; k <= 3; k++) {
+        lua_pushvalue(L, k);
+        add_option(L, &options);
+        lua_pop(L, 1);
+    }
     if (is_symbol(L, 1)) {
         push_select(L, is_positive(L, 1), 2, 3);
         return 1;
     }
     bool positive = luaL_checknumber(L, 1) > 0;
+    if (options.are_fine && options.has_symbol) {
+        push_select(L, record_node(L, expr_truth(&recorder_of(L)->graph, positive)), 2, 3);
+        return 1;
+    }
     lua_pushvalue(L, positive ? 2 : 3);
-    if (!is_integer_at(L, 2) || !is_integer_at(L, 3))
-        make_top_float(L);
-    make_top_vector(L);
+    if (options.are_fine)
+        make_top_chosen(L, &options);
     return 1;
 }
 
@@ -404,28 +438,25 @@ static void push_entry(lua_State *L, uint32_t i, int first, int last) {
 
 /* lookup(t, i): t[i], i rounded down and kept between 1 and #t; an integer only where all entries are. */
 static int lookup(lua_State *L) {
+    struct options options = {.are_fine = true, .is_integer = {true, true, true}};
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_settop(L, 2);
     lua_Unsigned count = lua_rawlen(L, 1);
-    bool are_integers = true;
     luaL_argcheck(L, count > 0 && count <= RECORD_LOOP, 1, "a table of 1 to 10000 entries is needed");
     for (lua_Unsigned k = 1; k <= count; k++) {
         lua_rawgeti(L, 1, (lua_Integer)k);
-        luaL_argcheck(L, is_number(L, -1) || (lua_istable(L, -1) && lua_rawlen(L, -1) == 3), 1,
-                      "entries must be numbers or vectors");
-        are_integers = are_integers && is_integer_at(L, -1);
+        add_option(L, &options);
+        luaL_argcheck(L, options.are_fine, 1, "entries must be numbers or vectors");
         lua_pop(L, 1);
     }
-    if (is_symbol(L, 2)) {
+    double i = is_symbol(L, 2) ? 0 : luaL_checknumber(L, 2);
+    if (is_symbol(L, 2) || options.has_symbol) {
         push_entry(L, number_float(recorder_of(L), number_at(L, 2)), 1, (int)count);
         make_top_vector(L);
         return 1;
     }
-    double i = luaL_checknumber(L, 2);
     lua_rawgeti(L, 1, !(i < (double)count) ? (lua_Integer)count : i < 2 ? 1 : (lua_Integer)floor(i));
-    if (!are_integers)
-        make_top_float(L);
-    make_top_vector(L);
+    make_top_chosen(L, &options);
     return 1;
 }
 

@@ -287,6 +287,19 @@ TEST(an_entry_of_a_table_is_a_float_where_one_of_them_is) {
          "assert(math.type(gr.lookup({1, 2}, 1)) == 'integer' and math.type(gr.lookup({1, 0.5}, 1)) == 'float')");
 }
 
+TEST(components_of_chosen_vectors_are_floats_where_one_of_them_is) {
+    runs("local function signs(q) return vec(1 / -q[1], 1 / -q[2], q[3] // 2) end "
+         "fn(function(p) return signs(gr.where(p.y, vec(0, 0.5, 1), {0, 0, 2})) end) "
+         "fn(function(p) return signs(gr.where(p.y, vec(floor(p.x), 0, 1), {0.0, 0, 2})) end) "
+         "fn(function(p) return signs(gr.where(1, vec(math.min(0, p.x), 0, p.z), {3, 0.5, 2})) end) "
+         "fn(function(p) return signs(gr.lookup({vec(0, 0, 1), {0.5, floor(p.x), 2}, vec(1, 0, 0)}, p.y)) end) "
+         "fn(function(p) return signs(gr.lookup({vec(0, 0, 1), {0.5, math.max(0, p.x), 2}}, 1)) end) ");
+    runs("fn(function(p) return gr.where(p.y, 0.5, vec(1, 2, 3)).y end) "
+         "fn(function(p) return gr.lookup({0, vec(1, 2, p.x)}, 1).z + gr.where(-1, vec(1, 2, 3), floor(p.x)).z end) "
+         "local v = gr.where(1, 7, {1, 2, 3.5}) assert(v.x == 7 and math.type(v.x) == 'integer' and "
+         "math.type(v.z) == 'float' and gr.where(1, 'a', 'b') == 'a')");
+}
+
 TEST(a_choice_by_a_constant_is_a_float_where_lua_has_one) {
     runs("fn(function(p) return 1 / -gr.where(p.y, math.min(0, p.x), 3) end)");
     runs("fn(function(p) return -gr.where(0.5, floor(-2 - p.y), 0.0) end) "
