@@ -52,6 +52,13 @@ void recorder_destroy(struct recorder *recorder) {
     recorder->active = recorder->busy = recorder->samples = false;
 }
 
+bool record_is_silent(const struct recorder *recorder) {
+    bool is_first = recorder->prints;
+    for (uint32_t k = 1; recorder->active && k <= recorder->level; k++)
+        is_first = is_first && recorder->frames[k].is_first;
+    return recorder->busy && !is_first;
+}
+
 /* --- calls --- */
 
 /* Pushes {u =, v =, normal =, view =, world =, time =} of fifteen values below, in the order of EXPR_INPUTS, and before
@@ -192,6 +199,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
     int top = lua_gettop(L);
     record_begin_path(L);
     bool fine = call_function(L, function, first) && is_result(L, function, &result.count);
+    recorder->prints = false;
     if (recorder->gave_up) /* even if the function caught the error */
         fine = false;
     if (!fine) {
@@ -548,7 +556,7 @@ static int run_once(struct script_context *context, lua_CFunction run, int index
 static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
     lua_State *L = context->lua;
     struct recorder *recorder = context->recorder;
-    recorder->busy = true;
+    recorder->busy = recorder->prints = true;
     recorder->unrolls = recorder->has_loop = false;
     int status = run_once(context, run, index, data);
     bool is_final = recorder->gave_up || context->fatal.kind != ERROR_NONE || context->limits.memory_out;
@@ -559,7 +567,7 @@ static void run_protected(struct script_context *context, lua_CFunction run, int
         bool is_fatal = context->fatal.kind != ERROR_NONE || context->limits.memory_out;
         lua_remove(L, status == LUA_OK || !is_fatal ? -1 : -2); /* of two errors, the first one is more useful */
     }
-    recorder->busy = recorder->samples = false;
+    recorder->busy = recorder->samples = recorder->prints = false;
     if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
         context_raise(context, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
@@ -614,6 +622,7 @@ static int sample_curve(lua_State *L) {
         lua_pushvalue(L, 1);
         lua_pushnumber(L, tone_table_light(i));
         lua_call(L, 1, LUA_MULTRET);
+        context_of(L)->recorder->prints = false;
         int results = lua_gettop(L) - 2;
         if (results != 1) {
             lua_pushfstring(L, "the function returns %d values, not a number", results);

@@ -68,6 +68,7 @@ struct record_frame {
     uint32_t path;              /* number of the call among all calls of the recording, from 1 */
     uint32_t serial;            /* of the frame, as of a decision */
     uint32_t branches;          /* decisions of all calls; there are, or will be, one more paths */
+    bool is_first;              /* the call that runs is the first one */
 };
 
 /* The first argument of a function: a point, or a unit direction. */
@@ -98,6 +99,7 @@ struct recorder {
     bool active;                               /* symbols may be used */
     bool samples;                              /* busy with a tone curve, which is only called */
     bool busy;                                 /* a function is recorded or compared: no other function of gr may run */
+    bool prints;                               /* the first path of the function has not ended */
     bool has_loop;                             /* the recording has a loop of the graph */
     bool unrolls;                              /* the steps of loops are recorded one by one */
     bool gave_up;                              /* at a limit; `error` names it and the line */
@@ -147,6 +149,8 @@ int vector_arithmetic(lua_State *L, int operator);
 int record_loop(lua_State *L); /* gr.loop */
 
 /* record.c */
+/* Whether the function that runs is called again, for another path or a comparison: it prints nothing. */
+bool record_is_silent(const struct recorder *recorder);
 /* A message handler: errors get their position while the stack still exists. */
 int record_add_position(lua_State *L);
 void record_open(lua_State *L);

@@ -4,7 +4,7 @@
  * only, below the folders of the list. Everything written counts towards the output limit, on standard output too.
  * Refusals are returned like any failure of io.open: nil, a sentence, a number. */
 #define _GNU_SOURCE
-#include "script/context_internal.h"
+#include "script/record_internal.h"
 
 #include "base/fault.h"
 
@@ -133,6 +133,8 @@ static int io_default(lua_State *L) {
 /* io.write and file:write. Upvalue 1: Lua's own. */
 static int counted_write(lua_State *L) {
     size_t size = 0;
+    if (record_is_silent(context_of(L)->recorder))
+        lua_settop(L, luaL_testudata(L, 1, LUA_FILEHANDLE) ? 1 : 0);
     for (int k = 1; k <= lua_gettop(L); k++)
         size += lua_type(L, k) == LUA_TSTRING ? (size_t)lua_rawlen(L, k) : lua_type(L, k) == LUA_TNUMBER ? 24 : 0;
     limits_output(L, size);
@@ -146,6 +148,8 @@ static int print(lua_State *L) {
     const struct script_context *context = context_of(L);
     FILE *out = context->output ? context->output : stdout;
     int count = lua_gettop(L);
+    if (record_is_silent(context->recorder))
+        return 0;
     for (int k = 1; k <= count; k++) {
         size_t size;
         const char *text = luaL_tolstring(L, k, &size);

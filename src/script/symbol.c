@@ -198,6 +198,7 @@ void record_begin_path(lua_State *L) {
     if (recorder->calls == RECORD_CALLS)
         record_give_up(L, "the function and the steps of its loops have more than %d paths together", RECORD_CALLS);
     frame->taken = 0;
+    frame->is_first = frame->depth == 0;
     frame->path = ++recorder->calls;
 }
 

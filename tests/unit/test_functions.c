@@ -262,6 +262,20 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
     check_corner(preparation, &(struct corner){"fn(function(p) while true do end end)", "used up its 0.5 s"}, &hasty);
 }
 
+TEST(a_recorded_function_prints_in_its_first_call) {
+    struct test_result result = test_gray_scene(
+        "local ball = gr.sphere('b'):set_material(gr.material{kd = function(p) print('called', p.x) io.write('a ')\n"
+        " io.stdout:write('b\\n') if p.x > 0.2 then print('more') return p.x end print('less') return 0.5 end})\n"
+        "gr.render{node = ball, file = 'a.png', width = 4, height = 4, eye = {0, 0, 9}, view = {0, 0, -1},\n"
+        " tone = function(x) print('tone') return x end}\n"
+        "print('after')",
+        "-q scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    CHECK_TEXT(result.out, "called\ta number of a recorded function\na b\nmore\ntone\nafter\n");
+    free(result.out);
+    free(result.err);
+}
+
 /* Depth first, 4,096 paths of 1,980 decisions would come before the error. */
 TEST(a_function_of_too_many_long_paths_is_refused_after_few_calls) {
     runs("local calls = 0 local function count(i) if i == 1 then calls = calls + 1 end end\n"
