@@ -8,7 +8,7 @@
  * normals that are visible (Heitz, "Sampling the GGX Distribution of Visible Normals", JCGT 2018). Points of the unit
  * disc lie dense at its rim, where the steep facets are. Fuzz: Estevez and Kulla, "Production Friendly Microfacet Sheen
  * BRDF", SIGGRAPH 2017 courses, with the visibility of Neubelt and Pettineo, "Crafting a Next-Gen Material Pipeline for
- * The Order: 1886", 2013; a closed sum over the hemisphere. tests/unit/test_albedo.c does the sums again. */
+ * The Order: 1886", 2013; a closed sum over the hemisphere. tests/unit/test_openpbr.c does the sums again. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -67,6 +67,114 @@ static struct shares facets(double mu, double alpha, double eta) {
         }
     }
     return (struct shares){sum.reflected / all, sum.transmitted / all, sum.mirrored / all};
+}
+
+/* --- facets of two widths --- */
+
+static double stretched_lambda(const double v[3], double along, double across) {
+    double x = along * v[0], y = across * v[1];
+    return (sqrt(1 + (x * x + y * y) / (v[2] * v[2])) - 1) / 2;
+}
+
+/* Of facets that reflect all: the share that does not leave after one facet, for an azimuth to the wide direction. */
+static double stretched_lack(double mu, double azimuth, double along, double across) {
+    double side = sqrt(1 - mu * mu), view[3] = {side * cos(azimuth), side * sin(azimuth), mu};
+    double v[3] = {along * view[0], across * view[1], mu}, length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    double across_view = sqrt(v[0] * v[0] + v[1] * v[1]),
+           t[2] = {across_view > 0 ? -v[1] / across_view : 1, across_view > 0 ? v[0] / across_view : 0};
+    double up[3] = {-v[2] * t[1], v[2] * t[0], v[0] * t[1] - v[1] * t[0]}, s = (1 + v[2]) / 2;
+    double seen = 1 + stretched_lambda(view, along, across), sum = 0, all = 0;
+    for (int i = 0; i < POINTS; i++) {
+        double p = (i + 0.5) / POINTS, q = p * p, weight = p * p * p, r = sqrt(1 - q * q);
+        for (int j = 0; j < POINTS; j++) {
+            double turn = 2 * pi * (j + 0.5) / POINTS, x = r * cos(turn);
+            double y = (1 - s) * sqrt(1 - x * x) + s * r * sin(turn), z = sqrt(fmax(0, 1 - x * x - y * y));
+            double h[3] = {along * (t[0] * x + up[0] * y + v[0] * z), across * (t[1] * x + up[1] * y + v[1] * z),
+                           fmax(0, up[2] * y + v[2] * z)};
+            double size = sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]);
+            double towards = (view[0] * h[0] + view[1] * h[1] + view[2] * h[2]) / size, out[3];
+            for (int k = 0; k < 3; k++)
+                out[k] = 2 * towards * h[k] / size - view[k];
+            all += weight;
+            if (towards > 0 && out[2] > 0)
+                sum += weight * seen / (seen + stretched_lambda(out, along, across));
+        }
+    }
+    return 1 - sum / all;
+}
+
+enum { STRETCH_WIDTHS = 12, STRETCHES = 7, STRETCH_WAVES = 4, STRETCH_COSINES = 13, AZIMUTHS = 8 };
+
+/* The lack relative to that of facets of one width with the same mean square: as a series of cosines of multiples of
+ * twice the azimuth, and in the mean over directions with the cosine. */
+struct stretched {
+    double wave[STRETCH_COSINES][STRETCH_WAVES], mean;
+};
+
+static void stretched_make(double along, double across, struct stretched *out) {
+    enum { N = 24 };
+    double round = sqrt((along * along + across * across) / 2), mean = 0, round_mean = 0;
+    for (int m = 0; m < STRETCH_COSINES; m++) {
+        double x = (double)m / (STRETCH_COSINES - 1), mu = m > 0 ? x * x : 1e-4;
+        double reference = stretched_lack(mu, 0, round, round);
+        for (int w = 0; w < STRETCH_WAVES; w++)
+            out->wave[m][w] = 0;
+        for (int k = 0; k < AZIMUTHS; k++) {
+            double azimuth = (k + 0.5) * pi / 2 / AZIMUTHS, lack = stretched_lack(mu, azimuth, along, across);
+            for (int w = 0; w < STRETCH_WAVES; w++)
+                out->wave[m][w] += lack / reference * cos(2 * w * azimuth) * (w > 0 ? 2.0 : 1.0) / AZIMUTHS;
+        }
+    }
+    for (int i = 0; i < N; i++) {
+        double mu = (i + 0.5) / N;
+        round_mean += mu * stretched_lack(mu, 0, round, round);
+        for (int k = 0; k < AZIMUTHS; k++)
+            mean += mu * stretched_lack(mu, (k + 0.5) * pi / 2 / AZIMUTHS, along, across) / AZIMUTHS;
+    }
+    out->mean = mean / round_mean;
+}
+
+static void print_stretched(void) {
+    static struct stretched all[STRETCH_WIDTHS][STRETCHES];
+    for (int q = 1; q < STRETCH_WIDTHS; q++)
+        for (int s = 0; s < STRETCHES; s++) {
+            double along = (double)q * q / (STRETCH_WIDTHS - 1) / (STRETCH_WIDTHS - 1);
+            stretched_make(along, fmax(along * s / (STRETCHES - 1), 1e-6), &all[q][s]);
+        }
+    for (int s = 0; s < STRETCHES; s++) {
+        all[0][s].mean = 2 * all[1][s].mean - all[2][s].mean;
+        for (int m = 0; m < STRETCH_COSINES; m++)
+            for (int w = 0; w < STRETCH_WAVES; w++)
+                all[0][s].wave[m][w] = 2 * all[1][s].wave[m][w] - all[2][s].wave[m][w];
+    }
+    printf(
+        "\n/* Facets of two widths: what stays after one facet, relative to facets of one width with the same mean "
+        "square; units\n * of 1 / 8192. By the square root of the larger width, the ratio of the widths, and multiples "
+        "of twice the azimuth. */\n"
+        "enum { STRETCH_WIDTHS = %d, STRETCHES = %d, STRETCH_WAVES = %d, STRETCH_COSINES = %d };\n"
+        "static const int16_t stretch_table[STRETCH_WIDTHS][STRETCHES][STRETCH_WAVES][STRETCH_COSINES] = {\n",
+        STRETCH_WIDTHS, STRETCHES, STRETCH_WAVES, STRETCH_COSINES);
+    for (int q = 0; q < STRETCH_WIDTHS; q++) {
+        printf("{\n");
+        for (int s = 0; s < STRETCHES; s++) {
+            printf("{");
+            for (int w = 0; w < STRETCH_WAVES; w++)
+                for (int m = 0; m < STRETCH_COSINES; m++)
+                    printf("%s%ld%s", m == 0 ? "{" : "", lround(8192 * all[q][s].wave[m][w]),
+                           m + 1 < STRETCH_COSINES ? ", "
+                           : w + 1 < STRETCH_WAVES ? "},\n"
+                                                   : "}");
+            printf("},\n");
+        }
+        printf("},\n");
+    }
+    printf("};\nstatic const int16_t stretch_average_table[STRETCH_WIDTHS][STRETCHES] = {\n");
+    for (int q = 0; q < STRETCH_WIDTHS; q++)
+        for (int s = 0; s < STRETCHES; s++)
+            printf("%s%ld%s", s == 0 ? "{" : "", lround(8192 * all[q][s].mean), s + 1 < STRETCHES ? ", " : "},\n");
+    printf("};\n");
 }
 
 /* Nodes of the tables. eta = index on the side of the direction / index behind: from inside, half of the nodes are
@@ -191,7 +299,9 @@ int main(void) {
         }
         print_row(row, COSINES, ",\n");
     }
-    printf("};\n/* clang-format on */\n\n#endif\n");
+    printf("};\n");
+    print_stretched();
+    printf("/* clang-format on */\n\n#endif\n");
     fprintf(stderr, "fuzz reflects %.4f at most\n", greatest);
     return 0;
 }

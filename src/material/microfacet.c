@@ -261,3 +261,33 @@ double albedo_fuzz(double cosine, double roughness) {
     struct taps c = of_cosine(cosine), r = of_roughness(roughness);
     return share(plane(fuzz_table, &r, &c));
 }
+
+/* --- two widths: ratios of lacks --- */
+
+static double stretch_row(const int16_t *values, const struct taps *taps) {
+    const int16_t *v = values + taps->first;
+    return v[0] * taps->weight[0] + v[1] * taps->weight[1] + v[2] * taps->weight[2] + v[3] * taps->weight[3];
+}
+
+double albedo_stretch(double cosine, double cos_double, double alpha_along, double alpha_across) {
+    struct taps width = taps_at(sqrt(alpha_along), STRETCH_WIDTHS),
+                stretch = taps_at(alpha_across / alpha_along, STRETCHES);
+    struct taps c = taps_at(sqrt(cosine > 0 ? cosine : 0), STRETCH_COSINES);
+    double waves[STRETCH_WAVES] = {1, cos_double}, sum = 0; /* Chebyshev: cosines of multiples of an angle */
+    for (int w = 2; w < STRETCH_WAVES; w++)
+        waves[w] = 2 * cos_double * waves[w - 1] - waves[w - 2];
+    for (int i = 0; i < 16; i++)
+        for (int w = 0; w < STRETCH_WAVES; w++)
+            sum += width.weight[i / 4] * stretch.weight[i % 4] * waves[w] *
+                   stretch_row(stretch_table[width.first + i / 4][stretch.first + i % 4][w], &c);
+    return sum > 0 ? sum / 8192 : 0;
+}
+
+double albedo_stretch_average(double alpha_along, double alpha_across) {
+    struct taps width = taps_at(sqrt(alpha_along), STRETCH_WIDTHS),
+                stretch = taps_at(alpha_across / alpha_along, STRETCHES);
+    double sum = 0;
+    for (int i = 0; i < 4; i++)
+        sum += width.weight[i] * stretch_row(stretch_average_table[width.first + i], &stretch);
+    return sum / 8192;
+}

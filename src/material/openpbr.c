@@ -7,8 +7,7 @@
  * metal and diffuse light separately, each with its own albedo. It uses the mean reflectance of the coat from inside
  * for diffuse light, and the one for the view direction for smooth metal, which is exact for both. specular_weight
  * changes the index for reflection and refraction. transmission_color without a depth tints each passage through the
- * surface. A solid has neither coat nor fuzz on the inside. For anisotropic facets the compensation is that of a
- * width between both. */
+ * surface. A solid has neither coat nor fuzz on the inside. */
 #include "material/openpbr.h"
 
 #include "material/albedo_internal.h"
@@ -90,7 +89,7 @@ struct layering {
     struct bsdf *bsdf;
     struct vec3 left;   /* the fraction of light that arrives at the layer */
     struct vec3 mirror; /* of all smooth layers together */
-    struct vec3 dpdu;
+    struct vec3 view, dpdu;
     double cosine;  /* of the view to the normal */
     double outside; /* refractive index of the surrounding medium */
     bool inside;    /* of the solid, if it transmits light */
@@ -152,7 +151,7 @@ static void add_coat(struct layering *l) {
     } else if (eta != 1) {
         struct bsdf_facets *facets = add_facets(l, v->coat_tangent, v->coat_roughness, v->coat_anisotropy);
         bsdf_facets_boundary(facets, eta);
-        reflected = albedo_reflection(l->cosine, facets->roughness, eta);
+        reflected = bsdf_facets_reflected(facets, l->view);
         add(l, LOBE_GLOSS, vec3_scale(l->left, v->coat_weight), reflected);
     }
     struct vec3 transmits = vec3_scale(v->coat_colour, 1 - reflected);
@@ -196,7 +195,7 @@ static void add_metal(struct layering *l, double roughness) {
         l->mirror = vec3_add(l->mirror, vec3_mul(weight, bsdf_metal_fresnel(facets, l->cosine)));
         return;
     }
-    double once = albedo_mirror(l->cosine, facets->roughness), average = 1 - facets->lack;
+    double once = 1 - bsdf_facets_lack(facets, l->view, false), average = 1 - facets->lack;
     add(l, LOBE_METAL, weight, vec3_max_abs(mean) * once);
     struct vec3 multiple = {mean.x * mean.x * average / (1 - mean.x * facets->lack),
                             mean.y * mean.y * average / (1 - mean.y * facets->lack),
@@ -239,7 +238,7 @@ static void add_pane(struct layering *l, const struct hit *hit, struct vec3 left
     }
     struct bsdf_facets *facets = add_facets(l, l->values->tangent, roughness, l->values->specular_anisotropy);
     bsdf_facets_pane(facets, eta);
-    double lack = 1 - albedo_mirror(l->cosine, facets->roughness);
+    double lack = bsdf_facets_lack(facets, l->view, false);
     add(l, LOBE_GLOSS, reflects, share);
     add(l, LOBE_PANE, tint, 1 - share);
     add(l, LOBE_FACETS_MULTIPLE, left, lack * (1 - facets->through));
@@ -269,10 +268,10 @@ static void add_dielectric(struct layering *l, const struct hit *hit, double eta
     } else {
         struct bsdf_facets *facets = add_facets(l, v->tangent, roughness, v->specular_anisotropy);
         bsdf_facets_boundary(facets, eta);
-        reflected = albedo_reflection(l->cosine, facets->roughness, eta);
+        reflected = bsdf_facets_reflected(facets, l->view);
         add(l, LOBE_GLOSS, vec3_mul(all, l->inputs->ks), reflected);
         if (clear > 0) {
-            double lack = 1 - albedo_boundary(l->cosine, facets->roughness, eta);
+            double lack = bsdf_facets_lack(facets, l->view, false);
             add(l, LOBE_GLASS, tinted, fmax(1 - reflected - lack, min_glass_share));
             add(l, LOBE_FACETS_MULTIPLE, through, lack * (1 - facets->through));
             add(l, LOBE_FACETS_THROUGH, tinted, lack * facets->through);
@@ -300,7 +299,7 @@ void openpbr_eval(const struct material *material, const struct hit *hit, const 
     values.specular_ior = values.specular_ior > 0.01 ? values.specular_ior : 0.01; /* textures may be black */
     values.coat_ior = values.coat_ior > 0.01 ? values.coat_ior : 0.01;
     bool is_solid = inputs->refract > 0 && !values.thin_walled;
-    struct layering l = {.values = &values, .inputs = inputs, .bsdf = bsdf, .dpdu = hit->dpdu};
+    struct layering l = {.values = &values, .inputs = inputs, .bsdf = bsdf, .view = hit->view, .dpdu = hit->dpdu};
     l.left = vec3_all(1);
     l.mirror = vec3_all(0);
     l.cosine = vec3_dot(bsdf->side, hit->view);
