@@ -23,6 +23,7 @@ struct expr_instruction {
 struct expr_loop;
 
 struct expr_program {
+    const char *source; /* of a function of a script, "scene.lua:12", for reports; or NULL */
     const struct expr_instruction *code;
     const union expr_value *constants; /* values 0 to constant_count - 1 */
     uint32_t count, constant_count, register_count;

@@ -23,7 +23,8 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
                     struct text_writer *writer, struct error *error);
 /* --dump-scene: all primitives, in flattening order, then lights and materials. */
 bool inspect_world(const struct inspected *picture, struct text_writer *writer, struct error *error);
-/* --dump-expr: the Lua functions that are textures of the picture, as lists of operations. */
+/* --dump-expr: the Lua functions of the picture that were recorded (textures, implicit solids, lights, sky, fog), as
+ * lists of operations. */
 void inspect_functions(const struct inspected *picture, struct text_writer *writer);
 
 /* A trace with the node paths that its text needs. */

@@ -206,6 +206,14 @@ double fog_field_brightest(const struct fog_field *field) {
     return field->brightest;
 }
 
+const struct expr_program *fog_field_density(const struct fog_field *field) {
+    return field->density;
+}
+
+const struct expr_program *fog_field_colour(const struct fog_field *field) {
+    return field->colour;
+}
+
 /* --- along a line --- */
 
 /* Steps of the line that are not evaluated yet, and the result of the line before them. */

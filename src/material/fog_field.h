@@ -26,6 +26,10 @@ const struct fog_field *fog_field_build(struct arena *arena, const struct fog_fi
  * with a colour. */
 double fog_field_brightest(const struct fog_field *field);
 
+/* Of the density, and of the colour, which may be NULL. */
+const struct expr_program *fog_field_density(const struct fog_field *field);
+const struct expr_program *fog_field_colour(const struct fog_field *field);
+
 struct fog_line {
     struct vec3 origin, direction; /* unit */
     double distance, time;         /* the distance may be infinite */

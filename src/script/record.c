@@ -474,6 +474,7 @@ static void compile(lua_State *L, const struct path_result *result, struct recor
         context_raise_no_memory(context);
     if (!expr_compile(&context->recorder->graph, result->nodes, result->count, arena, recording->program, &error))
         context_raise_error(context, &error);
+    recording->program->source = recording->source;
 }
 
 /* Begins with an empty graph. The inputs are the values from index 3 on. */

@@ -81,7 +81,7 @@ struct options {
     const uint32_t (*pixels)[2]; /* --pixel: {x, y}; these are traced instead of rendering */
     uint32_t pixel_count;
     bool dump_scene;         /* --dump-scene: the world is listed instead of rendering */
-    bool dump_expr;          /* --dump-expr: so are the functions of textures */
+    bool dump_expr;          /* --dump-expr: so are the recorded functions */
     bool json;               /* all three: as JSON */
     const char *checkpoint;  /* --checkpoint: a file, or "auto", or NULL */
     bool checkpoint_implied; /* by an animation: a file of an earlier run is replaced */

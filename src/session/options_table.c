@@ -259,7 +259,7 @@ const struct option option_table[] = {
     {OPTION_GROUP_REPORTS, "--dump-scene", OPTION_FLAG, NULL, NO_RANGE, FIELD(dump_scene), NULL,
      "do not render; list the primitives, materials and lights of every picture"},
     {OPTION_GROUP_REPORTS, "--dump-expr", OPTION_FLAG, NULL, NO_RANGE, FIELD(dump_expr), NULL,
-     "do not render; list the operations of every Lua function that is a texture of a picture"},
+     "do not render; list the operations of every recorded Lua function of a picture"},
     {OPTION_GROUP_REPORTS, "--json", OPTION_FLAG, NULL, NO_RANGE, FIELD(json), NULL,
      "print --pixel, --dump-scene and --dump-expr as JSON, one line per picture"},
     {OPTION_GROUP_REPORTS, "--help|h", OPTION_ACTION, NULL, ACTION_HELP, 0, NO_FIELD, NULL, "print this text"},

@@ -40,6 +40,7 @@ struct implicit_findings {
 };
 /* The same findings for the same solid. False and an error: no memory. */
 bool implicit_examine(const struct implicit *solid, struct implicit_findings *out, struct error *error);
+const struct expr_program *implicit_program(const struct implicit *solid);
 struct box implicit_bounds(const struct implicit *solid);
 bool implicit_is_closed(const struct implicit *solid);
 /* The same as shape_crossings and shape_nearest. A crossing is at most 1e-9 of the size of the solid from the point

@@ -202,6 +202,10 @@ const struct implicit *implicit_build(struct arena *arena, const struct implicit
     return implicit_regions_build(arena, solid, error) ? solid : NULL;
 }
 
+const struct expr_program *implicit_program(const struct implicit *solid) {
+    return solid->in.program;
+}
+
 struct box implicit_bounds(const struct implicit *solid) {
     return box_pad(solid->tight);
 }

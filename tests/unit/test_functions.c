@@ -681,7 +681,7 @@ TEST(the_operations_of_loops_are_listed_below_them) {
                    "kd = function(p) return (gr.loop(2000, p.x, function(i, a) return a * p.y - i end)) end", "a.png");
     struct test_result result = test_gray_scene(text, "--dump-expr scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    CHECK_TEXT(result.out, "a.png: functions of textures\n"
+    CHECK_TEXT(result.out, "a.png: functions\n"
                            "  scene.lua:1: 4 operations, 5 constants, 2 registers\n"
                            "    r0 = p.x\n"
                            "    r1 = p.y\n"
@@ -698,12 +698,43 @@ TEST(the_operations_of_loops_are_listed_below_them) {
     free(result.err);
 }
 
+/* Each prints a line that begins with its source. */
+TEST(functions_of_textures_solids_lights_skies_and_fogs_are_listed_once) {
+    static const char scene[] =
+        "local f = gr.fn(function(p) return p.x - 0.25 end)\n"
+        "local solid = gr.implicit{f = f, radius = 1, material = gr.material{kd = f}}\n"
+        "local cut = gr.difference('d', gr.sphere('s'), gr.implicit{f = function(p) return p.y end, radius = 1})\n"
+        "local node = gr.node('n'):add_child(solid):add_child(cut:set_material(gr.material{kd = {1, 1, 1}}))\n"
+        "local colour = function(d) return d.z end\n"
+        "local sky = function(d) return {d.y, 0, 1} end\n"
+        "local density = function(p) return p.x + 1 end\n"
+        "local glow = function(p) return p.y + 1 end\n"
+        "gr.render{node = node, file = 'a.png', width = 8, height = 8, eye = {0, 0, 5}, view = {0, 0, -1},"
+        " background = sky, lights = {gr.light{position = {1, 2, 3}, colour = colour}},"
+        " fog = gr.fog_field({-1, -1, -1}, 2, density, glow)}\n";
+    static const int lines[] = {1, 3, 5, 6, 7, 8};
+    struct test_result result = test_gray_scene(scene, "--dump-expr scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    const char *at = result.out;
+    for (int i = 0; i < 6; i++) {
+        char words[32];
+        (void)snprintf(words, sizeof words, "  scene.lua:%d: ", lines[i]);
+        at = strstr(at, words);
+        if (!at)
+            test_fail(__FILE__, __LINE__, "no function of line %d in its place: %s", lines[i], result.out);
+        at += strlen(words);
+    }
+    CHECK(!strstr(at, "scene.lua:"));
+    free(result.out);
+    free(result.err);
+}
+
 TEST(the_operations_of_functions_are_listed) {
     char text[2048];
     (void)snprintf(text, sizeof text, stage, "kd = function(p) return p.x * 2 + 1 end", "a.png");
     struct test_result result = test_gray_scene(text, "--dump-expr scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    CHECK_TEXT(result.out, "a.png: functions of textures\n"
+    CHECK_TEXT(result.out, "a.png: functions\n"
                            "  scene.lua:1: 2 operations, 2 constants, 1 registers\n"
                            "    r0 = p.x\n"
                            "    r0 = multiply r0 2\n"
