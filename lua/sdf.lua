@@ -78,7 +78,7 @@ end
 ---@param from number[]
 ---@param to number[]
 ---@param radius number
----@param end_radius number?  radius at `to`; if it differs, the function is a bound of the distance
+---@param end_radius number?  radius at `to`; if it differs, the slope of the function is above 1
 ---@return sdf.solid
 function M.capsule(from, to, radius, end_radius)
     from, to = gr.vec(check.tuple('sdf.capsule', 'from', from, 3)), gr.vec(check.tuple('sdf.capsule', 'to', to, 3))
@@ -116,7 +116,7 @@ function M.ellipsoid(radii)
     return function(p) return (gr.length(gr.vec(p) / radii) - 1) * least end
 end
 
---- A wall around Schoen's gyroid; the function is close to the distance.
+--- A wall around Schoen's gyroid; the function is close to the distance, its slope is at most 1.16.
 ---@param period number?  default 1
 ---@param thickness number?  of the wall, default a tenth of the period
 ---@return sdf.solid
