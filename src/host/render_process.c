@@ -617,9 +617,9 @@ static bool render_job_run(struct render_process *process, const struct render_r
     if (atomic_load(&control->progress_estimate.begun) == PROGRESS_ESTIMATE_WANTED)
         work.job.progress_estimate = &control->progress_estimate;
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
-    /* A display shows passes of paths, unless finished tiles are wanted as they come. */
     const struct options *options = process->options;
-    work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout;
+    work.job.tiles_at_once = options->checkpoint || options->partial || work.job.handout;
+    work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
     if (!early)
         clear_picture(&work);

@@ -1,10 +1,12 @@
 /* The cost pre-pass, if a time estimate is requested: PROBE_SIDE x PROBE_SIDE rays through each tile before the first
- * one (eight times as many with --noise), about 1 % of the work. After that, the next free worker updates and reports
+ * one (eight times as many with --noise), about 1 % of the work. Tiles that get their samples level by level need no
+ * pre-pass. After that, the next free worker updates and reports
  * the time estimate (render/time_estimate.h) a hundred times a second. Times are processor times, so other programs
  * have no influence. */
 #include "base/clock.h"
 #include "render/integrator_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Nanoseconds between two forecasts. */
@@ -48,6 +50,17 @@ static void forget_counts(struct renderer *renderer) {
     }
 }
 
+void renderer_expect_levels(struct renderer *renderer) {
+    const struct film *film = renderer->job->film;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        struct film_rectangle r = film_tile_rectangle(film, tile);
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_WANTED)
+            noise_estimate_expect(&renderer->noise_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0));
+    }
+    renderer->estimated = true;
+    renderer->worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID);
+}
+
 bool renderer_cost_prepass(struct renderer *renderer) {
     struct progress_estimate *progress_estimate = renderer->job->progress_estimate;
     const struct film *film = renderer->job->film;
@@ -55,10 +68,14 @@ bool renderer_cost_prepass(struct renderer *renderer) {
         return true;
     /* Others of a farm have begun already. */
     uint64_t begun = clock_nanoseconds(CLOCK_MONOTONIC);
-    if (!pool_run(renderer->pool, film_tile_count(film), probe_tile, renderer))
-        return false;
-    forget_counts(renderer);
-    time_estimate_begin_tiles(&renderer->time_estimate, renderer->job->settings.noise > 0);
+    if (renderer->levels.wanted) {
+        renderer_expect_levels(renderer);
+    } else {
+        if (!pool_run(renderer->pool, film_tile_count(film), probe_tile, renderer))
+            return false;
+        forget_counts(renderer);
+        time_estimate_begin_tiles(&renderer->time_estimate, renderer->job->settings.noise > 0);
+    }
     renderer->estimated = true;
     atomic_store(&progress_estimate->begun, renderer->job->handout ? begun : clock_nanoseconds(CLOCK_MONOTONIC));
     progress_estimate_report(progress_estimate, 0, 1, 0);
@@ -73,10 +90,17 @@ void renderer_report_estimate(struct renderer *renderer) {
         return;
     struct progress_estimate *progress_estimate = renderer->job->progress_estimate;
     struct time_estimate_work work =
-        time_estimate_work(&renderer->time_estimate, renderer->job->handout ? renderer->job->film : NULL);
+        renderer->noise_estimate.count > 0
+            ? noise_estimate_work(&renderer->noise_estimate)
+            : time_estimate_work(&renderer->time_estimate, renderer->job->handout ? renderer->job->film : NULL);
     uint64_t worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID) - renderer->worked + 1;
     double passed = (double)(now - atomic_load(&progress_estimate->begun)) * pool_workers(renderer->pool);
     atomic_store_explicit(&progress_estimate->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);
+    double limit = renderer->job->settings.time_limit;
+    if (limit > 0 && work.done > 0) {
+        double seconds = 1e-9 * (double)(now - atomic_load(&progress_estimate->begun));
+        work.left = fmin(work.left, fmax(renderer->begun + limit - 1e-9 * (double)now, 0) * work.done / seconds);
+    }
     progress_estimate_report(progress_estimate, work.done, work.left, now);
 }
 
@@ -96,7 +120,10 @@ void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int
         return;
     if (pass == 0 && part >= 1)
         worker->first_ended = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
-    time_estimate_part(&renderer->time_estimate, worker->index, pass, part);
+    if (renderer->noise_estimate.count > 0)
+        noise_estimate_part(&renderer->noise_estimate, worker->index, part);
+    else
+        time_estimate_part(&renderer->time_estimate, worker->index, pass, part);
     renderer_report_estimate(renderer);
 }
 
@@ -106,5 +133,21 @@ void renderer_tile_ends(struct renderer *renderer, struct worker *worker) {
     uint64_t now = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     time_estimate_done(&renderer->time_estimate, worker->index, (double)(now - worker->tile_begun),
                        (double)(worker->first_ended - worker->tile_begun));
+    renderer_report_estimate(renderer);
+}
+
+void renderer_level_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, uint32_t end) {
+    if (!renderer->estimated)
+        return;
+    worker->tile_begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
+    noise_estimate_begin(&renderer->noise_estimate, worker->index, tile, end);
+}
+
+void renderer_level_ends(struct renderer *renderer, struct worker *worker, uint32_t tile, bool final) {
+    if (!renderer->estimated || worker->noise.samples == 0)
+        return;
+    uint64_t now = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
+    struct noise_level level = {worker->noise, 1 + (double)(now - worker->tile_begun), final};
+    noise_estimate_done(&renderer->noise_estimate, worker->index, tile, &level);
     renderer_report_estimate(renderer);
 }

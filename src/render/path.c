@@ -126,11 +126,6 @@ static struct path_pixel begin_pixel(const struct film *film, const struct conto
     return (struct path_pixel){.line = lines ? (float)contour_coverage(lines, x, y) : 0};
 }
 
-/* The numbers of samples from `begin` up to, but not including, `end`. */
-struct sample_range {
-    uint32_t begin, end;
-};
-
 /* Adds these samples to the pixels of a row, pixel by pixel and batch by batch. A batch may contain samples of
  * several pixels. */
 static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
@@ -171,8 +166,12 @@ static bool sample_part(const struct path_tracer *tracer, struct renderer *rende
         if (!sample_row(tracer, renderer, worker, part, y, (struct sample_range){begin, end}))
             return false;
         double rows = (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0);
-        if (expected > 0)
-            renderer_tile_goes_on(renderer, worker, 1, (begin + (end - begin) * rows) / expected);
+        double samples = begin + (end - begin) * rows;
+        if (renderer->noise_estimate.count > 0)
+            renderer_tile_goes_on(renderer, worker, 1,
+                                  (samples - worker->range.begin) / (worker->range.end - worker->range.begin));
+        else if (expected > 0)
+            renderer_tile_goes_on(renderer, worker, 1, samples / expected);
     }
     return true;
 }
@@ -183,14 +182,17 @@ static bool is_check(uint32_t samples) {
     return samples >= 16 && path_next_check(samples - 1) == samples;
 }
 
-static double noise_of(const struct film *film, const struct rectangle *part) {
-    double sum = 0, pixels = (double)((part->x1 - part->x0) * (part->y1 - part->y0));
+/* *by_samples: with the variance from the samples. */
+static double noise_of(const struct film *film, const struct rectangle *part, double *by_samples) {
+    double sum = 0, sum_by_samples = 0, pixels = (double)((part->x1 - part->x0) * (part->y1 - part->y0));
     for (int64_t y = part->y0; y < part->y1; y++) {
         for (int64_t x = part->x0; x < part->x1; x++) {
             struct path_pixel pixel = path_film_load(film, pixel_index(film, x, y));
             sum += path_pixel_noise(&pixel);
+            sum_by_samples += path_pixel_noise_of_samples(&pixel);
         }
     }
+    *by_samples = sqrt(sum_by_samples / pixels);
     return sqrt(sum / pixels);
 }
 
@@ -198,24 +200,29 @@ static double noise_of(const struct film *film, const struct rectangle *part) {
  * small enough. */
 static bool is_quiet(const struct path_tracer *tracer, const struct film *film, struct worker *worker,
                      const struct rectangle *part, uint32_t samples) {
-    double noise = noise_of(film, part);
-    bool quiet = is_check(samples) && noise <= tracer->noise;
-    worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise, tracer->noise, tracer->samples);
+    double wanted = tracer->noise, by_samples, noise = noise_of(film, part, &by_samples);
+    bool quiet = is_check(samples) && noise <= wanted;
+    worker->quiet = quiet;
+    worker->noise = (struct noise_point){samples, samples * noise / wanted * noise / wanted,
+                                         samples * by_samples / wanted * by_samples / wanted};
+    worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise, wanted, tracer->samples);
     return quiet;
 }
 
-/* Takes the samples of a pass, until the noise of the tile is small enough. A tile that an earlier pass has finished
- * gets no more samples. */
+/* Takes these samples, until the noise of the tile is small enough. A tile that an earlier pass has finished gets no
+ * more samples. */
 static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                                const struct rectangle *part) {
     const struct film *film = renderer->job->film;
-    uint32_t done = renderer->pass.begin, end = renderer->pass.end;
+    uint32_t done = worker->range.begin, end = worker->range.end;
     worker->samples_expected = 0;
+    worker->noise = (struct noise_point){0};
     if (done > 0 && path_film_load(film, pixel_index(film, part->x0, part->y0)).samples < done)
         return true;
     while (!((is_check(done) || done == end) && is_quiet(tracer, film, worker, part, done))) {
         if (done == end) {
-            atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
+            if (worker->level.end == 0 || end == tracer->samples)
+                atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
             return true;
         }
         uint32_t check = path_next_check(done), next = check < end ? check : end;
@@ -228,13 +235,15 @@ static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer
 
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part) {
-    if (tracer->contours && renderer->pass.begin == 0 &&
+    const struct sample_pass *pass = &renderer->pass;
+    worker->range = worker->level.end > 0 ? worker->level : (struct sample_range){pass->begin, pass->end};
+    if (tracer->contours && worker->range.begin == 0 &&
         !contour_find(&tracer->contours[worker->index], renderer, worker, part))
         return false;
     if (tracer->noise > 0)
         return sample_until_quiet(tracer, renderer, worker, part);
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
-    return sample_part(tracer, renderer, worker, part, renderer->pass.begin, renderer->pass.end);
+    return sample_part(tracer, renderer, worker, part, worker->range.begin, worker->range.end);
 }
 
 /* The noise of one sample from few samples of few pixels; it is inversely proportional to the square root of the number

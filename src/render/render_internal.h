@@ -5,6 +5,7 @@
 
 #include "render/camera.h"
 #include "render/integrator_state_internal.h"
+#include "render/noise_estimate_internal.h"
 #include "render/render.h"
 #include "render/time_estimate.h"
 #include "world/packet.h"
@@ -23,6 +24,11 @@ struct batch {
     struct packet_answer answers[PACKET_RAYS];
 };
 
+/* The numbers of samples from `begin` up to, but not including, `end`. */
+struct sample_range {
+    uint32_t begin, end;
+};
+
 struct worker {
     struct world_scratch scratch;
     struct integrator_state state;
@@ -34,13 +40,23 @@ struct worker {
     int index;
     double tile_ended;                /* seconds, of the last one */
     uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
-    uint32_t samples_expected;        /* of the pixels of the current tile (--noise); 0: not known yet */
+    struct sample_range level;        /* of the current tile, if tiles get their samples level by level; else zero */
+    struct sample_range range;        /* samples that it gets now; paths only */
+    struct noise_point noise;         /* of the current tile (--noise), after its last samples; zero: not known */
+    bool quiet;                       /* its noise is small enough */
+    uint32_t samples_expected;        /* of its pixels; 0: not known yet */
 };
 
 /* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */
 struct sample_pass {
     uint32_t number, begin, end, limit; /* limit: of the end of all passes */
     bool open;                          /* more passes may follow */
+};
+
+/* Tiles that get their samples level by level (--noise). */
+struct sample_levels {
+    bool wanted;
+    uint32_t *samples; /* of each tile, that it has */
 };
 
 struct renderer {
@@ -53,7 +69,8 @@ struct renderer {
     bool together;            /* camera rays start in one place and at one moment */
     bool medium_stack_by_ray; /* rays start in different places or moments, and solids are near */
     enum sampler_kind sampler;
-    struct sample_pass pass;  /* the integrator states all samples as one pass; paths only */
+    struct sample_pass pass; /* the integrator states all samples as one pass; paths only */
+    struct sample_levels levels;
     _Atomic bool unsatisfied; /* a tile of the pass is to have more samples (--noise) */
     double begun;             /* seconds of the clock that never jumps */
     double sample_share; /* footprint of a sample as a fraction of a pixel's width; SAMPLER_STRATA: from the settings */
@@ -68,9 +85,10 @@ struct renderer {
     _Atomic uint8_t *quarters; /* of each of the others, how many are done; and QUARTER_FAILED */
     bool estimated;            /* the cost of the tiles has been estimated */
     struct time_estimate time_estimate;
-    struct pass_tile *pass_tiles; /* NULL: no time estimate of passes */
-    uint64_t worked;              /* processor time when the first tile began */
-    _Atomic uint64_t reported;    /* time of the last progress report in nanoseconds */
+    struct noise_estimate noise_estimate; /* with levels or passes of --noise, instead of it */
+    struct pass_tile *pass_tiles;         /* NULL: no time estimate of passes */
+    uint64_t worked;                      /* processor time when the first tile began */
+    _Atomic uint64_t reported;            /* time of the last progress report in nanoseconds */
     _Atomic uint32_t done;
     _Atomic bool failed;
 };
@@ -101,6 +119,10 @@ void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint
 /* So much of its first pass (0) or its second is done. */
 void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int pass, double part);
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
+/* The same for a level of a tile, or a pass (--noise). renderer_expect_levels: before the first one. */
+void renderer_expect_levels(struct renderer *renderer);
+void renderer_level_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, uint32_t end);
+void renderer_level_ends(struct renderer *renderer, struct worker *worker, uint32_t tile, bool final);
 void renderer_report_estimate(struct renderer *renderer);
 void renderer_report_end(struct renderer *renderer); /* all tiles are done */
 

@@ -68,7 +68,12 @@ TEST(a_picture_of_paths_is_the_same_by_threads_instruction_sets_displays_checkpo
 }
 
 TEST(a_picture_of_paths_with_a_noise_and_a_filter_is_the_same_by_threads_displays_and_shards) {
-    static const char *const runs[] = {"-j 3", "-j 2 --display term:blocks"};
+    static const char *const runs[] = {"-j 3",
+                                       "-j 2 --display term:blocks",
+                                       "-j 2 --partial",
+                                       "-j 2 --progress=json",
+                                       "-j 2 --checkpoint c.tiles",
+                                       "--time-limit 1000"};
     check_runs("--noise 0.1 --spp 64 --filter mitchell --caustics 2000", runs, sizeof runs / sizeof *runs);
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "render/film.h"
+#include "render/noise_estimate_internal.h"
 #include "render/time_estimate.h"
 #include "tests/stage.h"
 
@@ -293,6 +294,115 @@ TEST(time_estimate_counts_unfinished_tiles_and_those_of_others) {
     CHECK_NEAR(work.left / work.done, (4 - 2.7) / 2.7, 1e-6);
     time_estimate_destroy(&time_estimate);
     free(block);
+}
+
+/* --- tiles that get their samples level by level --- */
+
+/* A tile whose number of samples grows by `growth` (natural logarithm) from 16 samples to 32, and by three quarters of
+ * the growth before in each further doubling. */
+static double needed_after(double needed, double growth, uint32_t samples) {
+    return needed * exp(growth * 4 * (1 - pow(0.75, log2(samples / 16.0))));
+}
+
+/* The number of samples at which it is quiet. */
+static uint32_t end_of(double needed, double growth, uint32_t limit) {
+    uint32_t samples = 16;
+    while (samples < limit && needed_after(needed, growth, samples) > samples)
+        samples = noise_next_level(samples, limit);
+    return samples;
+}
+
+static struct noise_history history_of(double needed, double growth, uint32_t samples) {
+    struct noise_history history = {0};
+    for (uint32_t n = 2; n <= samples; n = noise_next_level(n, 4096)) {
+        double now = needed_after(needed, growth, n);
+        noise_history_add(&history, (struct noise_point){n, now, now});
+    }
+    return history;
+}
+
+TEST(a_tile_needs_more_samples_if_those_that_it_needed_so_far_grew) {
+    struct noise_history same = history_of(100, 0, 16), grows = history_of(100, 0.4, 16),
+                         falls = history_of(100, -0.2, 16);
+    double further = noise_further_samples(&same, 4096);
+    CHECK(further > 96 - 16 && further < 128 - 16);
+    CHECK(noise_further_samples(&grows, 4096) > 1.4 * further);
+    CHECK(noise_further_samples(&falls, 4096) < 0.9 * further);
+    CHECK_NEAR(noise_further_samples(&same, 40), 24, 1); /* no tile gets more than the limit */
+    CHECK_EQ_INT(noise_next_level(0, 9), 2);
+    CHECK_EQ_INT(noise_next_level(8, 9), 9);
+    CHECK_EQ_INT(noise_next_level(16, 4096), 24);
+}
+
+/* Levels of all tiles, with tiles of one noise, tiles with caustics that few samples do not find, and quiet ones; each
+ * estimate of the noise is wrong by up to `width`. The largest relative error of the time left, from a third of the
+ * whole on until 5 % are left. */
+static double worst_error_of_levels(int count, double width, uint32_t limit, int workers) {
+    struct noise_estimate estimate;
+    double needed[400], growth[400], all = 0, done = 0, worst = 0;
+    uint32_t samples[400] = {0};
+    CHECK(noise_estimate_create(&estimate, (uint32_t)count, limit, workers));
+    for (int i = 0; i < count; i++) {
+        needed[i] = i % 4 == 0 ? 4 : 30 * scatter((uint32_t)i, 0.9);
+        growth[i] = i % 3 == 0 ? 0.4 : 0;
+        all += end_of(needed[i], growth[i], limit);
+        noise_estimate_expect(&estimate, (uint32_t)i, 1024);
+    }
+    for (int step = 0; done < all && step < 40 * count; step++) {
+        uint32_t i = (uint32_t)(step % count), end = noise_next_level(samples[i], limit);
+        uint32_t last = end_of(needed[i], growth[i], limit);
+        if (samples[i] == last)
+            continue;
+        double now = needed_after(needed[i], growth[i], end), cost = end - samples[i];
+        double seen = now * scatter(1000 * i + end, width), seen_too = now * scatter(1000 * i + end + 500, width);
+        struct noise_level level = {{end, seen, seen_too}, cost, end == last};
+        noise_estimate_begin(&estimate, step % workers, i, end);
+        noise_estimate_done(&estimate, step % workers, i, &level);
+        samples[i] = end;
+        done += cost;
+        struct time_estimate_work work = noise_estimate_work(&estimate);
+        if (done > all / 3 && all - done > all / 20)
+            worst = fmax(worst, fabs(work.left - (all - done)) / (all - done));
+    }
+    CHECK_NEAR(done, all, 0);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 0, 1e-6);
+    noise_estimate_destroy(&estimate);
+    return worst;
+}
+
+TEST(the_time_left_of_a_picture_with_noise_is_known_within_a_fifth_from_a_third_on) {
+    CHECK(worst_error_of_levels(400, 0.05, 65536, 1) < 0.2);
+    CHECK(worst_error_of_levels(400, 0.05, 64, 3) < 0.2);
+    CHECK(worst_error_of_levels(130, 0.1, 128, 1) < 0.2);
+    CHECK(worst_error_of_levels(35, 0.05, 64, 1) < 0.2);
+    CHECK(worst_error_of_levels(400, 0.1, 65536, 1) < 0.25);
+}
+
+TEST(tiles_without_samples_count_as_the_mean_of_the_others_and_workers_wait_for_the_longest) {
+    struct noise_estimate estimate;
+    CHECK(noise_estimate_create(&estimate, 4, 16, 2));
+    for (uint32_t i = 0; i < 3; i++)
+        noise_estimate_expect(&estimate, i, 100);
+    CHECK_NEAR(noise_estimate_work(&estimate).done, 0, 0);
+    struct noise_level level = {{2, 1, 1}, 20, false};
+    noise_estimate_done(&estimate, 0, 0, &level);
+    struct time_estimate_work work = noise_estimate_work(&estimate); /* 16 samples of each tile */
+    CHECK_NEAR(work.done, 20, 1e-9);
+    CHECK_NEAR(work.left, 3 * 160 - 20, 1e-9);
+    level.point.samples = 1; /* without noise: not known yet */
+    noise_estimate_done(&estimate, 1, 1, &level);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 3 * 160 - 20, 1e-9);
+    level = (struct noise_level){{16, 1, 1}, 140, true};
+    noise_estimate_done(&estimate, 1, 1, &level);
+    noise_estimate_done(&estimate, 1, 2, &level);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 140, 1e-9);
+    level = (struct noise_level){{14, 1, 1}, 120, false};
+    noise_estimate_begin(&estimate, 0, 0, 14);
+    noise_estimate_part(&estimate, 0, 0.5);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 80, 1e-9);
+    noise_estimate_done(&estimate, 0, 0, &level);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 40, 1e-9); /* 20 for one worker, while the other waits */
+    noise_estimate_destroy(&estimate);
 }
 
 /* Tiles in progress are finished, others are not started. */

@@ -1,0 +1,178 @@
+/* A tile needs samples * (noise / wanted noise)^2 samples if its noise is inversely proportional to their square root.
+ * It seldom is. Stratified samples converge faster; few samples miss caustics and small bright features, so this number
+ * grows with the samples, in some tiles fivefold from 16 samples to 256. The growth of a tile persists: in the recorded
+ * tiles of eleven pictures, the growth during a doubling of the samples is .9 times that during the doubling before,
+ * minus .1 (in logarithms), with a deviation of .13 at 16 samples, less at more. So the number of samples at the end is
+ * a log-normal random variable, and the expected number of samples is the sum over the levels of their samples times
+ * the probability that the noise at the beginning of the level is still too large (by the logistic distribution, which
+ * is the normal one within .01).
+ *
+ * Tiles without samples count as the mean of the others. A finished level only changes sums, so the cost of an estimate
+ * does not depend on the number of tiles, but near the end. */
+#include "render/noise_estimate_internal.h"
+
+#include "base/mem.h"
+#include "math/elementary.h"
+#include "render/path_film.h"
+
+#include <math.h>
+#include <stddef.h>
+
+/* Of the growth per doubling of the samples, in natural logarithms. */
+static const double growth_usual = -0.1;                      /* of a tile whose number did not grow */
+static const double growth_kept = 0.9, growth_fade = 0.7;     /* the next doubling, and each one relative to the last */
+static const double growth_lowest = -0.3, growth_highest = 1; /* of those that are believed */
+static const double growth_unknown = 0.3;                     /* of the first two samples */
+static const double growth_of_halves = 0.8;                   /* their weight beside that of the samples */
+/* Of the logarithm, for one doubling after 16 samples; its exponents in the samples and in the doublings. */
+static const double deviation = 0.13, deviation_fall = 0.45, deviation_rise = 0.6;
+
+void noise_history_add(struct noise_history *history, struct noise_point point) {
+    if (history->count == NOISE_POINTS) {
+        history->count--;
+        for (int i = 0; i < history->count; i++)
+            history->points[i] = history->points[i + 1];
+    }
+    history->points[history->count++] = point;
+}
+
+uint32_t noise_next_level(uint32_t samples, uint32_t limit) {
+    uint32_t next = samples < 2 ? 2 : samples < 16 ? 2 * samples : path_next_check(samples);
+    return next < limit ? next : limit;
+}
+
+/* Pixels whose samples are all equal have no noise. */
+static double logarithm(double needed) {
+    return el_log(fmax(needed, 1e-3));
+}
+
+/* The growth since the last point that has at most about half of the samples. With two or four samples, the halves are
+ * one or two samples. */
+static double growth_so_far(const struct noise_history *history) {
+    const struct noise_point *now = &history->points[history->count - 1];
+    int before = history->count - 2;
+    if (before < 0)
+        return growth_unknown;
+    while (before > 0 && history->points[before].samples > now->samples / 1.8)
+        before--;
+    const struct noise_point *then = &history->points[before];
+    double doublings = el_log2((double)now->samples / then->samples);
+    double halves = logarithm(now->needed) - logarithm(then->needed);
+    double samples = logarithm(now->needed_by_samples) - logarithm(then->needed_by_samples);
+    double growth = now->samples <= 4 ? samples / 2 : growth_of_halves * halves + (1 - growth_of_halves) * samples;
+    return doublings > 0 ? fmin(fmax(growth / doublings, growth_lowest), growth_highest) : growth_unknown;
+}
+
+double noise_further_samples(const struct noise_history *history, uint32_t limit) {
+    const struct noise_point *now = &history->points[history->count - 1];
+    double needed = logarithm(now->needed), growth = growth_kept * growth_so_far(history);
+    double deviates = deviation * el_pow(16.0 / now->samples, deviation_fall), probability = 1, sum = 0;
+    uint32_t samples = now->samples;
+    while (samples < limit && probability > 1e-3) {
+        uint32_t next = noise_next_level(samples, limit);
+        sum += probability * (next - samples);
+        samples = next;
+        if (samples < 16)
+            continue;
+        double doublings = el_log2((double)samples / now->samples);
+        double then =
+            needed + growth_usual * doublings + growth * (1 - el_pow(growth_fade, doublings)) / (1 - growth_fade);
+        double distance = (then - el_log(samples)) / (deviates * el_pow(doublings, deviation_rise));
+        probability = fmin(probability, 1 / (1 + el_exp(-1.702 * distance)));
+    }
+    return sum;
+}
+
+/* --- of a picture --- */
+
+static double get(const _Atomic double *value) {
+    return atomic_load_explicit(value, memory_order_relaxed);
+}
+
+/* Only one thread writes it. */
+static void set(_Atomic double *value, double to) {
+    atomic_store_explicit(value, to, memory_order_relaxed);
+}
+
+static void add(_Atomic double *value, double more) {
+    set(value, get(value) + more);
+}
+
+bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, uint32_t limit, int workers) {
+    *estimate = (struct noise_estimate){.count = count, .limit = limit, .workers = workers};
+    estimate->tiles = mem_alloc_zero(count, sizeof *estimate->tiles);
+    estimate->sums = mem_alloc_zero((size_t)workers, sizeof *estimate->sums);
+    return estimate->tiles && estimate->sums;
+}
+
+void noise_estimate_destroy(struct noise_estimate *estimate) {
+    mem_free(estimate->tiles);
+    mem_free(estimate->sums);
+    *estimate = (struct noise_estimate){0};
+}
+
+void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels) {
+    estimate->tiles[tile].pixels = pixels;
+    estimate->pixels += pixels;
+}
+
+static uint32_t samples_of(const struct noise_tile *tile) {
+    return tile->history.count > 0 ? tile->history.points[tile->history.count - 1].samples : 0;
+}
+
+void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t tile, uint32_t end) {
+    const struct noise_tile *of_tile = &estimate->tiles[tile];
+    uint32_t samples = samples_of(of_tile);
+    double planned = samples > 0 ? of_tile->cost / samples * (end - samples) : 0;
+    set(&estimate->sums[worker].part, 0);
+    set(&estimate->sums[worker].planned, fmin(planned, get(&of_tile->rest)));
+}
+
+void noise_estimate_part(struct noise_estimate *estimate, int worker, double part) {
+    set(&estimate->sums[worker].part, part);
+}
+
+void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level) {
+    struct noise_sums *sums = &estimate->sums[worker];
+    struct noise_tile *of_tile = &estimate->tiles[tile];
+    double rest = 0;
+    of_tile->cost += level->cost;
+    set(&sums->planned, 0);
+    if (level->point.samples < 2 && !level->final)
+        return; /* no noise yet */
+    bool first = of_tile->history.count == 0;
+    noise_history_add(&of_tile->history, level->point);
+    if (!level->final)
+        rest = of_tile->cost / samples_of(of_tile) * noise_further_samples(&of_tile->history, estimate->limit);
+    add(&sums->pixels, first ? of_tile->pixels : 0);
+    add(&sums->done, first ? of_tile->cost : level->cost);
+    add(&sums->rest, rest - get(&of_tile->rest));
+    set(&of_tile->rest, rest);
+}
+
+/* Near the end, workers may wait for the longest tile. */
+static const double end_share = 0.1;
+
+static double longest_rest(const struct noise_estimate *estimate) {
+    double longest = 0;
+    for (uint32_t i = 0; i < estimate->count; i++)
+        longest = fmax(longest, get(&estimate->tiles[i].rest));
+    return longest;
+}
+
+struct time_estimate_work noise_estimate_work(const struct noise_estimate *estimate) {
+    double done = 0, rest = 0, begun = 0, pixels = 0;
+    for (int w = 0; w < estimate->workers; w++) {
+        const struct noise_sums *sums = &estimate->sums[w];
+        done += get(&sums->done);
+        rest += get(&sums->rest);
+        begun += get(&sums->planned) * get(&sums->part);
+        pixels += get(&sums->pixels);
+    }
+    if (!(pixels > 0))
+        return (struct time_estimate_work){0, 1};
+    double left = (done + rest) / pixels * (estimate->pixels - pixels) + rest - begun;
+    if (estimate->workers > 1 && left < end_share * done)
+        left = fmax(left, estimate->workers * longest_rest(estimate) - begun);
+    return (struct time_estimate_work){done + begun, fmax(left, 0)};
+}

@@ -1,0 +1,79 @@
+/* The time of the remaining samples of a picture with --noise, whose tiles get their samples level by level (render.c):
+ * from the noise that each tile has so far. */
+#ifndef GRAY_RENDER_NOISE_ESTIMATE_INTERNAL_H
+#define GRAY_RENDER_NOISE_ESTIMATE_INTERNAL_H
+
+#include "render/time_estimate.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What is known of a tile after some samples: how many samples it would need if its noise fell as 1/sqrt(samples).
+ * Noise has two estimates: that which decides (of the halves of the samples), and a smoother one (of the samples). */
+struct noise_point {
+    uint32_t samples;
+    double needed, needed_by_samples;
+};
+
+/* The last points, oldest first. */
+enum { NOISE_POINTS = 3 };
+struct noise_history {
+    struct noise_point points[NOISE_POINTS];
+    int count;
+};
+void noise_history_add(struct noise_history *history, struct noise_point point);
+
+/* The number of samples of the level after one with so many, at most `limit`: 2, 4, 8, and the checks of the noise
+ * (path_next_check). */
+uint32_t noise_next_level(uint32_t samples, uint32_t limit);
+
+/* The expected number of further samples of a tile that is not quiet. The history has at least one point with 2 or more
+ * samples. */
+double noise_further_samples(const struct noise_history *history, uint32_t limit);
+
+/* --- of a picture --- */
+
+struct noise_tile {
+    struct noise_history history;
+    double pixels, cost; /* cost: of its samples so far */
+    _Atomic double rest; /* expected cost of its further samples */
+};
+
+/* One worker's sums: only it writes them, anybody reads. */
+struct noise_sums {
+    _Atomic double done, rest;    /* costs; rest is of tiles that have samples, and may be negative for one worker */
+    _Atomic double pixels;        /* of tiles that have samples */
+    _Atomic double planned, part; /* cost of the level in progress, and how much of it is done, 0..1 */
+};
+
+struct noise_estimate {
+    uint32_t count, limit;
+    int workers;
+    double pixels; /* of all tiles that get samples here */
+    struct noise_tile *tiles;
+    struct noise_sums *sums; /* of each worker */
+};
+
+/* Memory for tiles and workers. False: no memory; noise_estimate_destroy is fine in any case. */
+bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, uint32_t limit, int workers);
+void noise_estimate_destroy(struct noise_estimate *estimate);
+/* Before the first tile: this tile will get samples. */
+void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels);
+/* A level that is done: what is known of the tile after it, its cost, and whether the tile gets no further samples. */
+struct noise_level {
+    struct noise_point point;
+    double cost;
+    bool final;
+};
+/* The worker begins a level of a tile that ends with so many samples; is so far with it; has done it. A tile
+ * belongs to one worker at a time. */
+void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t tile, uint32_t end);
+void noise_estimate_part(struct noise_estimate *estimate, int worker, double part);
+void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level);
+
+/* The costs of samples that are done and left; done is 0 while nothing is known. A tile is not shared: workers wait for
+ * the longest one. At any time, from any thread. */
+struct time_estimate_work noise_estimate_work(const struct noise_estimate *estimate);
+
+#endif
