@@ -22,6 +22,9 @@ enum { RECORD_POINTS = 1000, WORK_BEFORE_COUNTING = 300000, WORK_OF_COUNTING = 1
 
 /* Indexing a table with a symbol, t[x], gives nil. */
 #define TABLE_HINT "; a number of the recorded function cannot be the index of a table; use gr.lookup(t, i)"
+#define TEXT_HINT                                                                                                      \
+    "; a number of the recorded function has no value yet, so it cannot become text or choose an argument; use "       \
+    "operators, comparisons and the functions of math and gr"
 #define FOR_HINT                                                                                                       \
     "; the bounds of a for loop must not depend on the arguments of the function, gr.loop(n, state, f) may end "       \
     "earlier"
@@ -192,6 +195,24 @@ static struct path_result join(lua_State *L, const struct decision *decision, co
     return out;
 }
 
+static const char *hint_of(const char *text) {
+    if (strstr(text, "a nil value (field '?')") || strstr(text, "index is"))
+        return TABLE_HINT;
+    if (strstr(text, "bad 'for' "))
+        return FOR_HINT;
+    bool is_text = strstr(text, "number expected, got recorded number") ||
+                   strstr(text, "string expected, got recorded number") ||
+                   strstr(text, "concatenate a recorded number") || strstr(text, "in table for 'concat'");
+    return is_text ? TEXT_HINT : "";
+}
+
+void record_keep_error(lua_State *L, int index) {
+    struct recorder *recorder = context_of(L)->recorder;
+    const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tostring(L, index) : "";
+    if (!recorder->path_error[0])
+        (void)snprintf(recorder->path_error, sizeof recorder->path_error, "%.300s%s", text, hint_of(text));
+}
+
 /* One call. The index `error` holds the first error of all calls. */
 static struct path_result record_path(lua_State *L, int function, int first, int error) {
     struct recorder *recorder = context_of(L)->recorder;
@@ -204,6 +225,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
         fine = false;
     if (!fine) {
         result.count = 0;
+        record_keep_error(L, top + 1);
         if (lua_isnil(L, error))
             lua_copy(L, top + 1, error);
         lua_settop(L, top);
@@ -224,8 +246,7 @@ static struct path_result record_path(lua_State *L, int function, int first, int
 /* Raises the text at an index, which contains its position. */
 _Noreturn static void raise_text(lua_State *L, int index) {
     const char *text = lua_tostring(L, index);
-    bool is_index = strstr(text, "a nil value (field '?')") || strstr(text, "index is");
-    lua_pushfstring(L, "%s%s", text, is_index ? TABLE_HINT : strstr(text, "bad 'for' ") ? FOR_HINT : "");
+    lua_pushfstring(L, "%s%s", text, hint_of(text));
     lua_error(L);
     __builtin_unreachable();
 }
@@ -281,13 +302,13 @@ static bool record_paths(lua_State *L, int function, int first, bool may_stop, s
 /* A decision of some path. */
 struct branch {
     uint32_t condition, above, depth; /* above: the decision before it */
-    bool side;                        /* the answer of that one */
+    bool side, answer;                /* the answer of that one; the answer that a call took */
 };
 
-/* Makes the path that ends with `false` at the decision `at`. */
+/* Makes the path that ends with the other answer at the decision `at`. */
 static void begin_with(struct recorder *recorder, const struct branch *branches, uint32_t at) {
     struct record_frame *frame = &recorder->frames[0];
-    bool answer = false;
+    bool answer = !branches[at].answer;
     frame->depth = branches[at].depth + 1;
     for (uint32_t k = frame->depth; k-- > 0;) {
         frame->decisions[k] = (struct decision){
@@ -299,7 +320,7 @@ static void begin_with(struct recorder *recorder, const struct branch *branches,
 
 /* Raises the error of too many paths if some calls show that there are more: each decision that they reach makes one
  * more path. Breadth first, because decisions near the beginning lead to the most others; depth first, thousands of
- * long paths would come before. */
+ * long paths would come before. Every other call answers `false`: where `true` ends a recursion, that call is long. */
 static void count_paths(lua_State *L, int function, int first) {
     struct recorder *recorder = context_of(L)->recorder;
     struct record_frame *frame = &recorder->frames[0];
@@ -316,12 +337,16 @@ static void count_paths(lua_State *L, int function, int first) {
             uint32_t above = k > known ? count - 1 : next - 1;
             if (count + 1 >= RECORD_PATHS)
                 raise_too_many_paths(L, function);
-            branches[count++] = (struct branch){frame->decisions[k].condition, above, k, k > known};
+            bool side = k > known ? branches[above].answer : k > 0 && !branches[above].answer;
+            branches[count++] =
+                (struct branch){frame->decisions[k].condition, above, k, side, frame->decisions[k].answer};
         }
         if (next == count)
             break;
         begin_with(recorder, branches, next++);
+        recorder->prefers_false = !recorder->prefers_false;
     } while (recorder->work < WORK_OF_COUNTING);
+    recorder->prefers_false = false;
     lua_settop(L, error - 2);
 }
 
@@ -420,12 +445,20 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
     lua_Debug where;
     lua_pushvalue(L, function);
     (void)lua_getinfo(L, ">S", &where);
-    char text[RECORD_ERROR];
-    (void)snprintf(text, sizeof text,
-                   "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded %s; "
-                   "it must depend only on its arguments, and x == 0 cannot be recorded (write x >= 0 and x <= 0), nor "
-                   "can t[x] = y and tostring(x)",
-                   where.linedefined, inputs[0], inputs[1], inputs[2], a, b);
+    char text[2 * RECORD_ERROR];
+    const char *path_error = comparison->bounds ? "" : context_of(L)->recorder->path_error;
+    if (path_error[0])
+        (void)snprintf(text, sizeof text,
+                       "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded "
+                       "%s; one of its paths ends with an error: %s",
+                       where.linedefined, inputs[0], inputs[1], inputs[2], a, b, path_error);
+    else
+        (void)snprintf(
+            text, sizeof text,
+            "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded %s; "
+            "it must depend only on its arguments, and x == 0 cannot be recorded (write x >= 0 and x <= 0), nor "
+            "can t[x] = y and tostring(x)",
+            where.linedefined, inputs[0], inputs[1], inputs[2], a, b);
     lua_pushstring(L, text);
     lua_error(L);
 }
@@ -450,6 +483,8 @@ static void begin(lua_State *L) {
     recorder->frames[0].serial = recorder->decision_serial = 1;
     recorder->has_loop = false;
     recorder->gave_up = false;
+    recorder->prefers_false = false;
+    recorder->path_error[0] = '\0';
     recorder->active = true;
 }
 

@@ -102,8 +102,10 @@ struct recorder {
     bool prints;                               /* the first path of the function has not ended */
     bool has_loop;                             /* the recording has a loop of the graph */
     bool unrolls;                              /* the steps of loops are recorded one by one */
+    bool prefers_false;                        /* new decisions of the function are `false` */
     bool gave_up;                              /* at a limit; `error` names it and the line */
     char error[RECORD_ERROR];
+    char path_error[RECORD_ERROR]; /* the first error of a path; empty: none */
     const void *symbol_metatable, *vector_metatable;
     struct recorded_function *functions; /* the newest first */
 };
@@ -154,6 +156,8 @@ bool record_is_silent(const struct recorder *recorder);
 /* A message handler: errors get their position while the stack still exists. */
 int record_add_position(lua_State *L);
 void record_open(lua_State *L);
+/* Keeps the error of a path at an index, if it is the first one. */
+void record_keep_error(lua_State *L, int index);
 void recorder_destroy(struct recorder *recorder);
 /* The texture of the Lua function at an absolute index, kept by the scene. Raises every error, with the name of the
  * argument in front. */

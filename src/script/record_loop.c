@@ -163,8 +163,10 @@ static void call_step(lua_State *L, int function, struct number step, const stru
     if (status == LUA_OK) {
         check_results(L, top + 2, in->count);
         read_states(L, top + 2, in->count, out);
-    } else if (lua_isnil(L, error)) {
-        lua_copy(L, -1, error);
+    } else {
+        record_keep_error(L, -1);
+        if (lua_isnil(L, error))
+            lua_copy(L, -1, error);
     }
     lua_settop(L, top);
 }

@@ -237,7 +237,9 @@ bool record_decide(lua_State *L, uint32_t condition) {
                        RECORD_PATHS);
     struct decision *decision = &frame->decisions[frame->taken++];
     if (frame->taken > frame->depth) {
-        *decision = (struct decision){.condition = condition, .serial = ++recorder->decision_serial, .answer = true};
+        bool preferred = recorder->level > 0 || !recorder->prefers_false;
+        *decision =
+            (struct decision){.condition = condition, .serial = ++recorder->decision_serial, .answer = preferred};
         frame->depth = frame->taken;
         frame->branches++;
     } else if (decision->condition != condition) {

@@ -243,6 +243,19 @@ TEST(errors_of_recording_name_the_line_and_the_remedy) {
           "scene.lua:2: the function has more than 100000 operations; gr.where, gr.step, gr.min and gr.max need one "
           "operation where branches need many, and gr.loop(n, state, f) records one step for all");
     fails("fn(7, 8, 9) fn('x')", "");
+    fails(
+        "fn(function(p)\n return #string.format('%d', p.x) end)",
+        "scene.lua:2: bad argument #2 to 'format' (number "
+        "expected, got recorded number); a number of the recorded function has no value yet, so it cannot become text");
+    fails("fn(function(p) return p.x .. 'a' end)", "it cannot become text or choose an argument; use operators");
+    fails("fn(function(p) return #table.concat{p.x, 1} end)", "it cannot become text");
+    fails("fn(function(p) return (select(floor(p.x) % 3 + 1, 1, 2, 3)) end)", "choose an argument");
+    /* on one of two paths */
+    fails("fn(function(p) if p.y > 0 then\n return #(p.x .. 'a') end return 0.5 end)",
+          "scene.lua:2: attempt to concatenate a recorded number value");
+    fails("fn(function(p) return (gr.loop(2000, 1.0, p.x, function(i, a, b) if b > 3 then\n return #(b .. 'a'), b end "
+          "return 1, b * 1.1 end)) end)",
+          "scene.lua:2: attempt to concatenate a recorded number value");
     fails("fn(function(p) error{} end)", "the function raised a table");
 }
 
@@ -255,6 +268,9 @@ TEST(recordings_beyond_the_limits_end_with_one_line) {
           "the function has more than 100000 operations");
     fails("local function f(x) return f(x + 1) end fn(function(p) return f(p.x) end)", "more than 100000 operations");
     fails("local function f(x) return f(x) + 1 end fn(function(p) return f(p.x) end)", "stack overflow");
+    fails("local function f(x) if gr.noise(x, p_y, 0) > 0.7 then return x end return f(x * 0.9) end"
+          " fn(function(p) p_y = p.y return f(p.x) end)",
+          "more than 4096 times");
     fails("fn(function(p) while true do pcall(function() local x = p.x while x > 0 do x = x - 1 end end)"
           " if p.x > 0 then return 1 end end end)",
           "more than 4096 times");
