@@ -1,12 +1,10 @@
 /* Scripts run one after the other in this process, so that meshes and images (assets) outlive the script that read
  * them. Each gr.render is a job: prepare, begin (names and film), build the world, render, deliver. The world lives
  * in the arena of the job, which is emptied for the next one. */
-#include "host/render_process.h"
+#include "host/render_process_internal.h"
 
-#include "base/arena.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/mem.h"
 #include "base/pool.h"
 #include "base/terminal_text.h"
@@ -29,59 +27,11 @@
 #include <string.h>
 #include <sys/resource.h>
 
-enum { WARNINGS_LIMIT = 256, LARGE_JOB = 64 << 20 /* bytes */ };
-
-struct render_process {
-    const struct options *options;
-    const struct host_services *services;
-    const char *script; /* the one that runs */
-    struct pool *pool;  /* made for the first picture */
-    struct arena job;   /* memory of the current picture */
-    struct assets assets;
-    struct world_cache world_cache;  /* of the frame before, in an animation */
-    struct scene_writer *errors;     /* what scripts write to standard error */
-    uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
-    uint64_t played;                 /* those of them that are frames in a window: nothing is written */
-    struct mem_account memory;       /* of the pictures of this script: worlds, indexes of meshes, photons, films */
-    struct mem_account *account;     /* the same if there is a limit, or NULL */
-    uint64_t reserved;               /* its part for the current picture */
-    struct file_read_log read_log;   /* hash of the files that the scripts read, if tiles are kept for a later run */
-    struct file_set reported;        /* files already reported to the supervisor; empty under --watch */
-    int status;                      /* --check: worst of the problems reported so far in this script */
-    bool building;                   /* the world */
-    bool animates;                   /* the script has called gr.frames */
-    bool skips;                      /* this run of the script is a frame that is not rendered */
-    bool passed_over;                /* the last picture is before the one in the window */
-    bool rewinds;                    /* the script runs again, for an earlier frame */
-    uint64_t runs_before;            /* of the pool, before that */
-    uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
-    int warned_count;
-};
-
-/* A picture between the call of gr.render and the finished film. */
-struct picture_work {
-    struct render_process *process;
-    const struct render_request *request;
-    struct render_job job;
-    struct picture_request asked;
-    struct film film;
-    struct world world;
-    bool built; /* the world is complete */
-    bool ok;    /* the film is */
-    struct picture_report report;
-    char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
-};
+enum { LARGE_JOB = 64 << 20 /* bytes */ };
 
 static bool is_cancelled(void *context) {
     const struct render_process *process = context;
     return atomic_load(&process->services->control->cancel) == CANCEL_ALL;
-}
-
-/* Writes the output of the script; the supervisor reports failures, once for all scripts. */
-static void finish_output(const struct render_process *process) {
-    scene_writer_flush(process->errors);
-    if (fflush(stdout) != 0 || ferror(stdout))
-        atomic_store(&process->services->control->lost, 1);
 }
 
 /* The supervisor writes the files of a frame while the script and the digest of the next one run. Whatever could show
@@ -99,20 +49,6 @@ static bool settle(const struct render_process *process, struct error *error) {
         return true;
     error->elsewhere = true;
     return false;
-}
-
-static void report(const struct render_process *process, enum line_kind kind, const char *text) {
-    finish_output(process); /* earlier output of the script comes first */
-    process->services->line(process->services->context, kind, text);
-}
-
-/* A line whose beginning the scene may have chosen: by a chunk's name, or that of its file. */
-static void report_scene(const struct render_process *process, enum line_kind kind, const char *text) {
-    const char *mark = scene_mark(text);
-    char line[MESSAGE_TEXT_LIMIT];
-    if (mark[0] != '\0')
-        (void)snprintf(line, sizeof line, "%s%s", mark, text);
-    report(process, kind, mark[0] != '\0' ? line : text);
 }
 
 /* The number of building steps depends on the scene; only the progress of each one is known. */
@@ -144,46 +80,11 @@ static bool need_pool(struct render_process *process, struct error *error) {
         return error_no_memory(error, "the threads");
     if (warning[0] != '\0') {
         (void)snprintf(line, sizeof line, "gray: warning: %s", warning);
-        report(process, LINE_WARNING, line);
+        render_process_report(process, LINE_WARNING, line);
     }
     pool_set_poll(process->pool, poll_pool, process);
     pool_watch(process->pool, &process->services->control->cancel);
     return true;
-}
-
-/* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
-static void warn_once(struct render_process *process, const char *key, const char *text) {
-    static const char word[] = "warning: ";
-    uint64_t hash = hash_bytes(key, strlen(key), 0);
-    for (int i = 0; i < process->warned_count; i++) {
-        if (process->warned[i] == hash)
-            return;
-    }
-    if (process->warned_count < WARNINGS_LIMIT)
-        process->warned[process->warned_count++] = hash;
-    bool has_word = strncmp(text, word, strlen(word)) == 0;
-    char line[2048];
-    (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);
-    report_scene(process, LINE_WARNING, line);
-}
-
-static void warn_of_scene(void *context, const char *text) {
-    warn_once(context, text, text);
-}
-
-/* After a picture: reports the functions that returned NaN at a hit. */
-static void warn_of_nan(struct render_process *process, const struct world *world) {
-    char line[1024];
-    for (uint32_t i = 0; i < world->texture_count; i++) {
-        const struct texture *texture = &world->textures[i];
-        const struct texture_nan *nan = texture->kind == TEXTURE_FUNCTION ? texture->recorded.nan : NULL;
-        if (!nan || !nan->found)
-            continue;
-        (void)snprintf(line, sizeof line,
-                       "the function of %.400s is not a number (NaN) at p = {%.6g, %.6g, %.6g}; it counts as 0 there",
-                       texture->recorded.source, nan->point[0], nan->point[1], nan->point[2]);
-        warn_once(process, texture->recorded.source, line);
-    }
 }
 
 static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t count) {
@@ -195,39 +96,6 @@ static void tile_done(void *context, uint32_t tile, uint32_t done, uint32_t coun
     while (warned < done && !atomic_compare_exchange_weak_explicit(&control->tiles_done, &warned, done,
                                                                    memory_order_relaxed, memory_order_relaxed))
         ;
-}
-
-static void fill_report(const struct picture_work *work, const struct film *film, struct picture_report *report) {
-    const struct world *world = &work->world;
-    struct rusage usage;
-    struct error ignored;
-    size_t film_bytes = 0;
-    report->primitives = world->primitive_count;
-    report->triangles = world->triangles;
-    report->mesh_bytes = world->mesh_memory;
-    report->primitive_bytes = world_primitive_memory(world);
-    report->search_bytes = scene_accel_memory(&world->accel) + mesh_group_memory(&world->group);
-    report->image_bytes = 0;
-    for (const struct asset_image *entry = work->process->assets.images; entry; entry = entry->next)
-        report->image_bytes += image_memory(entry->image);
-    memcpy(report->grid_cells, world->accel.grid.cells, sizeof report->grid_cells);
-    report->node_bytes = work->request->scene->arena.total;
-    (void)film_size_layered(film->width, film->height, film->record, aov_layers(film->layer_mask), &film_bytes,
-                            &ignored);
-    report->film_bytes = film_bytes;
-    report->threads = pool_workers(work->process->pool);
-    if (getrusage(RUSAGE_SELF, &usage) == 0)
-        report->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
-}
-
-static void report_world(const struct render_process *process, const char *file, const struct picture_report *report) {
-    char line[4096 + 512];
-    (void)snprintf(line, sizeof line,
-                   "%s: %s: %llu primitives, %llu triangles, grid of %u x %u x %u, built in %.3f s, %d threads",
-                   process->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
-                   report->grid_cells[0], report->grid_cells[1], report->grid_cells[2], report->rays.build_seconds,
-                   report->threads);
-    report_scene(process, LINE_DETAIL, line);
 }
 
 /* --pixel, --dump-scene and --dump-expr: the scene is built, no picture is made. */
@@ -254,34 +122,6 @@ static bool answer_questions(const struct picture_work *work, struct error *erro
     return (!options->dump_scene || inspect_world(&picture, &writer, error)) &&
            (options->pixel_count == 0 ||
             inspect_pixels(&picture, options->pixels, options->pixel_count, &writer, error));
-}
-
-/* With --time-limit the number of samples that were possible, with --noise the number that were needed, or the limit
- * that came first. */
-static void report_samples(const struct picture_work *work) {
-    const struct settings *settings = &work->job.settings;
-    const struct render_statistics *rays = &work->report.rays;
-    char line[2 * NAME_LIMIT + 256], words[256];
-    bool has_limit = settings->noise > 0 || settings->time_limit > 0;
-    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->asked.in_window ||
-        rays->pixels == 0)
-        return;
-    double mean = (double)rays->samples / (double)rays->pixels;
-    unsigned long long samples = rays->passes_samples;
-    if (!(settings->noise > 0))
-        (void)snprintf(words, sizeof words, "%llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
-                       samples, rays->render_seconds, samples);
-    else if (!rays->noisy)
-        (void)snprintf(words, sizeof words, "%.1f samples per pixel, for a noise of %g", mean, settings->noise);
-    else if (rays->out_of_time)
-        (void)snprintf(words, sizeof words,
-                       "%.1f samples per pixel in %.1f s (--time-limit); parts have more noise than %g", mean,
-                       rays->render_seconds, settings->noise);
-    else
-        (void)snprintf(words, sizeof words, "%.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
-                       mean, settings_path_samples(settings), settings->noise);
-    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, work->name, words);
-    report_scene(work->process, LINE_NOTICE, line);
 }
 
 /* Whether the next picture may be like this one. */
@@ -318,7 +158,7 @@ static bool build_world(struct picture_work *work, const struct scene_light *lig
                                       .encodes = work->job.settings.tone.srgb,
                                       .cache = is_frame(work) ? &process->world_cache : NULL,
                                       .keeps_tables = notes_changes(work),
-                                      .warn = warn_of_scene,
+                                      .warn = render_process_warn,
                                       .warn_context = process};
     bool ok = work->built = world_build(&work->world, &input, &process->job, process->pool, error);
     process->building = false;
@@ -336,12 +176,12 @@ static bool preview_build(void *context, const struct scene_light *lights, uint3
 }
 
 static void preview_fill_report(void *context, const struct film *film, struct picture_report *report) {
-    fill_report(context, film, report);
+    render_process_fill_report(context, film, report);
 }
 
 static void preview_warn(void *context, const char *text) {
     const struct picture_work *work = context;
-    warn_of_scene(work->process, text);
+    render_process_warn(work->process, text);
 }
 
 static bool make_in_window(struct picture_work *work, double build_seconds, struct error *error) {
@@ -381,7 +221,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
     if (job->world)
-        integrator_warn(job, warn_of_scene, process);
+        integrator_warn(job, render_process_warn, process);
     if (is_asked(process->options)) {
         ok = answer_questions(work, error);
     } else if (!process->options->check) {
@@ -395,14 +235,14 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     report->rays.build_processor_seconds = built_worked - worked;
     report->rays.render_seconds = progress_clock() - built;
     report->rays.render_processor_seconds = progress_processor_clock() - built_worked;
-    fill_report(work, job->film, report);
+    render_process_fill_report(work, job->film, report);
     if (ok && job->world)
-        warn_of_nan(process, job->world);
+        render_process_warn_of_nan(process, job->world);
     work->ok = ok;
     if (ok && !is_asked(process->options) && !process->options->check)
-        report_samples(work);
+        render_process_report_samples(work);
     if (ok)
-        report_world(process, work->name, report);
+        render_process_report_world(process, work->name, report);
     return ok;
 }
 
@@ -532,7 +372,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return false;
     asked->x0 = area.x0, asked->y0 = area.y0, asked->width = area.width, asked->height = area.height;
     if (warning[0] != '\0')
-        warn_of_scene(process, warning);
+        render_process_warn(process, warning);
     asked->shown = (struct film_rectangle){asked->x0, asked->y0, asked->x0 + asked->width, asked->y0 + asked->height};
     uint32_t rim = path_film_parts(asked->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
     add_rim(asked, rim + finish_rim(&job->settings.finish, asked->full_height));
@@ -606,7 +446,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     struct picture_work work;
     bool already = false;
     init_work(&work, process, request);
-    finish_output(process);
+    render_process_finish_output(process);
     if (is_cancelled(process))
         return error_set(error, ERROR_CANCELLED, "interrupted");
     if (!need_pool(process, error) || !begin_picture(&work, &already, error))
@@ -665,7 +505,7 @@ static bool render(void *context, const struct render_request *request, struct e
     char line[2048];
     (void)snprintf(line, sizeof line, "%s%s%s", error->elsewhere ? "" : request->where, error->elsewhere ? "" : ": ",
                    error->text);
-    report_scene(process, LINE_ERROR, line);
+    render_process_report_scene(process, LINE_ERROR, line);
     process->status = ERROR_SCENE;
     return true;
 }
@@ -678,10 +518,10 @@ static void scene_text(void *context, const char *text, size_t size) {
 static void message(void *context, enum script_message kind, const char *text) {
     switch (kind) {
     case SCRIPT_NOTICE:
-        report_scene(context, LINE_NOTICE, text);
+        render_process_report_scene(context, LINE_NOTICE, text);
         return;
     case SCRIPT_WARNING:
-        report_scene(context, LINE_WARNING, text);
+        render_process_report_scene(context, LINE_WARNING, text);
         return;
     }
 }
@@ -702,9 +542,9 @@ static void report_error(const struct render_process *process, struct arena *are
     const char *text = arena_format(arena, "%s%s%s%s%.*s", who, who[0] ? ": " : "", error->text, length > 0 ? "\n" : "",
                                     (int)length, below);
     if (error->kind == ERROR_USAGE)
-        report(process, LINE_ERROR, text ? text : error->text);
+        render_process_report(process, LINE_ERROR, text ? text : error->text);
     else
-        report_scene(process, LINE_ERROR, text ? text : error->text);
+        render_process_report_scene(process, LINE_ERROR, text ? text : error->text);
 }
 
 /* Meshes and images of earlier scripts, with the indexes that pictures have added, are kept for the next one until they
@@ -789,7 +629,7 @@ static int run_once(struct render_process *process, const char *path, const stru
         status = (int)error.kind > status ? (int)error.kind : status;
     }
     arena_destroy(&arena);
-    finish_output(process);
+    render_process_finish_output(process);
     return status;
 }
 

@@ -1,0 +1,71 @@
+/* The data of the render process, and what it tells the user (render_reports.c). Other files of the host see neither. */
+#ifndef GRAY_HOST_RENDER_PROCESS_INTERNAL_H
+#define GRAY_HOST_RENDER_PROCESS_INTERNAL_H
+
+#include "base/arena.h"
+#include "base/file.h"
+#include "base/mem.h"
+#include "base/pool.h"
+#include "host/render_process.h"
+#include "output/picture_files.h"
+#include "render/render.h"
+#include "script/script.h"
+#include "world/world.h"
+
+enum { WARNINGS_LIMIT = 256 };
+
+struct render_process {
+    const struct options *options;
+    const struct host_services *services;
+    const char *script; /* the one that runs */
+    struct pool *pool;  /* made for the first picture */
+    struct arena job;   /* memory of the current picture */
+    struct assets assets;
+    struct world_cache world_cache;  /* of the frame before, in an animation */
+    struct scene_writer *errors;     /* what scripts write to standard error */
+    uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
+    uint64_t played;                 /* those of them that are frames in a window: nothing is written */
+    struct mem_account memory;       /* of the pictures of this script: worlds, indexes of meshes, photons, films */
+    struct mem_account *account;     /* the same if there is a limit, or NULL */
+    uint64_t reserved;               /* its part for the current picture */
+    struct file_read_log read_log;   /* hash of the files that the scripts read, if tiles are kept for a later run */
+    struct file_set reported;        /* files already reported to the supervisor; empty under --watch */
+    int status;                      /* --check: worst of the problems reported so far in this script */
+    bool building;                   /* the world */
+    bool animates;                   /* the script has called gr.frames */
+    bool skips;                      /* this run of the script is a frame that is not rendered */
+    bool passed_over;                /* the last picture is before the one in the window */
+    bool rewinds;                    /* the script runs again, for an earlier frame */
+    uint64_t runs_before;            /* of the pool, before that */
+    uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
+    int warned_count;
+};
+
+/* A picture between the call of gr.render and the finished film. */
+struct picture_work {
+    struct render_process *process;
+    const struct render_request *request;
+    struct render_job job;
+    struct picture_request asked;
+    struct film film;
+    struct world world;
+    bool built; /* the world is complete */
+    bool ok;    /* the film is */
+    struct picture_report report;
+    char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
+};
+
+void render_process_finish_output(const struct render_process *process);
+void render_process_report(const struct render_process *process, enum line_kind kind, const char *text);
+/* A line whose beginning the scene may have chosen. */
+void render_process_report_scene(const struct render_process *process, enum line_kind kind, const char *text);
+/* context: the render process. Each warning is printed once in a script. */
+void render_process_warn(void *context, const char *text);
+void render_process_warn_of_nan(struct render_process *process, const struct world *world);
+void render_process_fill_report(const struct picture_work *work, const struct film *film,
+                                struct picture_report *report);
+void render_process_report_world(const struct render_process *process, const char *file,
+                                 const struct picture_report *report);
+void render_process_report_samples(const struct picture_work *work);
+
+#endif

@@ -1,0 +1,130 @@
+/* What the render process tells the user: lines, warnings about scenes, and the numbers of a picture. */
+#include "host/render_process_internal.h"
+
+#include "base/hash.h"
+#include "image/image.h"
+#include "render/aov.h"
+#include "session/text.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+
+/* Writes the output of the script; the supervisor reports failures, once for all scripts. */
+void render_process_finish_output(const struct render_process *process) {
+    scene_writer_flush(process->errors);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        atomic_store(&process->services->control->lost, 1);
+}
+
+void render_process_report(const struct render_process *process, enum line_kind kind, const char *text) {
+    render_process_finish_output(process); /* earlier output of the script comes first */
+    process->services->line(process->services->context, kind, text);
+}
+
+/* A line whose beginning the scene may have chosen: by a chunk's name, or that of its file. */
+void render_process_report_scene(const struct render_process *process, enum line_kind kind, const char *text) {
+    const char *mark = scene_mark(text);
+    char line[MESSAGE_TEXT_LIMIT];
+    if (mark[0] != '\0')
+        (void)snprintf(line, sizeof line, "%s%s", mark, text);
+    render_process_report(process, kind, mark[0] != '\0' ? line : text);
+}
+
+/* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
+static void warn_once(struct render_process *process, const char *key, const char *text) {
+    static const char word[] = "warning: ";
+    uint64_t hash = hash_bytes(key, strlen(key), 0);
+    for (int i = 0; i < process->warned_count; i++) {
+        if (process->warned[i] == hash)
+            return;
+    }
+    if (process->warned_count < WARNINGS_LIMIT)
+        process->warned[process->warned_count++] = hash;
+    bool has_word = strncmp(text, word, strlen(word)) == 0;
+    char line[2048];
+    (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);
+    render_process_report_scene(process, LINE_WARNING, line);
+}
+
+void render_process_warn(void *context, const char *text) {
+    warn_once(context, text, text);
+}
+
+/* After a picture: reports the functions that returned NaN at a hit. */
+void render_process_warn_of_nan(struct render_process *process, const struct world *world) {
+    char line[1024];
+    for (uint32_t i = 0; i < world->texture_count; i++) {
+        const struct texture *texture = &world->textures[i];
+        const struct texture_nan *nan = texture->kind == TEXTURE_FUNCTION ? texture->recorded.nan : NULL;
+        if (!nan || !nan->found)
+            continue;
+        (void)snprintf(line, sizeof line,
+                       "the function of %.400s is not a number (NaN) at p = {%.6g, %.6g, %.6g}; it counts as 0 there",
+                       texture->recorded.source, nan->point[0], nan->point[1], nan->point[2]);
+        warn_once(process, texture->recorded.source, line);
+    }
+}
+
+void render_process_fill_report(const struct picture_work *work, const struct film *film,
+                                struct picture_report *report) {
+    const struct world *world = &work->world;
+    struct rusage usage;
+    struct error ignored;
+    size_t film_bytes = 0;
+    report->primitives = world->primitive_count;
+    report->triangles = world->triangles;
+    report->mesh_bytes = world->mesh_memory;
+    report->primitive_bytes = world_primitive_memory(world);
+    report->search_bytes = scene_accel_memory(&world->accel) + mesh_group_memory(&world->group);
+    report->image_bytes = 0;
+    for (const struct asset_image *entry = work->process->assets.images; entry; entry = entry->next)
+        report->image_bytes += image_memory(entry->image);
+    memcpy(report->grid_cells, world->accel.grid.cells, sizeof report->grid_cells);
+    report->node_bytes = work->request->scene->arena.total;
+    (void)film_size_layered(film->width, film->height, film->record, aov_layers(film->layer_mask), &film_bytes,
+                            &ignored);
+    report->film_bytes = film_bytes;
+    report->threads = pool_workers(work->process->pool);
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+        report->peak_bytes = (uint64_t)usage.ru_maxrss * 1024;
+}
+
+void render_process_report_world(const struct render_process *process, const char *file,
+                                 const struct picture_report *report) {
+    char line[4096 + 512];
+    (void)snprintf(line, sizeof line,
+                   "%s: %s: %llu primitives, %llu triangles, grid of %u x %u x %u, built in %.3f s, %d threads",
+                   process->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
+                   report->grid_cells[0], report->grid_cells[1], report->grid_cells[2], report->rays.build_seconds,
+                   report->threads);
+    render_process_report_scene(process, LINE_DETAIL, line);
+}
+
+/* With --time-limit the number of samples that were possible, with --noise the number that were needed, or the limit
+ * that came first. */
+void render_process_report_samples(const struct picture_work *work) {
+    const struct settings *settings = &work->job.settings;
+    const struct render_statistics *rays = &work->report.rays;
+    char line[2 * NAME_LIMIT + 256], words[256];
+    bool has_limit = settings->noise > 0 || settings->time_limit > 0;
+    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->asked.in_window ||
+        rays->pixels == 0)
+        return;
+    double mean = (double)rays->samples / (double)rays->pixels;
+    unsigned long long samples = rays->passes_samples;
+    if (!(settings->noise > 0))
+        (void)snprintf(words, sizeof words, "%llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
+                       samples, rays->render_seconds, samples);
+    else if (!rays->noisy)
+        (void)snprintf(words, sizeof words, "%.1f samples per pixel, for a noise of %g", mean, settings->noise);
+    else if (rays->out_of_time)
+        (void)snprintf(words, sizeof words,
+                       "%.1f samples per pixel in %.1f s (--time-limit); parts have more noise than %g", mean,
+                       rays->render_seconds, settings->noise);
+    else
+        (void)snprintf(words, sizeof words, "%.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
+                       mean, settings_path_samples(settings), settings->noise);
+    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, work->name, words);
+    render_process_report_scene(work->process, LINE_NOTICE, line);
+}
