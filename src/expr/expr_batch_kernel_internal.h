@@ -266,6 +266,7 @@ static void pack(const struct expr_loop *loop, uint32_t count, struct packing *p
 
 /* Repeats the body until all points have ended, with those that have not in fewer vectors. rows: of the loop. */
 static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows) {
+    static const struct expr_direct none = {.output = NULL};
     int64_t alive[EXPR_BATCH];
     row_integer *steps = (row_integer *)(void *)(rows + (size_t)loop->argument_count * EXPR_BATCH);
     struct packing p = {.kept = rows + (size_t)(expr_loop_rows(loop) / 2) * EXPR_BATCH, .width = width};
@@ -282,7 +283,7 @@ static void run_loop(const struct expr_loop *loop, uint32_t width, double *rows)
             pack(loop, count, &p, rows, alive);
         for (uint32_t i = 0; i < p.width; i++)
             steps[i] = step;
-        KERNEL(run)(&loop->body, p.width, rows);
+        KERNEL(run)(&loop->body, p.width, rows, &none);
         for (uint32_t k = 0; k < loop->state_count; k++)
             write_state(loop, k, p.width, rows, alive);
     }
@@ -384,19 +385,20 @@ run_rows(const struct expr_program *program, const struct expr_instruction *in, 
 #define RUN_LINKED run_many
 #include "expr/expr_linked_kernel_internal.h"
 
-void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows) {
+void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows, const struct expr_direct *direct) {
     uint32_t at = 0;
     for (; at + 8 * WIDTH <= width; at += 8 * WIDTH)
-        run_many(program, rows + at);
+        run_many(program, at, rows, direct);
     for (; at + 16 <= width; at += 16)
-        run_few(program, rows + at);
+        run_few(program, at, rows, direct);
     for (; at < width; at += WIDTH)
-        run_one(program, rows + at);
+        run_one(program, at, rows, direct);
 }
 
 #else
 
-void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows) {
+void KERNEL(run)(const struct expr_program *program, uint32_t width, double *rows, const struct expr_direct *direct) {
+    (void)direct; /* for links only */
     for (const struct expr_instruction *in = program->code, *end = in + program->count; in < end; in++)
         in = run_instruction(program, in, width, rows);
 }

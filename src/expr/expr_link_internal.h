@@ -8,18 +8,19 @@
 
 #include "expr/expr_program.h"
 
-/* Where an operand comes from: a register of the program (R), a constant (K), or the instruction before (L). */
-enum { EXPR_FROM_R, EXPR_FROM_K, EXPR_FROM_L };
+/* Where an operand comes from: a register of the program (R), a constant (K), the instruction before (L), or, of sums,
+ * differences and products, an input (I), which batches read where the caller has it. */
+enum { EXPR_FROM_R, EXPR_FROM_K, EXPR_FROM_L, EXPR_FROM_I };
 
 /* The operations that have links, with one operand and with two; the third kind is the selection. */
 #define EXPR_LINKED_1(X) X(NEGATE) X(ABS) X(SQRT) X(FLOOR)
 #define EXPR_LINKED_2(X) X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(MIN) X(MAX) X(LESS) X(LESS_EQUAL)
 #define EXPR_LINKS_1(operation) EXPR_LINK_##operation, EXPR_LINK_END_##operation = EXPR_LINK_##operation + 5,
-#define EXPR_LINKS_2(operation) EXPR_LINK_##operation, EXPR_LINK_END_##operation = EXPR_LINK_##operation + 17,
+#define EXPR_LINKS_2(operation) EXPR_LINK_##operation, EXPR_LINK_END_##operation = EXPR_LINK_##operation + 31,
 enum { EXPR_UNLINKED, EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EXPR_LINK_SELECT };
 #define EXPR_LINK_1(operation, a, stored) (EXPR_LINK_##operation + 2 * EXPR_FROM_##a + (stored))
 #define EXPR_LINK_2(operation, a, b, stored)                                                                           \
-    (EXPR_LINK_##operation + 2 * (3 * EXPR_FROM_##a + EXPR_FROM_##b) + (stored))
+    (EXPR_LINK_##operation + 2 * (4 * EXPR_FROM_##a + EXPR_FROM_##b) + (stored))
 #define EXPR_LINK_3(a, b, c, stored)                                                                                   \
     (EXPR_LINK_SELECT + 2 * (9 * EXPR_FROM_##a + 3 * EXPR_FROM_##b + EXPR_FROM_##c) + (stored))
 
@@ -35,6 +36,14 @@ enum { EXPR_UNLINKED, EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EX
     X(operation, L, R, stored)                                                                                         \
     X(operation, L, K, stored)                                                                                         \
     X(operation, L, L, stored)
+#define EXPR_CASES_I(X, operation, stored)                                                                             \
+    X(operation, R, I, stored)                                                                                         \
+    X(operation, K, I, stored)                                                                                         \
+    X(operation, L, I, stored)                                                                                         \
+    X(operation, I, R, stored)                                                                                         \
+    X(operation, I, K, stored)                                                                                         \
+    X(operation, I, L, stored)                                                                                         \
+    X(operation, I, I, stored)
 #define EXPR_CASES_3(X, stored)                                                                                        \
     X(R, R, R, stored)                                                                                                 \
     X(R, R, K, stored)                                                                                                 \
@@ -61,8 +70,48 @@ enum { EXPR_UNLINKED, EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EX
     EXPR_CASES_BOTH(X2, MAX)                                                                                           \
     EXPR_CASES_BOTH(X2, LESS)                                                                                          \
     EXPR_CASES_BOTH(X2, LESS_EQUAL)                                                                                    \
+    EXPR_CASES_OF_INPUTS(X2, ADD)                                                                                      \
+    EXPR_CASES_OF_INPUTS(X2, SUBTRACT)                                                                                 \
+    EXPR_CASES_OF_INPUTS(X2, MULTIPLY)                                                                                 \
     EXPR_CASES_3(X3, 0)                                                                                                \
     EXPR_CASES_3(X3, 1)
+/* Two sums, differences or products at once: each has the result before as its first operand, and the second one an
+ * operand from R, K or I. The link of the first instruction names both and whether the second one is stored; the link
+ * of the second one remains that of a single one. */
+#define EXPR_STEPS_OF(operation) EXPR_STEP_##operation##_R, EXPR_STEP_##operation##_K, EXPR_STEP_##operation##_I
+enum { EXPR_STEPS_OF(ADD), EXPR_STEPS_OF(SUBTRACT), EXPR_STEPS_OF(MULTIPLY), EXPR_STEPS };
+enum { EXPR_LINK_PAIRS = EXPR_LINK_SELECT + 2 * 27 };
+#define EXPR_LINK_PAIR(first, second, first_stored, stored)                                                            \
+    (EXPR_LINK_PAIRS + 4 * (EXPR_STEPS * (first) + (second)) + 2 * (first_stored) + (stored))
+/* X(first operation, its operand, whether it is stored, second operation, its operand, whether it is stored) */
+#define EXPR_PAIR_CASES(X)                                                                                             \
+    EXPR_PAIRS_AFTER(X, ADD, R)                                                                                        \
+    EXPR_PAIRS_AFTER(X, ADD, K)                                                                                        \
+    EXPR_PAIRS_AFTER(X, ADD, I)                                                                                        \
+    EXPR_PAIRS_AFTER(X, SUBTRACT, R)                                                                                   \
+    EXPR_PAIRS_AFTER(X, SUBTRACT, K)                                                                                   \
+    EXPR_PAIRS_AFTER(X, SUBTRACT, I)                                                                                   \
+    EXPR_PAIRS_AFTER(X, MULTIPLY, R)                                                                                   \
+    EXPR_PAIRS_AFTER(X, MULTIPLY, K)                                                                                   \
+    EXPR_PAIRS_AFTER(X, MULTIPLY, I)
+#define EXPR_PAIRS_AFTER(X, o, b)                                                                                      \
+    EXPR_PAIRS_WITH(X, o, b, ADD)                                                                                      \
+    EXPR_PAIRS_WITH(X, o, b, SUBTRACT)                                                                                 \
+    EXPR_PAIRS_WITH(X, o, b, MULTIPLY)
+#define EXPR_PAIRS_WITH(X, o, b, p)                                                                                    \
+    EXPR_PAIRS_OF(X, o, b, p, R) EXPR_PAIRS_OF(X, o, b, p, K) EXPR_PAIRS_OF(X, o, b, p, I)
+#define EXPR_PAIRS_OF(X, o, b, p, c)                                                                                   \
+    X(o, b, 0, p, c, 0)                                                                                                \
+    X(o, b, 0, p, c, 1)                                                                                                \
+    X(o, b, 1, p, c, 0)                                                                                                \
+    X(o, b, 1, p, c, 1)
+#define EXPR_PAIR_LINK(o, b, first_stored, p, c, stored)                                                               \
+    EXPR_LINK_PAIR(EXPR_STEP_##o##_##b, EXPR_STEP_##p##_##c, first_stored, stored)
+/* For the table of jumps of an evaluator: pairs at once, or their first instructions. */
+#define EXPR_ADDRESS_PAIR(o, b, first_stored, p, c, stored)                                                            \
+    [EXPR_PAIR_LINK(o, b, first_stored, p, c, stored)] = &&PAIR_##o##_##b##_##first_stored##_##p##_##c##_##stored,
+#define EXPR_ADDRESS_FIRST(o, b, first_stored, p, c, stored)                                                           \
+    [EXPR_PAIR_LINK(o, b, first_stored, p, c, stored)] = &&o##_L_##b##_##first_stored,
 /* The table of jumps of an evaluator: by link, the addresses of the labels that these cases make of the names, such as
  * ADD_L_R_1. */
 #define EXPR_LINK_ADDRESSES                                                                                            \
@@ -72,6 +121,11 @@ enum { EXPR_UNLINKED, EXPR_LINKED_1(EXPR_LINKS_1) EXPR_LINKED_2(EXPR_LINKS_2) EX
     [EXPR_LINK_2(operation, oa, ob, stored)] = &&operation##_##oa##_##ob##_##stored,
 #define EXPR_ADDRESS_3(oa, ob, oc, stored) [EXPR_LINK_3(oa, ob, oc, stored)] = &&SELECT_##oa##_##ob##_##oc##_##stored,
 #define EXPR_CASES_BOTH(X, operation) EXPR_CASES_2(X, operation, 0) EXPR_CASES_2(X, operation, 1)
+#define EXPR_CASES_OF_INPUTS(X, operation) EXPR_CASES_I(X, operation, 0) EXPR_CASES_I(X, operation, 1)
+
+static inline bool expr_links_inputs(uint16_t operation) {
+    return operation == EXPR_ADD || operation == EXPR_SUBTRACT || operation == EXPR_MULTIPLY;
+}
 
 struct expr_link_range {
     uint16_t first, operand_count; /* 0 and 0 for operations without links */
@@ -82,11 +136,12 @@ static const struct expr_link_range expr_link_ranges[EXPR_ALL_OPERATIONS] = {
     EXPR_LINKED_1(EXPR_RANGE_1) EXPR_LINKED_2(EXPR_RANGE_2)[EXPR_SELECT] = {EXPR_LINK_SELECT, 3}};
 
 /* The state of a pass that sets links from the last instruction to the first. Zero-initialise but for
- * constant_count. */
+ * constant_count and input_end. */
 struct expr_linker {
     struct expr_instruction *later; /* set last; the origins of its operands are not known yet */
     unsigned ended;                 /* bit k: nothing after `later` reads the value of its operand k */
     uint32_t constant_count;
+    uint32_t input_end; /* the inputs follow the constants up to here, and nothing else is stored there; or 0 */
 };
 
 /* Completes the link of `later`: the result of the instruction before it is in register `last`, or in none. */
@@ -95,12 +150,45 @@ static inline void expr_link_operands(const struct expr_linker *linker, uint32_t
     if (!in || in->link == EXPR_UNLINKED)
         return;
     const uint16_t operands[3] = {in->a, in->b, in->c};
+    const uint32_t count = expr_link_ranges[in->operation].operand_count, kinds = count == 2 ? 4 : 3;
+    const uint32_t input_end = expr_links_inputs(in->operation) ? linker->input_end : 0;
     uint32_t origins = 0;
-    for (int k = 0; k < expr_link_ranges[in->operation].operand_count; k++)
-        origins = 3 * origins + (operands[k] < linker->constant_count ? EXPR_FROM_K
-                                 : operands[k] == last                ? EXPR_FROM_L
-                                                                      : EXPR_FROM_R);
+    for (uint32_t k = 0; k < count; k++)
+        origins = kinds * origins + (operands[k] < linker->constant_count ? EXPR_FROM_K
+                                     : operands[k] == last                ? EXPR_FROM_L
+                                     : operands[k] < input_end            ? EXPR_FROM_I
+                                                                          : EXPR_FROM_R);
     in->link = (uint16_t)(in->link + 2 * origins);
+}
+
+/* The step (EXPR_STEP_) of a linked instruction, EXPR_STEPS if it is none. */
+static inline unsigned expr_step(const struct expr_instruction *in) {
+    static const uint8_t numbers[] = {
+        [EXPR_FROM_R] = EXPR_STEP_ADD_R, [EXPR_FROM_K] = EXPR_STEP_ADD_K, [EXPR_FROM_I] = EXPR_STEP_ADD_I};
+    if (in->link == EXPR_UNLINKED || !expr_links_inputs(in->operation))
+        return EXPR_STEPS;
+    const unsigned origins = (unsigned)(in->link - expr_link_ranges[in->operation].first) / 2;
+    const unsigned first = in->operation == EXPR_ADD        ? EXPR_STEP_ADD_R
+                           : in->operation == EXPR_SUBTRACT ? EXPR_STEP_SUBTRACT_R
+                                                            : EXPR_STEP_MULTIPLY_R;
+    if (origins / 4 != EXPR_FROM_L || origins % 4 == EXPR_FROM_L)
+        return EXPR_STEPS;
+    return first + numbers[origins % 4];
+}
+
+static inline unsigned expr_is_stored(const struct expr_instruction *in) {
+    return (unsigned)(in->link - expr_link_ranges[in->operation].first) % 2;
+}
+
+/* Makes pairs of linked instructions. */
+static inline void expr_link_pairs(struct expr_instruction *code, uint32_t count) {
+    for (uint32_t n = 0; n + 1 < count; n++) {
+        const unsigned first = expr_step(&code[n]), second = expr_step(&code[n + 1]);
+        if (first == EXPR_STEPS || second == EXPR_STEPS)
+            continue;
+        code[n].link = (uint16_t)EXPR_LINK_PAIR(first, second, expr_is_stored(&code[n]), expr_is_stored(&code[n + 1]));
+        n++;
+    }
 }
 
 /* Sets the link of the instruction before `later`. ended: bit k: nothing after this instruction reads the value of its
@@ -127,8 +215,5 @@ static inline void expr_link(struct expr_linker *linker, struct expr_instruction
     linker->later = in;
     linker->ended = ended;
 }
-
-/* Sets the links of a program, whose code this is. */
-void expr_link_program(const struct expr_program *program, struct expr_instruction *code);
 
 #endif

@@ -8,6 +8,7 @@
 #define FROM_R(k, operand) LOAD(operand + (k)*WIDTH)
 #define FROM_K(k, operand) ALL(constants[in->operand].f)
 #define FROM_L(k, operand) x##k
+#define FROM_I(k, operand) LOAD_ANY(operand + (k)*WIDTH)
 #define KEEP(k, to) STORE(to + (k)*WIDTH, x##k);
 #define KEEP_0
 #define KEEP_1                                                                                                         \
@@ -16,6 +17,9 @@
 /* The row of an operand. The compiler shall keep its address in a processor register. */
 #define ROW_R(operand)                                                                                                 \
     const double *operand = values + (size_t)in->operand * EXPR_BATCH;                                                 \
+    __asm__("" : "+r"(operand));
+#define ROW_I(operand)                                                                                                 \
+    const double *operand = inputs[in->operand - input_begin] + at;                                                    \
     __asm__("" : "+r"(operand));
 #define ROW_K(operand)
 #define ROW_L(operand)
@@ -38,32 +42,55 @@
         ROW_##oa(a) ROW_##ob(b) ROW_##oc(c) EACH(OPERATE_3, oa, ob, oc) KEEP_##stored;                                 \
         NEXT                                                                                                           \
     }
+#define TARGET_PAIR(o, ob, first_stored, p, pb, stored)                                                                \
+    PAIR_##o##_##ob##_##first_stored##_##p##_##pb##_##stored : {                                                       \
+        {ROW_##ob(b) EACH(OPERATE_2, o, L, ob) KEEP_##first_stored} in++;                                              \
+        ROW_##pb(b) EACH(OPERATE_2, p, L, pb) KEEP_##stored;                                                           \
+        NEXT                                                                                                           \
+    }
+#if VECTORS == 8
+#define PAIR_ADDRESS EXPR_ADDRESS_PAIR
+#define PAIR_TARGETS EXPR_PAIR_CASES(TARGET_PAIR)
+#else
+#define PAIR_ADDRESS EXPR_ADDRESS_FIRST
+#define PAIR_TARGETS
+#endif
 /* Each instruction jumps to the next one itself, which processors predict better than one jump for all of them. */
 #define NEXT                                                                                                           \
     if (++in >= end)                                                                                                   \
-        return;                                                                                                        \
+        goto done;                                                                                                     \
     goto *targets[in->link];
 #define DECLARE(k, zero) vector x##k = zero;
 #define FORGET(k, zero) x##k = zero;
+#define PUT(k, to) STORE_ANY(to + (k)*WIDTH, x##k);
 
-static void RUN_LINKED(const struct expr_program *program, double *rows) {
-    static const void *const targets[] = {EXPR_LINK_ADDRESSES};
+/* Points from number `at` on; rows: of the first point. */
+static void RUN_LINKED(const struct expr_program *program, uint32_t at, double *rows,
+                       const struct expr_direct *direct) {
+    static const void *const targets[] = {EXPR_LINK_ADDRESSES EXPR_PAIR_CASES(PAIR_ADDRESS)};
+    const double *const *const inputs = direct->inputs;
+    const uint32_t input_begin = program->constant_count;
     const union expr_value *const constants = program->constants;
-    double *const values = rows - (size_t)program->constant_count * EXPR_BATCH;
+    double *const values = rows + at - (size_t)program->constant_count * EXPR_BATCH;
     const struct expr_instruction *in = program->code, *const end = in + program->count;
     EACH(DECLARE, ALL(0.0))
     if (in < end)
         goto *targets[in->link];
+done:
+    if (direct->output) {
+        EACH(PUT, direct->output + at)
+    }
     return;
 UNLINKED:
-    in = run_rows(program, in, VECTORS * WIDTH, rows);
+    in = run_rows(program, in, VECTORS * WIDTH, rows + at);
     EACH(FORGET, ALL(0.0)) /* not saved over the call */
-    NEXT EXPR_LINK_CASES(TARGET_1, TARGET_2, TARGET_3)
+    NEXT EXPR_LINK_CASES(TARGET_1, TARGET_2, TARGET_3) PAIR_TARGETS
 }
 
 #undef FROM_R
 #undef FROM_K
 #undef FROM_L
+#undef FROM_I
 #undef KEEP
 #undef KEEP_0
 #undef KEEP_1
@@ -74,8 +101,12 @@ UNLINKED:
 #undef TARGET_2
 #undef TARGET_3
 #undef NEXT
+#undef TARGET_PAIR
+#undef PAIR_ADDRESS
+#undef PAIR_TARGETS
 #undef DECLARE
 #undef FORGET
+#undef PUT
 #undef EACH
 #undef VECTORS
 #undef RUN_LINKED

@@ -159,7 +159,7 @@ static bool number_constants(const struct layout *layout, struct expr_program *p
     return true;
 }
 
-/* Inputs are in the first registers from the start. */
+/* Inputs are in the first registers from the start, and stay there. */
 static bool assign_inputs(const struct layout *layout, struct expr_program *program, struct error *error) {
     const struct expr_graph *graph = layout->graph;
     for (uint32_t n = 0; n < graph->count; n++) {
@@ -169,6 +169,7 @@ static bool assign_inputs(const struct layout *layout, struct expr_program *prog
             return too_large(error);
         program->inputs[program->input_count].input = (uint16_t)graph->nodes[n].operands[0];
         program->inputs[program->input_count++].value = layout->allocations[n].value;
+        layout->allocations[n].last = UINT32_MAX;
     }
     return true;
 }
@@ -227,7 +228,8 @@ static bool write_code(const struct layout *layout, struct expr_instruction *cod
 
 /* Sets the links. is_read: of each value, whether it is read after the program. */
 static void link_code(const struct expr_program *program, struct expr_instruction *code, bool is_read[EXPR_VALUES]) {
-    struct expr_linker linker = {.constant_count = program->constant_count};
+    struct expr_linker linker = {.constant_count = program->constant_count,
+                                 .input_end = program->constant_count + (uint32_t)program->input_count};
     for (uint32_t n = program->count; n-- > 0;) {
         struct expr_instruction *in = &code[n];
         const uint16_t operands[3] = {in->a, in->b, in->c};
@@ -242,11 +244,46 @@ static void link_code(const struct expr_program *program, struct expr_instructio
     expr_link_operands(&linker, UINT32_MAX);
 }
 
-void expr_link_program(const struct expr_program *program, struct expr_instruction *code) {
+/* Inputs are direct that are no outputs, and that only linked sums, differences and products read. */
+static void find_direct_inputs(struct expr_program *program) {
+    bool is_copied[EXPR_VALUES] = {false};
+    for (int i = 0; i < program->output_count; i++)
+        is_copied[program->outputs[i]] = true;
+    for (uint32_t n = 0; n < program->count; n++) {
+        const struct expr_instruction *in = &program->code[n];
+        const uint16_t operands[3] = {in->a, in->b, in->c};
+        bool is_direct = in->link != EXPR_UNLINKED && expr_links_inputs(in->operation);
+        for (int k = 0; k < expr_operand_count((enum expr_operation)in->operation) && !is_direct; k++)
+            is_copied[operands[k]] = true;
+    }
+    for (int i = 0; i < program->input_count; i++)
+        program->direct_inputs |= (uint16_t)(!is_copied[program->inputs[i].value] << i);
+}
+
+/* The last instruction need not store an output that it computes, unless that is an output twice. */
+static void find_direct_output(struct expr_program *program, struct expr_instruction *code) {
+    struct expr_instruction *last = program->count > 0 ? &code[program->count - 1] : NULL;
+    int uses = 0, found = 0;
+    for (int i = 0; i < program->output_count && last; i++) {
+        if (program->outputs[i] != last->out)
+            continue;
+        found = i;
+        uses++;
+    }
+    if (uses != 1 || last->link == EXPR_UNLINKED)
+        return;
+    program->direct_output = (uint16_t)(1 + found);
+    last->link--; /* it was one that stores */
+}
+
+static void link_function(struct expr_program *program, struct expr_instruction *code) {
     bool is_read[EXPR_VALUES] = {false};
     for (int i = 0; i < program->output_count; i++)
         is_read[program->outputs[i]] = true;
     link_code(program, code, is_read);
+    find_direct_inputs(program);
+    find_direct_output(program, code);
+    expr_link_pairs(code, program->count);
 }
 
 /* Lists the loops of the program: their numbers in the graph. */
@@ -293,6 +330,7 @@ static bool finish_body(const struct layout *layout, struct expr_loop *loop, str
         is_read[body->constant_count + k] = true;
     body->register_count = layout->registers->count;
     link_code(body, code, is_read);
+    expr_link_pairs(code, body->count);
     return true;
 }
 
@@ -331,7 +369,7 @@ static bool compile_function(const struct layout *layout, struct expr_program *p
     for (uint32_t i = 0; i < layout->output_count; i++)
         program->outputs[i] = layout->allocations[layout->outputs[i]].value;
     program->output_count = (int)layout->output_count;
-    expr_link_program(program, code);
+    link_function(program, code);
     return compile_loops(layout, program, error);
 }
 
@@ -431,6 +469,7 @@ bool expr_compile(const struct expr_graph *graph, const uint32_t *outputs, int o
 #define SINGLE_R(operand) values[in->operand].f
 #define SINGLE_K(operand) values[in->operand].f
 #define SINGLE_L(operand) last
+#define SINGLE_I(operand) values[in->operand].f
 #define LINKED_NEGATE(a) -(a)
 #define LINKED_ABS(a) fabs(a)
 #define LINKED_SQRT(a) sqrt(a)
@@ -529,7 +568,7 @@ static const struct expr_instruction *run_unlinked(const struct expr_program *pr
 #pragma GCC diagnostic ignored "-Wpedantic" /* addresses of labels */
 
 static void run_code(const struct expr_program *program, union expr_value *values) {
-    static const void *const targets[] = {EXPR_LINK_ADDRESSES};
+    static const void *const targets[] = {EXPR_LINK_ADDRESSES EXPR_PAIR_CASES(EXPR_ADDRESS_FIRST)};
     const struct expr_instruction *in = program->code, *const end = in + program->count;
     double last = 0;
     if (in >= end)
@@ -561,26 +600,46 @@ size_t expr_batch_size(const struct expr_program *program) {
     return ((size_t)program->row_count + 3) * EXPR_BATCH * sizeof(union expr_value);
 }
 
+static double *row_of(const struct expr_program *program, uint16_t value, double *rows) {
+    return rows + (size_t)(value - program->constant_count) * EXPR_BATCH;
+}
+
+/* Copies inputs that are not direct. Incomplete vectors read only copies. */
+static void put_inputs(const struct expr_program *program, uint32_t count, uint32_t width, double *rows,
+                       struct expr_direct *direct) {
+    const bool is_whole = width == count && cpu_isa() != CPU_ISA_BASE;
+    for (int i = 0; i < program->input_count; i++) {
+        if (is_whole && (program->direct_inputs >> i & 1))
+            continue;
+        double *row = row_of(program, program->inputs[i].value, rows);
+        memcpy(row, direct->inputs[i], count * sizeof *row);
+        for (uint32_t k = count; k < width; k++)
+            row[k] = row[0]; /* so that it needs no more steps of a loop */
+        direct->inputs[i] = row;
+    }
+}
+
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          const double *const inputs[EXPR_INPUT_COUNT], double *const outputs[EXPR_OUTPUTS],
                          void *rows) {
-    static void (*const run[])(const struct expr_program *, uint32_t, double *) = {
+    static void (*const run[])(const struct expr_program *, uint32_t, double *, const struct expr_direct *) = {
         [CPU_ISA_BASE] = expr_run_base, [CPU_ISA_AVX2] = expr_run_avx2, [CPU_ISA_AVX512] = expr_run_avx512};
     static const uint32_t steps[] = {[CPU_ISA_BASE] = 4, [CPU_ISA_AVX2] = 4, [CPU_ISA_AVX512] = 8};
     const uint32_t step = steps[cpu_isa()], width = (count + step - 1) & ~(step - 1);
+    const int last = cpu_isa() == CPU_ISA_BASE ? -1 : program->direct_output - 1;
     double *values = rows;
-    for (int i = 0; i < program->input_count; i++) {
-        double *row = values + (size_t)(program->inputs[i].value - program->constant_count) * EXPR_BATCH;
-        memcpy(row, inputs[program->inputs[i].input], count * sizeof *row);
-        for (uint32_t k = count; k < width; k++)
-            row[k] = row[0]; /* so that it needs no more steps of a loop */
-    }
-    run[cpu_isa()](program, width, values);
+    struct expr_direct direct;
+    for (int i = 0; i < program->input_count; i++)
+        direct.inputs[i] = inputs[program->inputs[i].input];
+    put_inputs(program, count, width, values, &direct);
+    direct.output = last < 0 ? NULL : width == count ? outputs[last] : row_of(program, program->outputs[last], values);
+    run[cpu_isa()](program, width, values, &direct);
     for (int i = 0; i < program->output_count; i++) {
         uint16_t value = program->outputs[i];
         if (value >= program->constant_count) {
-            const double *row = values + (size_t)(value - program->constant_count) * EXPR_BATCH;
-            memcpy(outputs[i], row, count * sizeof *row);
+            const double *row = row_of(program, value, values);
+            if (i != last || row == direct.output)
+                memcpy(outputs[i], row, count * sizeof *row);
             continue;
         }
         for (uint32_t k = 0; k < count; k++)

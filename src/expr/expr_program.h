@@ -36,6 +36,9 @@ struct expr_program {
         uint16_t input, value; /* an enum expr_input, and the register that contains it at the start */
     } inputs[EXPR_INPUT_COUNT];
     uint16_t outputs[EXPR_OUTPUTS]; /* floats */
+    /* What links of batches do not read from registers, or not write there: bit k is inputs[k]; 1 + the number of the
+     * output that the last instruction computes, or 0. */
+    uint16_t direct_inputs, direct_output;
 };
 
 /* A loop of a program. Its body is a program of its own, without inputs and outputs. The first registers of the body
@@ -96,7 +99,8 @@ void expr_evaluate(const struct expr_program *program, const double inputs[EXPR_
 /* The size in bytes of the memory that expr_evaluate_batch needs. */
 size_t expr_batch_size(const struct expr_program *program);
 /* Evaluates `count` points, at most EXPR_BATCH. inputs[i] and outputs[i] are arrays of `count` numbers; inputs that
- * the program does not read may be NULL. rows: expr_batch_size bytes, aligned to 64, with any contents. */
+ * the program does not read may be NULL. No output overlaps an input. rows: expr_batch_size bytes, aligned to 64, with
+ * any contents. */
 void expr_evaluate_batch(const struct expr_program *program, uint32_t count,
                          const double *const inputs[EXPR_INPUT_COUNT], double *const outputs[EXPR_OUTPUTS], void *rows);
 

@@ -150,6 +150,7 @@ bool expr_shorten_decided(const struct expr_program *program, const struct expr_
     expr_link_operands(&linker, UINT32_MAX);
     shorter.code = to;
     shorter.count = (uint32_t)(end - to);
+    shorter.direct_inputs = shorter.direct_output = 0;
     shorter.input_count = 0;
     for (int i = 0; i < program->input_count; i++) {
         uint16_t renamed = r.renamed[program->inputs[i].value - r.first];

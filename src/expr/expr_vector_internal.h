@@ -12,6 +12,8 @@ typedef __m512d vector;
 enum { WIDTH = 8 };
 #define LOAD(p) _mm512_load_pd(p)
 #define STORE(p, v) _mm512_store_pd(p, v)
+#define LOAD_ANY(p) _mm512_loadu_pd(p) /* with any alignment */
+#define STORE_ANY(p, v) _mm512_storeu_pd(p, v)
 #define ALL(x) _mm512_set1_pd(x)
 #define MIN_OF(a, b) _mm512_min_pd(a, b)
 #define MAX_OF(a, b) _mm512_max_pd(a, b)
@@ -33,6 +35,8 @@ typedef __m256d vector;
 enum { WIDTH = 4 };
 #define LOAD(p) _mm256_load_pd(p)
 #define STORE(p, v) _mm256_store_pd(p, v)
+#define LOAD_ANY(p) _mm256_loadu_pd(p) /* with any alignment */
+#define STORE_ANY(p, v) _mm256_storeu_pd(p, v)
 #define ALL(x) _mm256_set1_pd(x)
 #define MIN_OF(a, b) _mm256_min_pd(a, b)
 #define MAX_OF(a, b) _mm256_max_pd(a, b)

@@ -66,6 +66,7 @@ static void add_program(struct digest_sum *sum, const struct expr_program *progr
         digest_sum_add(sum, (uint64_t)program->inputs[i].input << 16 | program->inputs[i].value);
     for (int i = 0; i < program->output_count; i++)
         digest_sum_add(sum, program->outputs[i]);
+    digest_sum_add(sum, (uint64_t)program->direct_inputs << 16 | program->direct_output);
     digest = digest_bytes(program->code, program->count * sizeof *program->code, digest);
     digest = digest_bytes(program->constants, program->constant_count * sizeof *program->constants, digest);
     digest_sum_add_digest(sum, digest);

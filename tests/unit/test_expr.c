@@ -452,8 +452,9 @@ static void check_linked_program(uint64_t seed) {
     }
     CHECK(expr_compile(&graph, outputs, output_count, &arena, &program, &error));
     void *rows = mem_alloc_aligned(64, expr_batch_size(&program));
-    uint32_t count = 1 + (uint32_t)(seed * 7 % EXPR_BATCH);
-    double in[3][EXPR_BATCH], wanted[EXPR_OUTPUTS][EXPR_BATCH], results[EXPR_OUTPUTS][EXPR_BATCH];
+    uint32_t count = seed % 2 ? EXPR_BATCH : 1 + (uint32_t)(seed * 7 % EXPR_BATCH);
+    double room[3][EXPR_BATCH + 1], wanted[EXPR_OUTPUTS][EXPR_BATCH], results[EXPR_OUTPUTS][EXPR_BATCH + 1];
+    double *in[3] = {room[0] + (seed / 4 & 1), room[1], room[2] + 1}; /* of any alignment */
     for (uint32_t i = 0; i < count; i++) {
         double point[EXPR_INPUT_COUNT] = {0}, one[EXPR_OUTPUTS];
         union expr_value values[LINKED_NODES];
@@ -472,7 +473,11 @@ static void check_linked_program(uint64_t seed) {
             continue;
         const double *ins[EXPR_INPUT_COUNT] = {in[0], in[1], in[2]};
         double *outs[EXPR_OUTPUTS] = {results[0], results[1], results[2], results[3]};
+        for (int k = 0; k < output_count; k++)
+            results[k][count] = 4711;
         expr_evaluate_batch(&program, count, ins, outs, rows);
+        for (int k = 0; k < output_count; k++)
+            CHECK(results[k][count] == 4711);
         for (int k = 0; k < output_count; k++)
             for (uint32_t i = 0; i < count; i++)
                 if (!same_bits(results[k][i], wanted[k][i]))
@@ -487,6 +492,59 @@ static void check_linked_program(uint64_t seed) {
 TEST(programs_of_linked_operations_give_the_bits_of_their_operations_one_by_one) {
     for (uint64_t seed = 0; seed < 3000; seed++)
         check_linked_program(seed);
+    CHECK(cpu_select_isa("auto"));
+}
+
+/* A sum, difference or product with the input x, the value r, or a constant. */
+static uint32_t step(struct expr_graph *graph, unsigned kind, uint32_t from, uint32_t x, uint32_t r) {
+    static const enum expr_operation operations[] = {EXPR_ADD, EXPR_SUBTRACT, EXPR_MULTIPLY};
+    uint32_t others[] = {x, r, expr_float(graph, 0.7 + kind)};
+    return expr_operation(graph, operations[kind % 3], from, others[kind / 3], EXPR_NONE);
+}
+
+TEST(two_steps_that_are_one_jump_give_the_bits_of_both) {
+    double x[EXPR_BATCH], y[EXPR_BATCH], results[3][EXPR_BATCH];
+    for (uint64_t i = 0; i < EXPR_BATCH; i++) {
+        x[i] = random_unit(random_combine(1, i)) - 0.3;
+        y[i] = 10 * random_unit(random_combine(2, i)) - 5;
+    }
+    for (unsigned kind = 0; kind < 9 * 9 * 4; kind++) {
+        struct expr_graph graph = {.count = 0};
+        struct arena arena = {0};
+        struct error error = {0};
+        struct expr_program program;
+        uint32_t of_x = expr_input(&graph, EXPR_POINT_X);
+        uint32_t r = expr_operation(&graph, EXPR_ABS, expr_input(&graph, EXPR_POINT_Y), EXPR_NONE, EXPR_NONE);
+        uint32_t square = expr_operation(&graph, EXPR_MULTIPLY, of_x, of_x, EXPR_NONE);
+        uint32_t first = step(&graph, kind % 9, square, of_x, r);
+        uint32_t second = step(&graph, kind / 9 % 9, first, of_x, r);
+        uint32_t last = expr_operation(&graph, EXPR_MULTIPLY, second, expr_float(&graph, 3), EXPR_NONE);
+        last = kind / 81 & 1 ? expr_operation(&graph, EXPR_MIN, last, first, EXPR_NONE) : last;
+        last = kind / 81 & 2 ? expr_operation(&graph, EXPR_MAX, last, second, EXPR_NONE) : last;
+        const uint32_t outputs[3] = {last, r, last};
+        CHECK(expr_compile(&graph, outputs, 1 + (int)(kind % 3), &arena, &program, &error));
+        void *rows = mem_alloc_aligned(64, expr_batch_size(&program));
+        const double *ins[EXPR_INPUT_COUNT] = {x, y};
+        double *outs[EXPR_OUTPUTS] = {results[0], results[1], results[2], NULL};
+        for (uint32_t count = 32; count <= EXPR_BATCH; count += 8) {
+            if (!cpu_select_isa(kind % 2 ? "avx2" : "auto"))
+                continue;
+            memset(results, 0, sizeof results);
+            expr_evaluate_batch(&program, count, ins, outs, rows);
+            for (uint32_t i = 0; i < count; i++) {
+                double point[EXPR_INPUT_COUNT] = {x[i], y[i]};
+                union expr_value values[LINKED_NODES];
+                apply_all(&graph, point, values);
+                for (int k = 0; k < program.output_count; k++)
+                    if (!same_bits(results[k][i], values[outputs[k]].f))
+                        test_fail(__FILE__, __LINE__, "steps %u, output %d of point %u of %u: %a, not %a", kind, k, i,
+                                  count, results[k][i], values[outputs[k]].f);
+            }
+        }
+        mem_free(rows);
+        arena_destroy(&arena);
+        expr_graph_destroy(&graph);
+    }
     CHECK(cpu_select_isa("auto"));
 }
 

@@ -698,7 +698,7 @@ TEST(the_operations_of_loops_are_listed_below_them) {
     struct test_result result = test_gray_scene(text, "--dump-expr scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.out, "a.png: functions\n"
-                           "  scene.lua:1: 4 operations, 5 constants, 2 registers\n"
+                           "  scene.lua:1: 4 operations, 5 constants, 3 registers\n"
                            "    r0 = p.x\n"
                            "    r1 = p.y\n"
                            "    loop 0: r0 = r0\n"
@@ -708,8 +708,8 @@ TEST(the_operations_of_loops_are_listed_below_them) {
                            "        r4 = to_float r2\n"
                            "        r4 = subtract r3 r4\n"
                            "        r0 ... = r4\n"
-                           "    r1 = loop 0: r0\n"
-                           "    result r1\n");
+                           "    r2 = loop 0: r0\n"
+                           "    result r2\n");
     free(result.out);
     free(result.err);
 }
@@ -751,17 +751,17 @@ TEST(the_operations_of_functions_are_listed) {
     struct test_result result = test_gray_scene(text, "--dump-expr scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     CHECK_TEXT(result.out, "a.png: functions\n"
-                           "  scene.lua:1: 2 operations, 2 constants, 1 registers\n"
+                           "  scene.lua:1: 2 operations, 2 constants, 2 registers\n"
                            "    r0 = p.x\n"
-                           "    r0 = multiply r0 2\n"
-                           "    r0 = add r0 1\n"
-                           "    result r0\n");
+                           "    r1 = multiply r0 2\n"
+                           "    r1 = add r1 1\n"
+                           "    result r1\n");
     free(result.out);
     free(result.err);
     result = test_gray_scene(text, "--dump-expr --json scene.lua", NULL);
     CHECK_TEXT(result.out, "{\"picture\":\"a.png\",\"functions\":[{\"source\":\"scene.lua:1\",\"operations\":2,"
-                           "\"constants\":2,\"registers\":1,\"code\":[\"r0 = p.x\",\"r0 = multiply r0 2\","
-                           "\"r0 = add r0 1\",\"result r0\"]}]}\n");
+                           "\"constants\":2,\"registers\":2,\"code\":[\"r0 = p.x\",\"r1 = multiply r0 2\","
+                           "\"r1 = add r1 1\",\"result r1\"]}]}\n");
     free(result.out);
     free(result.err);
 }
