@@ -169,12 +169,30 @@ bool material_has_ior(const struct material *material) {
     return numbers_of(material)->has_ior;
 }
 
+/* What gloss and coat of a layered material reflect in the mean over directions. Textures are not known here: they may
+ * be 1, and indices are at least those of a common plastic. */
+static double layers_specular(const struct material *material) {
+    const struct openpbr *v = material->openpbr;
+    double ior = openpbr_ior(v->specular_ior, v->specular_weight);
+    double base = dielectric_fresnel_average(1 / ior), coat = dielectric_fresnel_average(1 / v->coat_ior);
+    if (material_texture(material, INPUT_METALNESS) || material_texture(material, INPUT_REFRACT))
+        return 1;
+    if (material_texture(material, INPUT_SPECULAR_IOR) || material_texture(material, INPUT_SPECULAR_WEIGHT))
+        base = fmax(base, 0.04);
+    if (!material_texture(material, INPUT_KS))
+        base *= vec3_max_abs(numbers_of(material)->ks);
+    if (material_texture(material, INPUT_COAT_IOR))
+        coat = fmax(coat, 0.04);
+    return fmax(base, material_texture(material, INPUT_COAT_WEIGHT) ? coat : v->coat_weight * coat);
+}
+
 /* The highlight's colour from textures is not known here; it may be white. */
 double material_specular(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
     bool filtered = material_texture(material, INPUT_KS) != NULL;
     double amount = material->fresnel ? 1 : numbers->reflect + numbers->refract;
-    return amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
+    double specular = amount > 0 ? amount * (filtered ? 1 : vec3_max_abs(numbers->ks)) : 0;
+    return material->openpbr ? fmax(specular, layers_specular(material)) : specular;
 }
 
 /* Of metal, F82 with a tint above 1 (blue of brass) is at most Schlick's formula and -edge c (1 - c)^6; Schlick's

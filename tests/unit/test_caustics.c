@@ -1,5 +1,6 @@
 /* Caustics: photons arrive where geometry says, in the unit of direct light. */
 #include "light/sky.h"
+#include "material/openpbr.h"
 #include "math/elementary.h"
 #include "render/photon_trace_internal.h"
 #include "shape/planar.h"
@@ -646,6 +647,31 @@ TEST(without_anything_specular_no_photon_is_sent) {
     CHECK_EQ_INT(map.count, 0);
     photon_map_destroy(&map);
     stage_end(&s);
+}
+
+/* Paths leave the light of these layers to photons. */
+TEST(photons_are_sent_towards_gloss_and_coats_of_layered_materials) {
+    for (int kind = 0; kind < 5; kind++) {
+        struct stage s;
+        struct photon_map map;
+        stage_begin(&s, 2);
+        box(&s, vec3_make(-2, -1, -2), vec3_make(2, 0, 2), white(&s));
+        struct openpbr layers = openpbr_defaults();
+        struct texture half = texture_number(0.5);
+        struct material *lacquer = white(&s);
+        lacquer->kind = MATERIAL_OPENPBR;
+        lacquer->phong.ks = vec3_all(1);
+        lacquer->openpbr = &layers;
+        layers.specular_weight = kind == 1;
+        layers.coat_weight = kind == 2;
+        if (kind >= 3)
+            lacquer->inputs[kind == 3 ? INPUT_COAT_WEIGHT : INPUT_METALNESS].authored = &half;
+        ball(&s, vec3_make(0, 1.5, 0), 1, lacquer);
+        inverse_square(&s, vec3_make(0, 5, 0), 1);
+        CHECK_EQ_INT(send(&s, 1000, &map).sent, kind == 0 ? 0 : 1000);
+        photon_map_destroy(&map);
+        stage_end(&s);
+    }
 }
 
 /* --- paths --- */
