@@ -14,6 +14,10 @@
  * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
  * Rendering by Ray Histogram Fusion", ACM Transactions on Graphics 2014, section 5).
  *
+ * At silhouettes few pixels are alike, and these estimates lose contrast. The residuals, colours minus estimates, show
+ * it: their weighted means are larger than noise explains, and the two halves agree. There they are added, twice (J.
+ * Tukey, "Exploratory Data Analysis", 1977: twicing).
+ *
  * Numbers are floats and sums have a fixed order: the result does not depend on blocks, threads or instruction sets. */
 #include "render/denoise.h"
 
@@ -36,9 +40,14 @@ enum {
     LEVELS = 2,
     STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
     VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
+    RESIDUAL_WINDOW = 3, /* radius of the mean of residuals */
+    RESIDUAL_PASSES = 2,
+    EVIDENCE_WINDOW = 6, /* radius of the mean that compares these with their noise */
 };
 /* Two pixels of the coarser level and the pixels that they depend on; levels begin at even pixels of finer ones. */
-_Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 2 + (int)VARIANCE_WINDOW + 1 <= (int)DENOISE_RIM,
+_Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 2 + (int)VARIANCE_WINDOW + 1 +
+                                           (int)RESIDUAL_PASSES * (int)RESIDUAL_WINDOW + (int)EVIDENCE_WINDOW + 1 <=
+                                       (int)DENOISE_RIM,
                "the rim is less than what a pixel depends on");
 _Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
                "the same of features");
@@ -48,6 +57,17 @@ static const struct denoise_regression regressions[REGRESSIONS] = {
     {DENOISE_WINDOW, 2, 2.4F, 0}, {4, 2, 5, 0.5F}, {DENOISE_WINDOW, 4, 0, 0.3F}, {2, 2, 0, 0}};
 static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
 static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
+static const float edge_errors = 1;         /* the same at silhouettes */
+static const float same_depth = 0.03F;      /* relative difference of depths on one surface */
+/* A silhouette has a neighbour with this relative difference of depths and this distance of features. */
+static const float edge_depth = 0.05F, edge_distance = 8;
+/* Residuals count half at these distances of features, and relative squared differences of colours. */
+static const float residual_distance = 10, residual_colour = 0.2F;
+/* How much of the mean residual is added: the part that this mean does not lose, not more, after both passes. */
+static const float residual_gain = 1.7F;
+/* The evidence that is necessary, and how fast the share then grows; and the product of the halves, in units of the
+ * evidence, which is negative if the residuals are noise, since estimates contain the noise of both halves. */
+static const float evidence_limit = 0.5F, evidence_slope = 8, agreement_limit = -0.4F;
 static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
 
 /* A picture as planes of floats. */
@@ -68,6 +88,9 @@ struct denoiser {
     struct level *level;         /* the one at work */
     float *loaded[2][3];         /* the colours with outliers */
     float *sampled[3];           /* the variance of a half, from its samples */
+    float *evidence;             /* of silhouettes: squared mean residual, in units of its variance; others: -1 */
+    float *agreement;            /* the same with the product of the mean residuals of the halves */
+    int pass;                    /* of residuals */
     float *mean[3], *noise[3];   /* of a group of features: measured values and their variance */
     int first_feature, group;    /* which, and how many */
     struct denoise_pixel *rows;  /* three of each worker */
@@ -451,9 +474,139 @@ static void correct_finer(void *context, uint32_t y, int worker) {
     }
 }
 
+/* --- silhouettes --- */
+
 static float mean_of_halves(const struct level *level, int c, size_t at) {
     return 0.5F * (level->estimate[0][c][at] + level->estimate[1][c][at]);
 }
+
+static float surface_distance(const struct level *level, size_t p, size_t q) {
+    float z = level->feature[DENOISE_DEPTH][p], difference = level->feature[DENOISE_DEPTH][q] - z;
+    float sum = difference * difference / (z * z / depth_unit + FLT_MIN);
+    for (int f = 0; f < DENOISE_DEPTH; f++) {
+        difference = level->feature[f][q] - level->feature[f][p];
+        sum += difference * difference * (f < DENOISE_NORMAL ? albedo_unit : normal_unit);
+    }
+    return sum;
+}
+
+static bool is_silhouette(const struct level *level, int x, int y) {
+    size_t at = pixel_at(level, x, y);
+    float z = level->feature[DENOISE_DEPTH][at];
+    for (int i = 0; i < 9; i++) {
+        size_t q = nearest_at(level, x + i % 3 - 1, y + i / 3 - 1);
+        float other = level->feature[DENOISE_DEPTH][q];
+        if (fabsf(z - other) > edge_depth * (z < other ? z : other) && surface_distance(level, at, q) > edge_distance)
+            return true;
+    }
+    return false;
+}
+
+/* The weight of the residual of a pixel for another one. */
+static float residual_weight(const struct level *level, size_t p, size_t q) {
+    float difference = 0, size = 1e-4F;
+    for (int c = 0; c < 3; c++) {
+        float a = mean_of_halves(level, c, p), b = mean_of_halves(level, c, q);
+        difference += (a - b) * (a - b);
+        size += a * a + b * b;
+    }
+    float distance = surface_distance(level, p, q) / residual_distance + difference / size / residual_colour;
+    return 1 / (1 + distance * distance);
+}
+
+/* What the residuals around a silhouette say. */
+struct residual {
+    float mean[3], evidence, agreement;
+};
+
+static struct residual find_residual(const struct level *level, int x, int y) {
+    static const float kernel[RESIDUAL_WINDOW + 1] = {1, 0.8948F, 0.6412F, 0.3679F}; /* exp(-x^2/9) */
+    float sums[2][3] = {{0}}, weights = 0, square = 0, product = 0, noise = FLT_MIN;
+    size_t at = pixel_at(level, x, y);
+    for (int j = -RESIDUAL_WINDOW; j <= RESIDUAL_WINDOW; j++) {
+        for (int i = -RESIDUAL_WINDOW; i <= RESIDUAL_WINDOW; i++) {
+            if (x + i < 0 || y + j < 0 || x + i >= level->width || y + j >= level->height)
+                continue;
+            size_t q = pixel_at(level, x + i, y + j);
+            float weight = kernel[i < 0 ? -i : i] * kernel[j < 0 ? -j : j] * residual_weight(level, at, q);
+            weights += weight;
+            for (int c = 0; c < 3; c++) {
+                for (int half = 0; half < 2; half++)
+                    sums[half][c] += weight * (level->colour[half][c][q] - mean_of_halves(level, c, q));
+                noise += 0.5F * weight * weight * level->variance[c][q];
+            }
+        }
+    }
+    struct residual found;
+    for (int c = 0; c < 3; c++) {
+        float mean = 0.5F * (sums[0][c] + sums[1][c]);
+        found.mean[c] = mean / weights;
+        square += mean * mean;
+        product += sums[0][c] * sums[1][c];
+    }
+    float largest = 100, unit = square < largest * noise ? noise : square / largest;
+    found.evidence = square / unit;
+    found.agreement = product / unit;
+    return found;
+}
+_Static_assert((int)RESIDUAL_WINDOW == 3, "the kernel of find_residual has four numbers");
+
+/* Stores mean residuals in d->out. The first pass finds silhouettes. */
+static void find_residuals(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    (void)worker;
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        if (d->pass == 0)
+            d->evidence[at] = is_silhouette(d->level, x, (int)y) ? 0 : -1;
+        if (d->evidence[at] < 0)
+            continue;
+        struct residual found = find_residual(d->level, x, (int)y);
+        memcpy(d->out[at], found.mean, sizeof found.mean);
+        d->evidence[at] = found.evidence;
+        d->agreement[at] = found.agreement;
+    }
+}
+
+/* The mean of the evidence around a silhouette: that of one pixel would select noise. 0 if the halves disagree. */
+static float mean_evidence(const struct denoiser *d, int x, int y) {
+    float sum = 0, agreement = 0, count = 0;
+    for (int j = -EVIDENCE_WINDOW; j <= EVIDENCE_WINDOW; j++) {
+        for (int i = -EVIDENCE_WINDOW; i <= EVIDENCE_WINDOW; i++) {
+            if (x + i < 0 || y + j < 0 || x + i >= d->level->width || y + j >= d->level->height)
+                continue;
+            size_t q = pixel_at(d->level, x + i, y + j);
+            if (d->evidence[q] < 0)
+                continue;
+            sum += d->evidence[q];
+            agreement += d->agreement[q];
+            count++;
+        }
+    }
+    return agreement < agreement_limit * sum ? 0 : sum / count;
+}
+
+/* Adds the residuals; a value remains at least a quarter of what it was. */
+static void add_residuals(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    (void)worker;
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        float evidence = d->evidence[at] >= 0 ? mean_evidence(d, x, (int)y) : 0;
+        if (!(evidence > evidence_limit))
+            continue;
+        float share = evidence_slope * (1 - evidence_limit / evidence);
+        share = residual_gain * (share < 1 ? share : 1);
+        for (int c = 0; c < 3; c++) {
+            for (int half = 0; half < 2; half++) {
+                float *value = &d->level->estimate[half][c][at], lowest = -0.75F * fabsf(*value);
+                *value += share * d->out[at][c] > lowest ? share * d->out[at][c] : lowest;
+            }
+        }
+    }
+}
+
+/* --- the last step --- */
 
 static float albedo_of(const struct denoise_pixel *pixel, int c) {
     const float black = 0.02F;
@@ -466,8 +619,11 @@ static float albedo_of(const struct denoise_pixel *pixel, int c) {
  * than its samples explain: few bright paths in a pixel bring a mean that is hardly larger than its standard error,
  * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
  * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
- * average with its albedo. rows: those around the pixel. */
-static float supported_mean(const struct level *level, const struct denoise_pixel *const rows[3], int c, int x, int y) {
+ * average with its albedo; neighbours at another depth are not of its texture. At silhouettes extremes are more
+ * probable. rows: those around the pixel. */
+static float supported_mean(const struct denoiser *d, const struct denoise_pixel *const rows[3], int c, int x, int y) {
+    const struct level *level = d->level;
+    const float *depth = level->feature[DENOISE_DEPTH];
     size_t at = pixel_at(level, x, y);
     float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
     float darkest = mean_of_halves(level, c, nearest_at(level, x > 0 ? x - 1 : x + 1, y)), brightest = darkest;
@@ -477,9 +633,11 @@ static float supported_mean(const struct level *level, const struct denoise_pixe
             int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
             if (i == 0 && j == 0)
                 continue;
-            float other = mean_of_halves(level, c, pixel_at(level, qx, qy));
+            size_t q = pixel_at(level, qx, qy);
+            float other = mean_of_halves(level, c, q);
             const struct denoise_pixel *pixel = &rows[1 + j][qx];
-            like += 0.125F * other * (albedo / albedo_of(pixel, c));
+            bool same = fabsf(depth[at] - depth[q]) <= same_depth * depth[at];
+            like += 0.125F * other * (same ? albedo / albedo_of(pixel, c) : 1);
             variance += 0.125F * fabsf(bounded(pixel->variance[c]));
             if (qx == x && qy == y)
                 continue;
@@ -488,7 +646,8 @@ static float supported_mean(const struct level *level, const struct denoise_pixe
         }
     }
     float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
-    float high = (a < b ? a : b) - support_errors * sqrtf(own), low = (a < b ? b : a) + support_errors * sqrtf(others);
+    float errors = d->evidence[at] >= 0 ? edge_errors : support_errors;
+    float high = (a < b ? a : b) - errors * sqrtf(own), low = (a < b ? b : a) + errors * sqrtf(others);
     high = brightest > high ? brightest : high;
     high = like > high ? like : high;
     low = darkest < low ? darkest : low;
@@ -519,7 +678,7 @@ static void finish_row(void *context, uint32_t y, int worker) {
         const struct denoise_pixel *pixel = &rows[1][x];
         bool empty = is_empty(pixel);
         for (int c = 0; c < 3; c++) {
-            float value = empty ? 0 : supported_mean(d->level, rows, c, x, (int)y);
+            float value = empty ? 0 : supported_mean(d, rows, c, x, (int)y);
             d->out[pixel_at(d->level, x, (int)y)][c] =
                 value + (pixel->share * pixel->glow[0][c] + (1 - pixel->share) * pixel->glow[1][c]);
         }
@@ -621,7 +780,7 @@ static bool make_estimates(struct denoiser *d, struct error *error) {
     return run(d, across * down, regress_block, error);
 }
 
-/* The planes that a level computes from the one before, whose features nothing reads afterwards. */
+/* The planes that a level computes from the one before. */
 static bool make_coarse(struct denoiser *d, struct error *error) {
     struct level *level = d->level;
     for (int f = 0; f < DENOISE_FEATURES; f++)
@@ -629,8 +788,6 @@ static bool make_coarse(struct denoiser *d, struct error *error) {
             return no_memory(error);
     if (!run(d, (uint32_t)level->height, shrink_features, error))
         return false;
-    for (int f = 0; f < DENOISE_FEATURES; f++)
-        free_plane(&level[-1].feature[f]);
     for (int c = 0; c < 3; c++)
         if (!make_plane(level, &level->colour[0][c]) || !make_plane(level, &level->colour[1][c]) ||
             !make_plane(level, &level->variance[c]))
@@ -656,7 +813,13 @@ static bool denoise_all(struct denoiser *d, struct error *error) {
         if (!run(d, (uint32_t)d->level->height, subtract_finer, error) ||
             !run(d, (uint32_t)d->level[-1].height, correct_finer, error))
             return false;
+        free_level(d->level);
     }
+    if (!make_plane(d->level, &d->evidence) || !make_plane(d->level, &d->agreement))
+        return no_memory(error);
+    for (; d->pass < RESIDUAL_PASSES; d->pass++)
+        if (!run(d, source->height, find_residuals, error) || !run(d, source->height, add_residuals, error))
+            return false;
     return run(d, source->height, finish_row, error);
 }
 
@@ -687,6 +850,8 @@ bool denoise(const struct denoise_source *source, struct pool *pool, float (*out
         mem_free(d.mean[c]);
         mem_free(d.noise[c]);
     }
+    mem_free(d.evidence);
+    mem_free(d.agreement);
     for (int i = 0; i < LEVELS; i++)
         free_level(&d.levels[i]);
     mem_free(d.rows);

@@ -38,7 +38,7 @@ struct denoise_source {
     void *context;
 };
 
-enum { DENOISE_RIM = 48 };
+enum { DENOISE_RIM = 60 };
 
 /* Denoises into out[width * height]. The same bytes for any number of threads. Errors: no memory, cancelled. */
 bool denoise(const struct denoise_source *source, struct pool *pool, float (*out)[3], struct error *error);

@@ -32,6 +32,9 @@ enum {
     DENOISE_CANDIDATES = DENOISE_REGRESSIONS + 1, /* the last one is the noisy colour */
 };
 
+/* Factors of squared differences of features: their sum is the distance. That of the depth is a relative one. */
+static const float albedo_unit = 50, normal_unit = 10, depth_unit = 400;
+
 /* A regression: its window, and how it weights the pixels there. */
 struct denoise_regression {
     int radius;     /* of the window, at most DENOISE_WINDOW */

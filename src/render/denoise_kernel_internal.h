@@ -33,8 +33,6 @@ static const float own_limit = 4,
                    own_share = 0.5F;       /* of the pixel itself: the threshold of its distance, and its weight */
 static const double ridge = 5e-4;          /* of the sum of weights */
 static const float feature_change = 1e-4F; /* the ridge suppresses albedo and normals that change less */
-/* Factors of squared differences of features: their sum is the distance. That of the depth is a relative one. */
-static const float albedo_unit = 50, normal_unit = 10, depth_unit = 400;
 /* Two pixels count half for each other if their features have this distance. */
 static const float similar_limit = 10;
 /* Half of `detail_margin` remains where the largest distance between the features around a pixel is this. */

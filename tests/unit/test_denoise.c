@@ -158,6 +158,52 @@ TEST(bright_and_dark_dots_of_a_texture_keep_their_contrast) {
     CHECK_NEAR(dots / count, 0.18, 0.06 * 0.18);
 }
 
+/* A reflection along the rim of a ball, which no feature shows, in pixels whose noise is a third of it. */
+TEST(a_line_of_light_along_a_silhouette_keeps_three_quarters_of_its_contrast) {
+    static struct synthetic s;
+    double line = 0;
+    begin(&s, 0.2F, 0.1F);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            double r = hypot(x - 48, y - 48);
+            s.depth[y * SIDE + x] = r < 40 ? 10 : 14;
+            for (int c = 0; c < 3 && r < 40 && r >= 38.8; c++)
+                s.truth[y * SIDE + x][c] = 0.5F;
+        }
+    measure(&s, 33);
+    run_part(&s, 2, 0, 0);
+    int count = 0;
+    for (int i = 0; i < PIXELS; i++)
+        if (s.truth[i][1] > 0.4F) {
+            line += (double)s.out[i][1];
+            count++;
+        }
+    CHECK(line / count - 0.2 > 0.75 * 0.3 && line / count - 0.2 < 1.05 * 0.3);
+}
+
+/* Where a black surface begins behind a white one, albedos do not explain a bright pixel. */
+TEST(a_bright_pixel_beside_a_black_surface_at_another_depth_goes_away) {
+    static struct synthetic s;
+    begin(&s, 0.2F, 0.02F);
+    for (int i = 0; i < PIXELS; i++)
+        if (i % SIDE >= 48) {
+            s.depth[i] = 12;
+            for (int c = 0; c < 3; c++)
+                s.albedo[i][c] = 0;
+        }
+    measure(&s, 34);
+    for (int y = 8; y < SIDE; y += 16)
+        for (int c = 0; c < 3; c++) {
+            struct denoise_pixel *pixel = &s.pixels[y * SIDE + 47];
+            pixel->colour[0][c] = 0.5F;
+            pixel->colour[1][c] = 0.4F;
+            pixel->variance[c] = 0.02F;
+        }
+    run_part(&s, 2, 0, 0);
+    for (int y = 8; y < SIDE; y += 16)
+        CHECK_NEAR((double)s.out[y * SIDE + 47][1], 0.2, 0.08);
+}
+
 TEST(a_pixel_that_sees_no_surface_takes_nothing_from_its_neighbours) {
     static struct synthetic s;
     begin(&s, 0.3F, 0.2F);
@@ -290,6 +336,12 @@ TEST(a_part_is_denoised_as_the_whole_beyond_its_rim) {
     char warning[256];
     struct error error = {0};
     begin(&s, 0.5F, 0.2F);
+    for (int i = 0; i < PIXELS; i++) /* with silhouettes whose light no feature shows */
+        if (i % SIDE / 8 % 2) {
+            s.depth[i] = 13;
+            for (int c = 0; c < 3; c++)
+                s.truth[i][c] = i % 8 == 0 ? 1.5F : 0.2F;
+        }
     measure(&s, 8);
     run_part(&s, 2, 0, 0);
     struct pool *pool = pool_create(2, warning);
