@@ -338,9 +338,14 @@ static bool is_finite(struct expr_interval a) {
     return a.low > -INFINITY && a.high < INFINITY && !a.may_be_nan;
 }
 
+/* Whole exponents stay single, because only these have powers of negative numbers. */
 static void power_slopes(struct expr_interval a, struct expr_interval b, struct expr_interval value,
                          struct expr_interval out[3]) {
-    out[0] = product(b, of_two(EXPR_POWER, a, of_two(EXPR_SUBTRACT, b, one)));
+    const double less = b.low - 1;
+    const bool is_whole = is_single(b) && floor(b.low) == b.low && fabs(b.low) < 0x1p52;
+    const struct expr_interval exponent =
+        is_whole ? (struct expr_interval){less, less, false} : of_two(EXPR_SUBTRACT, b, one);
+    out[0] = product(b, of_two(EXPR_POWER, a, exponent));
     out[1] = a.low > 0 ? product(value, of_one(EXPR_LOG, a)) : any_slope;
 }
 

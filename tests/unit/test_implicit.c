@@ -368,6 +368,36 @@ TEST(solids_whose_function_is_nan_in_a_part_of_the_bounds_are_found_with_little_
     geom_scratch_destroy(&scratch);
 }
 
+/* |x|^n + |y|^n + |z|^n - 0.5, for even n by powers or by products, for odd ones without the absolute values. */
+static double work_of_powers(int n, bool by_products) {
+    struct arena arena = {0};
+    struct error error = {0};
+    struct implicit_findings findings;
+    struct function_maker m;
+    function_begin(&m);
+    uint32_t sum = fn_number(&m, -0.5);
+    for (int k = 0; k < 3; k++) {
+        uint32_t power = by_products ? m.p[k] : fn_two(&m, EXPR_POWER, m.p[k], fn_number(&m, n));
+        for (int i = 1; by_products && i < n; i++)
+            power = fn_mul(&m, power, m.p[k]);
+        sum = fn_add(&m, sum, power);
+    }
+    struct implicit_input in = {.program = function_end(&m, sum, &arena), .bounds = unit};
+    struct shape shape = implicit_shape(&arena, &in);
+    CHECK(implicit_examine(shape.implicit, &findings, &error));
+    arena_destroy(&arena);
+    return findings.line_work;
+}
+
+TEST(whole_powers_of_negative_coordinates_take_no_more_work_than_products) {
+    for (int n = 3; n < 9; n++) {
+        double powers = work_of_powers(n, false), products = work_of_powers(n, true);
+        if (!(powers < 2 * products))
+            test_fail(__FILE__, __LINE__, "power %d: %.0f operations for a line, by products %.0f", n, powers,
+                      products);
+    }
+}
+
 /* A ball as a step of 1 at its surface, and stairs, whose walls are jumps between slopes along y. */
 TEST(surfaces_where_a_function_jumps_have_the_normals_of_those_surfaces) {
     struct test_random random = {10};
