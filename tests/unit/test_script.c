@@ -43,6 +43,11 @@ TEST(pairs_has_a_fixed_order_and_strangers_get_no_dangerous_functions) {
     expect_done(&listener, "tests/scripts/traverse.lua", NULL);
 }
 
+TEST(a_hundred_functions_of_a_course_are_recorded_or_refused_with_the_reason) {
+    struct listener listener = {.renders = 0};
+    expect_done(&listener, "tests/scripts/functions.lua", NULL);
+}
+
 TEST(scripts_may_use_the_names_of_the_library_for_their_variables) {
     struct listener listener = {.renders = 0};
     expect_done(&listener, "tests/scripts/shadowed.lua", NULL);
