@@ -92,12 +92,13 @@ void render_process_fill_report(const struct picture_work *work, const struct fi
 
 void render_process_report_world(const struct render_process *process, const char *file,
                                  const struct picture_report *report) {
-    char line[4096 + 512];
-    (void)snprintf(line, sizeof line,
-                   "%s: %s: %llu primitives, %llu triangles, grid of %u x %u x %u, built in %.3f s, %d threads",
+    char line[4096 + 512], grid[64] = "";
+    const uint32_t *cells = report->grid_cells;
+    if (cells[0] > 0) /* not a hierarchy, a kd-tree or none */
+        (void)snprintf(grid, sizeof grid, " grid of %u x %u x %u,", cells[0], cells[1], cells[2]);
+    (void)snprintf(line, sizeof line, "%s: %s: %llu primitives, %llu triangles,%s built in %.3f s, %d threads",
                    process->script, file, (unsigned long long)report->primitives, (unsigned long long)report->triangles,
-                   report->grid_cells[0], report->grid_cells[1], report->grid_cells[2], report->rays.build_seconds,
-                   report->threads);
+                   grid, report->rays.build_seconds, report->threads);
     render_process_report_scene(process, LINE_DETAIL, line);
 }
 

@@ -992,3 +992,21 @@ TEST(a_thousand_reflections_fit_whatever_the_limit_of_the_stack) {
     free(plain.out);
     free(plain.err);
 }
+
+TEST(verbose_names_the_voxels_of_a_grid_only) {
+    static const char scene[] = "local s = gr.sphere('s', gr.material({1,1,1}, {0,0,0}, 1))\n"
+                                "gr.render{node=s, file='x.png', width=8, height=8, eye={0,0,5}}\n";
+    static const char *const accels[] = {"grid", "bvh", "kdtree", "none"};
+    for (int i = 0; i < 4; i++) {
+        char options[64];
+        (void)snprintf(options, sizeof options, "--verbose --accel %s scene.lua", accels[i]);
+        struct test_result result = test_gray_scene(scene, options, NULL);
+        const char *out = result.out, *err = result.err;
+        CHECK_EQ_INT(result.status, 0);
+        CHECK(strstr(out, ": 1 primitives, 0 triangles,") || strstr(err, ": 1 primitives, 0 triangles,"));
+        CHECK((strstr(out, "grid of 1 x 1 x 1") || strstr(err, "grid of 1 x 1 x 1")) == (i == 0));
+        CHECK(!strstr(out, "grid of 0") && !strstr(err, "grid of 0"));
+        free(result.out);
+        free(result.err);
+    }
+}
