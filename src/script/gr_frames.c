@@ -64,6 +64,8 @@ static bool gr_frames(struct script_context *context, const struct script_value 
         return error_set(error, ERROR_SCENE, "it is called while another gr.frames draws its frames");
     if (context->options->frames.turntable > 0)
         return error_set(error, ERROR_SCENE, "--turntable is for scripts without gr.frames");
+    if (context->host->animates)
+        context->host->animates(context->host->context);
     struct frame_plan *plan = arena_alloc(&context->keep, sizeof *plan);
     if (!plan)
         return error_no_memory(error, "an animation");
@@ -71,8 +73,6 @@ static bool gr_frames(struct script_context *context, const struct script_value 
     plan->frame.loops = args[FRAMES_LOOP].boolean || context->options->frames.loops;
     if (!count_frames(context, args, plan, error))
         return false;
-    if (context->host->animates)
-        context->host->animates(context->host->context);
     context->frame_shutter = (struct shutter){args[FRAMES_SHUTTER].vector.x, args[FRAMES_SHUTTER].vector.y};
     result->pointer = plan;
     return true;

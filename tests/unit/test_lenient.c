@@ -191,3 +191,13 @@ TEST(fields_of_other_names_are_taken_by_their_type_under_lenient) {
     free(bytes[0]);
     free(bytes[1]);
 }
+
+TEST(lenient_reports_frames_that_an_animation_does_not_have_once) {
+    static const char scene[] = "local s = gr.sphere('s')\n"
+                                "gr.frames{count=3, draw=function() gr.render{node=s, file='x.png'} end}\n";
+    struct test_result result = test_gray_scene(scene, "--lenient --frames 7-9 --size 8x8 scene.lua", NULL);
+    const char *warning = strstr(result.err, "--frames selects frame 9, but the last frame is 3");
+    CHECK(warning && !strstr(warning + 1, "--frames selects"));
+    free(result.out);
+    free(result.err);
+}
