@@ -14,12 +14,12 @@
 #include <float.h>
 
 /* CELLS: along the longest edge of the box. WORK: instructions times cells for the bounds. VALUES: registers of a
- * program, whose batches are on the stack. STEPS: of a ray in a cell, VISIBLE_STEPS if light is left; PARTS: of a step.
- */
+ * program, whose batches are on the stack (inputs keep theirs). STEPS: of a ray in a cell, VISIBLE_STEPS if light is
+ * left; PARTS: of a step. */
 enum {
     CELLS = 32,
     WORK = 1 << 25,
-    VALUES = 512,
+    VALUES = 512 + EXPR_INPUT_COUNT,
     STEPS = 4,
     VISIBLE_STEPS = 256,
     STEPS_AT_ONCE = EXPR_BATCH / 2,
