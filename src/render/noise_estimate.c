@@ -85,19 +85,6 @@ double noise_further_samples(const struct noise_history *history, uint32_t limit
 
 /* --- of a picture --- */
 
-static double get(const _Atomic double *value) {
-    return atomic_load_explicit(value, memory_order_relaxed);
-}
-
-/* Only one thread writes it. */
-static void set(_Atomic double *value, double to) {
-    atomic_store_explicit(value, to, memory_order_relaxed);
-}
-
-static void add(_Atomic double *value, double more) {
-    set(value, get(value) + more);
-}
-
 bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, uint32_t limit, int workers) {
     *estimate = (struct noise_estimate){.count = count, .limit = limit, .workers = workers};
     estimate->tiles = mem_alloc_zero(count, sizeof *estimate->tiles);
@@ -124,12 +111,12 @@ void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t 
     const struct noise_tile *of_tile = &estimate->tiles[tile];
     uint32_t samples = samples_of(of_tile);
     double planned = samples > 0 ? of_tile->cost / samples * (end - samples) : 0;
-    set(&estimate->sums[worker].part, 0);
-    set(&estimate->sums[worker].planned, fmin(planned, get(&of_tile->rest)));
+    estimate_set(&estimate->sums[worker].part, 0);
+    estimate_set(&estimate->sums[worker].planned, fmin(planned, estimate_get(&of_tile->rest)));
 }
 
 void noise_estimate_part(struct noise_estimate *estimate, int worker, double part) {
-    set(&estimate->sums[worker].part, part);
+    estimate_set(&estimate->sums[worker].part, part);
 }
 
 void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level) {
@@ -137,17 +124,17 @@ void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t t
     struct noise_tile *of_tile = &estimate->tiles[tile];
     double rest = 0;
     of_tile->cost += level->cost;
-    set(&sums->planned, 0);
+    estimate_set(&sums->planned, 0);
     if (level->point.samples < 2 && !level->final)
         return; /* no noise yet */
     bool first = of_tile->history.count == 0;
     noise_history_add(&of_tile->history, level->point);
     if (!level->final)
         rest = of_tile->cost / samples_of(of_tile) * noise_further_samples(&of_tile->history, estimate->limit);
-    add(&sums->pixels, first ? of_tile->pixels : 0);
-    add(&sums->done, first ? of_tile->cost : level->cost);
-    add(&sums->rest, rest - get(&of_tile->rest));
-    set(&of_tile->rest, rest);
+    estimate_add(&sums->pixels, first ? of_tile->pixels : 0);
+    estimate_add(&sums->done, first ? of_tile->cost : level->cost);
+    estimate_add(&sums->rest, rest - estimate_get(&of_tile->rest));
+    estimate_set(&of_tile->rest, rest);
 }
 
 /* Near the end, workers may wait for the longest tile. */
@@ -156,7 +143,7 @@ static const double end_share = 0.1;
 static double longest_rest(const struct noise_estimate *estimate) {
     double longest = 0;
     for (uint32_t i = 0; i < estimate->count; i++)
-        longest = fmax(longest, get(&estimate->tiles[i].rest));
+        longest = fmax(longest, estimate_get(&estimate->tiles[i].rest));
     return longest;
 }
 
@@ -164,10 +151,10 @@ struct time_estimate_work noise_estimate_work(const struct noise_estimate *estim
     double done = 0, rest = 0, begun = 0, pixels = 0;
     for (int w = 0; w < estimate->workers; w++) {
         const struct noise_sums *sums = &estimate->sums[w];
-        done += get(&sums->done);
-        rest += get(&sums->rest);
-        begun += get(&sums->planned) * get(&sums->part);
-        pixels += get(&sums->pixels);
+        done += estimate_get(&sums->done);
+        rest += estimate_get(&sums->rest);
+        begun += estimate_get(&sums->planned) * estimate_get(&sums->part);
+        pixels += estimate_get(&sums->pixels);
     }
     if (!(pixels > 0))
         return (struct time_estimate_work){0, 1};

@@ -40,7 +40,7 @@ struct noise_tile {
     _Atomic double rest; /* expected cost of its further samples */
 };
 
-/* One worker's sums: only it writes them, anybody reads. */
+/* The sums of one worker, as in render/time_estimate.h. */
 struct noise_sums {
     _Atomic double done, rest;    /* costs; rest is of tiles that have samples, and may be negative for one worker */
     _Atomic double pixels;        /* of tiles that have samples */

@@ -163,7 +163,7 @@ static void make_quarter(struct renderer *renderer, uint32_t number, int index) 
         end_tile(renderer, tile, !(before & QUARTER_FAILED));
 }
 
-/* With --noise, nobody knows how long a tile will take before it has most of its samples. So all tiles get their
+/* With --noise, the time of a tile is not known before it has most of its samples. So all tiles get their
  * samples level by level, and the time left is known early. The order of the tiles repeats for each level; a tile that
  * is final is left out. A worker that comes to a tile while another one makes the level before waits: then almost no
  * tile is left. Where finished tiles are wanted as they come, each gets its samples in one go. */

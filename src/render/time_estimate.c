@@ -24,19 +24,6 @@ static const double *beliefs(const struct time_estimate *time_estimate) {
     return believed[time_estimate->proportional];
 }
 
-static double get(const _Atomic double *value) {
-    return atomic_load_explicit(value, memory_order_relaxed);
-}
-
-/* Only one thread writes it. */
-static void set(_Atomic double *value, double to) {
-    atomic_store_explicit(value, to, memory_order_relaxed);
-}
-
-static void add(_Atomic double *value, double more) {
-    set(value, get(value) + more);
-}
-
 bool time_estimate_create(struct time_estimate *time_estimate, uint32_t count, uint32_t across, int workers) {
     *time_estimate = (struct time_estimate){.count = count, .across = across, .workers = workers};
     time_estimate->terms = mem_alloc_zero(count, sizeof *time_estimate->terms);
@@ -103,20 +90,20 @@ void time_estimate_begin_tiles(struct time_estimate *time_estimate, bool proport
 
 void time_estimate_begin(struct time_estimate *time_estimate, int worker, uint32_t tile, double share) {
     struct time_estimate_sums *sums = &time_estimate->sums[worker];
-    set(&sums->share, share);
-    set(&sums->part[0], 0);
-    set(&sums->part[1], 0);
+    estimate_set(&sums->share, share);
+    estimate_set(&sums->part[0], 0);
+    estimate_set(&sums->part[1], 0);
     atomic_store_explicit(&sums->tile, tile, memory_order_relaxed);
 }
 
 void time_estimate_part(struct time_estimate *time_estimate, int worker, int pass, double part) {
-    set(&time_estimate->sums[worker].part[pass], part);
+    estimate_set(&time_estimate->sums[worker].part[pass], part);
 }
 
 void time_estimate_done(struct time_estimate *time_estimate, int worker, double cost, double first_pass_cost) {
     struct time_estimate_sums *sums = &time_estimate->sums[worker];
     const float *of_tile = time_estimate->terms[atomic_load_explicit(&sums->tile, memory_order_relaxed)];
-    double terms[TIME_ESTIMATE_TERMS], expected = 0, share = get(&sums->share);
+    double terms[TIME_ESTIMATE_TERMS], expected = 0, share = estimate_get(&sums->share);
     for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
         terms[i] = share * (double)of_tile[i];
         expected += terms[i] * beliefs(time_estimate)[i];
@@ -125,13 +112,13 @@ void time_estimate_done(struct time_estimate *time_estimate, int worker, double 
     atomic_store_explicit(&sums->tile, TIME_ESTIMATE_NO_TILE, memory_order_relaxed);
     for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
         for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
-            add(&sums->products[i][k], weight * terms[i] * terms[k]);
-        add(&sums->costs[i], weight * terms[i] * cost);
-        add(&sums->done[i], terms[i]);
+            estimate_add(&sums->products[i][k], weight * terms[i] * terms[k]);
+        estimate_add(&sums->costs[i], weight * terms[i] * cost);
+        estimate_add(&sums->done[i], terms[i]);
     }
-    add(&sums->weight, expected);
-    add(&sums->cost, cost);
-    add(&sums->first_cost, first_pass_cost);
+    estimate_add(&sums->weight, expected);
+    estimate_add(&sums->cost, cost);
+    estimate_add(&sums->first_cost, first_pass_cost);
 }
 
 /* --- what the rest will take --- */
@@ -147,13 +134,13 @@ static struct totals add_up(const struct time_estimate *time_estimate) {
         const struct time_estimate_sums *sums = &time_estimate->sums[w];
         for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
             for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
-                all.products[i][k] += get(&sums->products[i][k]);
-            all.costs[i] += get(&sums->costs[i]);
-            all.done[i] += get(&sums->done[i]);
+                all.products[i][k] += estimate_get(&sums->products[i][k]);
+            all.costs[i] += estimate_get(&sums->costs[i]);
+            all.done[i] += estimate_get(&sums->done[i]);
         }
-        all.weight += get(&sums->weight);
-        all.cost += get(&sums->cost);
-        all.first_cost += get(&sums->first_cost);
+        all.weight += estimate_get(&sums->weight);
+        all.cost += estimate_get(&sums->cost);
+        all.first_cost += estimate_get(&sums->first_cost);
     }
     return all;
 }
@@ -222,7 +209,8 @@ static void add_parts(const struct time_estimate *time_estimate, const struct to
     for (int w = 0; w < time_estimate->workers; w++) {
         const struct time_estimate_sums *sums = &time_estimate->sums[w];
         uint32_t tile = atomic_load_explicit(&sums->tile, memory_order_relaxed);
-        double part = get(&sums->share) * (first * get(&sums->part[0]) + (1 - first) * get(&sums->part[1]));
+        double part = estimate_get(&sums->share) *
+                      (first * estimate_get(&sums->part[0]) + (1 - first) * estimate_get(&sums->part[1]));
         for (int i = 0; tile < time_estimate->count && i < TIME_ESTIMATE_TERMS; i++)
             done[i] += part * (double)time_estimate->terms[tile][i];
     }

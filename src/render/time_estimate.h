@@ -13,7 +13,18 @@
 
 enum { TIME_ESTIMATE_TERMS = 6 };
 
-/* One worker's sums: it alone writes them, anybody reads. */
+/* Values of one worker: only its thread writes them, all threads read them. */
+static inline double estimate_get(const _Atomic double *value) {
+    return atomic_load_explicit(value, memory_order_relaxed);
+}
+static inline void estimate_set(_Atomic double *value, double to) {
+    atomic_store_explicit(value, to, memory_order_relaxed);
+}
+static inline void estimate_add(_Atomic double *value, double more) {
+    estimate_set(value, estimate_get(value) + more);
+}
+
+/* The sums of one worker, values as above. */
 struct time_estimate_sums {
     _Atomic double products[TIME_ESTIMATE_TERMS][TIME_ESTIMATE_TERMS],
         costs[TIME_ESTIMATE_TERMS]; /* weighted, of tiles done */
