@@ -1,4 +1,4 @@
-/* The data of the render process, and what it tells the user (render_reports.c). Other files of the host see neither. */
+/* The data of the render process, and its reports (render_reports.c). Other files of the host do not include this. */
 #ifndef GRAY_HOST_RENDER_PROCESS_INTERNAL_H
 #define GRAY_HOST_RENDER_PROCESS_INTERNAL_H
 

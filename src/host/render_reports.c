@@ -1,4 +1,4 @@
-/* What the render process tells the user: lines, warnings about scenes, and the numbers of a picture. */
+/* The reports of the render process: lines, warnings about scenes, and the numbers of a picture. */
 #include "host/render_process_internal.h"
 
 #include "base/hash.h"
