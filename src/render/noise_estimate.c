@@ -111,12 +111,12 @@ void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t 
     const struct noise_tile *of_tile = &estimate->tiles[tile];
     uint32_t samples = samples_of(of_tile);
     double planned = samples > 0 ? of_tile->cost / samples * (end - samples) : 0;
-    estimate_set(&estimate->sums[worker].part, 0);
-    estimate_set(&estimate->sums[worker].planned, fmin(planned, estimate_get(&of_tile->rest)));
+    sum_store(&estimate->sums[worker].part, 0);
+    sum_store(&estimate->sums[worker].planned, fmin(planned, sum_load(&of_tile->rest)));
 }
 
 void noise_estimate_part(struct noise_estimate *estimate, int worker, double part) {
-    estimate_set(&estimate->sums[worker].part, part);
+    sum_store(&estimate->sums[worker].part, part);
 }
 
 void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level) {
@@ -124,17 +124,17 @@ void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t t
     struct noise_tile *of_tile = &estimate->tiles[tile];
     double rest = 0;
     of_tile->cost += level->cost;
-    estimate_set(&sums->planned, 0);
+    sum_store(&sums->planned, 0);
     if (level->point.samples < 2 && !level->final)
         return; /* no noise yet */
     bool first = of_tile->history.count == 0;
     noise_history_add(&of_tile->history, level->point);
     if (!level->final)
         rest = of_tile->cost / samples_of(of_tile) * noise_further_samples(&of_tile->history, estimate->limit);
-    estimate_add(&sums->pixels, first ? of_tile->pixels : 0);
-    estimate_add(&sums->done, first ? of_tile->cost : level->cost);
-    estimate_add(&sums->rest, rest - estimate_get(&of_tile->rest));
-    estimate_set(&of_tile->rest, rest);
+    sum_add(&sums->pixels, first ? of_tile->pixels : 0);
+    sum_add(&sums->done, first ? of_tile->cost : level->cost);
+    sum_add(&sums->rest, rest - sum_load(&of_tile->rest));
+    sum_store(&of_tile->rest, rest);
 }
 
 /* Near the end, workers may wait for the longest tile. */
@@ -143,7 +143,7 @@ static const double end_share = 0.1;
 static double longest_rest(const struct noise_estimate *estimate) {
     double longest = 0;
     for (uint32_t i = 0; i < estimate->count; i++)
-        longest = fmax(longest, estimate_get(&estimate->tiles[i].rest));
+        longest = fmax(longest, sum_load(&estimate->tiles[i].rest));
     return longest;
 }
 
@@ -151,10 +151,10 @@ struct time_estimate_work noise_estimate_work(const struct noise_estimate *estim
     double done = 0, rest = 0, begun = 0, pixels = 0;
     for (int w = 0; w < estimate->workers; w++) {
         const struct noise_sums *sums = &estimate->sums[w];
-        done += estimate_get(&sums->done);
-        rest += estimate_get(&sums->rest);
-        begun += estimate_get(&sums->planned) * estimate_get(&sums->part);
-        pixels += estimate_get(&sums->pixels);
+        done += sum_load(&sums->done);
+        rest += sum_load(&sums->rest);
+        begun += sum_load(&sums->planned) * sum_load(&sums->part);
+        pixels += sum_load(&sums->pixels);
     }
     if (!(pixels > 0))
         return (struct time_estimate_work){0, 1};

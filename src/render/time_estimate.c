@@ -90,20 +90,20 @@ void time_estimate_begin_tiles(struct time_estimate *time_estimate, bool proport
 
 void time_estimate_begin(struct time_estimate *time_estimate, int worker, uint32_t tile, double share) {
     struct time_estimate_sums *sums = &time_estimate->sums[worker];
-    estimate_set(&sums->share, share);
-    estimate_set(&sums->part[0], 0);
-    estimate_set(&sums->part[1], 0);
+    sum_store(&sums->share, share);
+    sum_store(&sums->part[0], 0);
+    sum_store(&sums->part[1], 0);
     atomic_store_explicit(&sums->tile, tile, memory_order_relaxed);
 }
 
 void time_estimate_part(struct time_estimate *time_estimate, int worker, int pass, double part) {
-    estimate_set(&time_estimate->sums[worker].part[pass], part);
+    sum_store(&time_estimate->sums[worker].part[pass], part);
 }
 
 void time_estimate_done(struct time_estimate *time_estimate, int worker, double cost, double first_pass_cost) {
     struct time_estimate_sums *sums = &time_estimate->sums[worker];
     const float *of_tile = time_estimate->terms[atomic_load_explicit(&sums->tile, memory_order_relaxed)];
-    double terms[TIME_ESTIMATE_TERMS], expected = 0, share = estimate_get(&sums->share);
+    double terms[TIME_ESTIMATE_TERMS], expected = 0, share = sum_load(&sums->share);
     for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
         terms[i] = share * (double)of_tile[i];
         expected += terms[i] * beliefs(time_estimate)[i];
@@ -112,13 +112,13 @@ void time_estimate_done(struct time_estimate *time_estimate, int worker, double 
     atomic_store_explicit(&sums->tile, TIME_ESTIMATE_NO_TILE, memory_order_relaxed);
     for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
         for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
-            estimate_add(&sums->products[i][k], weight * terms[i] * terms[k]);
-        estimate_add(&sums->costs[i], weight * terms[i] * cost);
-        estimate_add(&sums->done[i], terms[i]);
+            sum_add(&sums->products[i][k], weight * terms[i] * terms[k]);
+        sum_add(&sums->costs[i], weight * terms[i] * cost);
+        sum_add(&sums->done[i], terms[i]);
     }
-    estimate_add(&sums->weight, expected);
-    estimate_add(&sums->cost, cost);
-    estimate_add(&sums->first_cost, first_pass_cost);
+    sum_add(&sums->weight, expected);
+    sum_add(&sums->cost, cost);
+    sum_add(&sums->first_cost, first_pass_cost);
 }
 
 /* --- what the rest will take --- */
@@ -134,13 +134,13 @@ static struct totals add_up(const struct time_estimate *time_estimate) {
         const struct time_estimate_sums *sums = &time_estimate->sums[w];
         for (int i = 0; i < TIME_ESTIMATE_TERMS; i++) {
             for (int k = 0; k < TIME_ESTIMATE_TERMS; k++)
-                all.products[i][k] += estimate_get(&sums->products[i][k]);
-            all.costs[i] += estimate_get(&sums->costs[i]);
-            all.done[i] += estimate_get(&sums->done[i]);
+                all.products[i][k] += sum_load(&sums->products[i][k]);
+            all.costs[i] += sum_load(&sums->costs[i]);
+            all.done[i] += sum_load(&sums->done[i]);
         }
-        all.weight += estimate_get(&sums->weight);
-        all.cost += estimate_get(&sums->cost);
-        all.first_cost += estimate_get(&sums->first_cost);
+        all.weight += sum_load(&sums->weight);
+        all.cost += sum_load(&sums->cost);
+        all.first_cost += sum_load(&sums->first_cost);
     }
     return all;
 }
@@ -209,8 +209,8 @@ static void add_parts(const struct time_estimate *time_estimate, const struct to
     for (int w = 0; w < time_estimate->workers; w++) {
         const struct time_estimate_sums *sums = &time_estimate->sums[w];
         uint32_t tile = atomic_load_explicit(&sums->tile, memory_order_relaxed);
-        double part = estimate_get(&sums->share) *
-                      (first * estimate_get(&sums->part[0]) + (1 - first) * estimate_get(&sums->part[1]));
+        double part = sum_load(&sums->share) *
+                      (first * sum_load(&sums->part[0]) + (1 - first) * sum_load(&sums->part[1]));
         for (int i = 0; tile < time_estimate->count && i < TIME_ESTIMATE_TERMS; i++)
             done[i] += part * (double)time_estimate->terms[tile][i];
     }

@@ -14,14 +14,14 @@
 enum { TIME_ESTIMATE_TERMS = 6 };
 
 /* Values of one worker: only its thread writes them, all threads read them. */
-static inline double estimate_get(const _Atomic double *value) {
+static inline double sum_load(const _Atomic double *value) {
     return atomic_load_explicit(value, memory_order_relaxed);
 }
-static inline void estimate_set(_Atomic double *value, double to) {
+static inline void sum_store(_Atomic double *value, double to) {
     atomic_store_explicit(value, to, memory_order_relaxed);
 }
-static inline void estimate_add(_Atomic double *value, double more) {
-    estimate_set(value, estimate_get(value) + more);
+static inline void sum_add(_Atomic double *value, double more) {
+    sum_store(value, sum_load(value) + more);
 }
 
 /* The sums of one worker, values as above. */
