@@ -603,7 +603,7 @@ static bool is_nan_power(const struct expr_range *base, const struct expr_range 
 static bool is_always_nan(enum expr_operation operation, const struct expr_rooted *from[3]) {
     const struct expr_interval a = from[0]->range.value;
     bool first = from[0]->range.is_nan, second = from[1]->range.is_nan;
-    switch ((unsigned)operation) { /* no list: false for all others */
+    switch ((unsigned)operation) { /* of all others nothing is known: false is never wrong */
     case EXPR_SQRT:
     case EXPR_LOG:
     case EXPR_LOG2:

@@ -514,7 +514,7 @@ static float residual_weight(const struct level *level, size_t p, size_t q) {
     return 1 / (1 + distance * distance);
 }
 
-/* What the residuals around a silhouette say. */
+/* The mean residual around a pixel, how far it exceeds the noise, and whether both halves have it. */
 struct residual {
     float mean[3], evidence, agreement;
 };

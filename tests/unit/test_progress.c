@@ -375,6 +375,7 @@ TEST(the_time_left_of_a_picture_with_noise_is_known_within_a_fifth_from_a_third_
     CHECK(worst_error_of_levels(400, 0.05, 64, 3) < 0.2);
     CHECK(worst_error_of_levels(130, 0.1, 128, 1) < 0.2);
     CHECK(worst_error_of_levels(35, 0.05, 64, 1) < 0.2);
+    /* Only a quarter without a limit of samples, if each estimate of the noise is wrong by up to a tenth. */
     CHECK(worst_error_of_levels(400, 0.1, 65536, 1) < 0.25);
 }
 
