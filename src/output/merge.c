@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "output/output_session.h"
+#include "render/path_film.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -114,6 +115,13 @@ static bool fill_film(const struct part *parts, size_t count, struct film *film,
     return true;
 }
 
+/* --denoise needs the features that only renders with --denoise record. */
+static bool check_denoise(const struct options *options, const struct tile_picture *picture, struct error *error) {
+    return options->settings.denoise == DENOISER_NONE || (path_film_parts(picture->record) & PATH_PART_FEATURES) ||
+           error_set(error, ERROR_USAGE, "%.400s: its parts cannot be denoised: they were rendered without --denoise",
+                     picture->name);
+}
+
 static bool merge_picture(struct output_session *output, const struct part *parts, size_t count, struct error *error) {
     const struct tile_picture *first = &parts[0].picture;
     struct picture_request request = {.full_width = first->full_width,
@@ -137,7 +145,8 @@ static bool merge_picture(struct output_session *output, const struct part *part
                                       .tone_table = first->tone_table};
     memcpy(request.file, first->name, sizeof request.file);
     bool already = false;
-    if (!check_parts(parts, count, error) || !output_begin(output, &request, &already, error))
+    if (!check_parts(parts, count, error) || !check_denoise(output->options, first, error) ||
+        !output_begin(output, &request, &already, error))
         return false;
     const struct picture_report report = {0};
     if (fill_film(parts, count, &output->current.film, error))

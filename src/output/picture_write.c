@@ -190,9 +190,10 @@ static bool write_prefixed(const struct picture_files *files, const struct pictu
            picture_write_view(picture, &target, view, pool, error);
 }
 
-/* A film with features is there to be denoised; the command line may choose the program that does it. */
+/* A film with features is there to be denoised; the command line may choose the program that does it. With `gray merge
+ * --denoise=none` the features of the parts are not used. */
 static enum denoiser denoiser_of(const struct options *options, const struct picture *picture) {
-    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES))
+    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES) || options->settings.keeps_noise)
         return DENOISER_NONE;
     return options->settings.denoise == DENOISER_OIDN ? DENOISER_OIDN : DENOISER_GRAY;
 }

@@ -443,6 +443,25 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
                      near.text);
 }
 
+/* What gray merge uses: the parts contain the results of all other options. */
+static bool serves_merge(const struct option *option) {
+    static const char names[] = "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
+                                "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress";
+    const char *own = option->names;
+    struct piece first = without_dashes(option_next_piece(&own));
+    for (const char *rest = names; *rest;) {
+        if (same_name(first, option_next_piece(&rest)))
+            return true;
+    }
+    return false;
+}
+
+static bool refuse_for_merge(const struct option *option, struct error *error) {
+    const char *rest = option->names;
+    return error_set(error, ERROR_USAGE, "merge cannot be combined with %.*s: it only joins parts that are rendered",
+                     (int)option_next_piece(&rest).length, option->names);
+}
+
 /* The meaning of two options does not depend on their order: so the values are hashed. */
 static struct digest digest_option(const struct option *option, const struct options *options, struct digest digest) {
     assert(option->kind != OPTION_TEXT); /* of strings the pointer would be hashed */
@@ -569,6 +588,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
+    const struct option *not_of_merge = NULL; /* the first option that gray merge does not use */
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
         /* The first word that is no option; `gray -- merge` is a scene of that name. */
@@ -594,6 +614,8 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             option = find_attached(word, &text);
         if (!option)
             return unknown_option(word, name, error);
+        if (!not_of_merge && !serves_merge(option))
+            not_of_merge = option;
         if (!option->value && text)
             return value_error(option, text, error);
         if (option->kind == OPTION_STATS && !text)
@@ -609,6 +631,8 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
             return false;
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
+    if (options->action == ACTION_MERGE && not_of_merge)
+        return refuse_for_merge(not_of_merge, error);
     return options_check(options, error);
 }
 

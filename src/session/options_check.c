@@ -34,10 +34,10 @@ static bool check_questions(const struct options *options, struct error *error) 
     if (options->pixel_count == 0 && !options->dump_scene && !options->dump_expr)
         return !options->json || error_set(error, ERROR_USAGE, "--json needs --pixel, --dump-scene or --dump-expr");
     if (options->window || options->check || options->shards || options->shards_of_pictures || options->mpi ||
-        options->checkpoint || options->resume || options->action == ACTION_MERGE)
+        options->checkpoint || options->resume)
         return error_set(error, ERROR_USAGE,
-                         "%s renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint, "
-                         "--resume or merge",
+                         "%s renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint "
+                         "or --resume",
                          asked);
     return true;
 }
@@ -85,24 +85,19 @@ bool display_parse(const char *text, struct display_choice *out) {
 /* The conditions between --checkpoint, --resume, --shard and -o. */
 static bool check_parts(struct options *options, struct error *error) {
     bool pipe = options->output && strcmp(options->output, "-") == 0;
-    if (options->action == ACTION_MERGE &&
-        (options->checkpoint || options->resume || options->shards || options->shards_of_pictures || options->check))
-        return error_set(error, ERROR_USAGE,
-                         "merge cannot be combined with --checkpoint, --resume, --shard or --check");
     struct display_choice display;
     if (options->display && !display_parse(options->display, &display))
         return error_set(error, ERROR_USAGE,
                          "--display needs tev, tev:HOST, tev:HOST:PORT, term, term:kitty, term:sixel or term:blocks, "
                          "not '%s'",
                          options->display);
-    if (options->display && (options->window || options->check || options->shards || options->action == ACTION_MERGE ||
-                             (pipe && display.kind == DISPLAY_TERMINAL)))
+    if (options->display &&
+        (options->window || options->check || options->shards || (pipe && display.kind == DISPLAY_TERMINAL)))
         return error_set(error, ERROR_USAGE,
-                         "--display cannot be combined with -gui, --check, --shard or merge, and term not with -o -");
-    if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe ||
-                             options->action == ACTION_MERGE))
+                         "--display cannot be combined with -gui, --check or --shard, and term not with -o -");
+    if (options->partial && (options->window || options->shards || options->mpi || options->no_fork || pipe))
         return error_set(error, ERROR_USAGE,
-                         "--partial cannot be combined with -gui, --shard, --mpi, --no-fork, merge or -o -");
+                         "--partial cannot be combined with -gui, --shard, --mpi, --no-fork or -o -");
     if (options->resume && !options->checkpoint)
         options->checkpoint = "auto";
     if (options->mpi && (options->shards || options->shards_of_pictures || options->no_fork || options->check))
@@ -125,18 +120,16 @@ static bool check_parts(struct options *options, struct error *error) {
                          "with -o - there is no file name for a checkpoint; --checkpoint FILE sets one");
     if (pipe && options->shards)
         return error_set(error, ERROR_USAGE, "with -o - there is no file name for the parts of --shard");
-    if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
-        options->settings.aov)
+    if ((options->shards || options->mpi || options->checkpoint) && options->settings.aov)
         return error_set(
             error, ERROR_USAGE,
-            "--aov works only for pictures that one process renders at once: no --shard, --mpi, --checkpoint, "
-            "--resume or merge");
-    if ((options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE) &&
-        options->settings.overlay != OVERLAY_NONE)
+            "--aov works only for pictures that one process renders at once: no --shard, --mpi, --checkpoint or "
+            "--resume");
+    if ((options->shards || options->mpi || options->checkpoint) && options->settings.overlay != OVERLAY_NONE)
         return error_set(
             error, ERROR_USAGE,
-            "--overlay works only for pictures that one process renders at once: no --shard, --mpi, --checkpoint, "
-            "--resume or merge");
+            "--overlay works only for pictures that one process renders at once: no --shard, --mpi, --checkpoint or "
+            "--resume");
     if (options->shards && (options->targets_prefix || options->first_pass_prefix))
         return error_set(error, ERROR_USAGE, "--shard writes no debug pictures; give -write-... to gray merge");
     return true;
@@ -144,11 +137,10 @@ static bool check_parts(struct options *options, struct error *error) {
 
 /* --time-limit: the number of samples of a picture is known only when it is finished. */
 static bool check_time(const struct options *options, struct error *error) {
-    if (options->settings.time_limit > 0 &&
-        (options->shards || options->mpi || options->checkpoint || options->action == ACTION_MERGE))
+    if (options->settings.time_limit > 0 && (options->shards || options->mpi || options->checkpoint))
         return error_set(error, ERROR_USAGE,
-                         "--time-limit cannot be combined with --shard, --mpi, --checkpoint, --resume or merge: their "
-                         "parts would have different numbers of samples; use --spp N");
+                         "--time-limit cannot be combined with --shard, --mpi, --checkpoint or --resume: their parts "
+                         "would have different numbers of samples; use --spp N");
     return true;
 }
 
@@ -184,6 +176,11 @@ static bool check_animation(struct options *options, struct error *error) {
     options->animation = animation_of(options->output);
     if (options->animation == ANIMATION_NONE) {
         const char *only = options->keep_frames ? "--keep-frames" : options->contact_sheet ? "--contact-sheet" : NULL;
+        if (options->action == ACTION_MERGE && !only)
+            only = options->script.frames.rate > 0 ? "--fps"
+                   : options->script.frames.loops  ? "--loop"
+                   : options->frame_palettes       ? "--palette"
+                                                   : NULL;
         return !only || error_set(error, ERROR_USAGE, "%s is only for animations, such as -o x.gif", only);
     }
     if (options->window || settings->aov || options->targets_prefix || options->first_pass_prefix || options->partial)

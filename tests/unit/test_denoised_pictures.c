@@ -99,6 +99,20 @@ TEST(denoise_none_leaves_the_noise_of_a_scene_that_asks_for_denoising) {
           0, NULL);
 }
 
+TEST(merge_denoises_parts_with_features_unless_denoise_none_leaves_the_noise) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    gives("$gray -q scene.lua -o raw.pfm && $gray -q scene.lua --denoise -o denoised.pfm && for i in 1 2; do $gray -q "
+          "scene.lua --denoise -o a.pfm --shard $i/2 && $gray -q scene.lua -o b.pfm --shard $i/2 || exit 1; done",
+          0, NULL);
+    gives("$gray merge -q a.pfm.*.part && cmp a.pfm denoised.pfm && $gray merge -q --denoise a.pfm.*.part && "
+          "cmp a.pfm denoised.pfm && $gray merge -q --denoise=none a.pfm.*.part && cmp a.pfm raw.pfm && "
+          "$gray merge -q --denoise=none b.pfm.*.part && cmp b.pfm raw.pfm && rm b.pfm",
+          0, NULL);
+    gives("$gray merge --denoise b.pfm.*.part", 2,
+          "b.pfm: its parts cannot be denoised: they were rendered without --denoise\n");
+    gives("test -e b.pfm", 1, NULL);
+}
+
 /* The stand-in looks at its arguments and its files, and answers with the albedo. */
 TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
     test_write_text(test_path("scene.lua"), PLAIN);

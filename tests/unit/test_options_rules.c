@@ -1,9 +1,10 @@
 /* Rules between options: every incompatible pair is refused with the message of its rule, and either of the two alone
  * is accepted. Words at the limits of the parser; failing allocations. */
 #include "base/fault.h"
-#include "session/options.h"
+#include "session/options_internal.h"
 #include "tests/harness.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -38,8 +39,7 @@ static void exclude(const char *first, const char *options, const char *sentence
     char copy[512], line[600];
     strcpy(copy, options);
     for (char *rest = copy, *option; (option = strtok_r(rest, "|", &rest));) {
-        bool merge = strcmp(option, "merge") == 0;
-        (void)snprintf(line, sizeof line, "%s%s x %s", merge ? "merge " : "", first, merge ? "" : option);
+        (void)snprintf(line, sizeof line, "%s x %s", first, option);
         expect(line, sentence);
         (void)snprintf(line, sizeof line, "%s x", option);
         expect(line, NULL);
@@ -50,37 +50,31 @@ static void exclude(const char *first, const char *options, const char *sentence
 
 TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
     static const char
-        pixel[] = "--pixel renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint, "
-                  "--resume or merge",
-        merge[] = "merge cannot be combined with --checkpoint, --resume, --shard or --check",
-        display[] = "--display cannot be combined with -gui, --check, --shard or merge, and term not with -o -",
-        partial[] = "--partial cannot be combined with -gui, --shard, --mpi, --no-fork, merge or -o -",
+        pixel[] = "--pixel renders nothing: it cannot be combined with -gui, --check, --shard, --mpi, --checkpoint "
+                  "or --resume",
+        display[] = "--display cannot be combined with -gui, --check or --shard, and term not with -o -",
+        partial[] = "--partial cannot be combined with -gui, --shard, --mpi, --no-fork or -o -",
         mpi[] = "--mpi cannot be combined with --shard, --shard-pictures, --no-fork or --check",
         window[] = "-gui cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork, --check or --aov",
         watch[] = "--watch cannot be combined with --checkpoint, --resume, --shard, --mpi, --no-fork or -o -",
         no_fork[] = "--no-fork is for debuggers: it cannot be combined with --checkpoint, --resume or --shard",
         aov[] = "--aov works only for pictures that one process renders at once: no --shard, --mpi, "
-                "--checkpoint, --resume or merge",
+                "--checkpoint or --resume",
         overlay[] = "--overlay works only for pictures that one process renders at once: no --shard, --mpi, "
-                    "--checkpoint, --resume or merge",
+                    "--checkpoint or --resume",
         debug[] = "--shard writes no debug pictures; give -write-... to gray merge";
-    exclude("--pixel 1,2", "-gui|--check|--shard 1/2|--shard-pictures 1/2|--mpi|--checkpoint c|--resume|merge", pixel);
-    exclude("--checkpoint c", "merge", merge);
-    exclude("--resume", "merge", merge);
-    exclude("--shard 1/2", "merge", merge);
-    exclude("--shard-pictures 1/2", "merge", merge);
-    exclude("--check", "merge", merge);
-    exclude("--display tev", "-gui|--check|--shard 1/2|merge", display);
+    exclude("--pixel 1,2", "-gui|--check|--shard 1/2|--shard-pictures 1/2|--mpi|--checkpoint c|--resume", pixel);
+    exclude("--display tev", "-gui|--check|--shard 1/2", display);
     exclude("--display term", "-o -", display);
     expect("--display tev -o - x", NULL);
-    exclude("--partial", "-gui|--shard 1/2|--mpi|--no-fork|-o -|merge", partial);
+    exclude("--partial", "-gui|--shard 1/2|--mpi|--no-fork|-o -", partial);
     exclude("--mpi", "--shard 1/2|--shard-pictures 1/2|--no-fork|--check", mpi);
     exclude("-gui", "--checkpoint c|--resume|--shard 1/2|--shard-pictures 1/2|--mpi|--no-fork|--check|--aov all",
             window);
     exclude("--watch", "--checkpoint c|--resume|--shard 1/2|--shard-pictures 1/2|--mpi|--no-fork|-o -", watch);
     exclude("--no-fork", "--checkpoint c|--resume|--shard 1/2", no_fork);
-    exclude("--aov depth", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", aov);
-    exclude("--overlay boxes", "--shard 1/2|--mpi|--checkpoint c|--resume|merge", overlay);
+    exclude("--aov depth", "--shard 1/2|--mpi|--checkpoint c|--resume", aov);
+    exclude("--overlay boxes", "--shard 1/2|--mpi|--checkpoint c|--resume", overlay);
     exclude("--shard 1/2", "-write-aa-targets t-|-write-pre-aa p-", debug);
     exclude("--resume", "-o -", "with -o - there is no file name for a checkpoint; --checkpoint FILE sets one");
     expect("-o - --checkpoint c x", NULL);
@@ -92,6 +86,65 @@ TEST(options_that_do_not_go_together_are_refused_pair_by_pair) {
     expect("-write-pre-aa t- -write-aa-targets u- x", NULL);
     exclude("--stats=json", "-o -", "-o - and --stats=json both write to standard output");
     exclude("--aov uv", "-o -", "with -o - there is no file name for --aov");
+}
+
+/* Each option of the table, with a value that is accepted: gray merge takes it or refuses it, and the two lists name
+ * all of them. */
+TEST(merge_refuses_every_option_that_it_does_not_use) {
+    static const char *const used[] = {
+        "-o x.gif",        "--force",           "-write-aa-targets t-", "-write-pre-aa p-", "--fps 5", "--loop",
+        "--palette frame", "--keep-frames",     "--contact-sheet",      "--denoise=none",   "-j 2",    "--isa base",
+        "--allow-write d", "--picture-count 3", "--picture-bytes 1M",   "--no-sandbox",     "-q",      "--verbose",
+        "--progress none"};
+    char line[200], sentence[200];
+    int taken = 0;
+    for (int i = 0; i < option_count; i++) {
+        const char *rest = option_table[i].names;
+        struct piece piece = option_next_piece(&rest);
+        char name[32];
+        (void)snprintf(name, sizeof name, "%.*s", (int)piece.length, piece.text);
+        if (option_table[i].kind == OPTION_ACTION)
+            continue;
+        const char *with = NULL;
+        for (size_t j = 0; j < sizeof used / sizeof used[0]; j++) {
+            if (strncmp(used[j], name, piece.length) == 0 && !isalpha((unsigned char)used[j][piece.length]) &&
+                used[j][piece.length] != '-')
+                with = used[j];
+        }
+        taken += with != NULL;
+        if (with) {
+            bool animates = option_table[i].group == OPTION_GROUP_FRAMES;
+            (void)snprintf(line, sizeof line, "merge%s %s a.part", animates ? " -o x.gif" : "", with);
+            expect(line, NULL);
+            continue;
+        }
+        static const char *const values[] = {
+            [OPTION_INTEGER] = "1",  [OPTION_NUMBER] = "1",     [OPTION_BYTES] = "1M",  [OPTION_TEXT] = "term",
+            [OPTION_SIZE] = "8x8",   [OPTION_CROP] = "0,0,1,1", [OPTION_PIXEL] = "1,1", [OPTION_SEED] = "1",
+            [OPTION_DEFINE] = "a=1", [OPTION_FOLDER] = "d",     [OPTION_SHARD] = "1/2", [OPTION_FRAMES] = "2",
+            [OPTION_LAYERS] = "all", [OPTION_DENOISE] = NULL};
+        enum option_kind kind = option_table[i].kind;
+        char choice[64] = "";
+        if (kind == OPTION_CHOICE || kind == OPTION_TONE)
+            (void)snprintf(choice, sizeof choice, "%.*s", (int)strcspn(option_table[i].value, "|"),
+                           option_table[i].value);
+        const char *value = kind == OPTION_STATS || kind == OPTION_FLAG ? "" : choice[0] ? choice : values[kind];
+        (void)snprintf(sentence, sizeof sentence,
+                       "merge cannot be combined with %s: it only joins parts that are rendered", name);
+        (void)snprintf(line, sizeof line, "merge %s %s a.part", name, value);
+        expect(line, sentence);
+        (void)snprintf(line, sizeof line, "%s %s merge a.part", name, value);
+        expect(line, sentence);
+    }
+    CHECK(taken == (int)(sizeof used / sizeof used[0]));
+    static const char *const only[] = {"--fps 5", "--loop", "--palette frame", "--keep-frames", "--contact-sheet"};
+    for (size_t i = 0; i < sizeof only / sizeof only[0]; i++) {
+        (void)snprintf(line, sizeof line, "merge %s a.part", only[i]);
+        (void)snprintf(sentence, sizeof sentence, "%.*s is only for animations, such as -o x.gif",
+                       (int)strcspn(only[i], " "), only[i]);
+        expect(line, sentence);
+    }
+    expect("merge -q -- --spp.part", NULL);
 }
 
 TEST(words_at_the_borders_of_what_is_read_are_taken_or_refused) {
