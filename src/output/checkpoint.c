@@ -42,7 +42,8 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
     if (there && !checkpoint->resume)
         return error_set(error, ERROR_USAGE,
                          "%.400s: a checkpoint of an earlier run exists; continue it with --resume, or remove it",
-                         checkpoint->path);
+                         checkpoint->path) ||
+               error_elsewhere(error);
     checkpoint->opened = !there;
     if (!there && checkpoint->resume)
         (void)snprintf(notice, 256, "gray: notice: there is no %.150s: the run starts from the beginning",
@@ -50,6 +51,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
     if (!there)
         return true;
     if (!tile_file_read(checkpoint->path, &checkpoint->old, error)) {
+        (void)error_elsewhere(error);
         checkpoint->refused = *error;
         return false;
     }
@@ -66,6 +68,7 @@ bool checkpoint_open(struct checkpoint *checkpoint, const char *picture_name, ch
 /* Nothing is written after that: the file does not change. */
 static bool refuse(struct checkpoint *checkpoint, const char *why, struct error *error) {
     error_set(&checkpoint->refused, ERROR_SCENE, "%.400s: cannot be resumed: %s", checkpoint->path, why);
+    (void)error_elsewhere(&checkpoint->refused);
     checkpoint->opened = false;
     *error = checkpoint->refused;
     return false;

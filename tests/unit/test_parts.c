@@ -340,6 +340,11 @@ TEST(a_checkpoint_of_something_else_is_refused_and_stays) {
     gives("cp c.tiles kept; $gray scene.lua -full -ss 8 --checkpoint c.tiles --resume", 1,
           "c.tiles: cannot be resumed: it was made with different options");
     gives("$gray scene.lua -full -ss 9 -D x=1 --checkpoint c.tiles --resume", 1, "it was made with different options");
+    /* One line: the script is not to blame. */
+    gives("$gray scene.lua -full -ss 8 --checkpoint c.tiles --resume 2>said; test $? = 1 && test $(wc -l <said) = 1 && "
+          "head -c 100 c.tiles >half.tiles && $gray scene.lua --checkpoint half.tiles --resume 2>said; test $? = 1 && "
+          "test $(wc -l <said) = 1 && $gray scene.lua --checkpoint c.tiles 2>said; test $? = 2 && grep -c . said",
+          0, NULL);
     put("data.txt", "two");
     gives("$gray scene.lua -full -ss 9 --checkpoint c.tiles --resume", 1, "the scene, or a file it reads, has changed");
     put("data.txt", "one");
