@@ -663,3 +663,65 @@ bool file_output_remove(const struct file_target *target, struct file_identity i
     close_all(&file);
     return ok;
 }
+
+/* Locks. */
+
+/* Whether the name still denotes the open file: the process that had the lock may have removed it. */
+static bool is_named(const struct file_lock *lock) {
+    struct stat here, there;
+    return fstat(lock->descriptor, &here) == 0 && S_ISREG(here.st_mode) && here.st_size == 0 &&
+           fstatat(lock->folder, lock->name, &there, AT_SYMLINK_NOFOLLOW) == 0 &&
+           same_file(identity_of(&here), identity_of(&there));
+}
+
+void file_lock_forget(struct file_lock *lock) {
+    if (lock->open) {
+        (void)close(lock->descriptor);
+        (void)close(lock->folder);
+    }
+    lock->open = false;
+}
+
+void file_lock_release(struct file_lock *lock) {
+    bool last = lock->open && (flock(lock->descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
+    if (last && is_named(lock))
+        (void)unlinkat(lock->folder, lock->name, 0);
+    file_lock_forget(lock);
+}
+
+enum lock_state { LOCK_TAKEN, LOCK_BUSY, LOCK_LOST };
+
+static enum lock_state try_lock(struct file_lock *lock, int how) {
+    const int flags = O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+    lock->descriptor = MAY_FAIL(openat(lock->folder, lock->name, flags, 0666));
+    if (lock->descriptor < 0)
+        return LOCK_TAKEN; /* the error of the first file that is written names the reason */
+    bool taken = MAY_FAIL(flock(lock->descriptor, how | LOCK_NB)) == 0, busy = !taken && errno == EWOULDBLOCK;
+    if (!busy && (!taken || is_named(lock))) {
+        lock->open = true;
+        return LOCK_TAKEN;
+    }
+    (void)close(lock->descriptor);
+    return busy ? LOCK_BUSY : LOCK_LOST;
+}
+
+bool file_lock_take(struct file_lock *lock, const struct file_target *target, bool shared) {
+    enum { LOCK_TRIES = 50 };
+    const struct timespec pause = {0, 10 * 1000 * 1000};
+    struct file_output file;
+    struct error ignored;
+    *lock = (struct file_lock){0};
+    if (!set_target(&file, target, &ignored) || strlen(file.leaf) >= sizeof lock->name || !open_folder(&file, &ignored))
+        return true;
+    lock->folder = file.folder;
+    memcpy(lock->name, file.leaf, strlen(file.leaf) + 1);
+    enum lock_state state = LOCK_BUSY;
+    for (int i = 0; state != LOCK_TAKEN && i < LOCK_TRIES; i++) {
+        state = try_lock(lock, shared ? LOCK_SH : LOCK_EX);
+        if (state == LOCK_BUSY)
+            (void)nanosleep(&pause, NULL);
+    }
+    if (!lock->open)
+        (void)close(lock->folder);
+    return state != LOCK_BUSY;
+}

@@ -94,4 +94,16 @@ bool file_output_write(struct file_output *file, const void *data, size_t size, 
 bool file_output_commit(struct file_output *file, struct error *error);
 void file_output_abandon(struct file_output *file); /* removes the temporary file; may be called on a closed one */
 
+/* A lock (flock) on an empty file, which ends with the process at the latest. Zero value: none. */
+struct file_lock {
+    int descriptor, folder;
+    bool open;
+    char name[32];
+};
+/* Creates the file, and waits for half a second. False: another process has the lock. True where files cannot be
+ * created or locked, too. shared: several processes may have it together. */
+bool file_lock_take(struct file_lock *lock, const struct file_target *target, bool shared);
+void file_lock_release(struct file_lock *lock); /* the last process that has it removes the file */
+void file_lock_forget(struct file_lock *lock);  /* after a fork, in the process that does not have it */
+
 #endif

@@ -118,6 +118,7 @@ static _Noreturn void run_as_child(struct supervisor *supervisor, struct channel
     watch_close(&supervisor->watch);
     channel_close(&supervisor->channel);
     display_close(&supervisor->output.display);
+    file_lock_forget(&supervisor->output.animation.lock);
     /* Ctrl-C reaches the whole group; the supervisor passes on what it means. */
     (void)signal(SIGINT, SIG_IGN);
     (void)signal(SIGTERM, SIG_IGN);

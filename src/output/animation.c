@@ -71,6 +71,18 @@ bool animation_begin(struct animation *animation, const struct picture_request *
     return true;
 }
 
+bool animation_lock(struct animation *animation, struct error *error) {
+    char folder[NAME_LIMIT], name[NAME_LIMIT + 8];
+    const struct file_target target = {.path = name, .rules = &animation->files->picture};
+    if (animation->format == ANIMATION_NONE || animation->lock.open ||
+        !animation_folder(animation->files->options->output, folder))
+        return true;
+    (void)snprintf(name, sizeof name, "%s/lock", folder);
+    return file_lock_take(&animation->lock, &target, animation->incomplete) ||
+           error_set(error, ERROR_USAGE, "%.600s: another run writes its frames into this folder", folder) ||
+           error_elsewhere(error);
+}
+
 bool animation_add(struct animation *animation, const char *name, struct error *error) {
     if (animation->format == ANIMATION_NONE)
         return true;
@@ -284,6 +296,7 @@ void animation_destroy(struct animation *animation, uint32_t *left) {
     file_output_abandon(&animation->stream);
     animation_restart(animation);
     mem_free(animation->frames);
+    file_lock_release(&animation->lock);
     if (animation->format != ANIMATION_NONE && animation_folder(animation->files->options->output, folder))
         (void)file_remove_empty_folder(folder);
     *animation = (struct animation){0};

@@ -24,6 +24,7 @@ struct animation {
     bool loops, srgb;
     bool incomplete;           /* other shards render some of the frames */
     bool borrowed;             /* the frames are files of the user */
+    struct file_lock lock;     /* on the folder of the frames */
     struct file_output stream; /* Y4M on standard output, once its first frame is there */
     uint8_t *last_frame;       /* of the stream: its bytes, for writing them again; owned */
     struct digest last_shows;  /* picture_request.shows of it */
@@ -39,6 +40,8 @@ bool animation_streams(const struct animation *animation, const struct picture_r
  * cannot be written. number: that of picture_files_number. */
 bool animation_begin(struct animation *animation, const struct picture_request *request, uint32_t number,
                      struct error *error);
+/* Before the first frame is written: false if another run writes into the folder. Shards share it. */
+bool animation_lock(struct animation *animation, struct error *error);
 /* Records that the frame is in this file. */
 bool animation_add(struct animation *animation, const char *name, struct error *error);
 /* Writes a frame of the stream; its rows are those of a PNG file. */

@@ -110,7 +110,8 @@ static bool check_files(struct output_session *output, const struct picture *pic
     bool first = keeps && checkpoint[0] == '\0';
     if (output->farm && !farm_is_first(output->farm))
         return true;
-    return (!first || picture_files_checkpoint(&output->files, picture->name, checkpoint, error)) &&
+    return (picture->request.check || animation_lock(&output->animation, error)) &&
+           (!first || picture_files_checkpoint(&output->files, picture->name, checkpoint, error)) &&
            picture_files_check(&output->files, picture->name, picture->request.layers & AOV_ALL,
                                keeps ? checkpoint : NULL, first, error);
 }

@@ -481,6 +481,41 @@ TEST(any_division_of_an_animation_gives_the_bytes_of_one_run) {
           0, "");
 }
 
+/* The first run is stopped while it has the lock. */
+#define HELD(options)                                                                                                  \
+    "size='--size 240x160'; $gray -q -j 1 scene.lua $size -o x.gif " options " & p=$!; for i in $(seq 1000); do test " \
+    "-e x.gif.frames/lock && break; sleep 0.01; done; kill -STOP $p; "
+
+TEST(a_second_run_of_an_animation_is_refused_and_the_first_one_is_not_disturbed) {
+    static const char refused[] = "gray: x.gif.frames: another run writes its frames into this folder\n";
+    gives("$gray -q scene.lua --size 240x160 -o one.gif", 0, "");
+    gives(HELD("") "$gray -q scene.lua $size -o x.gif; s=$?; kill -CONT $p; wait $p && cmp x.gif one.gif && "
+                   "! test -e x.gif.frames && rm x.gif; exit $s",
+          2, refused);
+    gives(HELD("") "$gray -q scene.lua $size -o x.gif --shard-pictures 1/3; s=$?; kill -CONT $p; wait $p && "
+                   "cmp x.gif one.gif && rm x.gif; exit $s",
+          2, refused);
+    /* Other animations, and questions about this one, are not affected. */
+    gives(HELD("") "$gray -q scene.lua $size -o y.gif && cmp y.gif one.gif && $gray -q --check scene.lua -o x.gif && "
+                   "$gray -q --dump-scene scene.lua -o x.gif >dump; s=$?; kill -CONT $p; wait $p && exit $s",
+          0, "");
+    /* The lock ends with the process, and so does the folder with the animation. */
+    gives(HELD("") "kill -9 $p; wait $p; test -e x.gif.frames/lock && $gray -q scene.lua $size -o x.gif --resume && "
+                   "cmp x.gif one.gif && ! test -e x.gif.frames",
+          0, "");
+}
+
+TEST(jobs_share_the_folder_of_an_animation_and_a_whole_run_waits_for_none_of_them) {
+    gives("$gray -q scene.lua --size 240x160 -o one.gif", 0, "");
+    gives(HELD("--shard-pictures 1/2") "$gray -q scene.lua $size -o x.gif --shard-pictures 2/2 && "
+                                       "test -e x.gif.frames/lock; s=$?; kill -CONT $p; wait $p; "
+                                       "! test -e x.gif.frames/lock && $gray merge -q --loop -o x.gif "
+                                       "x.gif.frames/*.png && cmp x.gif one.gif && exit $s",
+          0, "");
+    gives(HELD("--shard-pictures 1/2") "$gray -q scene.lua $size -o x.gif; s=$?; kill -CONT $p; wait $p; exit $s", 2,
+          "another run writes its frames into this folder");
+}
+
 /* As a scheduler of job arrays: four jobs at once, and every third is killed and queued again. */
 TEST(a_job_array_makes_an_animation_with_the_bytes_of_one_run) {
     test_write_text(test_path("job.sh"),

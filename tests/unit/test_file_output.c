@@ -208,6 +208,63 @@ TEST_LONG(leftovers_of_killed_runs_are_removed_after_a_minute) {
     file_guard_destroy(&guard);
 }
 
+TEST(a_lock_is_taken_once_or_shared_and_its_file_goes_with_the_last_one) {
+    const struct file_target target = {.path = test_path("lock")}, nowhere = {.path = "/proc/lock"};
+    struct file_lock a, b, c;
+    CHECK(file_lock_take(&a, &target, false) && a.open);
+    CHECK(!file_lock_take(&b, &target, false) && !b.open);
+    CHECK(!file_lock_take(&b, &target, true) && !b.open);
+    file_lock_release(&b);
+    holds(target.path, "");
+    file_lock_release(&a);
+    file_lock_release(&a);
+    CHECK(!file_exists(target.path));
+    CHECK(file_lock_take(&a, &target, true) && file_lock_take(&b, &target, true) && a.open && b.open);
+    CHECK(!file_lock_take(&c, &target, false));
+    file_lock_release(&a);
+    holds(target.path, "");
+    CHECK(!file_lock_take(&c, &target, false));
+    file_lock_release(&b);
+    CHECK(!file_exists(target.path));
+    /* Without a lock, where there can be none. */
+    CHECK(file_lock_take(&a, &nowhere, false) && !a.open);
+    test_write_text(target.path, "a file of the user");
+    CHECK(file_lock_take(&a, &target, false));
+    file_lock_release(&a);
+    holds(target.path, "a file of the user");
+}
+
+/* The file of the run before is removed between opening and locking it, as often as may be. */
+TEST(processes_that_take_one_lock_in_turn_never_have_it_together) {
+    char path[4096], single_path[4096];
+    (void)snprintf(path, sizeof path, "%s", test_path("lock"));
+    (void)snprintf(single_path, sizeof single_path, "%s", test_path("single"));
+    const struct file_target target = {.path = path};
+    enum { PROCESSES = 4, TURNS = 200 };
+    pid_t children[PROCESSES];
+    for (int k = 0; k < PROCESSES; k++) {
+        children[k] = fork();
+        if (children[k] != 0)
+            continue;
+        int failed = 0;
+        for (int turn = 0; turn < TURNS; turn++) {
+            struct file_lock lock;
+            if (!file_lock_take(&lock, &target, false))
+                continue;
+            int single = open(single_path, O_CREAT | O_EXCL | O_WRONLY, 0600);
+            failed += single < 0 || unlink(single_path) != 0;
+            (void)close(single);
+            file_lock_release(&lock);
+        }
+        _exit(failed != 0);
+    }
+    for (int k = 0; k < PROCESSES; k++) {
+        int how = -1;
+        CHECK(waitpid(children[k], &how, 0) == children[k] && WIFEXITED(how) && WEXITSTATUS(how) == 0);
+    }
+    CHECK(!file_exists(target.path));
+}
+
 TEST(a_set_of_files_holds_what_was_added_and_not_removed) {
     struct file_set set = {0};
     for (uint64_t i = 1; i <= 3000; i++)
