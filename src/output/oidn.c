@@ -81,9 +81,16 @@ static bool run_program(const char *folder, struct error *error) {
 
 static bool read_output(const struct denoise_source *source, const char *folder, float (*out)[3], struct error *error) {
     char path[PATH_LIMIT];
-    struct image *image = join(folder, output_name, path, error) ? image_read(path, error) : NULL;
-    if (!image)
+    struct error reason = {0};
+    if (!join(folder, output_name, path, error))
         return false;
+    struct image *image = image_read(path, &reason);
+    if (!image && reason.kind == ERROR_MACHINE) {
+        *error = reason;
+        return false;
+    }
+    if (!image)
+        return error_set(error, ERROR_MACHINE, "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read");
     uint32_t width = image_width(image), height = image_height(image);
     bool fits = width == source->width && height == source->height;
     for (uint32_t y = 0; y < height && fits; y++) {

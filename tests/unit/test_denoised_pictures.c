@@ -125,8 +125,14 @@ TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
     gives("$gray -q scene.lua --denoise -o own.pfm && ! cmp -s own.pfm out.pfm", 0, NULL);
     gives("printf '#!/bin/sh\\nexit 3\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
           "--denoise=oidn: oidnDenoise failed (status 3)\n");
-    gives("printf '#!/bin/sh\\nexit 0\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 1,
-          "denoised.pfm");
+    gives("printf '#!/bin/sh\\nexit 0\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
+          "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read\n");
+    gives("printf '#!/bin/sh\necho text > denoised.pfm\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua "
+          "--denoise=oidn",
+          3, "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read\n");
+    gives("printf '#!/bin/sh\nprintf \"PF\\n1 1\\n-1.0\\n0123456789ab\" > denoised.pfm\n' > bin/oidnDenoise; "
+          "PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn",
+          3, "oidnDenoise made a picture of 1 x 1 pixels instead of ");
     gives("PATH=$PWD/none $gray -q scene.lua --denoise=oidn", 3,
           "--denoise=oidn: there is no program oidnDenoise on PATH\n");
     gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of gray|oidn|none, not 'other'");
