@@ -39,10 +39,11 @@ static size_t note_primitives(const struct pixel_trace_ray *ray, uint64_t *out, 
             count++;
         }
         for (const struct pixel_trace_light *light = ray->lights; light; light = light->next) {
-            if (!light->has_blocker)
+            uint32_t primitive = light->has_blocker ? light->blocker : light->primitive;
+            if (primitive == OBSERVER_NO_BLOCKER)
                 continue;
             if (out)
-                out[count] = light->blocker;
+                out[count] = primitive;
             count++;
         }
         count = note_primitives(ray->first, out, count);
@@ -92,18 +93,17 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
                     struct text_writer *writer, struct error *error) {
     const struct render_job *job = picture->job;
     struct trace_context trace_context = {picture, writer};
-    /* How many samples the pixel has is known when its tile, or the picture, is done. */
-    if (integrator_traits(job->settings.integrator).progressive &&
-        (job->settings.noise > 0 || job->settings.time_limit > 0))
-        return error_set(error, ERROR_USAGE,
-                         "--pixel cannot be combined with --noise or --time-limit; --spp N sets the number of samples");
+    /* With a noise or a time limit, the number of samples is known when the tile or the picture is finished. */
+    struct render_job with_all_samples = *job;
+    with_all_samples.settings.noise = 0;
+    with_all_samples.settings.time_limit = 0;
     for (uint32_t i = 0; i < count; i++) {
         if (pixels[i][0] >= job->width || pixels[i][1] >= job->height)
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],
                              pixels[i][1], job->width, job->height);
     }
     bool ok =
-        render_pixels(job, picture->pool, (struct pixel_list){pixels, count}, report_pixel, &trace_context, error);
+        render_pixels(&with_all_samples, picture->pool, (struct pixel_list){pixels, count}, report_pixel, &trace_context, error);
     text_writer_flush(writer);
     return ok;
 }

@@ -18,6 +18,7 @@ struct inspected {
 };
 
 /* --pixel: renders pixels {x, y} of the whole picture and prints their traces, in words or as one line of JSON each.
+ * With --noise or --time-limit the pixels have as many samples as with --spp alone.
  * Errors: a pixel is not in the picture (ERROR_USAGE), those of render_pixels. */
 bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2], uint32_t count,
                     struct text_writer *writer, struct error *error);

@@ -65,8 +65,10 @@ static void json_light(const struct trace_report *report, struct text_writer *wr
     };
     text_writer_print(writer, "{\"light\":%u,\"kind\":\"%s\",\"lit\":\"%s\"", light->number + 1,
                       light_kind_name(light->light->kind), lit[light->lit]);
+    if (light->primitive != OBSERVER_NO_BLOCKER)
+        text(writer, "emitter", trace_path(report, light->primitive));
     vector(writer, "of", light->light->colour);
-    if (!light->area_light && light->lit != PIXEL_TRACE_LIGHT_NOT_OURS) {
+    if (!light->area_light && light->lit != PIXEL_TRACE_LIGHT_NOT_OURS && light->distance > 0) {
         number(writer, "distance", light->distance);
         number(writer, "strength", light->strength);
         vector(writer, "to_light", light->to_light);
@@ -132,12 +134,17 @@ static void json_hit(const struct trace_report *report, struct text_writer *writ
     text_writer_print(writer, "]");
     vector(writer, "caustics", ray->photons);
     vector(writer, "direct", ray->direct);
-    vector(writer, "emission", ray->bsdf.emission);
+    vector(writer, "emission", ray->is_vertex ? ray->vertex.emission : ray->bsdf.emission);
 }
 
 static void json_rays(const struct trace_report *report, struct text_writer *writer, const struct pixel_trace_ray *ray);
 
 static void json_ray(const struct trace_report *report, struct text_writer *writer, const struct pixel_trace_ray *ray) {
+    static const char *const ends[] = {
+        [PATH_GOES_ON] = "goes on",         [PATH_LEAVES_SCENE] = "background", [PATH_SEES_LIGHT] = "light",
+        [PATH_REACHES_MAX_DEPTH] = "depth", [PATH_IS_ABSORBED] = "absorbed",    [PATH_LOSES_ROULETTE] = "roulette",
+        [PATH_IN_TOO_MANY_HOLES] = "holes",
+    };
     static const char *const cut[] = {[RAY_FOLLOWED] = "no", [RAY_OVER_LIMIT] = "limit", [RAY_TOO_WEAK] = "cutoff"};
     text_writer_print(writer, "{\"ray\":%u,\"kind\":\"%s\",\"cut\":\"%s\"", ray->number, inspect_ray(ray->kind),
                       cut[ray->cut]);
@@ -154,6 +161,10 @@ static void json_ray(const struct trace_report *report, struct text_writer *writ
         text(writer, "meets", ray->met ? "surface" : ray->area_light ? "light" : "background");
         if (ray->met)
             json_hit(report, writer, ray);
+        else if (ray->is_vertex)
+            vector(writer, "emission", ray->vertex.emission);
+        if (ray->is_vertex)
+            text(writer, "path", ends[ray->vertex.end]);
         text_writer_print(writer, ",\"rays\":[");
         json_rays(report, writer, ray->first);
         text_writer_print(writer, "]");

@@ -104,8 +104,17 @@ static void print_shading(const struct text_state *t, const struct pixel_trace_r
     }
 }
 
-static void print_light(const struct text_state *t, const struct pixel_trace_light *light) {
-    indent(t, 1);
+/* Lights of a path may also be emissive surfaces, and the background. */
+static void print_light_name(const struct text_state *t, const struct pixel_trace_light *light) {
+    if (light->primitive != OBSERVER_NO_BLOCKER) {
+        text_writer_print(t->writer, "light of ");
+        text_writer_name(t->writer, trace_path(t->report, light->primitive));
+        return;
+    }
+    if (light->number >= t->report->picture->job->world->light_count) {
+        text_writer_print(t->writer, "light of the background");
+        return;
+    }
     text_writer_print(t->writer, "light %u, %s", light->number + 1, light_kind_name(light->light->kind));
     unsigned has = light_properties(light->light);
     if (has & LIGHT_HAS_POSITION)
@@ -113,6 +122,11 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
     else if (has & LIGHT_HAS_DIRECTION)
         triple(t, " along ", light->light->direction);
     triple(t, " of ", light->light->colour);
+}
+
+static void print_light(const struct text_state *t, const struct pixel_trace_light *light) {
+    indent(t, 1);
+    print_light_name(t, light);
     switch (light->lit) {
     case PIXEL_TRACE_LIGHT_NOT_OURS:
         text_writer_print(t->writer, ": does not light this\n");
@@ -124,9 +138,10 @@ static void print_light(const struct text_state *t, const struct pixel_trace_lig
     case PIXEL_TRACE_LIGHT_BLOCKED:
         break;
     }
-    if (!light->area_light && light->distance < INFINITY)
+    bool is_shaded_once = !light->area_light && light->distance > 0;
+    if (is_shaded_once && light->distance < INFINITY)
         text_writer_print(t->writer, ": distance %.6g, falloff %.6g", light->distance, light->strength);
-    if (!light->area_light)
+    if (is_shaded_once)
         triple(t, ", reflected by ", light->reflected);
     if (light->has_blocker) {
         text_writer_print(t->writer, ", blocked by ");
@@ -167,6 +182,49 @@ static void print_hit(const struct text_state *t, const struct pixel_trace_ray *
 
 static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray);
 
+static void print_terms(struct text_state *t, const struct pixel_trace_ray *ray) {
+    struct vec3 emission = ray->is_vertex ? ray->vertex.emission : ray->bsdf.emission;
+    if (!ray->is_vertex) {
+        indent(t, 1);
+        triple(t, "ambient ", ray->ambient_light);
+        triple(t, " times ", ray->bsdf.ambient);
+        triple(t, ": ", ray->ambient);
+        text_writer_print(t->writer, "\n");
+    }
+    for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
+        print_light(t, light);
+    if (ray->has_photons) {
+        indent(t, 1);
+        triple(t, "caustics: ", ray->photons);
+        text_writer_print(t->writer, "\n");
+    }
+    if (!same(ray->bsdf.emission, vec3_all(0))) {
+        indent(t, 1);
+        triple(t, "own light: ", emission);
+        if (!same(ray->bsdf.emission, emission))
+            triple(t, ", a part of ", ray->bsdf.emission);
+        text_writer_print(t->writer, "\n");
+    }
+}
+
+static const char *const path_ends[] = {
+    [PATH_GOES_ON] = NULL,
+    [PATH_LEAVES_SCENE] = NULL,
+    [PATH_SEES_LIGHT] = NULL,
+    [PATH_REACHES_MAX_DEPTH] = "it has --max-depth scattering events",
+    [PATH_IS_ABSORBED] = "the surface absorbs it",
+    [PATH_LOSES_ROULETTE] = "Russian roulette",
+    [PATH_IN_TOO_MANY_HOLES] = "it has passed too many holes",
+};
+
+static void print_end(const struct text_state *t, const struct pixel_trace_ray *ray) {
+    const char *reason = ray->is_vertex ? path_ends[ray->vertex.end] : NULL;
+    if (!reason)
+        return;
+    indent(t, 1);
+    text_writer_print(t->writer, "the path ends here: %s\n", reason);
+}
+
 /* The terms of the surface's colour, in the order in which they are added. */
 static void print_surface(struct text_state *t, const struct pixel_trace_ray *ray) {
     struct surface_inputs nothing = {.opacity = 1, .normal = ray->hit.normal};
@@ -178,31 +236,19 @@ static void print_surface(struct text_state *t, const struct pixel_trace_ray *ra
     }
     if (ray->shaded) {
         print_shading(t, ray);
-        indent(t, 1);
-        triple(t, "ambient ", ray->ambient_light);
-        triple(t, " times ", ray->bsdf.ambient);
-        triple(t, ": ", ray->ambient);
-        text_writer_print(t->writer, "\n");
-        for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
-            print_light(t, light);
-        if (ray->has_photons) {
-            indent(t, 1);
-            triple(t, "caustics: ", ray->photons);
-            text_writer_print(t->writer, "\n");
-        }
-        if (!same(ray->bsdf.emission, vec3_all(0))) {
-            indent(t, 1);
-            triple(t, "own light: ", ray->bsdf.emission);
-            text_writer_print(t->writer, "\n");
-        }
+        print_terms(t, ray);
     }
     t->depth++;
     for (const struct pixel_trace_ray *child = ray->first; child; child = child->next)
         print_ray(t, child);
     t->depth--;
+    print_end(t, ray);
     if (ray->opacity < 1) {
         indent(t, 1);
-        text_writer_print(t->writer, "opacity %.6g: the weight of the surface; the rest comes through the hole\n",
+        text_writer_print(t->writer,
+                          ray->is_vertex
+                              ? "opacity %.6g: the probability of the surface, else the path passes the hole\n"
+                              : "opacity %.6g: the weight of the surface; the rest comes through the hole\n",
                           ray->opacity);
     }
 }
@@ -211,6 +257,9 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
     if (ray->cut == RAY_TOO_WEAK) {
         indent(t, 1);
         text_writer_print(t->writer, "the hit at distance %.6g cannot change the pixel (--cutoff)\n", ray->distance);
+    } else if (ray->is_vertex && ray->vertex.end == PATH_SEES_LIGHT) {
+        indent(t, 1);
+        text_writer_print(t->writer, "hits a visible light at distance %.6g\n", ray->vertex.distance);
     } else if (ray->area_light) {
         indent(t, 1);
         text_writer_print(t->writer, "hits a visible %s at distance %.6g\n", light_kind_name(ray->area_light->kind),
@@ -221,6 +270,11 @@ static void print_met(struct text_state *t, const struct pixel_trace_ray *ray) {
         indent(t, 1);
         text_writer_print(t->writer, "hits nothing: background, %s\n",
                           sky_kind_name(t->report->picture->job->world->sky.kind));
+        if (ray->is_vertex && ray->parent) {
+            indent(t, 1);
+            triple(t, "its light: ", ray->vertex.emission);
+            text_writer_print(t->writer, "\n");
+        }
     }
 }
 
@@ -245,7 +299,11 @@ static void print_ray(struct text_state *t, const struct pixel_trace_ray *ray) {
     text_writer_print(t->writer, "\n");
     print_met(t, ray);
     indent(t, 1);
-    if (!same(ray->left, vec3_all(1))) {
+    if (ray->is_vertex && same(ray->left, vec3_all(1)) && !same(ray->in_scattered, vec3_all(0))) {
+        triple(t, "lights on the way add ", ray->in_scattered);
+        text_writer_print(t->writer, "\n");
+        indent(t, 1);
+    } else if (!same(ray->left, vec3_all(1))) {
         triple(t, "of ", ray->seen);
         triple(t, " the way leaves ", ray->left);
         if (!same(ray->in_scattered, vec3_all(0)))
@@ -299,7 +357,11 @@ static void print_paths(struct text_state *t) {
     triple(t, "mean ",
            vec3_make((double)pixel_trace->rgb[0], (double)pixel_trace->rgb[1], (double)pixel_trace->rgb[2]));
     triple(t, ", standard error ", error);
-    text_writer_print(t->writer, ", of %.0f samples; the brightest paths:\n", count);
+    const struct settings *settings = &t->report->picture->job->settings;
+    text_writer_print(t->writer, ", of %.0f samples%s; the brightest paths:\n", count,
+                      settings->noise > 0        ? " (--spp; --noise may need fewer)"
+                      : settings->time_limit > 0 ? " (--spp, without --time-limit)"
+                                                 : "");
     const struct pixel_trace_sample *last = NULL;
     for (int i = 0; i < BRIGHTEST; i++) {
         const struct pixel_trace_sample *next = NULL;

@@ -19,6 +19,17 @@ enum ray_cut { RAY_FOLLOWED, RAY_OVER_LIMIT, RAY_TOO_WEAK };
  * is narrower than a pixel. */
 enum mark_reason { MARK_COLOUR, MARK_SURFACE, MARK_DETAIL, MARK_THIN };
 
+/* Why a path ends at a vertex. */
+enum path_end {
+    PATH_GOES_ON,
+    PATH_LEAVES_SCENE,
+    PATH_SEES_LIGHT,        /* a line of sight ends at a visible light */
+    PATH_REACHES_MAX_DEPTH, /* --max-depth */
+    PATH_IS_ABSORBED,       /* the BSDF scatters no light in the direction that it samples */
+    PATH_LOSES_ROULETTE,
+    PATH_IN_TOO_MANY_HOLES
+};
+
 enum observation_kind {
     OBSERVED_SAMPLE_BEGIN, /* sample.place */
     OBSERVED_SAMPLE_END,   /* sample.place, sample.colour */
@@ -33,6 +44,7 @@ enum observation_kind {
     OBSERVED_LIGHT_END,     /* light.colour */
     OBSERVED_LIGHT_SKIPPED, /* light.number, light.light: its lists leave the surface out */
     OBSERVED_DIRECT,        /* direct: after the lights of a hit */
+    OBSERVED_VERTEX,        /* vertex: of a path, before the next ray is sent */
     OBSERVED_RAY_END,       /* end */
     OBSERVED_PIXEL,         /* pixel: it is final */
     OBSERVED_MARK           /* mark: the pixel is marked */
@@ -64,8 +76,9 @@ struct observation {
         } material;
         const struct bsdf *surface;
         struct {
-            uint32_t number; /* in the world */
+            uint32_t number; /* in the world; of paths: of world_lights */
             const struct light *light;
+            uint32_t primitive; /* the emissive primitive that the light stands for, or OBSERVER_NO_BLOCKER */
             struct vec3 colour; /* of the light in what the surface shows */
         } light;
         struct observed_light_sample {
@@ -81,6 +94,14 @@ struct observation {
             struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
             bool has_photons;
         } direct;
+        struct observed_vertex {
+            enum path_end end;
+            double distance; /* of PATH_SEES_LIGHT, world units */
+            /* Of the emission of the hit or the sky and of lights, weighted by multiple importance sampling; direct:
+             * photons and the light of the sampled light together. */
+            struct vec3 emission, photons, direct;
+            bool has_photons;
+        } vertex;
         struct observed_end {
             bool evaluated;                               /* its hit was evaluated; else it was too weak */
             struct vec3 seen, left, in_scattered, brings; /* brings, its radiance: left * seen + in_scattered */
@@ -148,7 +169,15 @@ static inline void observe_surface(const struct observer *observer, const struct
 
 static inline void observe_light_begin(const struct observer *observer, uint32_t number, const struct light *light) {
     if (observer)
-        observe(observer, &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, {0, 0, 0}}});
+        observe(observer,
+                &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, OBSERVER_NO_BLOCKER, {0, 0, 0}}});
+}
+
+/* Of a light that stands for a primitive. */
+static inline void observe_emitter_begin(const struct observer *observer, uint32_t number, const struct light *light,
+                                         uint32_t primitive) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_LIGHT_BEGIN, .light = {number, light, primitive, {0, 0, 0}}});
 }
 
 static inline void observe_light_sample(const struct observer *observer, double distance, double strength,
@@ -167,17 +196,24 @@ static inline void observe_shadow_rays(const struct observer *observer, uint32_t
 static inline void observe_light_end(const struct observer *observer, uint32_t number, const struct light *light,
                                      struct vec3 colour) {
     if (observer)
-        observe(observer, &(struct observation){OBSERVED_LIGHT_END, .light = {number, light, colour}});
+        observe(observer,
+                &(struct observation){OBSERVED_LIGHT_END, .light = {number, light, OBSERVER_NO_BLOCKER, colour}});
 }
 
 static inline void observe_light_skipped(const struct observer *observer, uint32_t number, const struct light *light) {
     if (observer)
-        observe(observer, &(struct observation){OBSERVED_LIGHT_SKIPPED, .light = {number, light, {0, 0, 0}}});
+        observe(observer, &(struct observation){OBSERVED_LIGHT_SKIPPED,
+                                                .light = {number, light, OBSERVER_NO_BLOCKER, {0, 0, 0}}});
 }
 
 static inline void observe_direct(const struct observer *observer, const struct observed_direct *direct) {
     if (observer)
         observe(observer, &(struct observation){OBSERVED_DIRECT, .direct = *direct});
+}
+
+static inline void observe_vertex(const struct observer *observer, const struct observed_vertex *vertex) {
+    if (observer)
+        observe(observer, &(struct observation){OBSERVED_VERTEX, .vertex = *vertex});
 }
 
 static inline void observe_ray_end(const struct observer *observer, const struct observed_end *end) {

@@ -84,6 +84,7 @@ static struct vec3 arriving(const struct path_tracer *tracer, struct integrator_
     } else {
         radiance = vec3_scale(radiance, world_lights_visible(lights, &shadow, state->scratch));
     }
+    observe_shadow_rays(state->observer, 1, !is_black(radiance), OBSERVER_NO_BLOCKER);
     struct medium_effect effect;
     if (is_black(radiance) || shadow.media->count == 0 ||
         !medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &shadow, end * vec3_length(shadow.direction), &effect))
@@ -149,16 +150,14 @@ static inline struct light_part choose_part(const struct light_sampler *sampler,
     return light_sampler_sample(sampler, receiver->point, receiver->normal, choice, pmf);
 }
 
-struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
-                        const struct path_vertex *vertex, const struct path_light_draw *draw) {
+/* The light of this part; pmf: the probability with which it was chosen. */
+static struct vec3 direct_of(const struct path_tracer *tracer, struct integrator_state *state,
+                             const struct path_vertex *vertex, const struct path_light_draw *draw,
+                             struct light_part part, double pmf) {
     const struct world_lights *lights = &tracer->lights;
     const struct vec3 none = {0, 0, 0};
     const struct light_receiver *receiver = &vertex->receiver;
     struct world_light_sample sample;
-    double pmf;
-    struct light_part part = choose_part(&lights->sampler, receiver, draw->choice, &pmf);
-    if (part.light == LIGHT_NONE)
-        return none;
     struct sample2 xi = {0, 0};
     if (!light_is_point(&lights->lights[part.light]))
         xi = sampler_point(draw->sampler, draw->dimension);
@@ -185,6 +184,23 @@ struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_stat
         share_direct(vertex, sample.direction, f, highlight);
     f = vec3_add(f, highlight);
     return is_black(f) ? none : vec3_mul(f, arriving(tracer, state, vertex, &sample));
+}
+
+struct vec3 path_direct(const struct path_tracer *tracer, struct integrator_state *state,
+                        const struct path_vertex *vertex, const struct path_light_draw *draw) {
+    const struct world_lights *lights = &tracer->lights;
+    double pmf;
+    struct light_part part = choose_part(&lights->sampler, &vertex->receiver, draw->choice, &pmf);
+    if (part.light == LIGHT_NONE)
+        return vec3_all(0);
+    if (!state->observer)
+        return direct_of(tracer, state, vertex, draw, part, pmf);
+    uint32_t primitive = lights->emitters[part.light].primitive;
+    observe_emitter_begin(state->observer, part.light, &lights->lights[part.light],
+                          primitive == WORLD_NOTHING ? OBSERVER_NO_BLOCKER : primitive);
+    struct vec3 light = direct_of(tracer, state, vertex, draw, part, pmf);
+    observe_light_end(state->observer, part.light, &lights->lights[part.light], light);
+    return light;
 }
 
 /* --- rays that meet lights --- */

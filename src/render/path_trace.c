@@ -14,6 +14,14 @@
 enum { HOLE_LIMIT = 200 };           /* holes that a ray passes in succession, as in Whitted's integrator */
 static const double survival = 0.95; /* at most */
 
+/* The stages of a vertex, and the radiance of the path after each, for observers. */
+enum stage { STAGE_BEFORE_HIT, STAGE_EMISSION, STAGE_PHOTONS, STAGE_DIRECT, STAGES };
+struct path_stages {
+    struct vec3 weight; /* of the path at the hit */
+    struct vec3 lights[STAGES];
+    double distance; /* at which a visible light ends the path */
+};
+
 struct path {
     struct ray ray;
     struct vec3 weight, light;
@@ -25,13 +33,26 @@ struct path {
     /* With photons, fractions of the weight: for paths whose last scattering was by a lobe that receives photons,
      * and for those that were scattered only by traced lobes since then. */
     struct vec3 received, thrown;
-    enum ray_kind kind; /* of the ray, for observers */
+    struct path_stages *stages; /* for observers, or NULL */
+    enum ray_kind kind;         /* of the ray, for observers */
+    enum path_end end;          /* the same */
     bool sight;
     int depth, holes;              /* scattering events and holes so far */
     uint32_t dimension;            /* of the sampler: the first dimension of the next vertex */
     struct light_receiver scatter; /* the surface that scattered the current ray */
     struct medium_stack media;
 };
+
+static void note_stage(const struct path *path, enum stage stage) {
+    if (path->stages)
+        for (int i = stage; i < STAGES; i++)
+            path->stages->lights[i] = path->light;
+}
+
+static bool end_path(struct path *path, enum path_end end) {
+    path->end = end;
+    return false;
+}
 
 /* Adds light that was scattered `depth` times, divided by the kinds of its first scattering. */
 static void add_to_groups(struct path_parts *parts, int depth, const struct vec3 shares[PATH_SCATTERINGS],
@@ -120,6 +141,15 @@ static void meet_features(struct path *path, const struct hit *hit, const struct
 
 /* --- one ray --- */
 
+/* The ray has arrived at its hit, or at a light at this distance. */
+static void note_arrival(const struct path *path, double distance) {
+    if (!path->stages)
+        return;
+    path->stages->weight = path->weight;
+    path->stages->distance = distance;
+    note_stage(path, STAGE_BEFORE_HIT);
+}
+
 /* Adds everything between the origin of the ray and its hit: area lights, fog, absorption. False: the path ends at
  * an area light. */
 static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
@@ -141,11 +171,13 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
         add_light(path, vec3_mul(effect.source, vec3_sub(vec3_all(1), effect.transmittance)));
         path->weight = vec3_mul(path->weight, effect.transmittance);
     }
-    if (seen) {
-        set_features(path, light_albedo(radiance), vec3_all(0), distance);
-        add_light(path, radiance);
-    }
-    return !seen;
+    if (!seen)
+        return true;
+    set_features(path, light_albedo(radiance), vec3_all(0), distance);
+    note_arrival(path, distance);
+    add_light(path, radiance);
+    note_stage(path, STAGE_EMISSION);
+    return end_path(path, PATH_SEES_LIGHT);
 }
 
 static void leave_scene(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path) {
@@ -257,10 +289,10 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     const struct bsdf *bsdf = vertex->bsdf;
     struct bsdf_sample sample;
     if (!bsdf_sample(bsdf, vertex->lobes, BSDF_RADIANCE, hit->view, u, &sample))
-        return false;
+        return end_path(path, PATH_IS_ABSORBED);
     bool transmits = (sample.flags & BSDF_TRANSMITS) != 0, delta = (sample.flags & BSDF_DELTA) != 0;
     if (!transmits && !(vec3_dot(sample.direction, bsdf->geometric_side) > 0))
-        return false;
+        return end_path(path, PATH_IS_ABSORBED);
     if (tracer->photon_lights)
         count_shares(path, vertex, &sample);
     if (path->parts && path->depth == 0) {
@@ -273,12 +305,13 @@ static bool scatter(const struct path_tracer *tracer, struct integrator_state *s
     path->depth++;
     if (transmits)
         path->radiance_scale *= bsdf->eta * bsdf->eta;
-    if (path->depth > tracer->roulette_depth ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
-        return false;
+    bool plays = path->depth > tracer->roulette_depth;
+    if (plays ? !survives(path, u_roulette) : vec3_max_abs(path->weight) == 0)
+        return end_path(path, plays ? PATH_LOSES_ROULETTE : PATH_IS_ABSORBED);
     path->pdf = delta ? 0 : sample.pdf;
     path->sight = path->sight && delta;
     if (!path->sight && path->depth >= tracer->max_depth && !tracer->lights.met)
-        return false;
+        return end_path(path, PATH_REACHES_MAX_DEPTH);
     path->scatter = vertex->receiver;
     path->ray = hit_ray(hit, &path->ray, sample.direction, &path->media);
     path->kind = transmits ? RAY_REFRACTED : RAY_REFLECTED;
@@ -296,8 +329,12 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
                          const struct sampler *sampler, const struct hit *hit) {
     const struct settings *settings = &state->job->settings;
     const struct world *world = state->job->world;
-    const struct material_context context = {
-        .specular = settings->specular, .total_reflection = true, .no_black_highlight = true};
+    const struct material_context context = {.specular = settings->specular,
+                                             .total_reflection = true,
+                                             .no_black_highlight = true,
+                                             .observer = state->observer ? observe_material : NULL,
+                                             .observer_context = state->observer,
+                                             .authored = world->authored.materials[hit->material]};
     uint32_t dimension = path->dimension;
     struct bsdf bsdf;
     path->dimension += SAMPLER_VERTEX_DIMENSIONS;
@@ -306,8 +343,9 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     if (bsdf.opacity < 1 && !(random_unit(random_combine(sampler->key, dimension)) < bsdf.opacity)) {
         path->ray = hit_ray(hit, &path->ray, vec3_negate(hit->view), &path->media);
         path->kind = RAY_HOLE;
-        return path->holes++ < HOLE_LIMIT;
+        return path->holes++ < HOLE_LIMIT || end_path(path, PATH_IN_TOO_MANY_HOLES);
     }
+    observe_surface(state->observer, &bsdf);
     if (path->parts && path->sight)
         meet_features(path, hit, &bsdf);
     if (path->sight)
@@ -316,8 +354,9 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         add_light(path,
                   path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown},
                                 hit, bsdf.emission));
+    note_stage(path, STAGE_EMISSION);
     if (path->depth >= tracer->max_depth)
-        return false;
+        return end_path(path, PATH_REACHES_MAX_DEPTH);
     struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .bsdf = &bsdf};
     double side = hit->front ? hit->offset : -hit->offset;
     vertex.receiver = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
@@ -326,12 +365,14 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     if (tracer->photon_lights) {
         add_photons(tracer, state, path, &vertex);
         vertex.thrown = vec3_add(path->received, path->thrown);
+        note_stage(path, STAGE_PHOTONS);
     }
     bool chooses = tracer->lights.sampler.count > 1 || path->depth >= tracer->roulette_depth;
     struct sample2 choice = chooses ? sampler_point(sampler, dimension) : (struct sample2){0, 0};
     /* Needed after the shadow ray, but computed beside it. */
     struct sample2 onward = sampler_point(sampler, dimension + 2);
     add_direct(tracer, state, path, &vertex, &(struct path_light_draw){choice.x, sampler, dimension + 1});
+    note_stage(path, STAGE_DIRECT);
     return scatter(tracer, state, path, &vertex, onward, choice.y);
 }
 
@@ -362,36 +403,67 @@ static void finish_parts(struct integrator_state *state, struct path_parts *part
 
 /* The rays of a path for observers, in order. Of a longer path only the first ones. */
 struct observed_path {
-    struct vec3 weights[64], lights[64]; /* the radiance of the path at the start of each ray */
+    struct observed_ray {
+        struct vec3 weight, light; /* of the path at the start of the ray */
+        struct path_stages stages;
+    } rays[64];
     int count;
+    bool cut; /* the current ray is none of them */
 };
 
 static struct vec3 quotient(struct vec3 a, struct vec3 b) {
     return vec3_make(share_of(a.x, b.x), share_of(a.y, b.y), share_of(a.z, b.z));
 }
 
-static void observe_next(struct observed_path *observed, const struct integrator_state *state, const struct path *path,
+static void observe_next(struct observed_path *observed, const struct integrator_state *state, struct path *path,
                          const struct hit *hit) {
-    enum { LIMIT = sizeof observed->weights / sizeof *observed->weights };
-    if (observed->count == LIMIT)
+    enum { LIMIT = sizeof observed->rays / sizeof *observed->rays };
+    observed->cut = observed->count == LIMIT;
+    path->stages = NULL;
+    path->end = PATH_GOES_ON;
+    if (observed->cut)
         return;
     double distance = hit ? hit->t * vec3_length(path->ray.direction) : INFINITY;
     if (observed->count > 0)
-        observe_ray_sent(state->observer, path->kind, quotient(path->weight, observed->weights[observed->count - 1]),
-                         RAY_FOLLOWED);
-    observed->weights[observed->count] = path->weight;
-    observed->lights[observed->count++] = path->light;
-    const struct ray ray = path->ray;
-    observe_ray_begin(state->observer, &ray, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1));
+        observe_ray_sent(state->observer, path->kind,
+                         quotient(path->weight, observed->rays[observed->count - 1].stages.weight), RAY_FOLLOWED);
+    struct observed_ray *ray = &observed->rays[observed->count++];
+    *ray = (struct observed_ray){path->weight, path->light, {.weight = path->weight}};
+    path->stages = &ray->stages;
+    note_arrival(path, 0);
+    const struct ray sent = path->ray;
+    observe_ray_begin(state->observer, &sent, hit, NULL, distance, fmin(vec3_max_abs(path->weight), 1));
 }
 
-/* light: of the sample. */
+/* The end of the current ray: what its hit adds to the path. */
+static void observe_hit(const struct observed_path *observed, const struct path_tracer *tracer,
+                        const struct integrator_state *state, const struct path *path) {
+    if (observed->cut)
+        return;
+    const struct path_stages *stages = path->stages;
+    struct vec3 gains[STAGES];
+    for (int i = STAGE_EMISSION; i < STAGES; i++)
+        gains[i] = quotient(vec3_sub(stages->lights[i], stages->lights[i - 1]), stages->weight);
+    observe_vertex(state->observer,
+                   &(struct observed_vertex){.end = path->end,
+                                             .distance = stages->distance,
+                                             .emission = gains[STAGE_EMISSION],
+                                             .photons = gains[STAGE_PHOTONS],
+                                             .direct = vec3_add(gains[STAGE_PHOTONS], gains[STAGE_DIRECT]),
+                                             .has_photons = tracer->photon_lights != NULL});
+}
+
 static void observe_end(const struct observed_path *observed, const struct integrator_state *state,
-                        const struct path *path, struct vec3 light) {
+                        const struct path *path) {
     for (int i = observed->count - 1; i >= 0; i--) {
-        struct vec3 gain = quotient(vec3_sub(path->light, observed->lights[i]), observed->weights[i]);
-        struct vec3 brings = i == 0 ? light : gain;
-        observe_ray_end(state->observer, &(struct observed_end){true, brings, vec3_all(1), vec3_all(0), brings});
+        const struct observed_ray *ray = &observed->rays[i];
+        struct vec3 before = ray->stages.lights[STAGE_BEFORE_HIT];
+        observe_ray_end(state->observer,
+                        &(struct observed_end){.evaluated = true,
+                                               .seen = quotient(vec3_sub(path->light, before), ray->stages.weight),
+                                               .left = quotient(ray->stages.weight, ray->weight),
+                                               .in_scattered = quotient(vec3_sub(before, ray->light), ray->weight),
+                                               .brings = quotient(vec3_sub(path->light, ray->light), ray->weight)});
     }
 }
 
@@ -400,21 +472,31 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
                           struct sampler *sampler, struct hit *hit, bool met) {
     struct observed_path observed;
     observed.count = 0;
-    if (state->observer)
-        observe_next(&observed, state, path, met ? hit : NULL);
-    while (travel(tracer, state, path, met ? hit : NULL)) {
-        if (!met)
-            leave_scene(tracer, state, path);
-        if (!met || !meet_surface(tracer, state, path, sampler, hit) || integrator_cancelled(state))
-            break;
-        met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
+    path->stages = NULL;
+    for (;;) {
         if (state->observer)
             observe_next(&observed, state, path, met ? hit : NULL);
+        bool goes_on = travel(tracer, state, path, met ? hit : NULL);
+        if (goes_on && met) {
+            note_arrival(path, 0);
+            goes_on = meet_surface(tracer, state, path, sampler, hit);
+        } else if (goes_on) {
+            note_arrival(path, 0);
+            leave_scene(tracer, state, path);
+            note_stage(path, STAGE_EMISSION);
+            goes_on = end_path(path, PATH_LEAVES_SCENE);
+        }
+        if (state->observer)
+            observe_hit(&observed, tracer, state, path);
+        if (!goes_on || integrator_cancelled(state))
+            break;
+        met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
     }
     struct vec3 found = clamp_light(state, path->light), light = limited(found, tracer->clamp);
     if (path->parts)
         finish_parts(state, path->parts, vec3_max_abs(found), vec3_max_abs(light));
-    observe_end(&observed, state, path, light);
+    if (state->observer)
+        observe_end(&observed, state, path);
     return light;
 }
 

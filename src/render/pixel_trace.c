@@ -159,14 +159,18 @@ static void record_surface(struct pixel_trace *pixel_trace, const struct bsdf *s
     ray->bsdf = *surface;
 }
 
-static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light) {
+static void begin_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light,
+                        uint32_t primitive) {
     struct pixel_trace_ray *ray = ray_of(pixel_trace);
     struct pixel_trace_light *is_recorded = ray ? take(pixel_trace, sizeof *is_recorded) : NULL;
     pixel_trace->light = is_recorded;
     if (!is_recorded)
         return;
-    *is_recorded = (struct pixel_trace_light){
-        .number = number, .light = light, .area_light = !light_is_delta(light), .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
+    *is_recorded = (struct pixel_trace_light){.number = number,
+                                              .light = light,
+                                              .primitive = primitive,
+                                              .area_light = !light_is_delta(light),
+                                              .lit = PIXEL_TRACE_LIGHT_NO_EFFECT};
     if (ray->last_light)
         ray->last_light->next = is_recorded;
     else
@@ -205,7 +209,7 @@ static void end_light(struct pixel_trace *pixel_trace, struct vec3 colour) {
 }
 
 static void skip_light(struct pixel_trace *pixel_trace, uint32_t number, const struct light *light) {
-    begin_light(pixel_trace, number, light);
+    begin_light(pixel_trace, number, light, OBSERVER_NO_BLOCKER);
     struct pixel_trace_light *is_recorded = light_of(pixel_trace);
     if (is_recorded)
         is_recorded->lit = PIXEL_TRACE_LIGHT_NOT_OURS;
@@ -221,6 +225,17 @@ static void record_direct(struct pixel_trace *pixel_trace, const struct observed
     ray->has_photons = direct->has_photons;
     ray->photons = direct->photons;
     ray->direct = direct->direct;
+}
+
+static void record_vertex(struct pixel_trace *pixel_trace, const struct observed_vertex *vertex) {
+    struct pixel_trace_ray *ray = ray_of(pixel_trace);
+    if (!ray)
+        return;
+    ray->is_vertex = true;
+    ray->vertex = *vertex;
+    ray->has_photons = vertex->has_photons;
+    ray->photons = vertex->photons;
+    ray->direct = vertex->direct;
 }
 
 static void record_mark(struct pixel_trace *pixel_trace, const struct observed_mark *mark) {
@@ -267,7 +282,7 @@ static void notice(void *context, const struct observation *what) {
         record_surface(pixel_trace, what->surface);
         break;
     case OBSERVED_LIGHT_BEGIN:
-        begin_light(pixel_trace, what->light.number, what->light.light);
+        begin_light(pixel_trace, what->light.number, what->light.light, what->light.primitive);
         break;
     case OBSERVED_LIGHT_SAMPLE:
         record_light_position(pixel_trace, &what->position);
@@ -283,6 +298,9 @@ static void notice(void *context, const struct observation *what) {
         break;
     case OBSERVED_DIRECT:
         record_direct(pixel_trace, &what->direct);
+        break;
+    case OBSERVED_VERTEX:
+        record_vertex(pixel_trace, &what->vertex);
         break;
     case OBSERVED_RAY_END:
         end_ray(pixel_trace, &what->end);

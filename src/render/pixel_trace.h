@@ -31,6 +31,7 @@ enum pixel_trace_lit {
 struct pixel_trace_light {
     uint32_t number; /* in the world, from 0 */
     const struct light *light;
+    uint32_t primitive; /* the emissive primitive that the light stands for, or OBSERVER_NO_BLOCKER */
     enum pixel_trace_lit lit;
     bool area_light;
     double distance, strength; /* fading times the cone of a spot */
@@ -66,6 +67,8 @@ struct pixel_trace_ray {
     struct bsdf bsdf;
     struct vec3 ambient_light, ambient, photons, direct; /* direct: ambient, photons and lights together */
     bool has_photons;
+    bool is_vertex; /* of a path: `vertex` is set, and takes the place of ambient, photons and direct above */
+    struct observed_vertex vertex;
     struct pixel_trace_light *lights, *last_light;
     struct pixel_trace_ray *first, *last; /* those that it sent on */
     double part;                          /* of their weight, where several share one */

@@ -110,3 +110,66 @@ TEST(every_integrator_shows_observers_the_pixels_that_it_makes) {
         stage_end(&s);
     }
 }
+
+static bool near(struct vec3 a, struct vec3 b) {
+    return vec3_max_abs(vec3_sub(a, b)) <= 1e-9 * (1 + vec3_max_abs(a));
+}
+
+/* The ray brings what its hit sends, reduced on the way, and the light on the way. The hit sends its emission, direct
+ * light, and the weighted light of the next ray. Returns the number of rays. */
+static int check_sums(const struct pixel_trace_ray *ray, int ends[PATH_IN_TOO_MANY_HOLES + 1]) {
+    const struct observed_vertex *vertex = &ray->vertex;
+    struct vec3 seen = vec3_add(vertex->emission, vertex->direct), lights = vertex->photons;
+    int count = 1;
+    CHECK(ray->begun && ray->is_vertex);
+    for (const struct pixel_trace_light *light = ray->lights; light; light = light->next)
+        lights = vec3_add(lights, light->colour);
+    CHECK(near(lights, vertex->direct));
+    for (const struct pixel_trace_ray *next = ray->first; next; next = next->next) {
+        seen = vec3_add(seen, vec3_mul(next->weight, next->brings));
+        count += check_sums(next, ends);
+    }
+    CHECK(near(ray->seen, seen));
+    CHECK(near(ray->brings, vec3_add(vec3_mul(ray->left, ray->seen), ray->in_scattered)));
+    CHECK((vertex->end == PATH_GOES_ON) == (ray->first != NULL));
+    ends[vertex->end]++;
+    return count;
+}
+
+struct path_sums {
+    int rays, ends[PATH_IN_TOO_MANY_HOLES + 1];
+};
+
+static bool check_path(void *context, struct pixel_trace *pixel_trace, struct error *error) {
+    struct path_sums *sums = context;
+    (void)error;
+    for (const struct pixel_trace_sample *sample = pixel_trace->sample; sample; sample = sample->next) {
+        CHECK(sample->first && !sample->first->next && near(sample->first->brings, sample->colour));
+        sums->rays += check_sums(sample->first, sums->ends);
+    }
+    return true;
+}
+
+TEST(the_terms_of_every_vertex_of_a_path_add_up_for_observers) {
+    static const uint32_t pixels[][2] = {{20, 25}, {35, 25}, {50, 30}, {0, 0}, {69, 49}, {10, 10}};
+    struct path_sums sums = {0};
+    struct stage s;
+    begin(&s, 1, INTEGRATOR_PATH);
+    s.settings.path_samples = 64;
+    s.settings.max_depth = 4;
+    s.settings.roulette_depth = 1;
+    struct material *lamp = stage_phong(&s, vec3_make(0.8, 0.8, 0.3), vec3_all(0), 1);
+    lamp->phong.emission = vec3_make(3, 2, 1);
+    stage_move(&s, stage_sphere(&s, s.root, lamp), -2.5, 0.5, -2);
+    struct material *amber = stage_glass(&s, 0.2, 0.8, 1.4);
+    amber->phong.absorption = vec3_make(0.1, 0.4, 1);
+    stage_move(&s, stage_sphere(&s, s.root, amber), 0.8, -1.5, 1);
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    struct render_job job = stage_job(&s, WIDTH, HEIGHT);
+    CHECK(render_pixels(&job, s.pool, (struct pixel_list){pixels, 6}, check_path, &sums, &s.error));
+    CHECK(sums.rays > 500);
+    for (int i = 0; i <= PATH_LOSES_ROULETTE; i++)
+        if (i != PATH_SEES_LIGHT && i != PATH_IS_ABSORBED && sums.ends[i] == 0)
+            test_fail(__FILE__, __LINE__, "no vertex has the end %d", i);
+    stage_end(&s);
+}
