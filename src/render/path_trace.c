@@ -45,7 +45,7 @@ struct path {
 
 static void note_stage(const struct path *path, enum stage stage) {
     if (path->stages)
-        for (int i = stage; i < STAGES; i++)
+        for (int i = (int)stage; i < STAGES; i++)
             path->stages->lights[i] = path->light;
 }
 
