@@ -458,7 +458,6 @@ static bool render_job_run(struct render_process *process, const struct render_r
         work.job.progress_estimate = &control->progress_estimate;
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
     const struct options *options = process->options;
-    work.job.tiles_at_once = options->checkpoint || options->partial || work.job.handout;
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
     if (!early)

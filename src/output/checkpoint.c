@@ -114,8 +114,12 @@ bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture
         return refuse(checkpoint, difference ? difference : "it is another part of the picture", error);
     uint32_t twice;
     tile_file_restore(&checkpoint->old, film, &checkpoint->tiles_kept, &twice);
-    (void)snprintf(notice, 256, "gray: notice: %u of %u tiles of %.150s come from the checkpoint",
-                   checkpoint->tiles_kept, film_tile_count(film), picture->name);
+    uint32_t begun = film_tiles_begun(film);
+    int length = snprintf(notice, 256, "gray: notice: %u of %u tiles of %.150s", checkpoint->tiles_kept,
+                          film_tile_count(film), picture->name);
+    if (begun > 0)
+        length += snprintf(notice + length, 256 - (size_t)length, ", and samples of %u more,", begun);
+    (void)snprintf(notice + length, 256 - (size_t)length, " come from the checkpoint");
     return true;
 }
 
@@ -132,14 +136,14 @@ static bool remove_file(struct checkpoint *checkpoint, struct error *error) {
 }
 
 bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture *picture, const struct film *film,
-                       bool now, uint32_t *tiles, struct error *error) {
+                       bool now, struct checkpoint_tiles *tiles, struct error *error) {
     if (!checkpoint->opened || checkpoint->number < checkpoint->old_number)
         return true;
     double clock = progress_clock(), pause = checkpoint->took * pause_factor;
     if (!now && clock - checkpoint->written_at < (checkpoint->every > pause ? checkpoint->every : pause))
         return true;
-    uint32_t have = film ? film_tiles_in(film, FILM_TILE_DONE) : 0;
-    if (!now && !checkpoint->pending && have == checkpoint->tiles_kept)
+    struct checkpoint_tiles have = {film ? film_tiles_in(film, FILM_TILE_DONE) : 0, film ? film_tiles_begun(film) : 0};
+    if (!now && !checkpoint->pending && have.done == checkpoint->tiles_kept && have.begun == 0)
         return true;
     const struct file_target target = target_of(checkpoint);
     bool ok = tile_file_write(&target, checkpoint->done, checkpoint->done_count, film ? picture : NULL, film, error);
@@ -147,7 +151,7 @@ bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture 
     checkpoint->took = checkpoint->written_at - clock;
     if (ok) {
         checkpoint->pending = false;
-        checkpoint->tiles_kept = have;
+        checkpoint->tiles_kept = have.done;
         *tiles = have;
         return true;
     }
@@ -171,7 +175,7 @@ bool checkpoint_note_written(struct checkpoint *checkpoint, uint32_t number, con
 
 bool checkpoint_finish(struct checkpoint *checkpoint, bool all_written, struct error *error) {
     bool ok = true;
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
     bool written = checkpoint->file.device || checkpoint->file.inode;
     if (checkpoint->opened && all_written)
         ok = !written || remove_file(checkpoint, error);

@@ -1,5 +1,5 @@
-/* The checkpoint of a run. While pictures are rendered it writes from time to time all finished tiles into one file
- * (render/tile_file.h), and with --resume it restores the tiles of an earlier run. */
+/* The checkpoint of a run. While pictures are rendered it writes from time to time all finished tiles, and those that
+ * are begun, into one file (render/tile_file.h), and with --resume it restores the tiles of an earlier run. */
 #ifndef GRAY_OUTPUT_CHECKPOINT_H
 #define GRAY_OUTPUT_CHECKPOINT_H
 
@@ -38,11 +38,14 @@ bool checkpoint_has_written(struct checkpoint *checkpoint, uint32_t number, cons
 /* Copies finished tiles of this picture into its film. False: they belong to another scene. */
 bool checkpoint_restore(struct checkpoint *checkpoint, const struct tile_picture *picture, struct film *film,
                         char notice[256], struct error *error);
+/* Tiles of the current picture: those that are done, and those that are begun. */
+struct checkpoint_tiles {
+    uint32_t done, begun;
+};
 /* Writes the file when it is due, or if `now` is set; film: of the current picture, or NULL. False with error: it could
- * not be written, reported once; the run continues. *tiles: the number of tiles in the file now; unchanged if nothing
- * was written. */
+ * not be written, reported once; the run continues. *tiles: those in the file now; unchanged if nothing was written. */
 bool checkpoint_update(struct checkpoint *checkpoint, const struct tile_picture *picture, const struct film *film,
-                       bool now, uint32_t *tiles, struct error *error);
+                       bool now, struct checkpoint_tiles *tiles, struct error *error);
 /* The picture is written under its name. */
 bool checkpoint_note_written(struct checkpoint *checkpoint, uint32_t number, const struct tile_key *key,
                              const char *name, struct error *error);

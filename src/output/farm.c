@@ -465,7 +465,8 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
             farm->peers[rank].made = 0;
     }
     for (uint32_t tile = 0; tile < count; tile++) {
-        if (state_of(film, tile) == FILM_TILE_WANTED)
+        uint8_t state = (uint8_t)state_of(film, tile);
+        if (state == FILM_TILE_WANTED || film_tile_is_begun(state))
             set_state(film, tile, FILM_TILE_LATER);
     }
     farm->film = film;

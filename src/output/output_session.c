@@ -464,26 +464,35 @@ static const struct picture *kept_picture(const struct output_session *output) {
 }
 
 /* True when the file was written just now. */
-static bool update_checkpoint(struct output_session *output, bool now, uint32_t *tiles) {
+static bool update_checkpoint(struct output_session *output, bool now, struct checkpoint_tiles *tiles) {
     const struct picture *picture = kept_picture(output);
     struct error error;
     const uint32_t nothing = UINT32_MAX;
-    *tiles = nothing;
+    tiles->done = nothing;
     if (!checkpoint_update(&output->checkpoint, picture ? &picture->tiles : NULL, picture ? &picture->film : NULL, now,
                            tiles, &error)) {
         char line[sizeof error.text + 64];
         (void)snprintf(line, sizeof line, "gray: warning: the checkpoint: %s", error.text);
         output_report(output, LINE_WARNING, line);
     }
-    return *tiles != nothing;
+    return tiles->done != nothing;
 }
 
-static void report_checkpoint(struct output_session *output, uint32_t tiles) {
-    char line[2 * NAME_LIMIT];
+/* ", and samples of 20 more", or nothing. */
+static void describe_begun(uint32_t begun, char out[48]) {
+    out[0] = '\0';
+    if (begun > 0)
+        (void)snprintf(out, 48, ", and samples of %u more", begun);
+}
+
+static void report_checkpoint(struct output_session *output, struct checkpoint_tiles tiles) {
+    char line[2 * NAME_LIMIT], begun[48];
     const struct picture *picture = kept_picture(output);
+    describe_begun(tiles.begun, begun);
     if (picture)
-        (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %u of %u tiles of %.3000s (--resume continues)",
-                       output->checkpoint.path, tiles, film_tile_count(&picture->film), picture->name);
+        (void)snprintf(
+            line, sizeof line, "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
+            output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
     else
         (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,
                        output->checkpoint.done_count);
@@ -491,7 +500,7 @@ static void report_checkpoint(struct output_session *output, uint32_t tiles) {
 }
 
 void output_write_checkpoint(struct output_session *output) {
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
     if (!output->checkpoint.on)
         output_report(output, LINE_NOTICE, "gray: notice: SIGUSR1 writes a checkpoint only with --checkpoint FILE");
     else if (update_checkpoint(output, true, &tiles))
@@ -501,11 +510,11 @@ void output_write_checkpoint(struct output_session *output) {
 /* --partial: writes the finished part of an interrupted picture under a separate name. */
 static void write_partial(struct output_session *output) {
     struct picture *picture = &output->current;
-    uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE);
+    uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE), begun = film_tiles_begun(&picture->film);
     struct error error;
-    char name[NAME_LIMIT], line[NAME_LIMIT + 80];
+    char name[NAME_LIMIT], line[NAME_LIMIT + 120], of_begun[48];
     const struct file_target target = {.path = name, .rules = &output->files.beside};
-    if (done == 0)
+    if (done + begun == 0)
         return;
     film_clear_unfinished(&picture->film);
     struct picture_shown *shown = NULL;
@@ -517,19 +526,21 @@ static void write_partial(struct output_session *output) {
         output_report(output, LINE_ERROR, error.text);
         return;
     }
-    (void)snprintf(line, sizeof line, "gray: notice: %s holds %u of %u tiles", name, done,
-                   film_tile_count(&picture->film));
+    describe_begun(begun, of_begun);
+    (void)snprintf(line, sizeof line, "gray: notice: %s holds %u of %u tiles%s", name, done,
+                   film_tile_count(&picture->film), of_begun);
     output_report(output, LINE_NOTICE, line);
 }
 
 void output_abandon(struct output_session *output) {
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
+    const struct film *film = &output->current.film;
     display_forget(&output->display);
     progress_end(&output->progress, PROGRESS_GIVEN_UP);
     if (output->farm)
         farm_end(output->farm, true);
     if (output->current.open && !output->current.request.check &&
-        film_tiles_in(&output->current.film, FILM_TILE_DONE) > 0 && update_checkpoint(output, true, &tiles))
+        film_tiles_in(film, FILM_TILE_DONE) + film_tiles_begun(film) > 0 && update_checkpoint(output, true, &tiles))
         report_checkpoint(output, tiles);
     if (output->options->partial && output->current.open && !output->current.request.check)
         write_partial(output);
@@ -623,7 +634,8 @@ bool output_done(struct output_session *output, const struct picture_report *rep
 }
 
 void output_show_progress(struct output_session *output) {
-    uint32_t ignored, done = atomic_load(&output->control->tiles_done), count = atomic_load(&output->control->tiles);
+    struct checkpoint_tiles ignored;
+    uint32_t done = atomic_load(&output->control->tiles_done), count = atomic_load(&output->control->tiles);
     struct error error;
     (void)update_checkpoint(output, false, &ignored);
     if (output->farm) {

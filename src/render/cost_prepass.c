@@ -54,11 +54,11 @@ void renderer_expect_levels(struct renderer *renderer) {
     const struct film *film = renderer->job->film;
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         struct film_rectangle r = film_tile_rectangle(film, tile);
-        if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_WANTED)
-            noise_estimate_expect(&renderer->noise_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0));
+        uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
+        if (state == FILM_TILE_WANTED || film_tile_is_begun(state))
+            noise_estimate_expect(&renderer->noise_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0),
+                                  renderer->levels.wanted ? renderer->levels.samples[tile] : 0);
     }
-    renderer->estimated = true;
-    renderer->worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 bool renderer_cost_prepass(struct renderer *renderer) {
@@ -68,9 +68,7 @@ bool renderer_cost_prepass(struct renderer *renderer) {
         return true;
     /* Others of a farm have begun already. */
     uint64_t begun = clock_nanoseconds(CLOCK_MONOTONIC);
-    if (renderer->levels.wanted) {
-        renderer_expect_levels(renderer);
-    } else {
+    if (!renderer->levels.wanted) {
         if (!pool_run(renderer->pool, film_tile_count(film), probe_tile, renderer))
             return false;
         forget_counts(renderer);
@@ -84,6 +82,8 @@ bool renderer_cost_prepass(struct renderer *renderer) {
 }
 
 void renderer_report_estimate(struct renderer *renderer) {
+    if (!renderer->estimated)
+        return;
     uint64_t now = clock_nanoseconds(CLOCK_MONOTONIC),
              reported = atomic_load_explicit(&renderer->reported, memory_order_relaxed);
     if (now - reported < pause || !atomic_compare_exchange_strong(&renderer->reported, &reported, now))
@@ -137,14 +137,14 @@ void renderer_tile_ends(struct renderer *renderer, struct worker *worker) {
 }
 
 void renderer_level_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, uint32_t end) {
-    if (!renderer->estimated)
+    if (renderer->noise_estimate.count == 0)
         return;
     worker->tile_begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     noise_estimate_begin(&renderer->noise_estimate, worker->index, tile, end);
 }
 
 void renderer_level_ends(struct renderer *renderer, struct worker *worker, uint32_t tile, bool final) {
-    if (!renderer->estimated || worker->noise.samples == 0)
+    if (renderer->noise_estimate.count == 0 || worker->noise.samples == 0)
         return;
     uint64_t now = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     struct noise_level level = {worker->noise, 1 + (double)(now - worker->tile_begun), final};

@@ -86,6 +86,13 @@ uint32_t film_tiles_in(const struct film *film, enum film_tile state) {
     return count;
 }
 
+uint32_t film_tiles_begun(const struct film *film) {
+    uint32_t count = 0;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++)
+        count += film_tile_is_begun(atomic_load_explicit(&film->tiles[tile], memory_order_acquire));
+    return count;
+}
+
 static size_t pixel_at(const struct film *film, uint32_t x, uint32_t y) {
     return (size_t)(y - film->y0) * film->width + (x - film->x0);
 }

@@ -52,14 +52,20 @@ enum film_tile {
     FILM_TILE_ELSEWHERE, /* another shard's, or passed on */
     FILM_TILE_LATER,     /* in a farm: not handed out yet */
     FILM_TILE_TAKEN,     /* in progress, here or, in a farm, elsewhere */
+    /* With the number of the level added: some samples are in the pixels, and nothing changes until the state does. */
+    FILM_TILE_LEVEL = 0x40,
     /* With the number of the pass added: some samples are in the pixels, more will come. */
     FILM_TILE_PASSED = 0x80
 };
-enum { FILM_PASSES = 0x80 }; /* numbers of passes, which begin again then */
+enum { FILM_LEVELS = 0x40, FILM_PASSES = 0x80 }; /* numbers of levels and passes, which begin again then */
 
+/* Whether a tile in that state has samples that can be kept, and gets more. */
+static inline bool film_tile_is_begun(uint8_t state) {
+    return state >= FILM_TILE_LEVEL && state < FILM_TILE_PASSED;
+}
 /* Whether a tile in that state is visible. */
 static inline bool film_tile_shows(uint8_t state) {
-    return state == FILM_TILE_DONE || state >= FILM_TILE_PASSED;
+    return state == FILM_TILE_DONE || state >= FILM_TILE_LEVEL;
 }
 
 /* Rectangle of pixels of the whole picture: x0 <= x < x1. */
@@ -93,8 +99,9 @@ void film_layout_layers(struct film *film, void *block, uint32_t mask);
 uint32_t film_tiles_across(const struct film *film);
 uint32_t film_tile_count(const struct film *film);
 struct film_rectangle film_tile_rectangle(const struct film *film, uint32_t tile);
-/* The number of tiles in that state. */
+/* The number of tiles in that state, and of those that are begun. */
 uint32_t film_tiles_in(const struct film *film, enum film_tile state);
+uint32_t film_tiles_begun(const struct film *film);
 /* Black for invisible tiles. */
 void film_clear_unfinished(struct film *film);
 

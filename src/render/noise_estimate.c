@@ -63,14 +63,16 @@ static double growth_so_far(const struct noise_history *history) {
     return doublings > 0 ? fmin(fmax(growth / doublings, growth_lowest), growth_highest) : growth_unknown;
 }
 
-double noise_further_samples(const struct noise_history *history, uint32_t limit) {
+struct noise_further noise_further_samples(const struct noise_history *history, uint32_t limit) {
     const struct noise_point *now = &history->points[history->count - 1];
     double needed = logarithm(now->needed), growth = growth_kept * growth_so_far(history);
-    double deviates = deviation * el_pow(16.0 / now->samples, deviation_fall), probability = 1, sum = 0;
+    double deviates = deviation * el_pow(16.0 / now->samples, deviation_fall), probability = 1, sum = 0, squares = 0;
     uint32_t samples = now->samples;
     while (samples < limit && probability > 1e-3) {
         uint32_t next = noise_next_level(samples, limit);
-        sum += probability * (next - samples);
+        double from = samples - now->samples, to = next - now->samples;
+        sum += probability * (to - from);
+        squares += probability * (to * to - from * from);
         samples = next;
         if (samples < 16)
             continue;
@@ -80,7 +82,7 @@ double noise_further_samples(const struct noise_history *history, uint32_t limit
         double distance = (then - el_log(samples)) / (deviates * el_pow(doublings, deviation_rise));
         probability = fmin(probability, 1 / (1 + el_exp(-1.702 * distance)));
     }
-    return sum;
+    return (struct noise_further){sum, sqrt(fmax(squares - sum * sum, 0))};
 }
 
 /* --- of a picture --- */
@@ -98,8 +100,10 @@ void noise_estimate_destroy(struct noise_estimate *estimate) {
     *estimate = (struct noise_estimate){0};
 }
 
-void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels) {
+void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels, uint32_t samples) {
     estimate->tiles[tile].pixels = pixels;
+    estimate->tiles[tile].before = samples;
+    estimate->tiles[tile].urgency = HUGE_VAL;
     estimate->pixels += pixels;
 }
 
@@ -107,10 +111,15 @@ static uint32_t samples_of(const struct noise_tile *tile) {
     return tile->history.count > 0 ? tile->history.points[tile->history.count - 1].samples : 0;
 }
 
+/* The history has a point. */
+static double cost_of_sample(const struct noise_tile *tile) {
+    return tile->cost / (samples_of(tile) - tile->before);
+}
+
 void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t tile, uint32_t end) {
     const struct noise_tile *of_tile = &estimate->tiles[tile];
     uint32_t samples = samples_of(of_tile);
-    double planned = samples > 0 ? of_tile->cost / samples * (end - samples) : 0;
+    double planned = samples > 0 ? cost_of_sample(of_tile) * (end - samples) : 0;
     sum_store(&estimate->sums[worker].part, 0);
     sum_store(&estimate->sums[worker].planned, fmin(planned, sum_load(&of_tile->rest)));
 }
@@ -129,12 +138,20 @@ void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t t
         return; /* no noise yet */
     bool first = of_tile->history.count == 0;
     noise_history_add(&of_tile->history, level->point);
-    if (!level->final)
-        rest = of_tile->cost / samples_of(of_tile) * noise_further_samples(&of_tile->history, estimate->limit);
+    if (!level->final) {
+        uint32_t samples = level->point.samples;
+        struct noise_further further = noise_further_samples(&of_tile->history, estimate->limit);
+        rest = cost_of_sample(of_tile) * further.samples;
+        of_tile->urgency = further.deviation / (noise_next_level(samples, estimate->limit) - samples);
+    }
     sum_add(&sums->pixels, first ? of_tile->pixels : 0);
     sum_add(&sums->done, first ? of_tile->cost : level->cost);
     sum_add(&sums->rest, rest - sum_load(&of_tile->rest));
     sum_store(&of_tile->rest, rest);
+}
+
+double noise_estimate_urgency(const struct noise_estimate *estimate, uint32_t tile) {
+    return estimate->tiles[tile].urgency;
 }
 
 /* Near the end, workers may wait for the longest tile. */

@@ -1,5 +1,5 @@
-/* The time of the remaining samples of a picture with --noise, whose tiles get their samples level by level (render.c):
- * from the noise that each tile has so far. */
+/* The time of the remaining samples of a picture with --noise, whose tiles get their samples level by level
+ * (sample_levels.c): from the noise that each tile has so far. */
 #ifndef GRAY_RENDER_NOISE_ESTIMATE_INTERNAL_H
 #define GRAY_RENDER_NOISE_ESTIMATE_INTERNAL_H
 
@@ -28,15 +28,20 @@ void noise_history_add(struct noise_history *history, struct noise_point point);
  * (path_next_check). */
 uint32_t noise_next_level(uint32_t samples, uint32_t limit);
 
-/* The expected number of further samples of a tile that is not quiet. The history has at least one point with 2 or more
- * samples. */
-double noise_further_samples(const struct noise_history *history, uint32_t limit);
+/* The further samples of a tile that is not quiet: the expected number, and its standard deviation. The history has at
+ * least one point with 2 or more samples. */
+struct noise_further {
+    double samples, deviation;
+};
+struct noise_further noise_further_samples(const struct noise_history *history, uint32_t limit);
 
 /* --- of a picture --- */
 
 struct noise_tile {
     struct noise_history history;
-    double pixels, cost; /* cost: of its samples so far */
+    double pixels, cost; /* cost: of its samples so far, without those that it had before */
+    uint32_t before;     /* samples that it had when the estimate began */
+    double urgency;      /* see noise_estimate_urgency */
     _Atomic double rest; /* expected cost of its further samples */
 };
 
@@ -58,8 +63,8 @@ struct noise_estimate {
 /* Memory for tiles and workers. False: no memory; noise_estimate_destroy is fine in any case. */
 bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, uint32_t limit, int workers);
 void noise_estimate_destroy(struct noise_estimate *estimate);
-/* Before the first tile: this tile will get samples. */
-void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels);
+/* Before the first tile: this tile will get samples, and has so many. */
+void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels, uint32_t samples);
 /* A level that is done: what is known of the tile after it, its cost, and whether the tile gets no further samples. */
 struct noise_level {
     struct noise_point point;
@@ -71,6 +76,9 @@ struct noise_level {
 void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t tile, uint32_t end);
 void noise_estimate_part(struct noise_estimate *estimate, int worker, double part);
 void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level);
+/* How much the next level of a tile tells: the deviation of the cost of its further samples, relative to the cost of
+ * the next level. Tiles about which nothing is known come first: HUGE_VAL. Not while a worker has the tile. */
+double noise_estimate_urgency(const struct noise_estimate *estimate, uint32_t tile);
 
 /* The costs of samples that are done and left; done is 0 while nothing is known. A tile is not shared: workers wait for
  * the longest one. At any time, from any thread. */

@@ -60,9 +60,8 @@ bool renderer_is_done(const struct renderer *renderer) {
     return renderer->job->drain && atomic_load_explicit(renderer->job->drain, memory_order_relaxed) != 0;
 }
 
-/* False: stopped. A cancelled ray leaves a wrong colour: a tile that ends after a request to stop counts as not done.
- */
-static bool make_samples(struct renderer *renderer, struct worker *worker, struct rectangle part) {
+/* A cancelled ray leaves a wrong colour: a tile that ends after a request to stop counts as not done. */
+bool renderer_make_samples(struct renderer *renderer, struct worker *worker, struct rectangle part) {
     bool whole = integrator_render(renderer, worker, &part) && !renderer_stopped(renderer, worker);
     if (worker->scratch.failed) {
         atomic_store(&renderer->failed, true);
@@ -76,13 +75,13 @@ static bool make_samples(struct renderer *renderer, struct worker *worker, struc
 static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
                       double share) {
     renderer_tile_begins(renderer, worker, tile, share);
-    bool whole = make_samples(renderer, worker, part);
+    bool whole = renderer_make_samples(renderer, worker, part);
     if (whole)
         renderer_tile_ends(renderer, worker);
     return whole;
 }
 
-static void end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
+void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
     struct film *film = renderer->job->film;
     atomic_store_explicit(&film->tiles[tile], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
     if (whole && renderer->job->tile_done) {
@@ -97,7 +96,7 @@ static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
     if (renderer_is_done(renderer) || !atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_TAKEN))
         return;
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    end_tile(renderer, tile,
+    renderer_end_tile(renderer, tile,
              make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
 }
 
@@ -114,7 +113,7 @@ void renderer_pass_item(void *context, uint32_t position, int index) {
     const struct sample_pass *pass = &renderer->pass;
     double begun = clock_seconds(CLOCK_MONOTONIC);
     renderer_level_begins(renderer, worker, tile, pass->end);
-    bool whole = make_samples(renderer, worker, part);
+    bool whole = renderer_make_samples(renderer, worker, part);
     if (whole)
         renderer_level_ends(renderer, worker, tile, worker->quiet || pass->end == pass->limit);
     if (whole && renderer->pass_tiles) {
@@ -130,7 +129,7 @@ static void end_passes(struct renderer *renderer) {
     struct film *film = renderer->job->film;
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         if (atomic_load(&film->tiles[tile]) >= FILM_TILE_PASSED)
-            end_tile(renderer, tile, true);
+            renderer_end_tile(renderer, tile, true);
     }
 }
 
@@ -160,76 +159,7 @@ static void make_quarter(struct renderer *renderer, uint32_t number, int index) 
         atomic_fetch_or(count, QUARTER_FAILED);
     uint8_t before = atomic_fetch_add(count, 1);
     if ((before & ~QUARTER_FAILED) + 1 == QUARTERS)
-        end_tile(renderer, tile, !(before & QUARTER_FAILED));
-}
-
-/* With --noise, the time of a tile is not known before it has most of its samples. So all tiles get their
- * samples level by level, and the time left is known early. The order of the tiles repeats for each level; a tile that
- * is final is left out. A worker that comes to a tile while another one makes the level before waits: then almost no
- * tile is left. Where finished tiles are wanted as they come, each gets its samples in one go. */
-
-static void make_level(struct renderer *renderer, uint32_t tile, int index) {
-    struct film *film = renderer->job->film;
-    struct worker *worker = &renderer->workers[index];
-    struct film_rectangle r = film_tile_rectangle(film, tile);
-    uint32_t *samples = &renderer->levels.samples[tile], limit = renderer->pass.end;
-    worker->level = (struct sample_range){*samples, noise_next_level(*samples, limit)};
-    renderer_level_begins(renderer, worker, tile, worker->level.end);
-    bool whole = make_samples(renderer, worker, (struct rectangle){r.x0, r.y0, r.x1, r.y1});
-    bool final = whole && (worker->quiet || worker->level.end == limit);
-    if (whole)
-        renderer_level_ends(renderer, worker, tile, final);
-    *samples = worker->level.end;
-    worker->level = (struct sample_range){0, 0};
-    if (final || !whole)
-        end_tile(renderer, tile, final);
-    else
-        atomic_store_explicit(&film->tiles[tile], FILM_TILE_PASSED, memory_order_release);
-}
-
-/* Waits while another worker makes the level before. False: it is final, or not to be made, or the render stops. */
-static bool take_level(const struct renderer *renderer, const struct worker *worker, uint32_t tile) {
-    const struct timespec pause = {0, 200000};
-    _Atomic uint8_t *state = &renderer->job->film->tiles[tile];
-    while (!renderer_stopped(renderer, worker) && !renderer_is_done(renderer)) {
-        uint8_t before = atomic_load_explicit(state, memory_order_acquire);
-        if (before == FILM_TILE_TAKEN)
-            (void)nanosleep(&pause, NULL);
-        else if (before != FILM_TILE_WANTED && before != FILM_TILE_PASSED)
-            return false;
-        else if (atomic_compare_exchange_strong(state, &before, FILM_TILE_TAKEN))
-            return true;
-    }
-    return false;
-}
-
-/* An item for each tile and each level that there may be. */
-static void level_item(void *context, uint32_t item, int index) {
-    struct renderer *renderer = context;
-    uint32_t tile = renderer->order[item % film_tile_count(renderer->job->film)];
-    if (take_level(renderer, &renderer->workers[index], tile))
-        make_level(renderer, tile, index);
-}
-
-static bool render_levels(struct renderer *renderer) {
-    uint32_t levels = 0, limit = renderer->pass.end;
-    for (uint32_t samples = 0; samples < limit; samples = noise_next_level(samples, limit))
-        levels++;
-    return pool_run(renderer->pool, film_tile_count(renderer->job->film) * levels, level_item, renderer);
-}
-
-static bool order_levels(struct renderer *renderer) {
-    const struct render_job *job = renderer->job;
-    uint32_t count = film_tile_count(job->film);
-    struct sample_levels *levels = &renderer->levels;
-    levels->wanted = job->settings.noise > 0 && !job->tiles_at_once && !job->handout && renderer->pass.end > 0 &&
-                     !renderer_makes_passes(renderer);
-    if (!levels->wanted)
-        return true;
-    levels->samples = mem_alloc_zero((size_t)count + 1, sizeof *levels->samples);
-    return levels->samples &&
-           (!job->progress_estimate ||
-            noise_estimate_create(&renderer->noise_estimate, count, renderer->pass.end, pool_workers(renderer->pool)));
+        renderer_end_tile(renderer, tile, !(before & QUARTER_FAILED));
 }
 
 static void tile_item(void *context, uint32_t position, int index) {
@@ -270,7 +200,7 @@ static bool render_tiles(struct renderer *renderer, struct render_statistics *st
     uint32_t tail = film_tile_count(renderer->job->film) - renderer->whole_tiles;
     bool whole = renderer->job->handout ? pool_run(renderer->pool, (uint32_t)workers, handout_item, renderer)
                  : renderer->levels.wanted
-                     ? render_levels(renderer)
+                     ? renderer_make_levels(renderer)
                      : pool_run(renderer->pool, renderer->whole_tiles + QUARTERS * tail, tile_item, renderer);
     double ended = clock_seconds(CLOCK_MONOTONIC);
     for (uint32_t i = 0; i < tail && !whole; i++) { /* those of which quarters are missing */
@@ -411,6 +341,7 @@ static void end_rendering(struct renderer *renderer, int workers) {
     time_estimate_destroy(&renderer->time_estimate);
     noise_estimate_destroy(&renderer->noise_estimate);
     mem_free(renderer->levels.samples);
+    mem_free(renderer->levels.waiting);
 }
 
 /* The part is one pixel. */
@@ -461,7 +392,7 @@ bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel
 static bool order_tiles(struct renderer *renderer) {
     const struct film *film = renderer->job->film;
     uint32_t count = film_tile_count(film);
-    if (!order_levels(renderer))
+    if (!renderer_order_levels(renderer))
         return false;
     if (renderer->job->progress_estimate && !renderer->levels.wanted &&
         !time_estimate_create(&renderer->time_estimate, count, film_tiles_across(film), pool_workers(renderer->pool)))
@@ -630,6 +561,8 @@ static void begin_progress(struct renderer *renderer) {
         renderer_expect_levels(renderer);
     else
         noise_estimate_destroy(&renderer->noise_estimate);
+    renderer->estimated = renderer->noise_estimate.count > 0;
+    renderer->worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID);
     atomic_store(&estimate->begun, clock_nanoseconds(CLOCK_MONOTONIC));
 }
 

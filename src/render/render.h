@@ -36,7 +36,6 @@ struct render_job {
     uint32_t width, height; /* of the whole picture */
     struct vec3 ambient;
     const struct fog *fog;           /* or NULL */
-    bool tiles_at_once;              /* finished tiles are wanted as they come: each gets its samples in one go */
     bool background_lights;          /* the script chose the sky of the world: paths take its light */
     struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */

@@ -11,6 +11,7 @@
 #include "world/packet.h"
 #include "world/world.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 
 /* Samples that are traced together, in the order in which they are wanted. */
@@ -53,10 +54,18 @@ struct sample_pass {
     bool open;                          /* more passes may follow */
 };
 
-/* Tiles that get their samples level by level (--noise). */
+/* Tiles that get their samples level by level (--noise): sample_levels.c. */
+struct waiting_tile {
+    double urgency;
+    uint32_t position; /* in the order of the tiles */
+};
 struct sample_levels {
     bool wanted;
     uint32_t *samples; /* of each tile, that it has */
+    pthread_mutex_t mutex;
+    struct waiting_tile *waiting; /* for their next level: a heap, the first one is the next */
+    uint32_t count;               /* of those that wait */
+    uint32_t in_progress;
 };
 
 struct renderer {
@@ -125,6 +134,16 @@ void renderer_level_begins(struct renderer *renderer, struct worker *worker, uin
 void renderer_level_ends(struct renderer *renderer, struct worker *worker, uint32_t tile, bool final);
 void renderer_report_estimate(struct renderer *renderer);
 void renderer_report_end(struct renderer *renderer); /* all tiles are done */
+
+/* Makes the samples of a part of a tile. False: stopped. */
+bool renderer_make_samples(struct renderer *renderer, struct worker *worker, struct rectangle part);
+/* The tile is done, and is reported; or it is not whole and still wanted. */
+void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole);
+
+/* Decides whether tiles get their samples level by level; before the first tile. False: no memory. */
+bool renderer_order_levels(struct renderer *renderer);
+/* Makes all levels; the tiles are in order. False: stopped. */
+bool renderer_make_levels(struct renderer *renderer);
 
 /* Makes the tiles pass by pass (render.c), until they have all samples, little enough noise, or the time is over.
  * False: stopped. */

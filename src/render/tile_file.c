@@ -4,6 +4,8 @@
  * every tile number) and only then returns data. It has one record in memory at a time: neither the claims nor the size
  * of a file cost memory.
  *
+ * Tiles that are begun have some of their samples; gray continues them.
+ *
  * Format 1 is of pictures that record format_1 of a pixel, and of files without a picture; format 2 states the record
  * of its picture, format 3 also the part of it that is shown. */
 #include "render/tile_file.h"
@@ -26,6 +28,7 @@ enum {
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
     RECORD_END = 4,
+    RECORD_BEGUN = 5,
     RECORD_HEAD = 16, /* kind, reserved, size */
     RECORD_CHECK = 8,
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
@@ -264,14 +267,19 @@ static bool write_picture(struct text_writer *writer, const struct tile_picture 
     return write_record(writer, RECORD_PICTURE, (size_t)(output.at - writer->buffer) - RECORD_HEAD, error);
 }
 
+/* A tile whose state is the same afterwards did not change meanwhile. */
 static bool write_tiles(struct text_writer *writer, const struct film *film, struct error *error) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        if (atomic_load_explicit(&film->tiles[tile], memory_order_acquire) != FILM_TILE_DONE)
+        uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
+        if (state != FILM_TILE_DONE && !film_tile_is_begun(state))
             continue;
         struct byte_writer output = {writer->buffer + RECORD_HEAD};
         put_u32(&output, tile);
         size_t size = film_tile_pack(film, tile, output.at);
-        if (!write_record(writer, RECORD_TILE, 4 + size, error))
+        atomic_thread_fence(memory_order_seq_cst);
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != state)
+            continue;
+        if (!write_record(writer, state == FILM_TILE_DONE ? RECORD_TILE : RECORD_BEGUN, 4 + size, error))
             return false;
     }
     return true;
@@ -495,6 +503,7 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
             file->first_record = reader->records;
             break;
         case RECORD_TILE:
+        case RECORD_BEGUN:
             ok = check_tile(reader, file, &record, &last, error);
             file->tiles++;
             break;
@@ -566,15 +575,18 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
     for (size_t i = 0; i < file->tiles; i++) {
         struct record record;
         struct error changed;
-        if (!next_record(&reader, &record, &changed) || record.kind != RECORD_TILE ||
+        if (!next_record(&reader, &record, &changed) ||
+            (record.kind != RECORD_TILE && record.kind != RECORD_BEGUN) ||
             !check_tile(&reader, file, &record, &last, &changed))
             return;
         struct byte_reader input = {record.payload};
         uint32_t tile = get_u32(&input);
         if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
-            ++*twice;
-        else
+            *twice += record.kind == RECORD_TILE;
+        else if (record.kind == RECORD_TILE)
             *restored += film_tile_unpack(film, tile, input.at, record.size - 4);
+        else if (film_tile_unpack(film, tile, input.at, record.size - 4))
+            atomic_store_explicit(&film->tiles[tile], FILM_TILE_LEVEL, memory_order_release);
     }
 }
 

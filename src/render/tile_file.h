@@ -1,4 +1,4 @@
-/* Tile files: finished tiles of a picture, for later (checkpoints) or for merging (parts of a picture that several
+/* Tile files: tiles of a picture, finished ones and those with some of their samples, for later (checkpoints) or for merging (parts of a picture that several
  * machines render). A file identifies the scene and options of its tiles, so that foreign tiles are never merged. Every
  * record has a checksum, and the file has an end record, so that damaged files are refused. The checksums are not
  * signatures: they detect accidents, not forgeries; reading any file is safe. */
@@ -43,7 +43,7 @@ struct tile_done {
     char name[TILE_FILE_NAME];
 };
 
-/* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film`. The old file stays until the new
+/* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film` and those that are begun. The old file stays until the new
  * one is complete. */
 bool tile_file_write(const struct file_target *target, const struct tile_done *done, size_t done_count,
                      const struct tile_picture *picture, const struct film *film, struct error *error);
@@ -69,8 +69,8 @@ bool tile_file_read(const char *path, struct tile_file *out, struct error *error
 /* The same of bytes in memory, which are taken over when that succeeds. */
 bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error);
 void tile_file_close(struct tile_file *file);
-/* Puts the tiles into a film of the picture's rectangle; its size, x0 and y0 must be set. Tiles that are there already
- * count in *twice and are not put again; a file that has changed since it was read gives those before the change. */
+/* Puts the tiles into a film of the picture's rectangle; its size, x0 and y0 must be set. *restored counts those that
+ * are finished. Tiles that are there already count in *twice and are not put again; a file that has changed since it was read gives those before the change. */
 void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice);
 
 /* Why pictures with these keys and shapes do not belong together, as a phrase for messages, or NULL if they do.

@@ -25,7 +25,7 @@ static void go_on(struct checkpoint *checkpoint, const struct tile_picture *pict
     struct error error = {0};
     char notice[256];
     bool written;
-    uint32_t tiles = 0;
+    struct checkpoint_tiles tiles = {0};
     size_t bytes;
     struct film film = {
         .x0 = picture->x0, .y0 = picture->y0, .full_width = picture->full_width, .full_height = picture->full_height};
@@ -40,7 +40,7 @@ static void go_on(struct checkpoint *checkpoint, const struct tile_picture *pict
     } else if (!written && checkpoint_update(checkpoint, picture, &film, true, &tiles, &error)) {
         struct tile_file file;
         if (picture->number >= checkpoint->old_number) {
-            demand(tile_file_read("c.tiles", &file, &error) && file.tiles == tiles);
+            demand(tile_file_read("c.tiles", &file, &error) && file.tiles == tiles.done + tiles.begun);
             tile_file_close(&file);
         }
     }

@@ -400,6 +400,21 @@ TEST(an_interrupted_run_keeps_what_is_finished) {
     gives("$gray scene.lua -q -full -ss 3 --resume && cmp out.png whole.png && ! test -e out.png.checkpoint", 0, NULL);
 }
 
+/* A checkpoint keeps the samples of tiles that are begun; a run in one go continues from it, and so does a shard. */
+TEST(killed_runs_with_noise_that_go_on_give_the_bytes_of_one_run) {
+    put("scene.lua", ONE);
+    gives("$gray scene.lua -q --integrator path --noise 0.02 -o whole.png", 0, NULL);
+    resume_until_done("--integrator path --noise 0.02", 20, 0.05, 0.04);
+    CHECK(shell("cmp out.png whole.png") == 0);
+    gives("for moment in " MOMENTS "; do rm -f out.png c.tiles; "
+          "$gray scene.lua -j 1 --integrator path --noise 0.02 --checkpoint c.tiles --partial 2>said.txt & pid=$!; "
+          "sleep $moment; kill -TERM $pid 2>kill.txt; wait $pid; "
+          "test -s c.tiles && grep -q 'c.tiles holds .*samples of' said.txt && break; done; "
+          "cat said.txt >&2; grep -q 'out.partial.png holds .* tiles, and samples of' said.txt && "
+          "$gray scene.lua --integrator path --noise 0.02 --checkpoint c.tiles --resume && cmp out.png whole.png",
+          0, "more, come from the checkpoint");
+}
+
 /* Ctrl-C finishes the tiles in progress and saves them as requested: a checkpoint, a partial picture. (Shells start
  * background children with SIGINT ignored: env resets it.) */
 TEST(control_c_finishes_tiles_and_writes_every_output) {
@@ -617,7 +632,8 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         uint32_t kept = 0, restored, twice;
         for (uint32_t i = 0; i < film_tile_count(&film); i++) {
             bool keep = test_uniform(&random, 0, 1) < 0.6;
-            atomic_store(&film.tiles[i], keep ? FILM_TILE_DONE : i % 2 ? FILM_TILE_WANTED : FILM_TILE_ELSEWHERE);
+            int other = i % 3 == 0 ? FILM_TILE_LEVEL + 7 : i % 3 == 1 ? FILM_TILE_WANTED : FILM_TILE_ELSEWHERE;
+            atomic_store(&film.tiles[i], keep ? FILM_TILE_DONE : (uint8_t)other);
             kept += keep;
         }
         CHECK(tile_file_write(FILE_AT(path), &done, 1, &picture, &film, &error));
@@ -635,8 +651,10 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         CHECK_EQ_INT(twice, 0);
         for (uint32_t tile = 0; tile < film_tile_count(&film); tile++) {
             struct film_rectangle r = film_tile_rectangle(&film, tile);
-            bool is = atomic_load(&film.tiles[tile]) == FILM_TILE_DONE;
-            CHECK((atomic_load(&back.tiles[tile]) == FILM_TILE_DONE) == is);
+            bool done_there = atomic_load(&film.tiles[tile]) == FILM_TILE_DONE,
+                 begun_there = film_tile_is_begun(atomic_load(&film.tiles[tile])), is = done_there || begun_there;
+            CHECK((atomic_load(&back.tiles[tile]) == FILM_TILE_DONE) == done_there);
+            CHECK(film_tile_is_begun(atomic_load(&back.tiles[tile])) == begun_there);
             for (uint32_t y = r.y0; is && y < r.y1; y++) {
                 size_t at = (size_t)(y - y0) * width + (r.x0 - x0), count = r.x1 - r.x0;
                 CHECK(memcmp(film.pixels + at, back.pixels + at, count * sizeof *film.pixels) == 0);

@@ -364,7 +364,7 @@ TEST(without_an_option_or_with_check_there_is_no_checkpoint) {
     struct checkpoint checkpoint;
     struct error error;
     char notice[256];
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
     bool written;
     const struct tile_picture picture = some_picture();
     for (int i = 0; i < 2; i++) {
@@ -411,7 +411,7 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
     struct checkpoint checkpoint;
     struct error error;
     char notice[256];
-    uint32_t tiles = 0;
+    struct checkpoint_tiles tiles = {0};
     bool written;
     (void)remove(path);
     checkpoint_init(&checkpoint, &options, files_for(&options));
@@ -424,7 +424,7 @@ static void leave_checkpoint(const char *path, const char *first, struct film *f
                                   &error)); /* like a pipe: not kept */
     CHECK(checkpoint_has_written(&checkpoint, 2, &picture.key, "b.png", &written, &error) && !written);
     CHECK(checkpoint_update(&checkpoint, &second, film, true, &tiles, &error));
-    CHECK_EQ_INT(tiles, 2);
+    CHECK_EQ_INT(tiles.done, 2);
     CHECK(checkpoint_finish(&checkpoint, false, &error));
     CHECK(access(path, F_OK) == 0);
 }
@@ -439,7 +439,7 @@ TEST(a_checkpoint_resumes_only_the_same_picture) {
     struct checkpoint checkpoint;
     char notice[256];
     bool written;
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
     leave_checkpoint(path, first, &film);
     for (int what = 0; what < 8; what++) {
         struct tile_key key = picture.key;
@@ -509,7 +509,7 @@ TEST(a_checkpoint_that_cannot_be_written_is_reported_once_and_on_request) {
     struct checkpoint checkpoint;
     struct error error;
     char notice[256];
-    uint32_t tiles = 77;
+    struct checkpoint_tiles tiles = {77, 0};
     bool written;
     test_write_text(file, "a file where a folder must be");
     checkpoint_init(&checkpoint, &options, files_for(&options));
@@ -519,7 +519,7 @@ TEST(a_checkpoint_that_cannot_be_written_is_reported_once_and_on_request) {
     checkpoint.took = checkpoint.written_at = 0; /* as if written long ago */
     CHECK(checkpoint_update(&checkpoint, &picture, &film, false, &tiles, &error));
     CHECK(!checkpoint_update(&checkpoint, &picture, &film, true, &tiles, &error));
-    CHECK_EQ_INT(tiles, 77);
+    CHECK_EQ_INT(tiles.done, 77);
     free(film.pixels);
 }
 
@@ -534,7 +534,7 @@ TEST(any_allocation_or_call_may_fail_in_a_checkpoint) {
     struct options options = options_for(path, true);
     struct error error;
     char notice[256];
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
     second.number = 2;
     for (int kind = 0; kind < 2; kind++)
         for (uint64_t k = 1, over = 0; !over; k++) {

@@ -1,0 +1,182 @@
+/* With --noise, the time of a tile is not known before it has most of its samples. So all tiles get their samples level
+ * by level, each level with a third to all of the samples before, and the time left is known early. First, each tile
+ * gets two samples. Then the next level is that of the tile which tells most about the time left for its cost
+ * (noise_estimate_urgency). So what is uncertain is done first, and at the end tiles are left whose number of samples
+ * is nearly certain.
+ *
+ * In a farm each tile gets its samples in one go. */
+#include "base/mem.h"
+#include "render/integrator_internal.h"
+#include "render/path_film.h"
+
+#include <math.h>
+#include <time.h>
+
+/* --- tiles that wait --- */
+
+static bool comes_before(struct waiting_tile a, struct waiting_tile b) {
+    return a.urgency > b.urgency || (a.urgency >= b.urgency && a.position < b.position);
+}
+
+static void put(struct sample_levels *levels, struct waiting_tile tile) {
+    uint32_t at = levels->count++;
+    for (; at > 0 && comes_before(tile, levels->waiting[(at - 1) / 2]); at = (at - 1) / 2)
+        levels->waiting[at] = levels->waiting[(at - 1) / 2];
+    levels->waiting[at] = tile;
+}
+
+/* There is one. */
+static struct waiting_tile take_first(struct sample_levels *levels) {
+    struct waiting_tile first = levels->waiting[0], last = levels->waiting[--levels->count];
+    uint32_t at = 0;
+    for (uint32_t next = 1; next < levels->count; next = 2 * at + 1) {
+        if (next + 1 < levels->count && comes_before(levels->waiting[next + 1], levels->waiting[next]))
+            next++;
+        if (!comes_before(levels->waiting[next], last))
+            break;
+        levels->waiting[at] = levels->waiting[next];
+        at = next;
+    }
+    levels->waiting[at] = last;
+    return first;
+}
+
+/* Waits while no tile waits but others are in progress. False: all are final, or the render stops. */
+static bool take_tile(struct renderer *renderer, const struct worker *worker, uint32_t *position) {
+    const struct timespec pause = {0, 200000};
+    struct sample_levels *levels = &renderer->levels;
+    while (!renderer_stopped(renderer, worker) && !renderer_is_done(renderer)) {
+        (void)pthread_mutex_lock(&levels->mutex);
+        bool some = levels->count > 0, more = levels->in_progress > 0;
+        if (some) {
+            *position = take_first(levels).position;
+            levels->in_progress++;
+        }
+        (void)pthread_mutex_unlock(&levels->mutex);
+        if (some || !more)
+            return some;
+        (void)nanosleep(&pause, NULL);
+    }
+    return false;
+}
+
+static void put_back(struct renderer *renderer, uint32_t position, bool final) {
+    struct sample_levels *levels = &renderer->levels;
+    double urgency = noise_estimate_urgency(&renderer->noise_estimate, renderer->order[position]);
+    (void)pthread_mutex_lock(&levels->mutex);
+    if (!final)
+        put(levels, (struct waiting_tile){urgency, position});
+    levels->in_progress--;
+    (void)pthread_mutex_unlock(&levels->mutex);
+}
+
+/* --- levels --- */
+
+/* The state of a tile differs from that of the level before. */
+static uint8_t state_after(uint32_t samples, uint32_t limit) {
+    uint32_t level = 0;
+    for (uint32_t n = 0; n < samples; n = noise_next_level(n, limit))
+        level++;
+    return (uint8_t)(FILM_TILE_LEVEL + level % FILM_LEVELS);
+}
+
+/* False: it gets no more levels. */
+static bool make_level(struct renderer *renderer, struct worker *worker, uint32_t tile) {
+    struct film *film = renderer->job->film;
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    uint32_t *samples = &renderer->levels.samples[tile], limit = renderer->pass.end;
+    atomic_store_explicit(&film->tiles[tile], FILM_TILE_TAKEN, memory_order_release);
+    atomic_thread_fence(memory_order_seq_cst); /* who reads samples that follow sees that state */
+    worker->level = (struct sample_range){*samples, noise_next_level(*samples, limit)};
+    renderer_level_begins(renderer, worker, tile, worker->level.end);
+    bool whole = renderer_make_samples(renderer, worker, (struct rectangle){r.x0, r.y0, r.x1, r.y1});
+    bool final = whole && (worker->quiet || worker->level.end == limit);
+    if (whole)
+        renderer_level_ends(renderer, worker, tile, final);
+    *samples = worker->level.end;
+    worker->level = (struct sample_range){0, 0};
+    if (final || !whole)
+        renderer_end_tile(renderer, tile, final);
+    else
+        atomic_store_explicit(&film->tiles[tile], state_after(*samples, limit), memory_order_release);
+    return !final && whole;
+}
+
+/* An item for each tile and each level that there may be. */
+static void level_item(void *context, uint32_t item, int index) {
+    struct renderer *renderer = context;
+    struct worker *worker = &renderer->workers[index];
+    uint32_t position;
+    (void)item;
+    if (take_tile(renderer, worker, &position))
+        put_back(renderer, position, !make_level(renderer, worker, renderer->order[position]));
+}
+
+bool renderer_make_levels(struct renderer *renderer) {
+    const struct film *film = renderer->job->film;
+    struct sample_levels *levels = &renderer->levels;
+    uint32_t rounds = 0, limit = renderer->pass.end, count = film_tile_count(film);
+    for (uint32_t samples = 0; samples < limit; samples = noise_next_level(samples, limit))
+        rounds++;
+    for (uint32_t position = 0; position < count; position++) {
+        uint8_t state = atomic_load_explicit(&film->tiles[renderer->order[position]], memory_order_relaxed);
+        if (state == FILM_TILE_WANTED || film_tile_is_begun(state))
+            put(levels, (struct waiting_tile){HUGE_VAL, position});
+    }
+    (void)pthread_mutex_init(&levels->mutex, NULL);
+    bool whole = pool_run(renderer->pool, count * rounds, level_item, renderer);
+    (void)pthread_mutex_destroy(&levels->mutex);
+    return whole;
+}
+
+/* The number of samples of a tile of a checkpoint; 0 unless all its pixels have those of a level. */
+static uint32_t samples_of(const struct film *film, uint32_t tile, uint32_t limit) {
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    uint32_t all = 0, level = 0;
+    for (uint32_t y = r.y0; y < r.y1; y++) {
+        for (uint32_t x = r.x0; x < r.x1; x++) {
+            uint32_t samples = path_film_load(film, (size_t)(y - film->y0) * film->width + (x - film->x0)).samples;
+            if (all > 0 && samples != all)
+                return 0;
+            all = samples;
+        }
+    }
+    while (level < all && level < limit)
+        level = noise_next_level(level, limit);
+    return level == all && all < limit ? all : 0;
+}
+
+/* Where a checkpoint has samples of tiles. */
+static void find_begun_tiles(struct renderer *renderer) {
+    struct film *film = renderer->job->film;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
+        if (!film_tile_is_begun(state))
+            continue;
+        uint32_t samples = renderer->levels.wanted ? samples_of(film, tile, renderer->pass.end) : 0;
+        if (samples > 0)
+            renderer->levels.samples[tile] = samples;
+        else
+            atomic_store_explicit(&film->tiles[tile], FILM_TILE_WANTED, memory_order_relaxed);
+    }
+}
+
+bool renderer_order_levels(struct renderer *renderer) {
+    const struct render_job *job = renderer->job;
+    uint32_t count = film_tile_count(job->film);
+    struct sample_levels *levels = &renderer->levels;
+    levels->wanted = job->settings.noise > 0 && !job->handout && renderer->pass.end > 0 &&
+                     !renderer_makes_passes(renderer);
+    if (levels->wanted) {
+        levels->samples = mem_alloc_zero((size_t)count + 1, sizeof *levels->samples);
+        levels->waiting = mem_alloc_zero((size_t)count + 1, sizeof *levels->waiting);
+        if (!levels->samples || !levels->waiting ||
+            !noise_estimate_create(&renderer->noise_estimate, count, renderer->pass.end, pool_workers(renderer->pool)))
+            return false;
+    }
+    if (!job->handout)
+        find_begun_tiles(renderer);
+    if (levels->wanted)
+        renderer_expect_levels(renderer);
+    return true;
+}
