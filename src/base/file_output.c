@@ -356,6 +356,11 @@ static enum wait_end wait_for(const struct file_output *file, short events, int 
     }
 }
 
+bool file_interrupted(const struct file_interrupt *interrupt, int milliseconds) {
+    struct pollfd watched = {.fd = interrupt && interrupt->stopped ? interrupt->descriptor : -1, .events = POLLIN};
+    return poll(&watched, 1, milliseconds) > 0 && watched.revents && interrupt->stopped(interrupt->context);
+}
+
 static bool interrupted(struct error *error, const struct file_output *file) {
     return error_set(error, ERROR_CANCELLED, "%.600s: interrupted while it was written", file->target);
 }

@@ -34,6 +34,9 @@ struct file_interrupt {
     void *context;
 };
 
+/* Waits for so long at most; whether the run is to end. interrupt: or NULL. */
+bool file_interrupted(const struct file_interrupt *interrupt, int milliseconds);
+
 /* A limit on the bytes written into all files whose rules refer to it; exceeding it is an error with this text. */
 struct file_quota {
     uint64_t written, limit; /* bytes */

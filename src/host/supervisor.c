@@ -199,8 +199,10 @@ static void run_and_watch(struct supervisor *supervisor) {
     struct error error;
     run_children(supervisor);
     while (supervisor->watch.open && !supervisor->ended) {
-        if (!supervisor->restarts && (!output_write_held(&supervisor->output, &error) ||
-                                      (supervisor->status == 0 && !output_assemble(&supervisor->output, &error))))
+        if (!supervisor->restarts &&
+            (!output_write_held(&supervisor->output, &error) ||
+             (supervisor->status == 0 && !output_assemble(&supervisor->output, &error))) &&
+            error.kind != ERROR_CANCELLED)
             supervisor_note_error(supervisor, &error);
         if (!wait_for_change(supervisor))
             break;

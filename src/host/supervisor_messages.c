@@ -181,7 +181,7 @@ static void write_from_window(struct supervisor *supervisor) {
     struct error error;
     char line[NAME_LIMIT + 64];
     bool ok = output_write(&supervisor->output, &error);
-    if (!ok)
+    if (!ok && error.kind != ERROR_CANCELLED)
         supervisor_note_error(supervisor, &error);
     (void)snprintf(line, sizeof line, ok ? "%s is written" : "%s", ok ? supervisor->viewer.name : error.text);
     viewer_show_notice(&supervisor->viewer, line, !ok);

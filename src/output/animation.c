@@ -147,6 +147,8 @@ bool animation_repeat(struct animation *animation, const struct picture_request 
 
 static bool read_frame(void *context, uint32_t index, uint8_t *rgb, struct error *error) {
     const struct animation *animation = context;
+    if (file_interrupted(&animation->files->interrupt, 0))
+        return error_set(error, ERROR_CANCELLED, "%.600s: interrupted", animation->files->options->output);
     return png_frame_read(animation->frames[index], animation->width, animation->height, rgb, error);
 }
 

@@ -59,9 +59,17 @@ bool tool_start(const struct tool *tool, pid_t *child, struct error *error) {
 bool tool_wait(const struct tool *tool, pid_t child, struct error *error) {
     const char *name = tool->arguments[0];
     int status = 0;
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
+    bool stopped = false;
+    for (pid_t ended = 0; ended != child;) {
+        ended = waitpid(child, &status, stopped ? 0 : WNOHANG);
+        if (ended < 0 && errno != EINTR)
             return error_set(error, ERROR_MACHINE, "%.600s: %s: %s", tool->purpose, name, strerror(errno));
+        stopped = stopped || (ended == 0 && file_interrupted(tool->interrupt, 5));
+        if (stopped && ended != child)
+            (void)kill(child, SIGKILL);
+    }
+    if (stopped)
+        return error_set(error, ERROR_CANCELLED, "%.600s: interrupted", tool->purpose);
     if (WIFSIGNALED(status))
         return error_set(error, ERROR_MACHINE, "%.600s: %s was ended by signal %d", tool->purpose, name,
                          WTERMSIG(status));
@@ -159,6 +167,8 @@ static bool encode(const struct tool *program, const struct animation_source *so
     struct error failure;
     if (!started)
         return false;
+    if (!sent)
+        (void)kill(child, SIGKILL);
     bool ended = tool_wait(&tool, child, sent ? error : &failure);
     return sent && ended &&
            (taken || error_set(error, ERROR_MACHINE, "%.600s: ffmpeg has not read all frames", tool.purpose));
@@ -170,7 +180,8 @@ bool encoder_write(const struct file_target *target, const struct animation_sour
     bool webm = format == ANIMATION_WEBM;
     if (!file_make_temporary_folder(folder, sizeof folder, error))
         return false;
-    const struct tool tool = {target->path, webm ? webm_arguments : mp4_arguments, folder, -1};
+    const struct tool tool = {target->path, webm ? webm_arguments : mp4_arguments, folder, -1,
+                              target->rules ? target->rules->interrupt : NULL};
     (void)snprintf(file, sizeof file, "%s/video.%s", folder, webm ? "webm" : "mp4");
     bool ok = encode(&tool, source, error) && copy_file(file, target, error);
     file_remove_temporary_folder(folder);

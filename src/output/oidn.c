@@ -73,8 +73,8 @@ static bool write_inputs(const struct denoise_source *source, const char *folder
     return ok;
 }
 
-static bool run_program(const char *folder, struct error *error) {
-    const struct tool tool = {"--denoise=oidn", arguments, folder, -1};
+static bool run_program(const char *folder, const struct file_interrupt *interrupt, struct error *error) {
+    const struct tool tool = {"--denoise=oidn", arguments, folder, -1, interrupt};
     pid_t child = 0;
     return tool_start(&tool, &child, error) && tool_wait(&tool, child, error);
 }
@@ -108,12 +108,13 @@ static bool read_output(const struct denoise_source *source, const char *folder,
                              height, source->width, source->height);
 }
 
-bool oidn_run(const struct denoise_source *source, float (*out)[3], struct error *error) {
+bool oidn_run(const struct denoise_source *source, const struct file_interrupt *interrupt, float (*out)[3],
+              struct error *error) {
     char folder[PATH_LIMIT];
     if (!file_make_temporary_folder(folder, sizeof folder, error))
         return false;
-    bool ok =
-        write_inputs(source, folder, error) && run_program(folder, error) && read_output(source, folder, out, error);
+    bool ok = write_inputs(source, folder, error) && run_program(folder, interrupt, error) &&
+              read_output(source, folder, out, error);
     file_remove_temporary_folder(folder);
     return ok;
 }

@@ -3,6 +3,7 @@
 #define GRAY_OUTPUT_OIDN_INTERNAL_H
 
 #include "base/error.h"
+#include "base/file_output.h"
 #include "render/denoise.h"
 
 #include <stdbool.h>
@@ -10,7 +11,8 @@
 /* Passes colour, albedo and normal to the program as three PFM files in a new folder, waits for it, and reads its
  * picture into out[width * height]. Its arguments are fixed, it works in that folder, and its output is discarded.
  * Errors, each in one line: the program is not on PATH, it fails, its picture has another size, a file cannot be
- * written. */
-bool oidn_run(const struct denoise_source *source, float (*out)[3], struct error *error);
+ * written; it was interrupted. interrupt: or NULL. */
+bool oidn_run(const struct denoise_source *source, const struct file_interrupt *interrupt, float (*out)[3],
+              struct error *error);
 
 #endif

@@ -508,8 +508,7 @@ void output_write_checkpoint(struct output_session *output) {
 }
 
 /* --partial: writes the finished part of an interrupted picture under a separate name. */
-static void write_partial(struct output_session *output) {
-    struct picture *picture = &output->current;
+static void write_partial(struct output_session *output, struct picture *picture) {
     uint32_t done = film_tiles_in(&picture->film, FILM_TILE_DONE), begun = film_tiles_begun(&picture->film);
     struct error error;
     char name[NAME_LIMIT], line[NAME_LIMIT + 120], of_begun[48];
@@ -519,7 +518,7 @@ static void write_partial(struct output_session *output) {
     film_clear_unfinished(&picture->film);
     struct picture_shown *shown = NULL;
     bool ok = layers_name(picture->name, "partial", name, &error) &&
-              (shown = picture_shown_make(picture, DENOISER_NONE, NULL, &error)) &&
+              (shown = picture_shown_make(picture, (struct denoising){DENOISER_NONE, NULL, NULL}, &error)) &&
               picture_write_view(&shown->picture, &target, FILM_FINAL, NULL, &error);
     picture_shown_destroy(shown);
     if (!ok) {
@@ -543,8 +542,19 @@ void output_abandon(struct output_session *output) {
         film_tiles_in(film, FILM_TILE_DONE) + film_tiles_begun(film) > 0 && update_checkpoint(output, true, &tiles))
         report_checkpoint(output, tiles);
     if (output->options->partial && output->current.open && !output->current.request.check)
-        write_partial(output);
+        write_partial(output, &output->current);
     close_picture(&output->current);
+}
+
+/* A picture is complete, but was not written. After an interrupt its tiles are kept, as those of an unfinished one. */
+static void keep_unwritten(struct output_session *output, struct picture *picture, const struct error *error) {
+    uint32_t tiles;
+    if (error->kind != ERROR_CANCELLED)
+        return;
+    if (update_checkpoint(output, true, &tiles))
+        report_checkpoint(output, tiles);
+    if (output->options->partial)
+        write_partial(output, picture);
 }
 
 static void report_statistics(struct output_session *output, const struct picture *picture,
@@ -629,6 +639,8 @@ bool output_done(struct output_session *output, const struct picture_report *rep
     progress_end(&output->progress, ok ? PROGRESS_WRITTEN : PROGRESS_GIVEN_UP);
     if (ok)
         report_statistics(output, &output->current, report);
+    else
+        keep_unwritten(output, &output->current, error);
     close_picture(&output->current);
     return ok;
 }
@@ -704,6 +716,8 @@ bool output_write_held(struct output_session *output, struct error *error) {
         ok = write_timed(output, &output->held, error);
     if (output->held.open && ok)
         report_statistics(output, &output->held, &output->held_report);
+    else if (!ok)
+        keep_unwritten(output, &output->held, error);
     close_picture(&output->held);
     return ok;
 }

@@ -11,17 +11,16 @@
 
 #include <string.h>
 
-static bool denoise_film(const struct film *film, enum denoiser denoiser, struct pool *pool, float (*out)[3],
-                         struct error *error) {
+static bool denoise_film(const struct film *film, const struct denoising *by, float (*out)[3], struct error *error) {
     struct film copy = *film;
     const struct denoise_source source = path_film_denoise_source(&copy);
-    switch (denoiser) {
+    switch (by->denoiser) {
     case DENOISER_NONE:
         return true;
     case DENOISER_GRAY:
-        return denoise(&source, pool, out, error);
+        return denoise(&source, by->pool, out, error);
     case DENOISER_OIDN:
-        return oidn_run(&source, out, error);
+        return oidn_run(&source, by->interrupt, out, error);
     }
     return true;
 }
@@ -75,14 +74,14 @@ static struct finish_area area_of(const struct film *film) {
 }
 
 /* The colours of the film, denoised and finished as far as finishing changes light. */
-static bool make_light(const struct picture *picture, enum denoiser denoiser, struct pool *pool, float (*out)[3],
+static bool make_light(const struct picture *picture, const struct denoising *by, float (*out)[3],
                        struct error *error) {
     const struct film *film = &picture->film;
     const struct finish finish = picture_finish(&picture->request);
     const struct finish_area area = area_of(film);
-    if (denoiser == DENOISER_NONE)
+    if (by->denoiser == DENOISER_NONE)
         memcpy(out, film->pixels, (size_t)film->width * film->height * sizeof *out);
-    else if (!denoise_film(film, denoiser, pool, out, error))
+    else if (!denoise_film(film, by, out, error))
         return false;
     else
         path_film_draw_lines(film, out);
@@ -116,7 +115,7 @@ static void *cut_away(void *whole, const struct film *film, const struct film_re
 }
 
 static bool make_shown(struct picture_shown *out, const struct picture *picture, const struct film_rectangle *part,
-                       enum denoiser denoiser, struct pool *pool, struct error *error) {
+                       const struct denoising *by, struct error *error) {
     const struct film *film = &picture->film;
     const struct finish finish = picture_finish(&picture->request);
     size_t size = (size_t)film->width * film->height * sizeof(struct film_pixel);
@@ -126,7 +125,7 @@ static bool make_shown(struct picture_shown *out, const struct picture *picture,
     if (!out->pixels || (displays && !out->display))
         return error_no_memory(error, "a picture that is finished");
     float(*light)[3] = (float(*)[3])(void *)out->pixels;
-    if (!make_light(picture, denoiser, pool, light, error) ||
+    if (!make_light(picture, by, light, error) ||
         (displays && !make_display(picture, (const float(*)[3])light, out->display, error)))
         return false;
     out->pixels = cut_away(out->pixels, film, part);
@@ -138,25 +137,24 @@ static bool make_shown(struct picture_shown *out, const struct picture *picture,
     return true;
 }
 
-struct picture_shown *picture_shown_make(const struct picture *picture, enum denoiser denoiser, struct pool *pool,
-                                         struct error *error) {
+struct picture_shown *picture_shown_make(const struct picture *picture, struct denoising by, struct error *error) {
     const struct film *film = &picture->film;
     const struct finish finish = picture_finish(&picture->request);
     struct film_rectangle part = picture->request.shown;
     if (part.x1 == 0)
         part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};
     if (!(path_film_parts(film->record) & PATH_PART_FEATURES))
-        denoiser = DENOISER_NONE;
+        by.denoiser = DENOISER_NONE;
     struct picture_shown *out = mem_alloc_zero(1, sizeof *out);
     if (!out) {
         (void)error_no_memory(error, "a picture that is written");
         return NULL;
     }
     out->picture = *picture;
-    bool changes = denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
+    bool changes = by.denoiser != DENOISER_NONE || finish_changes_light(&finish) || finish_changes_display(&finish);
     if (!changes && is_whole(film, &part))
         return out;
-    if (!make_shown(out, picture, &part, denoiser, pool, error)) {
+    if (!make_shown(out, picture, &part, &by, error)) {
         picture_shown_destroy(out);
         return NULL;
     }

@@ -19,9 +19,16 @@ struct picture_shown {
     float (*layers)[3];
 };
 
-/* denoiser: DENOISER_NONE shows the film as it is, and so does a film without features. NULL: an error, no memory; with
- * DENOISER_OIDN that the program is missing or has failed. It is not on the stack, which may be small. */
-struct picture_shown *picture_shown_make(const struct picture *picture, enum denoiser denoiser, struct pool *pool,
+/* How a picture is denoised. DENOISER_NONE shows the film as it is, and so does a film without features. */
+struct denoising {
+    enum denoiser denoiser;
+    struct pool *pool;                      /* of DENOISER_GRAY */
+    const struct file_interrupt *interrupt; /* of DENOISER_OIDN; or NULL */
+};
+
+/* NULL: an error, no memory, interrupted; with DENOISER_OIDN that the program is missing or has failed. It is not on
+ * the stack, which may be small. */
+struct picture_shown *picture_shown_make(const struct picture *picture, struct denoising denoising,
                                          struct error *error);
 /* shown: or NULL. */
 void picture_shown_destroy(struct picture_shown *shown);

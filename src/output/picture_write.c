@@ -216,17 +216,30 @@ static bool write_shown(const struct picture_files *files, const struct picture 
            picture_write_view(picture, &target, FILM_FINAL, pool, error);
 }
 
-/* The contents of the files of a picture. *pool: the threads for writing, or NULL for this thread only; the caller
- * destroys it, also after an error. */
+struct writing {
+    struct pool *pool;
+    const struct file_interrupt *interrupt;
+};
+
+static void poll_signals(void *context) {
+    const struct writing *writing = context;
+    if (file_interrupted(writing->interrupt, 0))
+        pool_cancel(writing->pool);
+}
+
+/* The contents of the files of a picture. writing->pool: the threads for writing, or NULL for this thread only; the
+ * caller destroys it, also after an error. It stops after an interrupt. */
 static struct picture_shown *make_shown(const struct picture_files *files, const struct picture *picture,
-                                        struct pool **pool, struct error *error) {
+                                        struct writing *writing, struct error *error) {
     enum denoiser denoiser = denoiser_of(files->options, picture);
-    *pool = writing_pool(files->options, picture, denoiser == DENOISER_GRAY);
-    if (!*pool && denoiser == DENOISER_GRAY) {
+    *writing = (struct writing){writing_pool(files->options, picture, denoiser == DENOISER_GRAY), &files->interrupt};
+    if (writing->pool)
+        pool_set_poll(writing->pool, poll_signals, writing);
+    if (!writing->pool && denoiser == DENOISER_GRAY) {
         (void)error_no_memory(error, "a picture that is denoised");
         return NULL;
     }
-    return picture_shown_make(picture, denoiser, *pool, error);
+    return picture_shown_make(picture, (struct denoising){denoiser, writing->pool, &files->interrupt}, error);
 }
 
 bool picture_write_files(const struct picture_files *files, const struct picture *picture, const char *name,
@@ -237,18 +250,18 @@ bool picture_write_files(const struct picture_files *files, const struct picture
         return tile_file_write(&(struct file_target){.path = name, .rules = &files->part}, NULL, 0, &whole,
                                &picture->film, error);
     }
-    struct pool *pool;
-    struct picture_shown *shown = make_shown(files, picture, &pool, error);
-    bool ok = shown && write_shown(files, &shown->picture, name, pool, error);
+    struct writing writing;
+    struct picture_shown *shown = make_shown(files, picture, &writing, error);
+    bool ok = shown && write_shown(files, &shown->picture, name, writing.pool, error);
     picture_shown_destroy(shown);
-    pool_destroy(pool);
+    pool_destroy(writing.pool);
     return ok;
 }
 
 bool picture_write_bytes(const struct picture_files *files, const struct picture *picture, uint8_t *rgb,
                          struct error *error) {
-    struct pool *pool;
-    struct picture_shown *shown = make_shown(files, picture, &pool, error);
+    struct writing writing;
+    struct picture_shown *shown = make_shown(files, picture, &writing, error);
     if (shown) {
         struct tone tone = picture_tone(&shown->picture.request);
         const struct film *film = &shown->picture.film;
@@ -259,6 +272,6 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
     }
     bool ok = shown != NULL;
     picture_shown_destroy(shown);
-    pool_destroy(pool);
+    pool_destroy(writing.pool);
     return ok;
 }

@@ -516,6 +516,16 @@ TEST(jobs_share_the_folder_of_an_animation_and_a_whole_run_waits_for_none_of_the
           "another run writes its frames into this folder");
 }
 
+/* A stand-in that never ends. */
+TEST(a_signal_ends_the_program_that_makes_the_video_and_the_frames_are_kept) {
+    gives(
+        "mkdir bin && printf '#!/bin/sh\\ncat >/dev/null; touch %s/started\\nexec sleep 100\\n' $PWD > bin/ffmpeg && "
+        "chmod +x bin/ffmpeg && PATH=$PWD/bin:$PATH $gray scene.lua -o x.mp4 & p=$!; for i in $(seq 1000); do test -e "
+        "started && break; sleep 0.01; done; kill -TERM $p; wait $p; s=$?; test -e x.mp4 && exit 1; exit $s",
+        130, "gray: interrupted\ngray: notice: x.mp4.frames holds 12 frames\n");
+    gives("$gray -q scene.lua -o 'y.####.png' && cmp x.mp4.frames/000012.png y.0012.png", 0, "");
+}
+
 /* As a scheduler of job arrays: four jobs at once, and every third is killed and queued again. */
 TEST(a_job_array_makes_an_animation_with_the_bytes_of_one_run) {
     test_write_text(test_path("job.sh"),

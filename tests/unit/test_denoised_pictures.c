@@ -113,6 +113,42 @@ TEST(merge_denoises_parts_with_features_unless_denoise_none_leaves_the_noise) {
     gives("test -e b.pfm", 1, NULL);
 }
 
+/* The line about samples is printed when rendering is over. Denoising then takes seconds. */
+TEST(a_signal_ends_denoising_at_once) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    for (int i = 0; i < 2; i++) {
+        static const char *const names[] = {"TERM", "HUP"};
+        char line[512];
+        (void)snprintf(line, sizeof line,
+                       "$gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; for i in "
+                       "$(seq 2000); do grep -q 'samples per pixel' said && break; sleep 0.01; done; kill -%s $p; wait "
+                       "$p; s=$?; cat said >&2; test -e big.png && exit 1; exit $s",
+                       names[i]);
+        gives(line, 130, "gray: interrupted, big.png is not written\n");
+    }
+}
+
+/* A stand-in that never answers. What was rendered is kept, and another denoiser continues with it. */
+TEST(a_signal_ends_the_program_that_denoises_and_the_tiles_are_kept) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    gives("mkdir bin tmp && printf '#!/bin/sh\\ntouch ../../started\\nexec sleep 100\\n' > bin/oidnDenoise && chmod +x "
+          "bin/oidnDenoise && $gray -q scene.lua --denoise -o one.pfm && $gray -q scene.lua -o raw.png",
+          0, NULL);
+    gives(
+        "PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray scene.lua --denoise=oidn -o a.pfm --checkpoint c & p=$!; for i in "
+        "$(seq 1000); do test -e started && break; sleep 0.01; done; kill -TERM $p; wait $p; s=$?; test -e a.pfm && "
+        "exit 1; rmdir tmp && exit $s",
+        130,
+        "gray: interrupted, a.pfm is not written\ngray: notice: c holds 9 of 9 tiles of a.pfm (--resume continues)\n");
+    gives("$gray -q scene.lua --denoise -o a.pfm --checkpoint c --resume && cmp a.pfm one.pfm && rm started && mkdir "
+          "tmp && ! test -e c",
+          0, NULL);
+    gives("PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray scene.lua --denoise=oidn -o a.png --partial & p=$!; for i in "
+          "$(seq 1000); do test -e started && break; sleep 0.01; done; kill -TERM $p; wait $p; s=$?; test -e a.png && "
+          "exit 1; cmp a.partial.png raw.png && exit $s",
+          130, "gray: notice: a.partial.png holds 9 of 9 tiles\n");
+}
+
 /* The stand-in looks at its arguments and its files, and answers with the albedo. */
 TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
     test_write_text(test_path("scene.lua"), PLAIN);
