@@ -548,7 +548,7 @@ void output_abandon(struct output_session *output) {
 
 /* A picture is complete, but was not written. After an interrupt its tiles are kept, as those of an unfinished one. */
 static void keep_unwritten(struct output_session *output, struct picture *picture, const struct error *error) {
-    uint32_t tiles;
+    struct checkpoint_tiles tiles;
     if (error->kind != ERROR_CANCELLED)
         return;
     if (update_checkpoint(output, true, &tiles))
