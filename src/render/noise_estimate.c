@@ -134,7 +134,7 @@ void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t t
     double rest = 0;
     of_tile->cost += level->cost;
     sum_store(&sums->planned, 0);
-    if (level->point.samples < 2 && !level->final)
+    if (level->point.samples < 2 && level->point.needed < noise_endless && !level->final)
         return; /* no noise yet */
     bool first = of_tile->history.count == 0;
     noise_history_add(&of_tile->history, level->point);

@@ -15,6 +15,8 @@ struct noise_point {
     uint32_t samples;
     double needed, needed_by_samples;
 };
+/* Needed by tiles that get all samples whatever their noise is: passes without --noise. */
+static const double noise_endless = 1e30;
 
 /* The last points, oldest first. */
 enum { NOISE_POINTS = 3 };
@@ -29,7 +31,7 @@ void noise_history_add(struct noise_history *history, struct noise_point point);
 uint32_t noise_next_level(uint32_t samples, uint32_t limit);
 
 /* The further samples of a tile that is not quiet: the expected number, and its standard deviation. The history has at
- * least one point with 2 or more samples. */
+ * least one point with 2 or more samples, or one of a tile that gets all of them. */
 struct noise_further {
     double samples, deviation;
 };

@@ -243,6 +243,7 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
     if (tracer->noise > 0)
         return sample_until_quiet(tracer, renderer, worker, part);
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
+    worker->noise = (struct noise_point){worker->range.end, noise_endless, noise_endless};
     return sample_part(tracer, renderer, worker, part, worker->range.begin, worker->range.end);
 }
 

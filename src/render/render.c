@@ -111,15 +111,10 @@ void renderer_pass_item(void *context, uint32_t position, int index) {
     struct worker *worker = &renderer->workers[index];
     struct rectangle part = {r.x0, r.y0, r.x1, r.y1};
     const struct sample_pass *pass = &renderer->pass;
-    double begun = clock_seconds(CLOCK_MONOTONIC);
     renderer_level_begins(renderer, worker, tile, pass->end);
     bool whole = renderer_make_samples(renderer, worker, part);
     if (whole)
         renderer_level_ends(renderer, worker, tile, worker->quiet || pass->end == pass->limit);
-    if (whole && renderer->pass_tiles) {
-        struct pass_tile *passed = &renderer->pass_tiles[tile];
-        *passed = (struct pass_tile){passed->seconds + worker->tile_ended - begun, pass->end, pass->limit};
-    }
     uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
     atomic_store_explicit(&film->tiles[tile], whole ? after : before, memory_order_release);
 }
@@ -337,7 +332,6 @@ static void end_rendering(struct renderer *renderer, int workers) {
     mem_free(renderer->closed);
     mem_free(renderer->order);
     mem_free(renderer->quarters);
-    mem_free(renderer->pass_tiles);
     time_estimate_destroy(&renderer->time_estimate);
     noise_estimate_destroy(&renderer->noise_estimate);
     mem_free(renderer->levels.samples);
@@ -540,24 +534,13 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
     return fitting < (double)count ? (uint32_t)fmax(fitting, 1) : count;
 }
 
-/* elapsed: seconds since the first pass began. */
-static void report_progress(struct renderer *renderer, double elapsed, double now) {
-    double left = time_estimate_of_passes(renderer->pass_tiles, film_tile_count(renderer->job->film), elapsed);
-    double limit = fmax(time_left(renderer, now), 0);
-    if (left >= 0 || limit < HUGE_VAL)
-        progress_estimate_report(renderer->job->progress_estimate, elapsed, left >= 0 ? fmin(left, limit) : limit,
-                                 clock_nanoseconds(CLOCK_MONOTONIC));
-}
-
 /* If there is no memory, there is no time estimate. */
 static void begin_progress(struct renderer *renderer) {
     struct progress_estimate *estimate = renderer->job->progress_estimate;
     if (!estimate)
         return;
     uint32_t count = film_tile_count(renderer->job->film);
-    if (renderer->job->settings.noise == 0)
-        renderer->pass_tiles = mem_alloc_zero(count, sizeof *renderer->pass_tiles);
-    else if (noise_estimate_create(&renderer->noise_estimate, count, renderer->pass.end, pool_workers(renderer->pool)))
+    if (noise_estimate_create(&renderer->noise_estimate, count, renderer->pass.end, pool_workers(renderer->pool)))
         renderer_expect_levels(renderer);
     else
         noise_estimate_destroy(&renderer->noise_estimate);
@@ -578,8 +561,6 @@ bool renderer_make_passes(struct renderer *renderer) {
         now = clock_seconds(CLOCK_MONOTONIC);
         uint32_t done = renderer->pass.end;
         double seconds = fmax((now - begun) / done, 1e-9);
-        if (renderer->pass_tiles)
-            report_progress(renderer, now - begun, now);
         if (done == limit || !atomic_load(&renderer->unsatisfied) || time_left(renderer, now) < seconds)
             return true;
         renderer->pass.number++;

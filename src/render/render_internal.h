@@ -94,8 +94,7 @@ struct renderer {
     _Atomic uint8_t *quarters; /* of each of the others, how many are done; and QUARTER_FAILED */
     bool estimated;            /* the cost of the tiles has been estimated */
     struct time_estimate time_estimate;
-    struct noise_estimate noise_estimate; /* with levels or passes of --noise, instead of it */
-    struct pass_tile *pass_tiles;         /* NULL: no time estimate of passes */
+    struct noise_estimate noise_estimate; /* with levels or passes, instead of it */
     uint64_t worked;                      /* processor time when the first tile began */
     _Atomic uint64_t reported;            /* time of the last progress report in nanoseconds */
     _Atomic uint32_t done;
@@ -128,7 +127,7 @@ void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint
 /* So much of its first pass (0) or its second is done. */
 void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int pass, double part);
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
-/* The same for a level of a tile, or a pass (--noise). renderer_expect_levels: before the first one. */
+/* The same for a level of a tile, or a pass. renderer_expect_levels: before the first one. */
 void renderer_expect_levels(struct renderer *renderer);
 void renderer_level_begins(struct renderer *renderer, struct worker *worker, uint32_t tile, uint32_t end);
 void renderer_level_ends(struct renderer *renderer, struct worker *worker, uint32_t tile, bool final);

@@ -238,22 +238,6 @@ struct time_estimate_work time_estimate_work(const struct time_estimate *time_es
     return (struct time_estimate_work){made, all - made};
 }
 
-double time_estimate_of_passes(const struct pass_tile *tiles, uint32_t count, double elapsed) {
-    double done = 0, left = 0, longest = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const struct pass_tile *tile = &tiles[i];
-        if (tile->samples == 0)
-            continue;
-        if (tile->expected == 0)
-            return -1;
-        double rest = tile->seconds / tile->samples * (tile->expected - tile->samples);
-        done += tile->seconds;
-        left += rest;
-        longest = rest > longest ? rest : longest;
-    }
-    return done > 0 ? fmax(left / done * elapsed, longest) : -1;
-}
-
 /* The estimate is the moment of the end and not the time left: between two forecasts the latter falls as the clock
  * goes. See time_estimate.h. */
 

@@ -69,18 +69,6 @@ struct time_estimate_work {
 };
 struct time_estimate_work time_estimate_work(const struct time_estimate *time_estimate, const struct film *film);
 
-/* A tile of a picture that is rendered pass by pass: the seconds of its samples so far, the number of samples of each
- * of its pixels, and their final number; 0: not known yet. */
-struct pass_tile {
-    double seconds;
-    uint32_t samples, expected;
-};
-
-/* Seconds until all tiles have their samples, if further samples cost as much as the previous ones. elapsed: seconds of
- * the passes so far, in which threads shared the tiles. A single tile is not shared, so the rest takes at least as long
- * as the costliest remaining tile. Negative: not known yet. */
-double time_estimate_of_passes(const struct pass_tile *tiles, uint32_t count, double elapsed);
-
 /* How much of the work of a picture is done, and when it will be over: not how many tiles, but what they cost
  * (render/time_estimate.h, docs/progress.md). Shared memory: the other process may read while it is written. */
 

@@ -220,18 +220,6 @@ TEST(the_samples_of_a_tile_are_expected_from_the_square_root_of_their_number) {
     CHECK_EQ_INT(path_samples_expected(32, 0, 0.1, 65536), 32);
 }
 
-TEST(the_time_left_of_passes_is_that_of_the_samples_that_tiles_are_expected_to_have) {
-    /* A quarter of the seconds of both threads was for each of the first two. */
-    struct pass_tile tiles[] = {{1, 16, 32}, {1, 16, 16}, {2, 32, 64}, {0, 0, 0}};
-    CHECK_NEAR(time_estimate_of_passes(tiles, 4, 2), 2, 1e-12); /* the longest */
-    CHECK_NEAR(time_estimate_of_passes(tiles, 4, 4), 3, 1e-12); /* one thread */
-    tiles[2].expected = 48;
-    CHECK_NEAR(time_estimate_of_passes(tiles, 4, 2), 1, 1e-12);
-    tiles[1].expected = 0;
-    CHECK(time_estimate_of_passes(tiles, 4, 2) < 0);
-    CHECK(time_estimate_of_passes(tiles + 3, 1, 2) < 0);
-}
-
 /* Against a picture of many samples, as --noise defines it. */
 static double tile_error(const struct film *film, struct film_rectangle r, float reference[][3]) {
     double sum = 0;

@@ -415,6 +415,35 @@ TEST(tiles_without_samples_count_as_the_mean_of_the_others_and_workers_wait_for_
     noise_estimate_destroy(&estimate);
 }
 
+static void end_pass(struct noise_estimate *estimate, uint32_t tile, uint32_t samples, double cost, bool final) {
+    struct noise_level level = {{samples, noise_endless, noise_endless}, cost, final};
+    noise_estimate_begin(estimate, 0, tile, samples);
+    noise_estimate_part(estimate, 0, 0.5);
+    noise_estimate_done(estimate, 0, tile, &level);
+}
+
+TEST(the_time_left_of_passes_follows_the_cost_of_each_tile_from_the_first_tile_of_the_first_pass) {
+    struct noise_estimate estimate;
+    CHECK(noise_estimate_create(&estimate, 2, 7, 1));
+    for (uint32_t i = 0; i < 2; i++)
+        noise_estimate_expect(&estimate, i, 100, 0);
+    end_pass(&estimate, 0, 1, 10, false);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 2 * 70 - 10, 1e-6);
+    end_pass(&estimate, 1, 1, 30, false);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 6 * 40, 1e-6);
+    end_pass(&estimate, 0, 3, 20, false);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 40 + 180, 1e-6);
+    noise_estimate_begin(&estimate, 0, 1, 3); /* a half of a pass counts */
+    noise_estimate_part(&estimate, 0, 0.5);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 40 + 150, 1e-6);
+    CHECK_NEAR(noise_estimate_work(&estimate).done, 60 + 30, 1e-6);
+    end_pass(&estimate, 1, 3, 60, false);
+    end_pass(&estimate, 0, 7, 40, true);
+    end_pass(&estimate, 1, 7, 120, true);
+    CHECK_NEAR(noise_estimate_work(&estimate).left, 0, 1e-6);
+    noise_estimate_destroy(&estimate);
+}
+
 /* Tiles in progress are finished, others are not started. */
 static void stop_soon(void *context, uint32_t tile, uint32_t done, uint32_t count) {
     (void)tile, (void)count;
