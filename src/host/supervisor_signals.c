@@ -65,6 +65,7 @@ void supervisor_interrupt(struct supervisor *supervisor) {
         return;
     supervisor->deadline = progress_clock() + supervisor_patience;
     supervisor_note_status(supervisor, ERROR_CANCELLED);
+    supervisor->output.interrupted = true;
     atomic_store(&supervisor->control->cancel, 1);
     const struct output_session *output = &supervisor->output;
     const struct picture *picture = output->current.open ? &output->current : output->held.open ? &output->held : NULL;

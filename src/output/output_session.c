@@ -270,7 +270,8 @@ static bool write_picture(struct output_session *output, const struct picture *p
 
 static bool write_timed(struct output_session *output, struct picture *picture, struct error *error) {
     double begun = progress_clock(), worked = progress_processor_clock();
-    bool ok = write_picture(output, picture, error);
+    bool ok = output->interrupted ? error_set(error, ERROR_CANCELLED, "%.600s: interrupted", picture->name)
+                                  : write_picture(output, picture, error);
     picture->write_seconds = progress_clock() - begun;
     picture->write_processor_seconds = progress_processor_clock() - worked;
     if (ok)
@@ -490,9 +491,9 @@ static void report_checkpoint(struct output_session *output, struct checkpoint_t
     const struct picture *picture = kept_picture(output);
     describe_begun(tiles.begun, begun);
     if (picture)
-        (void)snprintf(
-            line, sizeof line, "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
-            output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
+        (void)snprintf(line, sizeof line,
+                       "gray: notice: %.3000s holds %u of %u tiles of %.3000s%s (--resume continues)",
+                       output->checkpoint.path, tiles.done, film_tile_count(&picture->film), picture->name, begun);
     else
         (void)snprintf(line, sizeof line, "gray: notice: %.3000s holds %zu finished pictures", output->checkpoint.path,
                        output->checkpoint.done_count);
@@ -729,7 +730,7 @@ void output_restart(struct output_session *output) {
     animation_restart(&output->animation);
     picture_copies_clear(&output->copies);
     output->files.quota.written = 0;
-    output->several_under_one_name = false;
+    output->several_under_one_name = output->interrupted = false;
 }
 
 bool output_assemble(struct output_session *output, struct error *error) {

@@ -35,7 +35,8 @@ struct output_session {
     struct picture held;          /* finished under -o without %d: written when no second picture came */
     struct picture_report held_report;
     bool several_under_one_name;
-    bool plays; /* the last picture was a frame in a window */
+    bool plays;       /* the last picture was a frame in a window */
+    bool interrupted; /* by a signal: no picture is written any more */
 };
 
 /* The number of the picture, from 1. All frames that a window plays of an animation have one: they are not written. */
