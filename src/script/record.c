@@ -22,6 +22,9 @@ enum { RECORD_POINTS = 1000, WORK_BEFORE_COUNTING = 300000, WORK_OF_COUNTING = 1
 
 /* Indexing a table with a symbol, t[x], gives nil. */
 #define TABLE_HINT "; a number of the recorded function cannot be the index of a table; use gr.lookup(t, i)"
+#define NIL_HINT                                                                                                       \
+    "; nil is the value of a field that does not exist, of tonumber(text), and of t[x] where x is a number of the "    \
+    "recorded function: use gr.lookup(t, i)"
 #define TEXT_HINT                                                                                                      \
     "; a number of the recorded function has no value yet, so it cannot become text or choose an argument; use "       \
     "operators, comparisons and the functions of math and gr"
@@ -141,6 +144,23 @@ static bool call_function(lua_State *L, int function, int first) {
     return status == LUA_OK;
 }
 
+/* What to return instead of the value at an index. */
+static const char *result_hint(lua_State *L, int index) {
+    switch (lua_type(L, index)) {
+    case LUA_TNIL:
+        return NIL_HINT;
+    case LUA_TSTRING:
+        return lua_tostring(L, index)[0] == '#' ? "; colour.hex of require 'colour' makes a colour from such a text"
+                                                : "";
+    case LUA_TBOOLEAN:
+        return "; gr.where(condition, 1, 0) is a number";
+    case LUA_TTABLE:
+        return " that does not contain three numbers";
+    default:
+        return "";
+    }
+}
+
 /* The count of numbers in the value on top: 1 for a number or symbol, 3 for three of them; else 0, and a sentence that
  * describes the value replaces it. */
 static bool is_result(lua_State *L, int function, int *count) {
@@ -166,8 +186,7 @@ static bool is_result(lua_State *L, int function, int *count) {
             return true;
     }
     const char *words = value_words(L, top);
-    lua_pushfstring(L, "the function must return a number or a colour {r, g, b}, not %s%s", words,
-                    lua_isnil(L, top) ? TABLE_HINT : "");
+    lua_pushfstring(L, "the function must return a number or a colour {r, g, b}, not %s%s", words, result_hint(L, top));
     name_function(L, function);
     lua_replace(L, top);
     return false;

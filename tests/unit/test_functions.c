@@ -228,6 +228,11 @@ TEST(errors_of_recording_name_the_line_and_the_remedy) {
     fails("local t = {1, 2} fn(\nfunction(p) return t[floor(p.x)] end)",
           "scene.lua:2: the function must return a number or");
     fails("local t = {1, 2} fn(function(p) return t[floor(p.x)] end)", "use gr.lookup(t, i)");
+    fails("fn(function(p) return p.w end)",
+          "not nil; nil is the value of a field that does not exist, of tonumber(text)");
+    fails("fn(function(p) return '#ff8800' end)", "not a string; colour.hex of require 'colour' makes a colour");
+    fails("fn(function(p) return p.x > 0 end)", "not a boolean; gr.where(condition, 1, 0) is a number");
+    fails("fn(function(p) return {p.x} end)", "not a table that does not contain three numbers");
     fails("fn(\n\nfunction(p) return 'red' end)", "scene.lua:3: the function must return");
     fails("fn(\n\nfunction(p) return 1, 2 end)", "scene.lua:3: the function returns 2 values");
     fails("fn(function(p) for i = 1, p.x do end return 1 end)", "gr.loop(n, state, f) may end earlier");
