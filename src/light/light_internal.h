@@ -8,8 +8,9 @@
 
 #include <math.h>
 
+/* Of the magnitudes: negative light is sampled as often as positive light. */
 static inline double light_luminance(struct vec3 c) {
-    return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+    return 0.2126 * fabs(c.x) + 0.7152 * fabs(c.y) + 0.0722 * fabs(c.z);
 }
 
 /* The intensity of radiance 1 from a place on a plane, for the intensity of its area. */

@@ -61,7 +61,8 @@ static bool is_before(const struct light_triangle *t, uint32_t primitive, uint32
     return t->primitive != primitive ? t->primitive < primitive : t->part < part;
 }
 
-uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part) {
+/* The first triangle that is not before that part. */
+static uint32_t first_from(const struct light_mesh *mesh, uint32_t primitive, uint32_t part) {
     uint32_t low = 0, high = mesh->count;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;
@@ -70,8 +71,18 @@ uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint
         else
             high = middle;
     }
-    const struct light_triangle *t = &mesh->triangles[low];
-    return low < mesh->count && t->primitive == primitive && t->part == part ? low : LIGHT_NONE;
+    return low;
+}
+
+uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part) {
+    uint32_t first = first_from(mesh, primitive, part);
+    const struct light_triangle *t = &mesh->triangles[first];
+    return first < mesh->count && t->primitive == primitive && t->part == part ? first : LIGHT_NONE;
+}
+
+bool light_mesh_has(const struct light_mesh *mesh, uint32_t primitive) {
+    uint32_t first = first_from(mesh, primitive, 0);
+    return first < mesh->count && mesh->triangles[first].primitive == primitive;
 }
 
 /* Uniform over the triangle, for x and y of the unit interval. */

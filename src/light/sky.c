@@ -400,6 +400,27 @@ double sky_brightest(const struct sky *sky) {
     return unturned_brightest(sky) * (sky->adjusted ? sky->intensity : 1);
 }
 
+bool sky_is_black(const struct sky *sky) {
+    double max = 0;
+    switch (sky->kind) {
+    case SKY_CONSTANT:
+        max = vec3_max_abs(sky->colour);
+        break;
+    case SKY_STOPS:
+        for (uint32_t i = 0; i < sky->stop_count; i++)
+            max = fmax(max, vec3_max_abs(vec3_make(sky->stops[i][1], sky->stops[i][2], sky->stops[i][3])));
+        break;
+    case SKY_GRADIENT:
+    case SKY_CROSS:
+    case SKY_FACES:
+    case SKY_MAP:
+    case SKY_CLEAR:
+    case SKY_FUNCTION:
+        max = 1;
+    }
+    return max == 0 || (sky->adjusted && sky->intensity == 0);
+}
+
 void sky_turn(struct sky *sky, double sine, double cosine) {
     if (!sky->adjusted) {
         sky->adjusted = true;

@@ -49,7 +49,7 @@ static double cell_luminance(const struct sky *sky, uint32_t column, uint32_t ro
         for (int i = 0; i < PROBES; i++) {
             double x = (column + (i + 0.5) / PROBES) / columns, y = (row + (j + 0.5) / PROBES) / rows;
             double value = light_luminance(sky_colour(sky, direction_at(x, y), 0));
-            sum += value > 0 && isfinite(value) ? value : 0;
+            sum += isfinite(value) ? value : 0;
         }
     }
     return sum / (PROBES * PROBES);

@@ -56,6 +56,8 @@ static bool find_photon_lights(struct path_tracer *tracer, const struct world *w
         struct light_emitter emitter;
         lights[i] = light_emitter_make(&world->lights[i], 0, 0, 1, &emitter);
     }
+    for (uint32_t i = world->light_count; lights && i < tracer->lights.count; i++)
+        lights[i] = tracer->lights.emitters[i].owner != LIGHT_NONE && lights[tracer->lights.emitters[i].owner];
     tracer->photon_lights = lights;
     return lights != NULL;
 }

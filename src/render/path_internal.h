@@ -65,6 +65,7 @@ struct path_vertex {
     struct light_receiver receiver;
     uint32_t lobes;      /* that scatter */
     uint32_t substitute; /* highlights that represent the mirror image of those lights that no mirror shows */
+    bool sight;          /* of a line of sight, on which mirrors show only visible lights */
     struct vec3 thrown;  /* the fraction of the path's weight that photons represent, if traced lobes scatter here */
     struct vec3
         *direct_shares; /* or NULL; path_direct then stores what path_shares returns for the light that it finds */

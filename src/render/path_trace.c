@@ -357,7 +357,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
     note_stage(path, STAGE_EMISSION);
     if (path->depth >= tracer->max_depth)
         return end_path(path, PATH_REACHES_MAX_DEPTH);
-    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .bsdf = &bsdf};
+    struct path_vertex vertex = {.ray = &path->ray, .hit = hit, .bsdf = &bsdf, .sight = path->sight};
     double side = hit->front ? hit->offset : -hit->offset;
     vertex.receiver = (struct light_receiver){hit->point, vec3_add_scaled(hit->point, hit->normal_geometric, side),
                                               bsdf.side, hit->primitive};

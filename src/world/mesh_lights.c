@@ -14,6 +14,7 @@
 struct mesh_light_collection {
     const struct world *world; /* the world of the meshes */
     const struct light *light;
+    struct vec3 emission;    /* of the light, if it has one of its own; white if that is black */
     const struct node *node; /* of a light of the scene */
     const uint8_t *marked;   /* by its primitives: which of them belong to the light; NULL: all */
     struct light_mesh_builder mesh;
@@ -21,7 +22,7 @@ struct mesh_light_collection {
 
 static void add_triangle(struct mesh_light_collection *g, const struct mesh *mesh, uint32_t number,
                          const struct transform *map, double sign, const struct prototype *prototype) {
-    struct vec3 corners[3], emission = g->light->emission;
+    struct vec3 corners[3], emission = g->emission;
     uint32_t slot;
     mesh_triangle(mesh, number, corners, &slot);
     double size = 0;
@@ -161,11 +162,17 @@ static bool resolve_mesh(struct flattening *f, const struct node *node, struct l
     uint8_t *marked = arena_alloc_array(f->arena, (size_t)world->primitive_count + 1, 1);
     if (!mesh || !marked || !light_lists_mark(world, &node, 1, marked, 1, root))
         return error_no_memory(f->error, "a mesh light");
-    struct mesh_light_collection g = {.world = world, .light = light, .node = node, .marked = marked};
+    /* Black emission of its own replaces that of the materials: the light keeps its triangles. */
+    bool black = light->has_emission && vec3_max_abs(light->emission) == 0;
+    struct mesh_light_collection g = {.world = world,
+                                      .light = light,
+                                      .emission = black ? vec3_all(1) : light->emission,
+                                      .node = node,
+                                      .marked = marked};
     uint64_t total = count_triangles(&g);
     if (!(total > 0 ? gather(&g, total, f->arena, f->error) : gather_unseen(&g, f, f->error)))
         return false;
-    light_mesh_end(&g.mesh, light->colour, mesh);
+    light_mesh_end(&g.mesh, black ? vec3_all(0) : light->colour, mesh);
     mesh->shown = total > 0;
     if (mesh->count == 0 && f->warn) {
         char text[256];

@@ -261,13 +261,16 @@ struct building {
     struct error *error;
 };
 
-/* A light of the scene. If several lights use one primitive, it belongs to the first. */
+/* A light of the scene. If several lights use one primitive, it belongs to the first. The triangles of a mesh light
+ * have one position; primitives that move become lights of their own (take_primitive). */
 static bool take_light(struct building *b, uint32_t number) {
+    static const struct light_mesh no_triangles = {.shown = true};
     const struct world *world = b->out->world;
     struct light *light = &b->lights[number];
-    bool varies = false;
+    bool varies = false, rests = !light->mesh || !light->mesh->shown || light->mesh->count == 0;
     struct emitter *emitter = &b->emitters[number];
-    *emitter = (struct emitter){.primitive = WORLD_NOTHING, .unmet = light_is_delta(light), .emission = light->colour};
+    *emitter = (struct emitter){
+        .primitive = WORLD_NOTHING, .owner = LIGHT_NONE, .unmet = light_is_delta(light), .emission = light->colour};
     if (!light->mesh)
         return true;
     emitter->shown = light->mesh->shown;
@@ -278,32 +281,59 @@ static bool take_light(struct building *b, uint32_t number) {
         emitter->emission = vec3_mul(light->emission, light->colour);
     for (uint32_t i = 0; i < light->mesh->count && light->mesh->shown; i++) {
         uint32_t primitive = light->mesh->triangles[i].primitive;
+        if (primitive_moves(world, primitive))
+            continue;
+        rests = true;
         if (b->of_primitive[primitive] != LIGHT_NONE)
             continue;
         const struct prototype *prototype = primitive_prototype(world, primitive);
         b->of_primitive[primitive] = number;
-        emitter->unmet = emitter->unmet || primitive_moves(world, primitive);
         varies = varies || (!light->has_emission && b->of_prototype[world->primitives[primitive].prototype].varies);
         emitter->decided = emitter->decided || prototype->holes || prototype->cull != CULL_NONE || varies;
     }
+    if (!rests)
+        light->mesh = &no_triangles;
     emitter->decided = emitter->decided && !emitter->unmet;
     return !emitter->decided || !varies || mesh_lights_estimate(world, light, b->arena, b->pool, b->error);
+}
+
+/* The first mesh light over a moving primitive; LIGHT_NONE: none. */
+static uint32_t moving_owner(const struct building *b, uint32_t primitive) {
+    const struct world *world = b->out->world;
+    for (uint32_t i = 0; i < world->light_count && primitive_moves(world, primitive); i++) {
+        const struct light_mesh *mesh = world->lights[i].mesh;
+        if (mesh && mesh->shown && light_mesh_has(mesh, primitive))
+            return i;
+    }
+    return LIGHT_NONE;
+}
+
+/* The light of a moving primitive has the lists, the emission and the colour of its mesh light. */
+static void take_over(struct derived *d, const struct light *owner, const struct emitter *of_owner) {
+    bool own = of_owner->has_own;
+    d->light.lit = owner->lit;
+    d->light.colour = own ? of_owner->emission : vec3_mul(d->light.colour, owner->colour);
+    d->emitter.has_own = own;
+    d->emitter.emission = own ? of_owner->emission : owner->colour;
 }
 
 static bool take_primitive(struct building *b, uint32_t primitive) {
     const struct world *world = b->out->world;
     const struct emission *emission = &b->of_prototype[world->primitives[primitive].prototype];
-    if (!emission->emissive || b->of_primitive[primitive] != LIGHT_NONE)
+    uint32_t owner = moving_owner(b, primitive);
+    if ((!emission->emissive && owner == LIGHT_NONE) || b->of_primitive[primitive] != LIGHT_NONE)
         return true;
     struct derived d = {.world = world,
                         .primitive = primitive,
                         .light = {.emissive = true, .colour = emission->colour},
-                        .emitter = {.primitive = primitive, .shown = true, .decided = emission->varies},
+                        .emitter = {.primitive = primitive, .owner = owner, .shown = true, .decided = emission->varies},
                         .varies = emission->varies,
                         .arena = b->arena,
                         .pool = b->pool,
                         .error = b->error};
     d.emitter.emission = vec3_all(1);
+    if (owner != LIGHT_NONE)
+        take_over(&d, &world->lights[owner], &b->emitters[owner]);
     bool ok;
     if (!derive(&d, &ok))
         return ok;
@@ -317,13 +347,13 @@ static bool take_primitive(struct building *b, uint32_t primitive) {
 /* Unless it is black. */
 static bool take_background(struct building *b) {
     struct light *light = &b->lights[b->out->count];
-    if (!(sky_brightest(&b->out->world->sky) > 0))
+    if (sky_is_black(&b->out->world->sky))
         return true;
     for (uint32_t i = 0; i < b->out->count; i++)
         if (light_properties(&b->lights[i]) & LIGHT_IS_ENVIRONMENT)
             return true;
     *light = (struct light){.kind = LIGHT_SKY, .emissive = true, .colour = {1, 1, 1}, .sky = &b->out->world->sky};
-    b->emitters[b->out->count++] = (struct emitter){.primitive = WORLD_NOTHING};
+    b->emitters[b->out->count++] = (struct emitter){.primitive = WORLD_NOTHING, .owner = LIGHT_NONE};
     return light_prepare(light, b->arena, b->pool, b->error);
 }
 
@@ -361,7 +391,7 @@ static bool allocate(struct building *b) {
     }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         b->of_primitive[i] = LIGHT_NONE;
-        emitting += b->of_prototype[world->primitives[i].prototype].emissive;
+        emitting += b->of_prototype[world->primitives[i].prototype].emissive || moving_owner(b, i) != LIGHT_NONE;
     }
     size_t max = (size_t)world->light_count + emitting + 1;
     b->lights = arena_alloc_array(b->arena, max, sizeof *b->lights);

@@ -29,6 +29,7 @@
 /* The relation of a light to primitives. */
 struct emitter {
     uint32_t primitive; /* the only primitive, or WORLD_NOTHING: none or several */
+    uint32_t owner;     /* the mesh light over this moving primitive; LIGHT_NONE: none */
     bool shown;         /* hits of primitives are its own */
     bool by_triangle;   /* a mesh: the parts of the light are its triangles */
     bool decided; /* a ray decides: the emission varies, there are holes, or the light is only a bound of the emitter */

@@ -1,0 +1,144 @@
+/* Pairs of scenes that have the same light for different reasons: path tracing gives them the same picture. */
+#include "tests/harness.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A white floor and a ball, with `body`; `first` and `second` are fields of gr.render. */
+struct pair {
+    const char *body, *first, *second;
+};
+
+static const char frame[] =
+    "local root, white = gr.node('root'), gr.material{kd={.7,.6,.5}, two_sided=true}\n"
+    "local function add(n) root:add_child(n) return n end\n"
+    "local function rectangle(m, corner, along, up)\n"
+    "  return add(gr.rectangle{material=m, corner=corner, along=along, up=up})\nend\n"
+    "rectangle(white, {-3,0,3}, {6,0,0}, {0,0,-6})\n"
+    "add(gr.sphere{material=white, centre={.6,.5,0}, radius=.5})\n"
+    "local function mesh(m) return gr.mesh(m, {{0,0,0},{1,0,0},{0,1,0},{0,0,1}}, {{0,2,1},{0,1,3},{1,2,3},{0,3,2}}) "
+    "end\n"
+    "%s\n"
+    "for name, t in pairs{a={%s}, b={%s}} do\n"
+    "  t.node, t.file, t.width, t.height, t.integrator, t.spp = root, name..'.pfm', 8, 8, 'path', 64\n"
+    "  t.eye, t.view, t.background = {0,3,1}, {0,-1,.2}, t.background or {0,0,0}\n"
+    "  gr.render(t)\nend\n";
+
+struct pictures {
+    char *a, *b;
+    size_t size;
+};
+
+static struct pictures pictures_of(const struct pair *pair) {
+    char scene[4096];
+    int length = snprintf(scene, sizeof scene, frame, pair->body, pair->first, pair->second);
+    CHECK(length > 0 && (size_t)length < sizeof scene);
+    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
+    struct pictures p;
+    size_t size;
+    p.a = test_read_file(test_path("a.pfm"), &p.size);
+    p.b = test_read_file(test_path("b.pfm"), &size);
+    CHECK(p.a && p.b && size == p.size);
+    return p;
+}
+
+static void pictures_end(struct pictures *p) {
+    free(p->a);
+    free(p->b);
+}
+
+static void check_equal(const struct pair *pair) {
+    struct pictures p = pictures_of(pair);
+    CHECK(memcmp(p.a, p.b, p.size) == 0);
+    pictures_end(&p);
+}
+
+/* The second picture is the negative of the first. */
+static void check_opposite(const struct pair *pair) {
+    enum { COUNT = 3 * 8 * 8 };
+    struct pictures p = pictures_of(pair);
+    float a[COUNT], b[COUNT];
+    CHECK(p.size > sizeof a);
+    memcpy(a, p.a + p.size - sizeof a, sizeof a);
+    memcpy(b, p.b + p.size - sizeof b, sizeof b);
+    double light = 0;
+    for (int i = 0; i < COUNT; i++) {
+        CHECK_NEAR(a[i], -b[i], 1e-6);
+        light += fabs((double)a[i]);
+    }
+    CHECK(light / COUNT > 0.001);
+    pictures_end(&p);
+}
+
+/* Whitted's highlights stand for lamps that mirrors do not show. Scattered rays find them in mirrors. */
+TEST(scattered_rays_find_lamps_in_mirrors_once_whether_they_are_visible_or_not) {
+    static const char mirror[] = "local m = gr.material{kd={0,0,0}, ks={.9,.9,.9}, shininess=20, reflect=1}\n"
+                                 "rectangle(m, {-2,0,-2}, {4,0,0}, {0,2,0})";
+    static const char *const lamps[] = {
+        "gr.spherical_light{position={0,1,-1}, radius=.3, emission={5,4,3}, visible=%s}",
+        "gr.disc_light{position={0,1,-1}, normal={0,-.2,-1}, radius=.3, emission={5,4,3}, visible=%s}",
+        "gr.area_light{corner={-.5,1,-1}, v1={1,0,0}, v2={0,.5,0}, emission={5,4,3}, visible=%s}"};
+    for (size_t i = 0; i < sizeof lamps / sizeof *lamps; i++) {
+        char lights[2][256];
+        for (int visible = 0; visible < 2; visible++) {
+            int n = snprintf(lights[visible], sizeof lights[visible], "lights={");
+            n +=
+                snprintf(lights[visible] + n, sizeof lights[visible] - (size_t)n, lamps[i], visible ? "true" : "false");
+            (void)snprintf(lights[visible] + n, sizeof lights[visible] - (size_t)n, "}");
+        }
+        check_equal(&(struct pair){mirror, lights[0], lights[1]});
+    }
+    static const char mesh[] =
+        "local m = gr.material{kd={0,0,0}, ks={.9,.9,.9}, shininess=20, reflect=1}\n"
+        "rectangle(m, {-2,0,-2}, {4,0,0}, {0,2,0})\n"
+        "local glow = add(mesh(gr.material{kd={.2,.2,.2}, emission={3,2,1}}):translate(-.3,.7,-1))";
+    check_equal(&(struct pair){mesh, "lights={gr.mesh_light{mesh=glow, emission={3,2,1}}}", ""});
+}
+
+TEST(a_mesh_light_over_a_moving_mesh_has_the_light_of_all_its_positions) {
+    static const char still[] = "local glow = mesh(gr.material{kd={.2,.2,.2}, emission={3,2,1}})\n"
+                                "add(glow):scale(.6,.6,.6):translate(-1,.6,0):velocity(.8,.3,0)";
+    check_equal(&(struct pair){still, "", "lights={gr.mesh_light{mesh=glow}}"});
+    check_equal(&(struct pair){still, "", "lights={gr.mesh_light{mesh=glow, emission={3,2,1}}}"});
+    check_equal(&(struct pair){still, "lights={gr.mesh_light{mesh=glow, emission={6,0,3}}}",
+                               "lights={gr.mesh_light{mesh=glow, colour={2,0,3}}}"});
+    static const char parts[] = "local group, glow = gr.node('group'), gr.material{kd={.2,.2,.2}, emission={3,2,1}}\n"
+                                "add(group):add_child(mesh(glow):scale(.6,.6,.6):translate(-1,.6,0))\n"
+                                "group:add_child(mesh(glow):scale(.3,.3,.3):translate(1,.6,0):velocity(.8,.3,0))";
+    check_equal(&(struct pair){parts, "lights={gr.mesh_light{mesh=group}}",
+                               "lights={gr.mesh_light{mesh=group, emission={3,2,1}}}"});
+}
+
+/* Its emission replaces that of the materials, also if it is black or negative. */
+TEST(a_mesh_light_of_black_or_negative_emission_replaces_the_emission_of_its_materials) {
+    static const char mesh[] =
+        "local glow = add(mesh(gr.material{kd={.2,.2,.2}, emission={3,2,1}}):translate(-1,.7,0))";
+    check_equal(&(struct pair){mesh, "lights={gr.mesh_light{mesh=glow, emission={0,0,0}}}",
+                               "lights={gr.mesh_light{mesh=glow, colour={0,0,0}}}"});
+    check_equal(&(struct pair){mesh, "lights={gr.mesh_light{mesh=glow, emission={-1,2,-3}}}",
+                               "lights={gr.mesh_light{mesh=glow, emission={1,-2,3}, colour={-1,-1,-1}}}"});
+    check_equal(&(struct pair){mesh, "lights={gr.mesh_light{mesh=glow, emission={-3,-2,-1}}}",
+                               "lights={gr.mesh_light{mesh=glow, colour={-1,-1,-1}}}"});
+}
+
+TEST(negative_light_is_the_negative_of_positive_light) {
+    static const struct pair pairs[] = {
+        {"", "background={1,.5,.2}", "background={-1,-.5,-.2}"},
+        {"", "lights={gr.sky_light{sky={1,.5,.2}}}", "lights={gr.sky_light{sky={-1,-.5,-.2}}}"},
+        {"", "background=gr.sky_gradient{{-1,.2,0,1},{1,1,.5,0}}",
+         "background=gr.sky_gradient{{-1,-.2,0,-1},{1,-1,-.5,0}}"},
+        {"", "lights={gr.light{position={-1,2,0}, colour={1,2,3}}}",
+         "lights={gr.light{position={-1,2,0}, colour={-1,-2,-3}}}"},
+        {"", "lights={gr.area_light{corner={-1,2,0}, v1={1,0,0}, v2={0,0,1}, emission={1,2,3}}}",
+         "lights={gr.area_light{corner={-1,2,0}, v1={1,0,0}, v2={0,0,1}, emission={-1,-2,-3}}}"},
+        {"local glow = add(mesh(gr.material{kd={.2,.2,.2}}):translate(-1,.7,0))",
+         "lights={gr.mesh_light{mesh=glow, emission={3,2,1}}}",
+         "lights={gr.mesh_light{mesh=glow, emission={-3,-2,-1}}}"}};
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+        check_opposite(&pairs[i]);
+}
