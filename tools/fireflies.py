@@ -128,7 +128,7 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             bad = [script for script in sys.argv[2:] if check_scene(script, folder)]
         sys.exit(1 if bad else 0)
-    if len(sys.argv) not in (2, 3):
+    if len(sys.argv) not in (2, 3) or sys.argv[1].startswith('-'):
         sys.exit(__doc__)
     sys.exit(1 if compare(sys.argv[1], sys.argv[2] if len(sys.argv) == 3 else None) else 0)
 
