@@ -547,6 +547,27 @@ static bool check_extensions(const struct gltf *g) {
     return true;
 }
 
+/* One warning each for extensions that would change the picture. */
+static void warn_of_extensions(const struct gltf *g) {
+    static const char *const without_effect[] = {"KHR_lights_punctual",
+                                                 "KHR_materials_iridescence",
+                                                 "KHR_materials_anisotropy",
+                                                 "KHR_materials_dispersion",
+                                                 "KHR_materials_pbrSpecularGlossiness",
+                                                 "KHR_materials_diffuse_transmission",
+                                                 "KHR_texture_basisu",
+                                                 "EXT_texture_webp",
+                                                 "EXT_mesh_gpu_instancing",
+                                                 "KHR_materials_variants"};
+    const json_t *used = gltf_array(g, "extensionsUsed");
+    for (size_t i = 0; i < json_array_size(used); i++) {
+        const char *name = json_string_value(json_array_get(used, i));
+        for (size_t k = 0; name && k < sizeof without_effect / sizeof *without_effect; k++)
+            if (strcmp(name, without_effect[k]) == 0)
+                model_warn(g->model, "%s: %s is not read", g->path, name);
+    }
+}
+
 static bool load(struct gltf *g) {
     const char *version = json_string_value(json_object_get(json_object_get(g->root, "asset"), "version"));
     if (!version || version[0] != '2')
@@ -554,6 +575,7 @@ static bool load(struct gltf *g) {
                          version ? version : "none");
     if (!check_extensions(g))
         return false;
+    warn_of_extensions(g);
     g->buffer_count = json_array_size(gltf_array(g, "buffers"));
     g->buffers = mem_alloc_zero(g->buffer_count ? g->buffer_count : 1, sizeof *g->buffers);
     if (!g->buffers)

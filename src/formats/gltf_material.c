@@ -134,6 +134,23 @@ static struct vec3 unit_colour(const double colour[3]) {
     return vec3_make(unit(colour[0]), unit(colour[1]), unit(colour[2]));
 }
 
+/* Pictures of extensions would change the surface from point to point; only the factors are read. */
+static void warn_of_pictures(struct gltf *g, const json_t *extensions, const char *where) {
+    static const char *const keys[][2] = {
+        {"KHR_materials_specular", "specularTexture"},         {"KHR_materials_specular", "specularColorTexture"},
+        {"KHR_materials_transmission", "transmissionTexture"}, {"KHR_materials_volume", "thicknessTexture"},
+        {"KHR_materials_clearcoat", "clearcoatTexture"},       {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+        {"KHR_materials_clearcoat", "clearcoatNormalTexture"}, {"KHR_materials_sheen", "sheenColorTexture"},
+        {"KHR_materials_sheen", "sheenRoughnessTexture"}};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
+        if (!json_object_get(json_object_get(extensions, keys[i][0]), keys[i][1]))
+            continue;
+        model_warn(g->model, "%s: %s: pictures of extensions are not read (%s of %s)", g->path, where, keys[i][1],
+                   keys[i][0]);
+        return;
+    }
+}
+
 /* A factor of an extension, between 0 and 1. */
 static double share(const json_t *extension, const char *key, double otherwise) {
     return unit(number_or(extension, key, otherwise));
@@ -171,6 +188,7 @@ static bool read_layers(struct gltf *g, const json_t *source, struct model_mater
     double colour[3] = {1, 1, 1}, ior = number_or(json_object_get(extensions, "KHR_materials_ior"), "ior", 1.5);
     if (!gltf_numbers(g, specular, "specularColorFactor", colour, 3, where))
         return false;
+    warn_of_pictures(g, extensions, where);
     m->layered = true;
     m->layers = openpbr_defaults();
     m->layers.base_weight = 1;
@@ -222,6 +240,8 @@ static bool read_material(struct gltf *g, const json_t *source, struct model_mat
     if (blend)
         m->dissolve = unit(base[3]);
     m->map_kd.without_alpha = true;
+    if (mask && base[3] < number_or(source, "alphaCutoff", 0.5) && !json_object_get(rough, "baseColorTexture"))
+        m->dissolve = 0;
     if (blend || mask) { /* the alpha channel of the colour's picture; factors below 1 apply before the cut */
         double cutoff = number_or(source, "alphaCutoff", 0.5);
         m->map_d.by_alpha = true;

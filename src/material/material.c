@@ -144,9 +144,9 @@ struct vec3 material_absorption(const struct material *material) {
 }
 
 static struct vec3 emission_of(const struct material *material, enum texture_estimate which) {
-    const struct material *base = material_origin(material);
-    const struct texture *texture = material_texture(base, INPUT_EMISSION);
-    return texture ? texture_estimate(texture, base->textures, &base->phong, which) : base->phong.emission;
+    const struct texture *texture = material_texture(material, INPUT_EMISSION);
+    const struct phong *numbers = numbers_of(material);
+    return texture ? texture_estimate(texture, material->textures, numbers, which) : numbers->emission;
 }
 
 struct vec3 material_emission(const struct material *material) {

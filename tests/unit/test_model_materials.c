@@ -187,6 +187,32 @@ TEST(gltf_maps_of_metal_roughness_emission_and_normals_are_shown) {
 }
 
 /* By the parameters of gr.openpbr_material. */
+TEST(a_gltf_mask_without_a_picture_shows_or_hides_the_whole_surface) {
+    write_two_materials(
+        "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.4]},\"alphaMode\":\"MASK\"},"
+        "{\"name\":\"b\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.4]},"
+        "\"alphaMode\":\"MASK\",\"alphaCutoff\":0.3}");
+    struct surface_inputs inputs = {0};
+    struct bsdf bsdf;
+    if (surface_of_file("m.gltf", "a", &inputs, &bsdf))
+        CHECK_NEAR(inputs.opacity, 0, 0);
+    if (surface_of_file("m.gltf", "b", &inputs, &bsdf))
+        CHECK_NEAR(inputs.opacity, 1, 0);
+}
+
+TEST(pictures_of_gltf_extensions_have_one_warning_for_a_material) {
+    write_two_materials("{\"name\":\"a\",\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.75,"
+                        "\"clearcoatTexture\":{\"index\":0},\"clearcoatNormalTexture\":{\"index\":0}}}},"
+                        "{\"name\":\"b\"}");
+    struct model model = {0};
+    struct model_options options = {0};
+    struct error error = {0};
+    CHECK(model_read(&model, in_folder("m.gltf"), &options, &error));
+    CHECK_EQ_INT(model.warning_count, 1);
+    CHECK(strstr(model.warnings[0], "clearcoatTexture of KHR_materials_clearcoat"));
+    model_destroy(&model);
+}
+
 TEST(extensions_of_gltf_materials_are_layers_of_openpbr) {
     write_two_materials(
         "{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0.25,0.25],\"metallicFactor\":0,"

@@ -22,7 +22,7 @@ static const char frame[] =
     "end\n"
     "%s\n"
     "for name, t in pairs{a={%s}, b={%s}} do\n"
-    "  t.node, t.file, t.width, t.height, t.integrator, t.spp = root, name..'.pfm', 8, 8, 'path', 64\n"
+    "  t.node, t.file, t.width, t.height, t.integrator, t.spp = t.node or root, name..'.pfm', 8, 8, 'path', 64\n"
     "  t.eye, t.view, t.background = {0,3,1}, {0,-1,.2}, t.background or {0,0,0}\n"
     "  gr.render(t)\nend\n";
 
@@ -141,4 +141,22 @@ TEST(negative_light_is_the_negative_of_positive_light) {
          "lights={gr.mesh_light{mesh=glow, emission={-3,-2,-1}}}"}};
     for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
         check_opposite(&pairs[i]);
+}
+
+/* gr.image_material and files cover the emission of a base material. Without samples of the light the pictures would
+ * have fifty times the noise. */
+TEST(a_mesh_whose_emission_is_a_picture_over_its_material_is_sampled_as_one_with_a_texture) {
+    static const char quad[] =
+        "local function one(m)\n"
+        "  local quad = gr.mesh{verts={{0,0,0},{1,0,0},{1,1,0},{0,1,0}}, uvs={{0,0},{1,0},{1,1},{0,1}},\n"
+        "                       faces={{0,1,2,3}}, material=m}\n"
+        "  return gr.node{children={root, quad:scale(.5,.5,.5):translate(-1,.9,0)}}\nend\n"
+        "local direct = one(gr.material{kd={0,0,0}, emission=gr.texture('glow.png')})\n"
+        "local dark = gr.material{kd={0,0,0}}\n"
+        "local covered = one(gr.image_material{material=dark, image='glow.png', channel='emission'})";
+    size_t size;
+    char *bytes = test_read_file("textures/parquet.png", &size);
+    test_write_file(test_path("glow.png"), bytes, size);
+    free(bytes);
+    check_equal(&(struct pair){quad, "node=direct", "node=covered"});
 }
