@@ -221,30 +221,35 @@ static void path_layers(const struct film *film, size_t at, float values[AOV_COU
     }
 }
 
+void renderer_layer_pixel(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y) {
+    struct film *film = renderer->job->film;
+    uint32_t mask = film->layer_mask;
+    size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+    float values[AOV_COUNT][3] = {{0}};
+    struct pixel_sample position = renderer_first_sample(renderer, x, y);
+    struct ray ray;
+    if (renderer_middle_ray(renderer, (double)position.x + position.dx, (double)position.y + position.dy, &ray))
+        aov_surface(renderer->job->world, &ray, mask, &worker->scratch, values);
+    if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
+        measure_pixel(renderer, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);
+    if (mask & AOV_PATH && integrator_traits(renderer->job->settings.integrator).has_light_parts)
+        path_layers(film, at, values);
+    worker->clamped |= clamp_layers(values);
+    for (int i = 0; i < AOV_COUNT; i++) {
+        size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;
+        if (mask >> i & 1)
+            memcpy(film->layers[plane + at], values[i], sizeof values[i]);
+    }
+}
+
 void renderer_layer_item(void *context, uint32_t item, int index) {
     struct renderer *renderer = context;
     struct worker *worker = &renderer->workers[index];
-    struct film *film = renderer->job->film;
-    struct film_rectangle r = film_tile_rectangle(film, item);
-    uint32_t mask = film->layer_mask;
+    struct film_rectangle r = film_tile_rectangle(renderer->job->film, item);
     for (int64_t y = r.y0; y < r.y1; y++) {
-        for (int64_t x = r.x0; x < r.x1 && !renderer_stopped(renderer, worker); x++) {
-            size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
-            float values[AOV_COUNT][3] = {{0}};
-            struct pixel_sample position = renderer_first_sample(renderer, x, y);
-            struct ray ray;
-            if (renderer_middle_ray(renderer, (double)position.x + position.dx, (double)position.y + position.dy, &ray))
-                aov_surface(renderer->job->world, &ray, mask, &worker->scratch, values);
-            if (mask & (UINT32_C(1) << AOV_COST | UINT32_C(1) << AOV_SAMPLES))
-                measure_pixel(renderer, worker, x, y, values[AOV_COST], values[AOV_SAMPLES]);
-            if (mask & AOV_PATH && integrator_traits(renderer->job->settings.integrator).has_light_parts)
-                path_layers(film, at, values);
-            worker->clamped |= clamp_layers(values);
-            for (int i = 0; i < AOV_COUNT; i++) {
-                size_t plane = aov_layer(mask, (enum aov)i) * (size_t)film->width * film->height;
-                if (mask >> i & 1)
-                    memcpy(film->layers[plane + at], values[i], sizeof values[i]);
-            }
-        }
+        uint64_t begun = renderer_layers_begin(renderer);
+        for (int64_t x = r.x0; x < r.x1 && !renderer_stopped(renderer, worker); x++)
+            renderer_layer_pixel(renderer, worker, x, y);
+        renderer_layers_end(renderer, worker, begun, (double)(r.x1 - r.x0));
     }
 }

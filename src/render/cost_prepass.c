@@ -7,7 +7,6 @@
 #include "render/integrator_internal.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Nanoseconds between two forecasts. */
 static const uint64_t pause = 10000000;
@@ -36,17 +35,45 @@ static void probe_tile(void *context, uint32_t tile, int index) {
                         resampling);
 }
 
+/* So many rays count in the statistics. */
+struct ray_counts {
+    uint64_t camera_rays, hits, reflected_rays, refracted_rays, shadow_rays, shape_tests, box_tests;
+    struct triangle_cost cost;
+};
+
+static struct ray_counts counts_of(const struct worker *worker) {
+    const struct integrator_state *state = &worker->state;
+    const struct geom_scratch *geom = &worker->scratch.geom;
+    return (struct ray_counts){.camera_rays = worker->camera_rays,
+                               .hits = state->hits,
+                               .reflected_rays = state->reflected_rays,
+                               .refracted_rays = state->refracted_rays,
+                               .shadow_rays = state->shadow_rays,
+                               .shape_tests = geom->shape_tests,
+                               .box_tests = geom->box_tests,
+                               .cost = geom->cost};
+}
+
+static void restore_counts(struct worker *worker, const struct ray_counts *counts) {
+    struct integrator_state *state = &worker->state;
+    struct geom_scratch *geom = &worker->scratch.geom;
+    worker->camera_rays = counts->camera_rays;
+    state->hits = counts->hits;
+    state->reflected_rays = counts->reflected_rays;
+    state->refracted_rays = counts->refracted_rays;
+    state->shadow_rays = counts->shadow_rays;
+    geom->shape_tests = counts->shape_tests;
+    geom->box_tests = counts->box_tests;
+    geom->cost = counts->cost;
+}
+
 /* These rays are not part of the picture's statistics. */
 static void forget_counts(struct renderer *renderer) {
+    const struct ray_counts none = {0};
     for (int i = 0; i < pool_workers(renderer->pool); i++) {
         struct worker *worker = &renderer->workers[i];
-        struct geom_scratch *geom = &worker->scratch.geom;
-        worker->camera_rays = 0;
+        restore_counts(worker, &none);
         worker->clamped = worker->state.clamped = false;
-        worker->state.hits = worker->state.shadow_rays = 0;
-        worker->state.reflected_rays = worker->state.refracted_rays = 0;
-        geom->shape_tests = geom->box_tests = 0;
-        memset(&geom->cost, 0, sizeof geom->cost);
     }
 }
 
@@ -59,6 +86,55 @@ void renderer_expect_levels(struct renderer *renderer) {
             noise_estimate_expect(&renderer->noise_estimate, tile, (double)(r.x1 - r.x0) * (r.y1 - r.y0),
                                   renderer->levels.wanted ? renderer->levels.samples[tile] : 0);
     }
+}
+
+/* --- layers --- */
+
+void renderer_measure_layers(struct renderer *renderer, struct worker *worker, uint32_t tile) {
+    enum { PIXELS_SIDE = 2 };
+    if (!renderer->estimated || !renderer->job->film->layers)
+        return;
+    struct film_rectangle r = film_tile_rectangle(renderer->job->film, tile);
+    struct ray_counts counts = counts_of(worker);
+    uint64_t begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
+    for (uint32_t i = 0; i < PIXELS_SIDE * PIXELS_SIDE; i++) {
+        uint32_t x = r.x0 + (r.x1 - r.x0) * (2 * (i % PIXELS_SIDE) + 1) / (2 * PIXELS_SIDE);
+        uint32_t y = r.y0 + (r.y1 - r.y0) * (2 * (i / PIXELS_SIDE) + 1) / (2 * PIXELS_SIDE);
+        renderer_layer_pixel(renderer, worker, x, y);
+    }
+    restore_counts(worker, &counts);
+    sum_add(&worker->layers.measured_cost, (double)(clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun));
+    sum_add(&worker->layers.measured_pixels, PIXELS_SIDE * PIXELS_SIDE);
+}
+
+uint64_t renderer_layers_begin(const struct renderer *renderer) {
+    return renderer->estimated ? clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) : 0;
+}
+
+void renderer_layers_end(struct renderer *renderer, struct worker *worker, uint64_t begun, double pixels) {
+    if (!renderer->estimated)
+        return;
+    sum_add(&worker->layers.cost, (double)(clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun));
+    sum_add(&worker->layers.pixels, pixels);
+    renderer_report_estimate(renderer);
+}
+
+/* The layers are made after all tiles, row by row: at first the pixels that were measured predict the rest, which are
+ * spread over the picture, later those that are made. */
+static void add_layers(const struct renderer *renderer, struct time_estimate_work *work) {
+    const struct film *film = renderer->job->film;
+    double cost = 0, pixels = 0, measured_cost = 0, measured_pixels = 0, all = (double)film->width * film->height;
+    for (int i = 0; film->layers && i < pool_workers(renderer->pool); i++) {
+        const struct layer_sums *layers = &renderer->workers[i].layers;
+        cost += sum_load(&layers->cost);
+        pixels += sum_load(&layers->pixels);
+        measured_cost += sum_load(&layers->measured_cost);
+        measured_pixels += sum_load(&layers->measured_pixels);
+    }
+    double by_measured = measured_pixels > 0 ? fmax(measured_cost / measured_pixels * all - cost, 0) : 0;
+    double by_made = pixels > 0 ? cost / pixels * (all - pixels) : 0;
+    work->done += measured_cost + cost;
+    work->left += measured_pixels > 0 ? by_measured * (1 - pixels / all) + by_made * pixels / all : by_made;
 }
 
 bool renderer_cost_prepass(struct renderer *renderer) {
@@ -93,6 +169,7 @@ void renderer_report_estimate(struct renderer *renderer) {
         renderer->noise_estimate.count > 0
             ? noise_estimate_work(&renderer->noise_estimate)
             : time_estimate_work(&renderer->time_estimate, renderer->job->handout ? renderer->job->film : NULL);
+    add_layers(renderer, &work);
     uint64_t worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID) - renderer->worked + 1;
     double passed = (double)(now - atomic_load(&progress_estimate->begun)) * pool_workers(renderer->pool);
     atomic_store_explicit(&progress_estimate->pace, (uint64_t)(1000 * passed / (double)worked), memory_order_relaxed);

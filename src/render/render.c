@@ -96,8 +96,11 @@ static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
     if (renderer_is_done(renderer) || !atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_TAKEN))
         return;
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    renderer_end_tile(renderer, tile,
-             make_part(renderer, &renderer->workers[index], tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1));
+    struct worker *worker = &renderer->workers[index];
+    bool whole = make_part(renderer, worker, tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
+    if (whole)
+        renderer_measure_layers(renderer, worker, tile);
+    renderer_end_tile(renderer, tile, whole);
 }
 
 void renderer_pass_item(void *context, uint32_t position, int index) {
@@ -153,8 +156,12 @@ static void make_quarter(struct renderer *renderer, uint32_t number, int index) 
     if (pixels > 0 && !make_part(renderer, &renderer->workers[index], tile, part, share))
         atomic_fetch_or(count, QUARTER_FAILED);
     uint8_t before = atomic_fetch_add(count, 1);
-    if ((before & ~QUARTER_FAILED) + 1 == QUARTERS)
-        renderer_end_tile(renderer, tile, !(before & QUARTER_FAILED));
+    if ((before & ~QUARTER_FAILED) + 1 != QUARTERS)
+        return;
+    bool whole = !(before & QUARTER_FAILED);
+    if (whole)
+        renderer_measure_layers(renderer, &renderer->workers[index], tile);
+    renderer_end_tile(renderer, tile, whole);
 }
 
 static void tile_item(void *context, uint32_t position, int index) {
@@ -438,8 +445,6 @@ static bool make_tiles(struct renderer *renderer, struct render_statistics *stat
                      ? make_passes(renderer, statistics)
                      : renderer_cost_prepass(renderer) && render_tiles(renderer, statistics) &&
                            !(renderer_is_done(renderer) && is_unfinished(renderer));
-    if (whole && renderer->job->progress_estimate)
-        renderer_report_end(renderer);
     if (!atomic_load(&renderer->failed))
         return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (!whole)
@@ -458,6 +463,8 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
         add_statistics(&renderer, workers, statistics);
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), renderer_layer_item, &renderer))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    if (ok && job->progress_estimate)
+        renderer_report_end(&renderer);
     for (int i = 0; renderer.workers && i < workers; i++)
         statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
     end_rendering(&renderer, workers);

@@ -30,6 +30,12 @@ struct sample_range {
     uint32_t begin, end;
 };
 
+/* Of a worker, for the time estimate: the layers of some pixels that were measured, and those that are made; costs as
+ * of tiles. */
+struct layer_sums {
+    _Atomic double measured_cost, measured_pixels, cost, pixels;
+};
+
 struct worker {
     struct world_scratch scratch;
     struct integrator_state state;
@@ -46,6 +52,7 @@ struct worker {
     struct noise_point noise;         /* of the current tile (--noise), after its last samples; zero: not known */
     bool quiet;                       /* its noise is small enough */
     uint32_t samples_expected;        /* of its pixels; 0: not known yet */
+    struct layer_sums layers;
 };
 
 /* Samples that a pass adds to each pixel: from number `begin` on to that before `end`. */
@@ -154,7 +161,14 @@ void renderer_pass_item(void *context, uint32_t position, int worker);
 /* No further tile is to be begun. */
 bool renderer_is_done(const struct renderer *renderer);
 
+/* The layers of a pixel whose tile is done. */
+void renderer_layer_pixel(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y);
 /* A pool_function: the layers of a tile that is done. */
 void renderer_layer_item(void *context, uint32_t tile, int worker);
+/* For the time estimate: the moment when layers of pixels begin, and when so many are made. */
+uint64_t renderer_layers_begin(const struct renderer *renderer);
+void renderer_layers_end(struct renderer *renderer, struct worker *worker, uint64_t begun, double pixels);
+/* Makes the layers of a few pixels of a tile that is done, which tell the time of all. */
+void renderer_measure_layers(struct renderer *renderer, struct worker *worker, uint32_t tile);
 
 #endif

@@ -95,6 +95,8 @@ static bool make_level(struct renderer *renderer, struct worker *worker, uint32_
         renderer_level_ends(renderer, worker, tile, final);
     *samples = worker->level.end;
     worker->level = (struct sample_range){0, 0};
+    if (final)
+        renderer_measure_layers(renderer, worker, tile);
     if (final || !whole)
         renderer_end_tile(renderer, tile, final);
     else

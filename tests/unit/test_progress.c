@@ -537,6 +537,22 @@ TEST(a_quick_picture_has_its_size_and_one_sample_a_pixel) {
 
 /* --- messages --- */
 
+/* --aov cost traces all samples again. While it does, no further tile is done. */
+TEST(the_share_of_the_work_includes_the_layers_after_the_tiles) {
+    struct test_result result = test_gray_scene(mirrors,
+                                                "--progress=json --integrator path --spp 12 --size 600x500 -j 1 "
+                                                "--denoise=none --aov cost scene.lua",
+                                                NULL);
+    double lowest = 1;
+    CHECK_EQ_INT(result.status, 0);
+    for (char *line = strtok(result.err, "\n"); line; line = strtok(NULL, "\n")) {
+        if (strstr(line, "\"share\":") && number_of(line, "\"tiles_done\":") == number_of(line, "\"tiles\":"))
+            lowest = fmin(lowest, number_of(line, "\"share\":"));
+    }
+    CHECK(lowest > 0.2 && lowest < 0.9);
+    release(result);
+}
+
 TEST(progress_as_json_has_the_share_of_the_work_and_the_time_left) {
     struct test_result result =
         test_gray_scene(mirrors, "--progress=json --size 700x400 -al-samples 8 -j 1 -reflect-limit 6 scene.lua", NULL);
