@@ -85,8 +85,8 @@ static bool make_level(struct renderer *renderer, struct worker *worker, uint32_
     struct film *film = renderer->job->film;
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint32_t *samples = &renderer->levels.samples[tile], limit = renderer->pass.end;
-    atomic_store_explicit(&film->tiles[tile], FILM_TILE_TAKEN, memory_order_release);
-    atomic_thread_fence(memory_order_seq_cst); /* who reads samples that follow sees that state */
+    /* Who reads samples that follow sees that state: no store moves before an exchange. */
+    (void)atomic_exchange(&film->tiles[tile], FILM_TILE_TAKEN);
     worker->level = (struct sample_range){*samples, noise_next_level(*samples, limit)};
     renderer_level_begins(renderer, worker, tile, worker->level.end);
     bool whole = renderer_make_samples(renderer, worker, (struct rectangle){r.x0, r.y0, r.x1, r.y1});
