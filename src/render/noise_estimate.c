@@ -13,7 +13,7 @@
 
 #include "base/mem.h"
 #include "math/elementary.h"
-#include "render/path_film.h"
+#include "render/path_noise_internal.h"
 
 #include <math.h>
 #include <stddef.h>

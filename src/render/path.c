@@ -5,6 +5,7 @@
 #include "render/aov.h"
 #include "render/integrator_internal.h"
 #include "render/path_film.h"
+#include "render/path_noise_internal.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -184,30 +185,19 @@ static bool is_check(uint32_t samples) {
     return samples >= 16 && path_next_check(samples - 1) == samples;
 }
 
-/* *by_samples: with the variance from the samples. */
-static double noise_of(const struct film *film, const struct rectangle *part, double *by_samples) {
-    double sum = 0, sum_by_samples = 0, pixels = (double)((part->x1 - part->x0) * (part->y1 - part->y0));
-    for (int64_t y = part->y0; y < part->y1; y++) {
-        for (int64_t x = part->x0; x < part->x1; x++) {
-            struct path_pixel pixel = path_film_load(film, pixel_index(film, x, y));
-            sum += path_pixel_noise(&pixel);
-            sum_by_samples += path_pixel_noise_of_samples(&pixel);
-        }
-    }
-    *by_samples = sqrt(sum_by_samples / pixels);
-    return sqrt(sum / pixels);
-}
-
 /* Checks the noise of the tile, and computes its expected number of samples. True: it is at a check, and its noise is
  * small enough. */
 static bool is_quiet(const struct path_tracer *tracer, const struct film *film, struct worker *worker,
                      const struct rectangle *part, uint32_t samples) {
-    double wanted = tracer->noise, by_samples, noise = noise_of(film, part, &by_samples);
-    bool quiet = is_check(samples) && noise <= wanted;
+    double wanted = tracer->noise, minimum = path_minimum_samples(wanted);
+    struct film_rectangle tile = {(uint32_t)part->x0, (uint32_t)part->y0, (uint32_t)part->x1, (uint32_t)part->y1};
+    struct path_noise noise = path_tile_noise(film, tile);
+    bool quiet = is_check(samples) && samples >= minimum && noise.noise <= wanted;
     worker->quiet = quiet;
-    worker->noise = (struct noise_point){samples, samples * noise / wanted * noise / wanted,
-                                         samples * by_samples / wanted * by_samples / wanted};
-    worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise, wanted, tracer->samples);
+    worker->noise =
+        (struct noise_point){samples, fmax(samples * noise.noise / wanted * noise.noise / wanted, minimum),
+                             fmax(samples * noise.by_samples / wanted * noise.by_samples / wanted, minimum)};
+    worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise.noise, wanted, tracer->samples);
     return quiet;
 }
 
@@ -267,7 +257,7 @@ double path_tracer_resampling(const struct path_tracer *tracer, struct renderer 
         sum += path_pixel_noise_of_samples(&pixel);
     }
     double needed = SAMPLES * sum / PROBE_RAYS / (tracer->noise * tracer->noise);
-    return fmin(fmax(needed, 16), tracer->samples);
+    return fmin(fmax(needed, path_minimum_samples(tracer->noise)), tracer->samples);
 }
 
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,

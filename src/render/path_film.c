@@ -187,40 +187,6 @@ struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
     return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
 }
 
-static double relative_variance(struct vec3 mean, struct vec3 variance) {
-    const double dark = 0.01; /* the square of a value that counts as black */
-    return (variance.x / (mean.x * mean.x + dark) + variance.y / (mean.y * mean.y + dark) +
-            variance.z / (mean.z * mean.z + dark)) /
-           3;
-}
-
-double path_pixel_noise(const struct path_pixel *pixel) {
-    return relative_variance(path_pixel_mean(pixel), path_pixel_variance_of_halves(pixel));
-}
-
-double path_pixel_noise_of_samples(const struct path_pixel *pixel) {
-    return relative_variance(path_pixel_mean(pixel), path_pixel_variance_of_samples(pixel));
-}
-
-/* --- noise --- */
-
-uint32_t path_next_check(uint32_t samples) {
-    uint32_t power = 16;
-    while (power <= samples / 2)
-        power *= 2;
-    return samples < power ? power : samples < power + power / 2 ? power + power / 2 : 2 * power;
-}
-
-uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, uint32_t limit) {
-    double ratio = noise / wanted, needed = samples * ratio * ratio;
-    if (samples < 2 || samples >= limit || !(needed < limit))
-        return samples < 2 ? 0 : limit;
-    uint32_t count = samples;
-    while (count < fmax(needed, 16) && count < limit)
-        count = path_next_check(count);
-    return count < limit ? count : limit;
-}
-
 /* --- denoising --- */
 
 /* Features of the film are in the order of enum denoise_feature; glow follows them. */

@@ -54,20 +54,6 @@ struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_gro
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
 struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
 
-/* The contribution of a pixel to the noise of its tile: the mean of Var / (mean^2 + .01) over the channels, with Var
- * from the halves. The noise of a tile is the square root of the mean over its pixels: an estimate of its relative
- * error. */
-double path_pixel_noise(const struct path_pixel *pixel);
-/* The same with Var from the samples: less noisy, for time estimates. */
-double path_pixel_noise_of_samples(const struct path_pixel *pixel);
-
-/* --noise checks a tile after 16, 24, 32, 48, 64 ... samples: returns the first of these numbers above `samples`. */
-uint32_t path_next_check(uint32_t samples);
-/* The expected number of samples, at most `limit`, at which a tile reaches the noise `wanted`, if it has `noise` after
- * `samples`. Noise is inversely proportional to the square root of the number, and a tile ends only at a check. wanted
- * > 0. 0: not known, because one sample has no noise estimate. */
-uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, uint32_t limit);
-
 /* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the film.
  */
 struct denoise_source path_film_denoise_source(struct film *film);
