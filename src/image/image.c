@@ -312,6 +312,20 @@ struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
     return (struct rgba){t[0] / 65535.0, t[1] / 65535.0, t[2] / 65535.0, t[3] / 65535.0};
 }
 
+struct rgba image_largest(const struct image *image) {
+    struct rgba max = {0, 0, 0, 1};
+    for (uint32_t y = 0; y < image->levels[0].height; y++) {
+        for (uint32_t x = 0; x < image->levels[0].width; x++) {
+            struct rgba t = image_texel(image, x, y);
+            max.r = t.r > max.r ? t.r : max.r;
+            max.g = t.g > max.g ? t.g : max.g;
+            max.b = t.b > max.b ? t.b : max.b;
+            max.a = t.a < max.a ? t.a : max.a;
+        }
+    }
+    return max;
+}
+
 /* The choice of a reader. For unknown formats the PNG reader makes the error; it names the probable format. */
 
 #define FILE_LIMIT ((size_t)1 << 32)

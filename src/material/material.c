@@ -213,7 +213,7 @@ double material_albedo_bound(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
     const struct texture *texture = material_texture(material, INPUT_KD);
     struct vec3 colour =
-        texture ? texture_estimate(texture, material->textures, numbers, TEXTURE_LARGEST) : numbers->kd;
+        texture ? texture_estimate(texture, material->textures, numbers, TEXTURE_LARGEST_TEXEL) : numbers->kd;
     double diffuse = vec3_max_abs(colour);
     double specular = material_specular(material), exponent = numbers->shininess > 0 ? numbers->shininess : 0;
     if (numbers->unlit)

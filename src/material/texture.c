@@ -428,7 +428,13 @@ static struct vec3 estimate_image(const struct texture *texture, const struct te
     const struct texture *below = texture_at(textures, texture->image.below);
     struct vec3 tint = image->apart ? image->tint : vec3_all(1);
     struct vec3 under = below ? texture_estimate(below, textures, numbers, which) : vec3_all(0);
-    if (which == TEXTURE_LARGEST)
+    if (which == TEXTURE_LARGEST_TEXEL) {
+        struct rgba texel = image_largest(image->image);
+        tint = vec3_mul(tint, vec3_make(texel.r, texel.g, texel.b));
+        if (texel.a >= 1)
+            return tint;
+    }
+    if (which != TEXTURE_AVERAGE)
         return larger(tint, under);
     struct rgba mean_texel = image_lookup(image->image, (struct image_point){0.5, 0.5, 1, 1},
                                           (struct image_sampling){IMAGE_MIPMAP, IMAGE_CLAMP, IMAGE_CLAMP});
@@ -438,7 +444,7 @@ static struct vec3 estimate_image(const struct texture *texture, const struct te
 
 struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
                              enum texture_estimate which) {
-    bool largest = which == TEXTURE_LARGEST;
+    bool largest = which != TEXTURE_AVERAGE;
     switch (texture->kind) {
     case TEXTURE_CONSTANT:
         return texture->constant.colour;

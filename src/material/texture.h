@@ -251,8 +251,9 @@ int texture_colour_parts(const struct texture *texture);
 
 /* Estimates of a texture without a hit, for a material with these numbers. textures: as in texture_at. */
 enum texture_estimate {
-    TEXTURE_AVERAGE, /* of images: of all texels; of patterns: one half */
-    TEXTURE_LARGEST  /* a bound of each component if none is negative and no texel above 1 */
+    TEXTURE_AVERAGE,      /* of images: of all texels; of patterns: one half */
+    TEXTURE_LARGEST,      /* a bound of each component if none is negative and no texel above 1 */
+    TEXTURE_LARGEST_TEXEL /* a closer bound, which reads all texels of images */
 };
 struct vec3 texture_estimate(const struct texture *texture, const struct texture *textures, const struct phong *numbers,
                              enum texture_estimate which);

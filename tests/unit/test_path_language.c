@@ -5,6 +5,7 @@
 #include "tests/unit/path_estimate.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -454,6 +455,27 @@ TEST(a_material_that_makes_light_ends_by_depth_and_is_named_once) {
     CHECK_NEAR(path_mean(&s, 1024, 5), 63, 0.2); /* 1 + 2 + ... + 32 */
     CHECK(isfinite(path_mean(&s, 1, 1000000)));  /* one path in twenty ends */
     stage_end(&s);
+}
+
+/* Also by the brightest texel of a picture. */
+TEST(the_warning_of_materials_that_make_light_knows_the_texels_of_pictures) {
+    static const char scene[] = "local r = gr.node('r')\n"
+                                "local m = gr.material{kd=gr.texture('kd.pfm'), ks={.12,.12,.12}, shininess=40}\n"
+                                "r:add_child(gr.sphere{material=m})\n"
+                                "gr.render{node=r, file='a.pfm', width=8, height=8, eye={0,0,5}, integrator='path', "
+                                "spp=1}\n";
+    for (int bright = 0; bright < 2; bright++) {
+        char picture[64];
+        const float texels[3] = {0.9F, bright ? 1.5F : 0.25F, 0.5F};
+        int header = snprintf(picture, sizeof picture, "PF\n1 1\n-1\n");
+        memcpy(picture + header, texels, sizeof texels);
+        test_write_file(test_path("kd.pfm"), picture, (size_t)header + sizeof texels);
+        struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 0);
+        CHECK((strstr(result.err, "more light than it receives") != NULL) == bright);
+        free(result.out);
+        free(result.err);
+    }
 }
 
 TEST(an_emitter_without_bounds_has_one_notice) {
