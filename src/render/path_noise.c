@@ -9,7 +9,8 @@
  *   far as the mean is known badly: in proportion to the square of its relative standard error, which is 1 after a
  *   single path and 1/k after k of them. Stratification does not reduce such variances.
  * - Few pixels. In a tile of the rim, the sum over pixels is known less well than in a whole tile. With K of 1,024
- *   pixels, 1 - K / 1024 times its standard error is added.
+ *   pixels, 1 - K / 1024 times its standard error is added, and K / 1024 times what exceeds a usual one: a few pixels
+ *   can make most of the noise of a whole tile, too.
  *
  * With the brightness of the surroundings in the denominator, the estimate of a tile with few rare paths is almost
  * its real error, since most of the error is in the pixels that met one. What no sample met remains unknown. So a tile
@@ -94,9 +95,15 @@ static struct relative relative_variance(const struct channel *of, double median
     return (struct relative){(of->halves + (of->samples - of->halves) * unsure) * below, of->samples * below};
 }
 
+/* The standard error of the sum over a whole tile is added as far as it exceeds `usual` times that of equal pixels,
+ * which is the mean divided by the square root of their number. */
+static const double usual = 3;
+
 /* From the sums over pixels of their relative variances and of the squares of these. */
 static double noise_of(double sum, double squares, double pixels) {
-    return sqrt(sum / pixels + (1 - pixels / (SIDE * SIDE)) * sqrt(squares) / pixels);
+    double mean = sum / pixels, error = sqrt(squares) / pixels, share = pixels / (SIDE * SIDE);
+    double excess = fmax(error - usual * mean / sqrt(pixels), 0);
+    return sqrt(mean + (1 - share) * error + share * excess);
 }
 
 struct path_noise path_tile_noise(const struct film *film, struct film_rectangle tile) {

@@ -298,6 +298,6 @@ TEST_LONG(the_error_of_tiles_with_rare_bright_paths_is_the_one_requested_behind_
     struct stage s;
     for (int glass = 0; glass < 2; glass++) {
         begin_rare(&s, glass);
-        check_noise(&s, &(struct noise_check){{0.2}, 1, 8192, 6});
+        check_noise(&s, &(struct noise_check){{0.2, 0.1}, 2, 8192, 6});
     }
 }
