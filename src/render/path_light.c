@@ -177,10 +177,12 @@ static struct vec3 direct_of(const struct path_tracer *tracer, struct integrator
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
     struct vec3 highlight = none;
-    /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. */
+    /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that the
+     * mirror throws replace the highlight. */
     if (vertex->substitute && part.light < state->job->world->light_count &&
         (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample.is_delta))
-        highlight = vec3_scale(scattered(vertex, vertex->substitute, sample.direction), 1 / pdf);
+        highlight = without_thrown(tracer, part.light, vertex->thrown,
+                                   vec3_scale(scattered(vertex, vertex->substitute, sample.direction), 1 / pdf));
     if (vertex->direct_shares)
         share_direct(vertex, sample.direction, f, highlight);
     f = vec3_add(f, highlight);

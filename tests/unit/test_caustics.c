@@ -767,3 +767,30 @@ TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
         stage_end(&s);
     }
 }
+
+/* A highlight of a mirror stands for the light of lamps that no ray can hit. Photons that the mirror throws are the same
+ * light: scattered rays must not add the highlight to it. The floor has the light of the lamp and of its mirror image. */
+TEST(photons_replace_the_highlights_of_mirrors_on_which_scattered_rays_see_lights_without_body) {
+    struct vec3 light[2];
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+        struct stage s;
+        stage_begin(&s, 2);
+        s.settings.integrator = INTEGRATOR_PATH;
+        s.settings.path_samples = 256;
+        s.camera = (struct camera){{0, 0.3, 0}, {0, -1, 0}, {0, 0, -1}, 50};
+        s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+        s.settings.lens.view_height = 0.5;
+        box(&s, vec3_make(-1, -1, -3), vec3_make(3, 0, 3), white(&s));
+        inverse_square(&s, vec3_make(0, 1, 0), 1);
+        if (mirrored) {
+            struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(0.9), 1);
+            mirror->phong.reflect = 1;
+            box(&s, vec3_make(-1.2, -1, -3), vec3_make(-1, 3, 3), mirror);
+        } else {
+            inverse_square(&s, vec3_make(-2, 1, 0), 0.9);
+        }
+        light[mirrored] = floor_light(&s, 100000 * mirrored);
+        stage_end(&s);
+    }
+    CHECK_NEAR(light[1].y, light[0].y, 0.01 * light[0].y);
+}
