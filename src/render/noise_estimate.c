@@ -1,7 +1,7 @@
 /* A tile needs samples * (noise / wanted noise)^2 samples if its noise is inversely proportional to their square root.
  * It seldom is. Stratified samples converge faster; few samples miss caustics and small bright features, so this number
  * grows with the samples, in some tiles fivefold from 16 samples to 256. The growth of a tile persists: in the recorded
- * tiles of eleven pictures, the growth during a doubling of the samples is .9 times that during the doubling before,
+ * tiles of ten pictures, the growth during a doubling of the samples is .65 times that during the doubling before,
  * minus .1 (in logarithms), with a deviation of .13 at 16 samples, less at more. So the number of samples at the end is
  * a log-normal random variable, and the expected number of samples is the sum over the levels of their samples times
  * the probability that the noise at the beginning of the level is still too large (by the logistic distribution, which
@@ -20,7 +20,7 @@
 
 /* Of the growth per doubling of the samples, in natural logarithms. */
 static const double growth_usual = -0.1;                      /* of a tile whose number did not grow */
-static const double growth_kept = 0.9, growth_fade = 0.7;     /* the next doubling, and each one relative to the last */
+static const double growth_kept = 0.65, growth_fade = 0.6;     /* the next doubling, and each one relative to the last */
 static const double growth_lowest = -0.3, growth_highest = 1; /* of those that are believed */
 static const double growth_unknown = 0.3;                     /* of the first two samples */
 static const double growth_of_halves = 0.8;                   /* their weight beside that of the samples */

@@ -195,8 +195,8 @@ static bool is_quiet(const struct path_tracer *tracer, const struct film *film, 
     bool quiet = is_check(samples) && samples >= minimum && noise.noise <= wanted;
     worker->quiet = quiet;
     worker->noise =
-        (struct noise_point){samples, fmax(samples * noise.noise / wanted * noise.noise / wanted, minimum),
-                             fmax(samples * noise.by_samples / wanted * noise.by_samples / wanted, minimum)};
+        (struct noise_point){samples, path_samples_needed(samples, noise.noise, noise.plain, wanted),
+                             path_samples_needed(samples, noise.by_samples, noise.plain_by_samples, wanted)};
     worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise.noise, wanted, tracer->samples);
     return quiet;
 }
