@@ -290,12 +290,8 @@ const char *image_name(const struct image *image) {
 double image_brightest(const struct image *image) {
     if (image->bits != 32)
         return 1;
-    const float *texels = image->levels[0].texels;
-    size_t count = (size_t)image->levels[0].width * image->levels[0].height * 4;
-    float max = 0;
-    for (size_t i = 0; i < count; i++)
-        max = (i & 3) < 3 && texels[i] > max ? texels[i] : max;
-    return (double)max;
+    struct rgba largest = image_largest(image);
+    return fmax(fmax(largest.r, largest.g), largest.b);
 }
 
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
