@@ -66,7 +66,7 @@ bool sky_decode(struct sky *sky, struct error *error);
 bool sky_same(const struct sky *a, const struct sky *b);
 /* A bound of the largest component of its colours. */
 double sky_brightest(const struct sky *sky);
-/* Whether its numbers alone say that it is black in all directions. */
+/* Whether it is black in all directions. False where only its pictures or its function could show it. */
 bool sky_is_black(const struct sky *sky);
 /* `spread`: angle of the ray's cone in radians, for filtering; 0 = unknown. */
 struct vec3 sky_colour(const struct sky *sky, struct vec3 direction, double spread);

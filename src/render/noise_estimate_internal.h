@@ -78,8 +78,8 @@ struct noise_level {
 void noise_estimate_begin(struct noise_estimate *estimate, int worker, uint32_t tile, uint32_t end);
 void noise_estimate_part(struct noise_estimate *estimate, int worker, double part);
 void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level);
-/* How much the next level of a tile tells: the deviation of the cost of its further samples, relative to the cost of
- * the next level. Tiles about which nothing is known come first: HUGE_VAL. Not while a worker has the tile. */
+/* The standard deviation of the cost of the further samples of a tile, relative to the cost of its next level. The tile
+ * with the largest one comes first. Tiles without samples: HUGE_VAL. Not while a worker has the tile. */
 double noise_estimate_urgency(const struct noise_estimate *estimate, uint32_t tile);
 
 /* The costs of samples that are done and left; done is 0 while nothing is known. A tile is not shared: workers wait for

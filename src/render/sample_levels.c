@@ -1,8 +1,8 @@
 /* With --noise, the time of a tile is not known before it has most of its samples. So all tiles get their samples level
  * by level, each level with a third to all of the samples before, and the time left is known early. First, each tile
- * gets two samples. Then the next level is that of the tile which tells most about the time left for its cost
- * (noise_estimate_urgency). So what is uncertain is done first, and at the end tiles are left whose number of samples
- * is nearly certain.
+ * gets two samples. After that, the tile with the largest urgency gets its next level: the uncertainty of the cost of
+ * its further samples, relative to the cost of this level (noise_estimate_urgency). So uncertain tiles come first, and
+ * at the end the number of samples of the other tiles is nearly certain.
  *
  * In a farm each tile gets its samples in one go. */
 #include "base/mem.h"

@@ -334,7 +334,7 @@ TEST(a_tile_needs_more_samples_if_those_that_it_needed_so_far_grew) {
     CHECK_EQ_INT(noise_next_level(16, 4096), 24);
 }
 
-/* The tile whose next level tells most, as in render/sample_levels.c; -1: all are final. */
+/* The tile with the largest urgency, as in render/sample_levels.c; -1: all are final. */
 static int urgent_tile(const struct noise_estimate *estimate, const uint32_t *samples, const uint32_t *last) {
     int first = -1;
     for (int i = 0; i < (int)estimate->count; i++) {
