@@ -750,16 +750,21 @@ TEST_LONG(paths_with_photons_show_what_paths_show_below_a_lens_for_every_seed) {
     }
 }
 
+/* A white floor from x on, which paths show from above. */
+static void begin_floor_from_above(struct stage *s, int samples, double x) {
+    stage_begin(s, 2);
+    s->settings.integrator = INTEGRATOR_PATH;
+    s->settings.path_samples = samples;
+    s->camera = (struct camera){{0, 0.3, 0}, {0, -1, 0}, {0, 0, -1}, 50};
+    s->settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
+    s->settings.lens.view_height = 0.5;
+    box(s, vec3_make(x, -1, -3), vec3_make(3, 0, 3), white(s));
+}
+
 TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
     for (int photons = 0; photons <= 100000; photons += 100000) {
         struct stage s;
-        stage_begin(&s, 2);
-        s.settings.integrator = INTEGRATOR_PATH;
-        s.settings.path_samples = 64;
-        s.camera = (struct camera){{0, 0.3, 0}, {0, -1, 0}, {0, 0, -1}, 50};
-        s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
-        s.settings.lens.view_height = 0.5;
-        box(&s, vec3_make(-3, -1, -3), vec3_make(3, 0, 3), white(&s));
+        begin_floor_from_above(&s, 64, -3);
         ball(&s, vec3_make(0, 1.6, 0), 1, stage_glass(&s, 0, 1, 1.5));
         inverse_square(&s, vec3_make(0, 5, 0), 25);
         double light = floor_light(&s, photons).x;
@@ -774,13 +779,7 @@ TEST(photons_replace_the_highlights_of_mirrors_on_which_scattered_rays_see_light
     struct vec3 light[2];
     for (int mirrored = 0; mirrored < 2; mirrored++) {
         struct stage s;
-        stage_begin(&s, 2);
-        s.settings.integrator = INTEGRATOR_PATH;
-        s.settings.path_samples = 256;
-        s.camera = (struct camera){{0, 0.3, 0}, {0, -1, 0}, {0, 0, -1}, 50};
-        s.settings.lens.projection = PROJECTION_ORTHOGRAPHIC;
-        s.settings.lens.view_height = 0.5;
-        box(&s, vec3_make(-1, -1, -3), vec3_make(3, 0, 3), white(&s));
+        begin_floor_from_above(&s, 256, -1);
         inverse_square(&s, vec3_make(0, 1, 0), 1);
         if (mirrored) {
             struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(0.9), 1);
