@@ -44,13 +44,22 @@ struct layer_rows {
     uint32_t width;
     const float (*values)[3];
     struct aov_scale scale;
+    const struct tone *tone;
 };
+
+/* The colour of a pixel in a PNG file. The picture before denoising is shown as the picture is. */
+static void layer_colour(const struct layer_rows *rows, uint32_t x, uint32_t y, double rgb[3]) {
+    const float *values = rows->values[(size_t)y * rows->width + x];
+    aov_colour(rows->aov, &rows->scale, values, rgb);
+    for (int c = 0; c < 3 && rows->aov == AOV_RAW; c++)
+        rgb[c] = tone_apply(rows->tone, (double)values[c]);
+}
 
 static void layer_row(void *context, uint32_t y, uint8_t *line) {
     const struct layer_rows *rows = context;
     for (uint32_t x = 0; x < rows->width; x++) {
         double rgb[3];
-        aov_colour(rows->aov, &rows->scale, rows->values[(size_t)y * rows->width + x], rgb);
+        layer_colour(rows, x, y, rgb);
         for (uint32_t c = 0; c < 3; c++)
             line[3 * x + c] = png_write_byte(rgb[c]);
     }
@@ -60,7 +69,7 @@ static void layer_row_16(void *context, uint32_t y, uint16_t *line) {
     const struct layer_rows *rows = context;
     for (uint32_t x = 0; x < rows->width; x++) {
         double rgb[3];
-        aov_colour(rows->aov, &rows->scale, rows->values[(size_t)y * rows->width + x], rgb);
+        layer_colour(rows, x, y, rgb);
         for (uint32_t c = 0; c < 3; c++)
             line[3 * x + c] = tone_word(rgb[c]);
     }
@@ -95,6 +104,7 @@ bool layers_write_exr(const struct file_target *target, const struct film *film,
 /* One layer as a file. deep: 16 bits in PNG files. */
 static bool write_layer(const struct file_target *target, enum picture_format format, const struct film *film,
                         struct layer_rows *rows, bool deep, struct error *error) {
+    struct png_source source = {.width = film->width, .height = film->height, .context = rows};
     switch (format) {
     case PICTURE_PFM:
         return pfm_write(target, film->width, film->height, layer_row_linear, rows, error);
@@ -106,11 +116,16 @@ static bool write_layer(const struct file_target *target, enum picture_format fo
     case PICTURE_OTHER:
         break;
     }
-    return deep ? png_write_16(target, film->width, film->height, layer_row_16, rows, error)
-                : png_write(target, film->width, film->height, layer_row, rows, error);
+    source.srgb = rows->aov == AOV_RAW && rows->tone->srgb;
+    if (deep)
+        source.words = layer_row_16;
+    else
+        source.bytes = layer_row;
+    return png_write_from(target, &source, NULL, error);
 }
 
-bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error) {
+bool layers_write(const struct file_target *picture, const struct film *film, const struct tone *tone,
+                  bool deep_picture, struct error *error) {
     enum picture_format format = picture_format(picture->path);
     size_t pixels = (size_t)film->width * film->height;
     char name[LAYER_NAME_LIMIT];
@@ -118,7 +133,7 @@ bool layers_write(const struct file_target *picture, const struct film *film, bo
     for (int i = 0; i < AOV_COUNT && format != PICTURE_EXR; i++) {
         if (!(film->layer_mask >> i & 1))
             continue;
-        struct layer_rows rows = {.aov = (enum aov)i, .width = film->width};
+        struct layer_rows rows = {.aov = (enum aov)i, .width = film->width, .tone = tone};
         rows.values = (const float(*)[3])(film->layers + aov_layer(film->layer_mask, rows.aov) * pixels);
         rows.scale = aov_scale(rows.aov, rows.values, pixels);
         if (!layers_name(picture->path, aov_name(rows.aov), name, error))

@@ -4,6 +4,7 @@
 
 #include "base/file_output.h"
 #include "base/list.h"
+#include "image/tone.h"
 #include "render/film.h"
 
 /* The formats of pictures, with their extensions. PICTURE_OTHER, the last one, has none: PNG under any other name. */
@@ -22,8 +23,9 @@ const char *picture_extensions(char out[PICTURE_EXTENSIONS_SIZE]);
 
 /* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. An EXR picture
  * contains them already (layers_write_exr). Depth is always written with 16 bits, the others with the bit depth of the
- * picture. */
-bool layers_write(const struct file_target *picture, const struct film *film, bool deep_picture, struct error *error);
+ * picture. In a PNG file the picture before denoising has the tone curve and the encoding of the picture. */
+bool layers_write(const struct file_target *picture, const struct film *film, const struct tone *tone,
+                  bool deep_picture, struct error *error);
 
 /* Light as R, G, B, and the layers as channels with their names: depth.Z, normal.X ... */
 bool layers_write_exr(const struct file_target *target, const struct film *film, struct error *error);

@@ -210,9 +210,10 @@ static bool write_shown(const struct picture_files *files, const struct picture 
                         struct pool *pool, struct error *error) {
     const struct file_target target = {.path = name, .rules = &files->picture};
     const struct file_target beside = {.path = picture->name, .rules = &files->beside};
+    struct tone tone = picture_tone(&picture->request);
     return write_prefixed(files, picture, FILM_TARGETS, pool, error) &&
            write_prefixed(files, picture, FILM_FIRST, pool, error) &&
-           layers_write(&beside, &picture->film, picture->request.deep != 0, error) &&
+           layers_write(&beside, &picture->film, &tone, picture->request.deep != 0, error) &&
            picture_write_view(picture, &target, FILM_FINAL, pool, error);
 }
 

@@ -174,6 +174,14 @@ TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
     gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of gray|oidn|none, not 'other'");
 }
 
+TEST(the_raw_layer_is_the_picture_without_denoising_in_every_format) {
+    test_write_text(test_path("scene.lua"), PLAIN);
+    gives("for e in png pfm hdr; do for more in --seed=1 --deep '--exposure=1 --tone=filmic' --colour=classic; do "
+          "$gray -q scene.lua --denoise --aov raw $more -o layers.$e && $gray -q scene.lua $more -o noisy.$e && "
+          "cmp noisy.$e layers.raw.$e || exit 9; done; done; ! cmp -s layers.png layers.raw.png",
+          0, NULL);
+}
+
 TEST(layers_of_light_belong_to_the_path_tracer) {
     test_write_text(test_path("scene.lua"), PLAIN);
     gives("$gray -q scene.lua --aov all && ls out.transmission_indirect.png out.raw.png out.depth.png >ls.txt", 0,
