@@ -179,7 +179,7 @@ double light_pdf(const struct light *light, const struct light_context *context,
 /* --- what a ray sees --- */
 
 /* The hit of a ray on the surface of an area light; t in the ray's interval. Never a mesh, whose surface is in the
- * scene, nor a sky, which is behind everything. */
+ * scene (if it is not: light_triangle_meets_ray), nor a sky, which is behind everything. */
 bool light_meets_ray(const struct light *light, const struct ray *ray, struct light_hit *hit);
 /* Whether a ray towards it finds its light, from the light or from its mesh or sky, so that a mirror shows it. */
 bool light_is_seen(const struct light *light);

@@ -208,12 +208,35 @@ double light_triangle_pdf(const struct light_mesh *mesh, struct vec3 from, const
     return by_area > 0 && is_large(t, from, &seen) ? 1 / seen.angle : by_area;
 }
 
+bool light_triangle_meets_ray(const struct light_mesh *mesh, uint32_t triangle, const struct ray *ray,
+                              struct light_hit *hit) {
+    const struct light_triangle *t = &mesh->triangles[triangle];
+    double across = vec3_dot(t->normal, ray->direction);
+    if (across == 0 || (mesh->one_sided && across > 0))
+        return false;
+    hit->t = vec3_dot(t->normal, vec3_sub(t->corner, ray->origin)) / across;
+    if (!(hit->t > ray->t_min && hit->t < ray->t_max))
+        return false;
+    hit->point = ray_at(ray, hit->t);
+    hit->triangle = triangle;
+    /* Barycentric coordinates: ratios of areas. */
+    struct vec3 p = vec3_sub(hit->point, t->corner);
+    double area = vec3_dot(vec3_cross(t->edge1, t->edge2), t->normal);
+    double u = vec3_dot(vec3_cross(p, t->edge2), t->normal) / area;
+    double v = vec3_dot(vec3_cross(t->edge1, p), t->normal) / area;
+    return u >= 0 && v >= 0 && u + v <= 1;
+}
+
+struct box light_triangle_box(const struct light_mesh *mesh, uint32_t triangle) {
+    const struct light_triangle *t = &mesh->triangles[triangle];
+    struct box box = {t->corner, t->corner};
+    box = box_add_point(box, vec3_add(t->corner, t->edge1));
+    return box_add_point(box, vec3_add(t->corner, t->edge2));
+}
+
 void light_triangle_bounds(const struct light_mesh *mesh, uint32_t triangle, struct light_bounds *out) {
     const struct light_triangle *t = &mesh->triangles[triangle];
-    struct vec3 corners[3] = {t->corner, vec3_add(t->corner, t->edge1), vec3_add(t->corner, t->edge2)};
-    out->box = box_empty();
-    for (int i = 0; i < 3; i++)
-        out->box = box_add_point(out->box, corners[i]);
+    out->box = light_triangle_box(mesh, triangle);
     light_bounds_emit(intensity_of(light_magnitude(light_triangle_radiance(t)) * triangle_area(t)), out);
     out->axis = t->normal;
     out->cos_theta_o = 1;

@@ -70,6 +70,10 @@ struct vec3 light_triangle_radiance(const struct light_triangle *triangle);
 struct light_sample light_triangle_sample(const struct light_mesh *mesh, uint32_t triangle, struct vec3 point,
                                           struct vec3 from, struct sample2 xi);
 double light_triangle_pdf(const struct light_mesh *mesh, struct vec3 from, const struct light_hit *hit);
+/* The hit of a ray on a triangle, with t in the ray's interval; for meshes that are not in the scene. */
+bool light_triangle_meets_ray(const struct light_mesh *mesh, uint32_t triangle, const struct ray *ray,
+                              struct light_hit *hit);
+struct box light_triangle_box(const struct light_mesh *mesh, uint32_t triangle);
 /* Its part of light_bounds_of. */
 struct light_bounds;
 void light_triangle_bounds(const struct light_mesh *mesh, uint32_t triangle, struct light_bounds *out);

@@ -274,7 +274,6 @@ static bool take_light(struct building *b, uint32_t number) {
     if (!light->mesh)
         return true;
     emitter->shown = light->mesh->shown;
-    emitter->unmet = !light->mesh->shown;
     emitter->by_triangle = true;
     emitter->has_own = light->has_emission;
     if (light->has_emission)
@@ -293,7 +292,6 @@ static bool take_light(struct building *b, uint32_t number) {
     }
     if (!rests)
         light->mesh = &no_triangles;
-    emitter->decided = emitter->decided && !emitter->unmet;
     return !emitter->decided || !varies || mesh_lights_estimate(world, light, b->arena, b->pool, b->error);
 }
 
@@ -357,18 +355,37 @@ static bool take_background(struct building *b) {
     return light_prepare(light, b->arena, b->pool, b->error);
 }
 
+/* How many parts of a light of the scene rays find in the tree of area lights. */
+static uint32_t surfaces_of(const struct light *light) {
+    struct box box;
+    if (light->mesh)
+        return light->mesh->shown ? 0 : light->mesh->count;
+    return (!light_is_delta(light) || light->visible) && light_surface_box(light, &box);
+}
+
+static struct box box_of_part(const struct light *light, uint32_t part) {
+    struct box box = box_empty();
+    if (light->mesh)
+        return light_triangle_box(light->mesh, part);
+    (void)light_surface_box(light, &box);
+    return box;
+}
+
 static bool build_area_lights(struct building *b) {
     struct world_lights *out = b->out;
-    uint32_t *area_lights = arena_alloc_array(b->arena, out->world->light_count, sizeof *area_lights);
-    struct box *boxes = mem_alloc_zero((size_t)out->world->light_count + 1, sizeof *boxes);
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < out->world->light_count; i++)
+        total += surfaces_of(&b->lights[i]);
+    if (total >= BOX_TREE_ITEM)
+        return error_set(b->error, ERROR_SCENE, "the scene has too many emitting triangles");
+    struct light_part *area_lights = arena_alloc_array(b->arena, total, sizeof *area_lights);
+    struct box *boxes = mem_alloc_zero(total + 1, sizeof *boxes);
     bool ok = (area_lights && boxes) || error_no_memory(b->error, "the lights of the scene");
     for (uint32_t i = 0; ok && i < out->world->light_count; i++) {
-        const struct light *light = &b->lights[i];
-        struct box *box = &boxes[out->area_light_count];
-        if ((light_is_delta(light) && !light->visible) || !light_surface_box(light, box))
-            continue;
-        *box = box_pad(*box);
-        area_lights[out->area_light_count++] = i;
+        for (uint32_t part = 0; part < surfaces_of(&b->lights[i]); part++) {
+            boxes[out->area_light_count] = box_pad(box_of_part(&b->lights[i], part));
+            area_lights[out->area_light_count++] = (struct light_part){i, part};
+        }
     }
     out->area_lights = area_lights;
     ok = ok && (out->area_light_count == 0 ||
@@ -651,9 +668,11 @@ void world_lights_met_begin(struct world_lights_traversal *traversal, const stru
 bool world_lights_met_next(struct world_lights_traversal *traversal, uint32_t *light, struct light_hit *hit) {
     uint32_t item;
     while (box_tree_traversal_next(&traversal->tree, traversal->ray->t_max, &item)) {
-        *light = traversal->lights->area_lights[item];
-        const struct light *area_light = &traversal->lights->lights[*light];
-        if (!light_is_delta(area_light) && light_meets_ray(area_light, traversal->ray, hit))
+        struct light_part part = traversal->lights->area_lights[item];
+        const struct light *area_light = &traversal->lights->lights[part.light];
+        *light = part.light;
+        if (area_light->mesh ? light_triangle_meets_ray(area_light->mesh, part.triangle, traversal->ray, hit)
+                             : !light_is_delta(area_light) && light_meets_ray(area_light, traversal->ray, hit))
             return true;
     }
     return false;
@@ -670,7 +689,7 @@ bool world_lights_seen(const struct world_lights *lights, const struct ray *ray,
         return false;
     box_tree_traversal_begin(&traversal, &lights->surfaces, ray);
     while (box_tree_traversal_next(&traversal, limited.t_max, &item)) {
-        uint32_t number = lights->area_lights[item];
+        uint32_t number = lights->area_lights[item].light;
         if (!lights->lights[number].visible || !light_meets_ray(&lights->lights[number], &limited, &met))
             continue;
         *light = number;

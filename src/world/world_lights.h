@@ -33,7 +33,7 @@ struct emitter {
     bool shown;         /* hits of primitives are its own */
     bool by_triangle;   /* a mesh: the parts of the light are its triangles */
     bool decided; /* a ray decides: the emission varies, there are holes, or the light is only a bound of the emitter */
-    bool unmet;   /* scattered rays do not hit it */
+    bool unmet;   /* scattered rays do not hit it: a delta light */
     bool has_own; /* of gr.mesh_light: the emission that takes the place of the materials' */
     struct vec3 emission;          /* that one, or a factor */
     const struct light_box *bound; /* sampled in place of the light; NULL: none */
@@ -47,7 +47,7 @@ struct world_lights {
     const struct emitter *emitters; /* by light */
     const uint32_t *of_primitive;   /* its light; LIGHT_NONE: it emits nothing, or only scattered rays find its light */
     struct box_tree surfaces;       /* over the lamps with a surface of their own; `area_lights` by item */
-    const uint32_t *area_lights;
+    const struct light_part *area_lights; /* of mesh lights that are not in the scene each triangle */
     uint32_t area_light_count;
     bool holes; /* something in the world has holes */
     bool met;   /* scattered rays may hit lights */

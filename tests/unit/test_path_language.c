@@ -346,8 +346,27 @@ TEST(lists_of_nodes_hold_for_light_that_is_sampled_and_light_that_is_met) {
     }
 }
 
+/* A square of radiance 1 above the floor as a mesh light whose node is not in the scene. */
+static struct node *add_unseen_square(struct stage *s) {
+    static const double corners[4][3] = {{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}};
+    static const uint32_t start[] = {0, 4}, index[] = {0, 1, 2, 3};
+    const struct mesh_input input = {.name = "square",
+                                     .vertex_count = 4,
+                                     .face_count = 1,
+                                     .vertices = corners,
+                                     .face_start = start,
+                                     .vertex_index = index};
+    struct node *square = scene_node(&s->scene, NODE_GEOMETRY, "square", &s->error);
+    square->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&s->assets, &input, &s->error)};
+    struct light *light = add_light(s, LIGHT_MESH);
+    light->emissive = light->has_emission = true;
+    light->colour = light->emission = vec3_all(1);
+    s->authored[s->light_count - 1].node = square;
+    return square;
+}
+
 TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_through_it) {
-    double area_light[2], point[2];
+    double area_light[2], mesh_light[2], point[2];
     for (int pane = 0; pane < 2; pane++) {
         struct stage s;
         (void)begin_floor(&s);
@@ -365,11 +384,53 @@ TEST(glass_throws_full_shadows_of_lights_without_body_and_lamps_are_found_throug
         light->radius = 0.8;
         light->colour = vec3_all(4);
         area_light[pane] = path_mean(&s, 1024, 8);
+        s.light_count = 0;
+        stage_move(&s, add_unseen_square(&s), 0, 2, 0);
+        mesh_light[pane] = path_mean(&s, 1024, 8);
         stage_end(&s);
     }
     CHECK(point[0] > 0.1);
     CHECK_NEAR(point[1], 0, 1e-9);
     CHECK_NEAR(area_light[1], area_light[0], 0.02 * area_light[0]);
+    CHECK_NEAR(mesh_light[1], mesh_light[0], 0.02 * mesh_light[0]);
+}
+
+/* The view factor of a rectangle a x b at distance h, whose corner is above the point. */
+static double corner_factor(double a, double b, double h) {
+    double x = hypot(a, h), y = hypot(b, h);
+    return (a / x * atan(b / x) + b / y * atan(a / y)) / (2 * 3.14159265358979323846);
+}
+
+/* A vertical mirror shows the floor the image of the light. Cameras see it in no mirror. */
+TEST(scattered_rays_meet_a_mesh_light_that_is_not_in_the_scene) {
+    const double direct = 4 * corner_factor(1, 1, 3), image = 2 * (corner_factor(5, 1, 3) - corner_factor(3, 1, 3));
+    for (int strategy = PATH_STRATEGY_MIS; strategy <= PATH_STRATEGY_BSDF; strategy++) {
+        for (int photons = 0; photons < 2; photons++) {
+            struct stage s;
+            (void)begin_floor(&s);
+            struct material *mirror = stage_phong(&s, vec3_all(0), vec3_all(1), 1);
+            mirror->phong.reflect = 1;
+            (void)add_planar(&s, mirror,
+                             planar_parallelogram(vec3_make(2, 0, -50), vec3_make(0, 50, 0), vec3_make(0, 0, 100)));
+            (void)add_unseen_square(&s);
+            s.camera.fov = 0.01;
+            s.settings.path_strategy = (enum path_strategy)strategy;
+            s.settings.caustics.photons = photons * 400000;
+            s.settings.caustics.radius = 0.3;
+            const struct effort effort = {ESTIMATE_SIZE_MAX, 2048, 1};
+            if (photons) { /* the noise of the photons is equal in all pixels */
+                const struct effort less = {ESTIMATE_SIZE_MAX, effort.samples / 16, 1};
+                double mean = estimate_render(&s, &less, 2, 1).mean;
+                CHECK_NEAR(mean, direct + image, 0.01 * (direct + image));
+            } else {
+                estimate_check_mean("a mesh light that is not in the scene, and its image in a mirror", direct + image,
+                                    &s, &effort, 2);
+            }
+            s.camera = (struct camera){{1, 4, 0}, {1, -0.5, 0}, {0, 1, 0}, 0.01};
+            CHECK(path_mean(&s, 1, 1) < 0.9); /* the mirror shows the camera a highlight and not the square */
+            stage_end(&s);
+        }
+    }
 }
 
 TEST(materials_that_emit_light_the_scene_from_both_sides) {

@@ -286,7 +286,7 @@ TEST(lights_without_emission_give_what_the_classic_language_says) {
 
 /* gr.mesh_light over an emitting mesh controls its sampling and, with its own emission, its light; in both cases there
  * is one light. */
-static struct node *tetrahedron(struct room *r, const struct material *material) {
+static struct node *tetrahedron_outside(struct room *r, const struct material *material) {
     static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     static const uint32_t start[] = {0, 3, 6, 9, 12}, index[] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
     struct mesh_input input = {.name = "tetrahedron",
@@ -299,6 +299,11 @@ static struct node *tetrahedron(struct room *r, const struct material *material)
     node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = assets_mesh(&r->stage.assets, &input, &r->stage.error)};
     node->material = material;
     stage_move(&r->stage, node, 0.5, 3, 0);
+    return node;
+}
+
+static struct node *tetrahedron(struct room *r, const struct material *material) {
+    struct node *node = tetrahedron_outside(r, material);
     CHECK(node_add_child(&r->stage.scene, r->stage.root, node, &r->stage.error));
     return node;
 }
@@ -337,6 +342,42 @@ TEST(a_mesh_light_over_an_emitting_mesh_counts_once) {
     CHECK_NEAR(lit[1], lit[0], 1e-9);
     CHECK_NEAR(lit[2], lit[0], 0.02 * lit[0]);
     CHECK_NEAR(lit[3], 2.5 * lit[0], 1e-9);
+}
+
+/* Behind a screen, with a second light; from outside and from inside of the mesh, which emits outwards only. */
+TEST(triangles_of_a_mesh_light_that_is_not_in_the_scene_are_met_as_they_are_sampled) {
+    double lit[3];
+    for (int i = 0; i < 3; i++) {
+        struct room r;
+        room_begin(&r);
+        struct node *node =
+            i == 0 ? tetrahedron(&r, glowing(&r, 1, 2, 3)) : tetrahedron_outside(&r, glowing(&r, 1, 2, 3));
+        struct node *screen = stage_sphere(&r.stage, r.stage.root, glowing(&r, 0, 0, 0));
+        stage_scale(&r.stage, screen, 0.2, 0.2, 0.2);
+        stage_move(&r.stage, screen, 0, 1, 0);
+        r.stage.lights[0] = (struct light){.kind = LIGHT_MESH, .emissive = true, .colour = {1, 1, 1}};
+        r.stage.authored[0].node = node;
+        r.stage.light_count = 1;
+        if (i == 2)
+            r.stage.lights[r.stage.light_count++] = area_light_of_kind(LIGHT_DISC, -0.5, 1.5, 0.4);
+        room_build(&r, false);
+        CHECK_EQ_INT(r.lights.area_light_count, i == 0 ? 0 : i == 1 ? 4 : 5);
+        int before = compared;
+        struct light_receiver at = receiver_at(0.1, 0, 0.2);
+        compare(&r, &at, 40000, 1);
+        CHECK(compared > before);
+        lit[i] = mean_of_samples(&r, &at, 20000);
+        struct ray out = {.origin = {0.5, 3, 0}, .direction = {0, -1, 0.1}, .t_max = INFINITY};
+        struct world_lights_traversal traversal;
+        struct light_hit hit;
+        uint32_t light;
+        world_lights_met_begin(&traversal, &r.lights, &out);
+        while (world_lights_met_next(&traversal, &light, &hit))
+            CHECK_EQ_INT(light, 1);
+        room_end(&r);
+    }
+    CHECK_NEAR(lit[1], lit[0], 0.01 * lit[0]);
+    CHECK(lit[2] > 1.2 * lit[1]);
 }
 
 /* A ceiling of triangles whose emission is 0 but about one vertex in a hundred. */
