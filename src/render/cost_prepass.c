@@ -166,7 +166,8 @@ void renderer_report_estimate(struct renderer *renderer) {
         return;
     struct progress_estimate *progress_estimate = renderer->job->progress_estimate;
     struct time_estimate_work work =
-        renderer->noise_estimate.count > 0
+        renderer->levels.wanted && renderer->job->handout ? renderer_farm_work(renderer)
+        : renderer->noise_estimate.count > 0
             ? noise_estimate_work(&renderer->noise_estimate)
             : time_estimate_work(&renderer->time_estimate, renderer->job->handout ? renderer->job->film : NULL);
     add_layers(renderer, &work);
@@ -192,14 +193,21 @@ void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint
     time_estimate_begin(&renderer->time_estimate, worker->index, tile, share);
 }
 
+static void level_goes_on(struct renderer *renderer, const struct worker *worker, double part) {
+    const struct noise_sums *sums = &renderer->noise_estimate.sums[worker->index];
+    noise_estimate_part(&renderer->noise_estimate, worker->index, part);
+    if (renderer->job->handout)
+        sum_store(&renderer->job->film->levels[worker->level_tile].begun, sum_load(&sums->planned) * part);
+}
+
 void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, int pass, double part) {
+    if (renderer->noise_estimate.count > 0)
+        level_goes_on(renderer, worker, part);
     if (!renderer->estimated)
         return;
     if (pass == 0 && part >= 1)
         worker->first_ended = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
-    if (renderer->noise_estimate.count > 0)
-        noise_estimate_part(&renderer->noise_estimate, worker->index, part);
-    else
+    if (renderer->noise_estimate.count == 0)
         time_estimate_part(&renderer->time_estimate, worker->index, pass, part);
     renderer_report_estimate(renderer);
 }
@@ -217,6 +225,7 @@ void renderer_level_begins(struct renderer *renderer, struct worker *worker, uin
     if (renderer->noise_estimate.count == 0)
         return;
     worker->tile_begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
+    worker->level_tile = tile;
     noise_estimate_begin(&renderer->noise_estimate, worker->index, tile, end);
 }
 

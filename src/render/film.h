@@ -31,6 +31,19 @@ struct film_record {
 };
 enum { FILM_RECORD_FLOATS = 81 };
 
+/* Tiles of a farm with --noise get their samples level by level, from one rank after the other
+ * (render/sample_levels.c). This is passed on with the pixels of a tile: who may change them may change it. Zero: no
+ * samples. */
+struct film_level {
+    _Atomic uint32_t samples;  /* of each pixel */
+    uint32_t state;            /* an enum film_tile: of the tile that was passed on */
+    uint32_t threads;          /* of the farm, when the tile was handed out */
+    double urgency;            /* of its next level: the largest one comes first */
+    _Atomic double cost, rest; /* of its samples so far, and expected of its further samples */
+    _Atomic double begun;      /* how much of the rest the level in progress has used */
+    uint64_t history[16];      /* a struct noise_history */
+};
+
 struct film {
     uint32_t width, height;
     uint32_t x0, y0, full_width, full_height;
@@ -39,6 +52,7 @@ struct film {
     float *floats;             /* record.floats of each pixel; Whitted: the first pass, one sample */
     uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be; NULL without marks */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
+    struct film_level *levels; /* of each tile */
     /* Render layers (render/aov.h): the layers of the mask one after the other, width * height each; NULL
      * without any. Filled after the tiles are done. */
     uint32_t layer_mask;
@@ -87,7 +101,8 @@ static inline size_t film_record_size(struct film_record record) {
 
 /* Bytes for the arrays of a film; false if the numbers are too large (over 2^31 pixels). The record is valid. */
 bool film_size(uint32_t width, uint32_t height, struct film_record record, size_t *bytes, struct error *error);
-/* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles. */
+/* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles, their
+ * levels. */
 void film_layout(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record);
 
 /* The same with `layers` more of three floats a pixel, laid behind by film_layout_layers after film_layout. */
@@ -115,7 +130,10 @@ size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
 /* Whether the size of the bytes agrees with their own mask, and all colours are finite; only needs the rectangle and
  * the record of the film. */
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
-/* Unpacks it and marks the tile as done; false: not the bytes of such a tile, and nothing changes. */
+/* Unpacks it, and leaves the state of the tile to the caller; false: not the bytes of such a tile, and nothing changes.
+ */
+bool film_tile_put(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
+/* The same, and marks the tile as done. */
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 
 enum film_view {

@@ -93,10 +93,14 @@ void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
 static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
     struct film *film = renderer->job->film;
     uint8_t wanted = FILM_TILE_WANTED;
+    struct worker *worker = &renderer->workers[index];
     if (renderer_is_done(renderer) || !atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_TAKEN))
         return;
+    if (renderer->levels.wanted) {
+        renderer_make_farm_levels(renderer, worker, tile);
+        return;
+    }
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    struct worker *worker = &renderer->workers[index];
     bool whole = make_part(renderer, worker, tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
     if (whole)
         renderer_measure_layers(renderer, worker, tile);

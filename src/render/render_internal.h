@@ -48,6 +48,7 @@ struct worker {
     double tile_ended;                /* seconds, of the last one */
     uint64_t tile_begun, first_ended; /* processor time, while a time estimate is requested */
     struct sample_range level;        /* of the current tile, if tiles get their samples level by level; else zero */
+    uint32_t level_tile;              /* the tile of the last level or pass */
     struct sample_range range;        /* samples that it gets now; paths only */
     struct noise_point noise;         /* of the current tile (--noise), after its last samples; zero: not known */
     bool quiet;                       /* its noise is small enough */
@@ -150,6 +151,10 @@ void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole);
 bool renderer_order_levels(struct renderer *renderer);
 /* Makes all levels; the tiles are in order. False: stopped. */
 bool renderer_make_levels(struct renderer *renderer);
+/* In a farm: makes one level of a tile, or a few short ones. The tile is in the state FILM_TILE_TAKEN. */
+void renderer_make_farm_levels(struct renderer *renderer, struct worker *worker, uint32_t tile);
+/* The same as noise_estimate_work, of all ranks; for the first rank. */
+struct time_estimate_work renderer_farm_work(const struct renderer *renderer);
 
 /* Makes the tiles pass by pass (render.c), until they have all samples, little enough noise, or the time is over.
  * False: stopped. */

@@ -4,12 +4,16 @@
  * its further samples, relative to the cost of this level (noise_estimate_urgency). So uncertain tiles come first, and
  * at the end the number of samples of the other tiles is nearly certain.
  *
- * In a farm each tile gets its samples in one go. */
+ * In a farm the first rank hands out the tiles (output/farm.c), in the same order. A rank returns a tile after one
+ * level, or more if they take less than a few milliseconds, with its record in the film (struct film_level). */
+#include "base/clock.h"
 #include "base/mem.h"
 #include "render/integrator_internal.h"
 #include "render/path_film.h"
 
+#include <assert.h>
 #include <math.h>
+#include <string.h>
 #include <time.h>
 
 /* --- tiles that wait --- */
@@ -80,13 +84,12 @@ static uint8_t state_after(uint32_t samples, uint32_t limit) {
     return (uint8_t)(FILM_TILE_LEVEL + level % FILM_LEVELS);
 }
 
-/* False: it gets no more levels. */
-static bool make_level(struct renderer *renderer, struct worker *worker, uint32_t tile) {
-    struct film *film = renderer->job->film;
-    struct film_rectangle r = film_tile_rectangle(film, tile);
-    uint32_t *samples = &renderer->levels.samples[tile], limit = renderer->pass.end;
-    /* Who reads samples that follow sees that state: no store moves before an exchange. */
-    (void)atomic_exchange(&film->tiles[tile], FILM_TILE_TAKEN);
+enum level_end { LEVEL_BROKEN /* stopped: the pixels are of no use */, LEVEL_DONE, LEVEL_FINAL };
+
+/* The next level of a tile that has so many samples; changes their number. */
+static enum level_end sample_level(struct renderer *renderer, struct worker *worker, uint32_t tile, uint32_t *samples) {
+    struct film_rectangle r = film_tile_rectangle(renderer->job->film, tile);
+    uint32_t limit = renderer->pass.end;
     worker->level = (struct sample_range){*samples, noise_next_level(*samples, limit)};
     renderer_level_begins(renderer, worker, tile, worker->level.end);
     bool whole = renderer_make_samples(renderer, worker, (struct rectangle){r.x0, r.y0, r.x1, r.y1});
@@ -95,13 +98,29 @@ static bool make_level(struct renderer *renderer, struct worker *worker, uint32_
         renderer_level_ends(renderer, worker, tile, final);
     *samples = worker->level.end;
     worker->level = (struct sample_range){0, 0};
-    if (final)
+    return final ? LEVEL_FINAL : whole ? LEVEL_DONE : LEVEL_BROKEN;
+}
+
+/* The state of the tile tells others what has happened. */
+static void report_level(struct renderer *renderer, struct worker *worker, uint32_t tile, enum level_end end,
+                         uint32_t samples) {
+    if (end == LEVEL_FINAL)
         renderer_measure_layers(renderer, worker, tile);
-    if (final || !whole)
-        renderer_end_tile(renderer, tile, final);
+    if (end == LEVEL_DONE)
+        atomic_store_explicit(&renderer->job->film->tiles[tile], state_after(samples, renderer->pass.end),
+                              memory_order_release);
     else
-        atomic_store_explicit(&film->tiles[tile], state_after(*samples, limit), memory_order_release);
-    return !final && whole;
+        renderer_end_tile(renderer, tile, end == LEVEL_FINAL);
+}
+
+/* False: it gets no more levels. */
+static bool make_level(struct renderer *renderer, struct worker *worker, uint32_t tile) {
+    uint32_t *samples = &renderer->levels.samples[tile];
+    /* Who reads samples that follow sees that state: no store moves before an exchange. */
+    (void)atomic_exchange(&renderer->job->film->tiles[tile], FILM_TILE_TAKEN);
+    enum level_end end = sample_level(renderer, worker, tile, samples);
+    report_level(renderer, worker, tile, end, *samples);
+    return end == LEVEL_DONE;
 }
 
 /* An item for each tile and each level that there may be. */
@@ -129,6 +148,91 @@ bool renderer_make_levels(struct renderer *renderer) {
     bool whole = pool_run(renderer->pool, count * rounds, level_item, renderer);
     (void)pthread_mutex_destroy(&levels->mutex);
     return whole;
+}
+
+/* --- in a farm --- */
+
+/* Processor seconds of a tile for each thread of the farm, in which the first rank can pass on a tile. */
+static const double farm_pause = 0.004;
+/* When so much is left, relative to what is done, ranks may wait for the longest tile. */
+static const double farm_end_share = 0.1;
+
+static_assert(sizeof(struct noise_history) <= sizeof((struct film_level *)0)->history, "the record holds a history");
+
+static void load_record(struct renderer *renderer, uint32_t tile) {
+    const struct film_level *level = &renderer->job->film->levels[tile];
+    struct noise_tile *of_tile = &renderer->noise_estimate.tiles[tile];
+    memcpy(&of_tile->history, level->history, sizeof of_tile->history);
+    of_tile->cost = sum_load(&level->cost);
+    of_tile->urgency = level->urgency;
+    sum_store(&of_tile->rest, sum_load(&level->rest));
+}
+
+static void store_record(struct renderer *renderer, uint32_t tile) {
+    struct film_level *level = &renderer->job->film->levels[tile];
+    const struct noise_tile *of_tile = &renderer->noise_estimate.tiles[tile];
+    memcpy(level->history, &of_tile->history, sizeof of_tile->history);
+    level->urgency = of_tile->urgency;
+    sum_store(&level->cost, of_tile->cost);
+    sum_store(&level->rest, sum_load(&of_tile->rest));
+    sum_store(&level->begun, 0);
+}
+
+void renderer_make_farm_levels(struct renderer *renderer, struct worker *worker, uint32_t tile) {
+    struct film_level *level = &renderer->job->film->levels[tile];
+    uint64_t begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
+    uint32_t samples = atomic_load_explicit(&level->samples, memory_order_relaxed);
+    enum level_end end;
+    load_record(renderer, tile);
+    do {
+        end = sample_level(renderer, worker, tile, &samples);
+        store_record(renderer, tile);
+        atomic_store_explicit(&level->samples, end == LEVEL_BROKEN ? 0 : samples, memory_order_relaxed);
+    } while (end == LEVEL_DONE && !renderer_is_done(renderer) &&
+             1e-9 * (double)(clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun) < farm_pause * level->threads);
+    if (end == LEVEL_BROKEN)
+        memset(level, 0, sizeof *level);
+    report_level(renderer, worker, tile, end, samples);
+}
+
+/* What the records say of all tiles that get samples in this run. */
+struct farm_totals {
+    double cost, rest, begun, longest; /* longest: the largest rest of a tile */
+    double pixels, pixels_sampled;     /* of all tiles, and of those that have samples */
+    uint32_t threads;
+};
+
+static void add_record(const struct film *film, uint32_t tile, struct farm_totals *totals) {
+    const struct film_level *level = &film->levels[tile];
+    struct film_rectangle r = film_tile_rectangle(film, tile);
+    bool sampled = atomic_load_explicit(&level->samples, memory_order_relaxed) > 0;
+    double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), rest = sum_load(&level->rest);
+    if (!sampled && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
+        return; /* it comes from a checkpoint */
+    totals->pixels += pixels;
+    if (!sampled)
+        return;
+    totals->pixels_sampled += pixels;
+    totals->cost += sum_load(&level->cost);
+    totals->rest += rest;
+    totals->begun += sum_load(&level->begun);
+    totals->longest = fmax(totals->longest, rest);
+    totals->threads = level->threads > totals->threads ? level->threads : totals->threads;
+}
+
+/* As noise_estimate_work. */
+struct time_estimate_work renderer_farm_work(const struct renderer *renderer) {
+    const struct film *film = renderer->job->film;
+    struct farm_totals totals = {0};
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++)
+        add_record(film, tile, &totals);
+    if (!(totals.pixels_sampled > 0))
+        return (struct time_estimate_work){0, 1};
+    double done = totals.cost, begun = totals.begun, unsampled = totals.pixels - totals.pixels_sampled;
+    double left = (done + totals.rest) / totals.pixels_sampled * unsampled + totals.rest - begun;
+    if (totals.threads > 1 && left < farm_end_share * done)
+        left = fmax(left, totals.threads * totals.longest - begun);
+    return (struct time_estimate_work){done + begun, fmax(left, 0)};
 }
 
 /* The number of samples of a tile of a checkpoint; 0 unless all its pixels have those of a level. */
@@ -167,8 +271,7 @@ bool renderer_order_levels(struct renderer *renderer) {
     const struct render_job *job = renderer->job;
     uint32_t count = film_tile_count(job->film);
     struct sample_levels *levels = &renderer->levels;
-    levels->wanted = job->settings.noise > 0 && !job->handout && renderer->pass.end > 0 &&
-                     !renderer_makes_passes(renderer);
+    levels->wanted = job->settings.noise > 0 && renderer->pass.end > 0 && !renderer_makes_passes(renderer);
     if (levels->wanted) {
         levels->samples = mem_alloc_zero((size_t)count + 1, sizeof *levels->samples);
         levels->waiting = mem_alloc_zero((size_t)count + 1, sizeof *levels->waiting);

@@ -328,6 +328,56 @@ TEST(ranks_end_when_the_first_one_was_killed) {
     CHECK(access(test_path("out.png"), F_OK) != 0);
 }
 
+/* --- tiles that get their samples level by level --- */
+
+#define NOISE "--integrator path --noise 0.02 --denoise=none"
+
+#define FINE "--integrator path --noise 0.003 --denoise=none" /* takes a second */
+
+static void make_noisy_whole(void) {
+    CHECK_EQ_INT(shell("$gray scene.lua -q " NOISE " -o whole.png"), 0);
+}
+
+TEST(a_farm_with_noise_has_the_bytes_of_one_run_whatever_is_lost) {
+    need_mpi(ONE);
+    make_noisy_whole();
+    pid_t farm = start_farm("", 3, NOISE);
+    CHECK_EQ_INT(await_end(farm), 0);
+    expect_pictures(NULL, COMPARE);
+    for (int rank = 0; rank < 3; rank += 2) {
+        char line[100];
+        farm = start_farm("", 3, NOISE " --farm-stall 0.4 --farm-silence 1");
+        if (await_work(rank, 0.1, NULL))
+            CHECK(kill(process_of(rank, true), rank ? SIGSTOP : SIGKILL) == 0);
+        CHECK_EQ_INT(await_end(farm), 0);
+        (void)snprintf(line, sizeof line, "rank %d has %s its render process", rank, rank ? "killed" : "lost");
+        expect_pictures(line, COMPARE);
+    }
+    farm = start_farm("", 3, NOISE " --farm-silence 0.5");
+    if (await_work(1, 0.1, NULL)) {
+        pid_t rank = process_of(1, false);
+        CHECK(kill(rank, SIGSTOP) == 0);
+        CHECK(await_words("rank 1 has been silent"));
+        CHECK(kill(rank, SIGCONT) == 0);
+    }
+    CHECK(await_end(farm) >= 0);
+    expect_pictures(NULL, COMPARE);
+}
+
+TEST(a_farm_with_noise_keeps_the_samples_of_unfinished_tiles_of_all_ranks_in_its_checkpoint) {
+    need_mpi(SCENE "picture('out.png', 130, 100)\n");
+    CHECK_EQ_INT(shell("$gray scene.lua -q " FINE " -o whole.png"), 0);
+    pid_t farm =
+        start_farm("--mca odls_base_sigkill_timeout 2", 3, FINE " --checkpoint c.tiles --checkpoint-every 1000");
+    if (await_work(0, 0.08, NULL))
+        CHECK(kill(process_of(2, false), SIGKILL) == 0);
+    CHECK(await_end(farm) > 0); /* mpirun ends all processes */
+    CHECK_EQ_INT(shell("$gray scene.lua " FINE " --checkpoint c.tiles --resume 2>>said.txt"), 0);
+    if (!strstr(said(), "more, come from the checkpoint"))
+        test_fail(__FILE__, __LINE__, "no samples of unfinished tiles were kept; said:\n%s", said());
+    CHECK_EQ_INT(shell(COMPARE), 0);
+}
+
 TEST(a_rank_that_fails_alone_is_a_line_and_no_status) {
     need_mpi("if os.getenv('GRAY_ODD') then error('odd') end\n" ONE);
     make_whole();

@@ -5,8 +5,10 @@
 #include "tests/stage.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { WIDTH = 70, HEIGHT = 50 };
 
@@ -149,6 +151,85 @@ TEST(a_picture_of_little_noise_has_the_same_bytes_for_any_threads_order_and_pass
         CHECK(memcmp(first, s.film.pixels, film_bytes(&s.film)) == 0);
     }
     free(first);
+    stage_end(&s);
+}
+
+/* --- in a farm --- */
+
+struct helper {
+    struct stage *s;
+    struct render_job job;
+    bool ok;
+};
+
+static void *help(void *context) {
+    struct helper *helper = context;
+    helper->ok = render_run(&helper->job, helper->s->pool, &helper->s->statistics, &helper->s->error);
+    return NULL;
+}
+
+static double cost_of(const struct film *film) {
+    double cost = 0;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++)
+        cost += sum_load(&film->levels[tile].cost);
+    return cost;
+}
+
+/* Hands out every tile that waits; two at a time. */
+static void hand_out(struct film *film) {
+    uint32_t waiting = film_tiles_in(film, FILM_TILE_WANTED) + film_tiles_in(film, FILM_TILE_TAKEN), next = UINT32_MAX;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        uint8_t state = atomic_load(&film->tiles[tile]);
+        bool better = next == UINT32_MAX || film->levels[tile].urgency > film->levels[next].urgency;
+        if (film_tile_is_begun(state) && atomic_load(&film->tiles[next == UINT32_MAX ? tile : next]) != FILM_TILE_LATER)
+            next = better ? tile : next;
+        if (state == FILM_TILE_LATER)
+            next = tile;
+    }
+    if (next == UINT32_MAX || waiting >= 2)
+        return;
+    film->levels[next].threads = 1;
+    atomic_store(&film->tiles[next], FILM_TILE_WANTED);
+}
+
+TEST(tiles_that_are_handed_out_level_by_level_have_the_bytes_of_one_render_and_say_what_is_left) {
+    struct stage s;
+    struct progress_estimate estimate = {0};
+    struct film single;
+    _Atomic uint32_t handout = 1;
+    pthread_t thread;
+    double cost = 0, share = 0;
+    const struct timespec pause = {0, 200000};
+    size_t bytes;
+    uint32_t early = 0;
+    begin(&s, 2);
+    s.settings.noise = 0.12;
+    CHECK(stage_render(&s, 160, 128));
+    single = s.film;
+    CHECK(film_size(160, 128, single.record, &bytes, &s.error));
+    film_layout(&s.film, calloc(1, bytes), 160, 128, single.record);
+    struct helper helper = {.s = &s, .job = stage_job(&s, 160, 128)};
+    helper.job.handout = &handout;
+    helper.job.progress_estimate = &estimate;
+    for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++)
+        s.film.tiles[tile] = FILM_TILE_LATER;
+    CHECK(pthread_create(&thread, NULL, help, &helper) == 0);
+    while (film_tiles_in(&s.film, FILM_TILE_DONE) < film_tile_count(&s.film)) {
+        (void)nanosleep(&pause, NULL);
+        hand_out(&s.film);
+        early += film_tiles_in(&s.film, FILM_TILE_LATER) > 0 && film_tiles_in(&s.film, FILM_TILE_DONE) > 0;
+        if (share <= 0.4) {
+            share = progress_estimate_share(&estimate);
+            cost = cost_of(&s.film);
+        }
+    }
+    handout = 2;
+    CHECK(pthread_join(thread, NULL) == 0 && helper.ok);
+    CHECK(memcmp(single.pixels, s.film.pixels, film_bytes(&single)) == 0);
+    CHECK_EQ_INT(early, 0); /* all tiles get a level before one gets all */
+    CHECK_NEAR(share, cost / cost_of(&s.film), 0.15);
+    CHECK_NEAR(progress_estimate_share(&estimate), 1, 1e-6);
+    free(single.pixels);
     stage_end(&s);
 }
 
