@@ -42,6 +42,9 @@ static inline void surface_make(struct surface *out, struct vec3 point, struct v
     out->leaf = out->material_slot = 0;
 }
 
+/* A secondary ray starts this many errors off the surface. */
+enum { HIT_OFFSET_ERRORS = 16 };
+
 struct hit {
     double t;
     struct vec3 point;            /* world */

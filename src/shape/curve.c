@@ -2,9 +2,10 @@
  * curve is nearest and not farther than half the width: at local minima of p^2, roots of the polynomial p . p' of
  * degree 5 where its sign goes from - to +, with 2 |p| <= w. This is what the recursive bisection of Nakamaru and Ohno
  * ("Ray tracing for curves primitive", 2002; pbrt's Curve) converges to. At a corner between two pieces the corner
- * itself may be nearest. The ends are cut straight across. A ray that starts at the ribbon, one width above it, does
- * not hit it again if it leads away: with e = w and a hit x <= w/2 off the middle, the nearest approach ahead is at
- * least (w - w/4) sin > w/2 away. Hence the error that is reported. */
+ * itself may be nearest. The ends are cut straight across. A ray that starts one width above the ribbon does not
+ * hit it again if it leads away: with a hit x <= w/2 off the middle, the nearest approach ahead is at least
+ * (w - w/4) sin > w/2 away. At a round hair, rays start at its surface, half a width from the middle, and lead away from
+ * its tangent plane: they do not hit it either. Hence the points and errors that are reported. */
 #include "shape/curve.h"
 
 #include "geometry/bernstein.h"
@@ -16,6 +17,8 @@
 
 #define FLAT 0.2
 enum { DEEPEST = 6 };
+/* The normal at the rim of a round hair is still on the side from which the ray comes. */
+static const double rim = 0.5 - 0x1p-22;
 
 struct curve_piece {
     double c[4][4]; /* Bezier points of x, y, z and the width */
@@ -243,24 +246,26 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
                     struct surface *out) {
     const struct curve_piece *piece = &curve->pieces[crossing->part];
     double x = crossing->u, width = fabs(cubic_value(piece->c[3], x));
-    struct vec3 point = ray_at(ray, crossing->t), direction = vec3_normalize(ray->direction);
+    struct vec3 point = ray_at(ray, crossing->t), middle = curve_point(piece, x), direction = vec3_normalize(ray->direction);
     struct vec3 along = vec3_normalize(tangent(piece, x));
     struct vec3 facing = vec3_negate(across(direction, along));
     if (!(vec3_length(facing) > 0x1p-26)) /* the ray runs along the hair */
         facing = fabs(along.x) < 0.9 ? across(vec3_make(1, 0, 0), along) : across(vec3_make(0, 1, 0), along);
     facing = vec3_normalize(facing);
     struct vec3 side = vec3_cross(along, facing);
-    double off = width > 0 ? vec3_dot(vec3_sub(point, curve_point(piece, x)), side) / width : 0;
-    off = fmin(fmax(off, -0.5), 0.5);
+    double off = width > 0 ? vec3_dot(vec3_sub(point, middle), side) / width : 0;
+    off = fmin(fmax(off, -rim), rim);
     struct vec3 round = vec3_add(vec3_scale(side, 2 * off), vec3_scale(facing, sqrt(1 - 4 * off * off)));
+    struct vec3 normal = curve->flat ? facing : round;
     double size = fmax(vec3_max_abs(curve->bounds.min), vec3_max_abs(curve->bounds.max));
-    *out = (struct surface){.point = point,
-                            .normal = facing,
-                            .shading_normal = curve->flat ? facing : round,
+    double away = curve->flat ? width : width * (0.5 + 0x1p-12);
+    *out = (struct surface){.point = curve->flat ? point : middle,
+                            .normal = normal,
+                            .shading_normal = normal,
                             .pattern_point = point,
-                            .pattern_normal = facing,
+                            .pattern_normal = normal,
                             .has_uv = true,
-                            .error = width + 0x1p-46 * size};
+                            .error = away / HIT_OFFSET_ERRORS + 0x1p-46 * size};
     out->u = piece->from + (piece->to - piece->from) * x;
     out->v = 0.5 - off;
     out->dpdu = vec3_scale(tangent(piece, x), 1 / (piece->to - piece->from));

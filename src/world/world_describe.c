@@ -19,7 +19,7 @@ static double row_sum(const struct affine *a, struct vec3 p) {
 static double offset_of(const struct transform *map, double scale, const struct surface *surface, struct vec3 point) {
     double mapped = map ? row_sum(&map->forward, surface->point) : vec3_max_abs(surface->point);
     double back = map ? row_sum(&map->inverse, point) * scale : vec3_max_abs(point);
-    return 16 * surface->error * scale + (mapped + back) * 0x1p-42;
+    return HIT_OFFSET_ERRORS * surface->error * scale + (mapped + back) * 0x1p-42;
 }
 
 /* The identity map of a vector, including the signs of zeros. */
@@ -167,7 +167,7 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
     hit->has_uv = hit->has_colour = false;
     hit->colour = hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
     hit->u = hit->v = hit->curvature = hit->pattern_scale = 0;
-    hit->offset = 16 * facet->error + (vec3_max_abs(point) + vec3_max_abs(hit->point)) * 0x1p-42;
+    hit->offset = HIT_OFFSET_ERRORS * facet->error + (vec3_max_abs(point) + vec3_max_abs(hit->point)) * 0x1p-42;
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->primitive = index;

@@ -1,6 +1,7 @@
 /* The path tracer against closed forms. Each render has a fixed number of samples; its standard error, from the pixels,
  * which are independent, is at most 0.1 % of the value, and the mean is within 4 of it. The samples of a pixel are a
  * sequence of low discrepancy: few pixels with many samples have less error than many with few. */
+#include "shape/curve.h"
 #include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/unit/mesh_makers.h"
@@ -80,6 +81,32 @@ TEST_LONG(closed_scenes_show_the_sum_of_their_bounces) {
         for (int depth = 0; depth <= 5 && ks == 0; depth++)
             check_cut(kd, depth, (struct effort){16, 512, 3});
     }
+}
+
+/* Light that a hair reflects starts at most one width off it, on the side of its tangent plane. */
+static void check_hairy_room(bool flat, struct effort effort) {
+    static const double points[4][3] = {{-3, -2, -4}, {-1, 2, -5}, {1, 1, -6}, {3, -2, -5}};
+    static const double widths[4] = {0.25, 0.4, 0.3, 0.2};
+    struct arena arena = {0};
+    struct stage s;
+    begin_room(&s, 1, 0.7, 0);
+    struct node *hair = stage_sphere(&s, s.root, glowing(&s, 0.2, 0.94, 0));
+    const struct curve_input in = {
+        .kind = SPLINE_CATMULL_ROM, .points = points, .widths = widths, .count = 4, .flat = flat};
+    hair->shape = (struct shape){.kind = SHAPE_CURVE, .curve = curve_build(&arena, &in, &s.error)};
+    estimate_check_mean(flat ? "closed room with a ribbon" : "closed room with a hair", 1 / (1 - 0.7), &s, &effort,
+                        1000);
+    stage_end(&s);
+    arena_destroy(&arena);
+}
+
+TEST(hair_in_a_closed_scene_is_as_bright_as_its_walls) {
+    check_hairy_room(false, (struct effort){16, 768, 1});
+    check_hairy_room(true, (struct effort){16, 768, 1});
+}
+TEST_LONG(hair_in_a_closed_scene_is_as_bright_as_its_walls_for_every_seed) {
+    check_hairy_room(false, (struct effort){16, 1536, 3});
+    check_hairy_room(true, (struct effort){16, 1536, 3});
 }
 
 /* Rooms whose own light is sampled by the solid angle of their bound, or of their triangles. */
