@@ -11,6 +11,7 @@
 #include "render/denoise.h"
 #include "render/path_film.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -87,24 +88,64 @@ static void packing_sample_row(void *context, uint32_t y, uint8_t *line) {
     }
 }
 
-/* Seconds of one core for a pixel; negative: no tile is finished. */
-static double packing_time(const struct picture *picture) {
-    const struct picture_request *request = &picture->request;
-    const struct film *film = &picture->film;
-    struct packing_sample packing_sample = {film, picture_tone(request), {0}, 0};
-    uint32_t count = film_tile_count(film), step = count / PACKING_SAMPLE_TILES / 4 + 1;
-    for (uint32_t tile = 0; tile < count && packing_sample.count < PACKING_SAMPLE_TILES;) {
+/* Some finished tiles of full size. Returns their number. */
+static uint32_t sample_tiles(const struct film *film, uint32_t tiles[PACKING_SAMPLE_TILES]) {
+    uint32_t count = film_tile_count(film), step = count / PACKING_SAMPLE_TILES / 4 + 1, found = 0;
+    for (uint32_t tile = 0; tile < count && found < PACKING_SAMPLE_TILES;) {
         struct film_rectangle r = film_tile_rectangle(film, tile);
         bool done = atomic_load_explicit(&film->tiles[tile], memory_order_acquire) == FILM_TILE_DONE &&
                     r.x1 - r.x0 == FILM_TILE && r.y1 - r.y0 == FILM_TILE;
         if (done)
-            packing_sample.tiles[packing_sample.count++] = tile;
+            tiles[found++] = tile;
         tile += done ? count / PACKING_SAMPLE_TILES : step;
     }
+    return found;
+}
+
+/* Seconds of one core for a pixel; negative: no tile is finished. */
+static double packing_time(const struct picture *picture) {
+    const struct film *film = &picture->film;
+    struct packing_sample packing_sample = {film, picture_tone(&picture->request), {0}, 0};
+    packing_sample.count = sample_tiles(film, packing_sample.tiles);
     struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample,
                                 false};
     double seconds = packing_sample.count > 0 ? png_write_trial(&source) : -1;
-    return (request->deep ? 2 : 1) * seconds / fmax(source.width * source.height, 1);
+    return (picture->request.deep ? 2 : 1) * seconds / fmax(source.width * source.height, 1);
+}
+
+/* Seconds for finishing a pixel, which one thread does: of a picture of finished tiles, one below the other. 0: there
+ * is nothing to do, or no memory. */
+static double finishing_time(const struct picture *picture) {
+    const struct finish finish = picture_finish(&picture->request);
+    const struct film *film = &picture->film;
+    uint32_t tiles[PACKING_SAMPLE_TILES], count = sample_tiles(film, tiles), pixels = count * FILM_TILE * FILM_TILE;
+    struct error ignored;
+    if ((!finish_changes_light(&finish) && !finish_changes_display(&finish)) || count == 0)
+        return 0;
+    struct picture *sample = mem_alloc_zero(1, sizeof *sample); /* the stack may be small */
+    struct film_pixel *colours = mem_alloc(pixels * sizeof *colours);
+    double seconds = 0;
+    if (sample && colours) {
+        sample->request = picture->request;
+        sample->request.shown = (struct film_rectangle){0};
+        sample->film = (struct film){.width = FILM_TILE,
+                                     .height = FILM_TILE * count,
+                                     .full_width = film->full_width,
+                                     .full_height = film->full_height,
+                                     .pixels = colours};
+        for (uint32_t y = 0; y < FILM_TILE * count; y++) {
+            struct film_rectangle r = film_tile_rectangle(film, tiles[y / FILM_TILE]);
+            size_t at = (size_t)(r.y0 + y % FILM_TILE - film->y0) * film->width + (r.x0 - film->x0);
+            memcpy(colours + (size_t)y * FILM_TILE, film->pixels + at, FILM_TILE * sizeof *colours);
+        }
+        colours[0].rgb[0] = FLT_MAX; /* bloom takes no time without light above white, which other tiles may have */
+        double begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+        picture_shown_destroy(picture_shown_make(sample, (struct denoising){DENOISER_NONE, NULL, NULL}, &ignored));
+        seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begun;
+    }
+    mem_free(sample);
+    mem_free(colours);
+    return seconds / pixels;
 }
 
 /* A square of which the lower half has normals and albedo that change from pixel to pixel. */
@@ -135,9 +176,11 @@ static double denoising_time(void) {
     return ok ? seconds / pixels : 0;
 }
 
-double picture_writing_time(const struct options *options, const struct picture *picture) {
+double picture_writing_time(const struct options *options, const struct picture *picture, int threads) {
     double packing = packing_time(picture), denoised = picture_denoised_pixels(options, picture);
-    return packing < 0 || denoised == 0 ? packing : packing + denoised * denoising_time();
+    if (packing < 0)
+        return packing;
+    return packing + threads * finishing_time(picture) + (denoised > 0 ? denoised * denoising_time() : 0);
 }
 
 bool picture_write_view(const struct picture *picture, const struct file_target *target, enum film_view view,

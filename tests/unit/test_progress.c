@@ -1,7 +1,9 @@
 /* The order of tiles, the share of work done, drafts, and the files that Ctrl-C leaves. */
 #include "tests/harness.h"
 
+#include "base/clock.h"
 #include "base/random.h"
+#include "output/picture_shown_internal.h"
 #include "render/film.h"
 #include "render/noise_estimate_internal.h"
 #include "render/time_estimate.h"
@@ -12,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static struct film film_of(uint32_t width, uint32_t height) {
     return (struct film){.width = width, .height = height, .full_width = width, .full_height = height};
@@ -551,6 +554,37 @@ TEST(the_share_of_the_work_includes_the_layers_after_the_tiles) {
     }
     CHECK(lowest > 0.2 && lowest < 0.9);
     release(result);
+}
+
+/* Bloom and FXAA of a whole picture, in one thread after the tiles, against what is measured before on a few tiles. */
+TEST(the_time_of_finishing_a_picture_is_measured_on_some_of_its_tiles) {
+    enum { SIDE = 768 };
+    const struct options options = {0};
+    struct picture *picture = calloc(1, sizeof *picture);
+    struct error error;
+    size_t bytes;
+    picture->film = film_of(SIDE, SIDE);
+    CHECK(film_size(SIDE, SIDE, stage_record(INTEGRATOR_WHITTED), &bytes, &error));
+    void *block = calloc(1, bytes);
+    film_layout(&picture->film, block, SIDE, SIDE, stage_record(INTEGRATOR_WHITTED));
+    for (uint32_t i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++)
+            picture->film.pixels[i].rgb[c] = (float)(i % 7 * (i / SIDE % 5)) / 8;
+    CHECK(picture_writing_time(&options, picture, 1) < 0); /* no tile is finished */
+    for (uint32_t tile = 0; tile < film_tile_count(&picture->film); tile += 2)
+        picture->film.tiles[tile] = FILM_TILE_DONE;
+    double plain = picture_writing_time(&options, picture, 1);
+    picture->request.bloom = 0.3;
+    picture->request.fxaa = 1;
+    double one = picture_writing_time(&options, picture, 1) - plain;
+    double four = picture_writing_time(&options, picture, 4) - plain;
+    double begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    picture_shown_destroy(picture_shown_make(picture, (struct denoising){DENOISER_NONE, NULL, NULL}, &error));
+    double took = (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - begun) / (SIDE * SIDE);
+    CHECK(plain > 0 && one > took / 3 && one < 3 * took);
+    CHECK(four > 2 * one); /* other threads wait */
+    free(block);
+    free(picture);
 }
 
 TEST(progress_as_json_has_the_share_of_the_work_and_the_time_left) {
