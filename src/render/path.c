@@ -283,14 +283,29 @@ static const char *user_of(const struct world *world, uint32_t material) {
     return "CSG";
 }
 
+static bool has_emission(const struct world *world, uint32_t material, uint32_t slots) {
+    bool any = false;
+    for (uint32_t i = material; i < material + (slots > 1 ? slots : 1); i++)
+        any = any || vec3_max_abs(material_emission(&world->materials[i])) > 0 ||
+              vec3_max_abs(material_emission_bound(&world->materials[i])) > 0;
+    return any;
+}
+
+static bool is_emissive_prototype(const struct world *world, const struct prototype *prototype) {
+    const struct csg *csg = prototype->geometry.csg;
+    bool any = !csg && has_emission(world, prototype->material, prototype->slot_count);
+    for (uint32_t i = 0; csg && i < csg->leaf_count; i++)
+        any = any || has_emission(world, csg->leaves[i].material, csg->leaves[i].slot_count);
+    return any;
+}
+
 /* Next-event estimation needs bounds. */
 static void warn_of_infinite_emitter(const struct world *world, world_warning *warn, void *context) {
     char text[256];
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        const struct prototype *prototype = primitive_prototype(world, i);
         const struct box *box = &world->boxes[i];
-        if (prototype->geometry.csg || (vec3_finite(box->min) && vec3_finite(box->max)) ||
-            vec3_max_abs(material_emission(&world->materials[prototype->material])) == 0)
+        if ((vec3_finite(box->min) && vec3_finite(box->max)) ||
+            !is_emissive_prototype(world, primitive_prototype(world, i)))
             continue;
         (void)snprintf(text, sizeof text,
                        "--integrator path: '%.100s' emits light and has no bounds: only scattered rays find its light, "

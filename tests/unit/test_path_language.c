@@ -540,17 +540,24 @@ TEST(the_warning_of_materials_that_make_light_knows_the_texels_of_pictures) {
 }
 
 TEST(an_emitter_without_bounds_has_one_notice) {
-    static const char scene[] =
-        "local r, m = gr.node('r'), gr.material{kd={0,0,0}, emission={1,1,1}, two_sided=true}\n"
-        "r:add_child(gr.plane{normal={0,1,0}, material=m})\n"
-        "r:add_child(gr.plane{normal={0,1,0}, distance=9, material=m})\n"
-        "gr.render{node=r, file='a.pfm', width=8, height=8, eye={0,1,0}, integrator='path', spp=16}\n";
-    struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
-    CHECK_EQ_INT(result.status, 0);
-    const char *notice = strstr(result.err, "has no bounds");
-    CHECK(notice && !strstr(notice + 1, "has no bounds"));
-    free(result.out);
-    free(result.err);
+    static const char *const nodes[] = {
+        "r:add_child(gr.plane{name='floor', normal={0,1,0}, material=m})\n"
+        "r:add_child(gr.plane{normal={0,1,0}, distance=9, material=m})\n",
+        "r:add_child(gr.csg_difference('floor', gr.plane{normal={0,1,0}, material=m}, gr.sphere{material=m}))\n"};
+    for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++) {
+        char scene[1024];
+        (void)snprintf(scene, sizeof scene,
+                       "local r, m = gr.node('r'), gr.material{kd={0,0,0}, emission={1,1,1}, two_sided=true}\n%s"
+                       "gr.render{node=r, file='a.pfm', width=8, height=8, eye={0,1,0}, integrator='path', spp=16}\n",
+                       nodes[i]);
+        struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 0);
+        const char *notice = strstr(result.err, "has no bounds");
+        CHECK(strstr(result.err, "'floor' emits light") != NULL);
+        CHECK(notice && !strstr(notice + 1, "has no bounds"));
+        free(result.out);
+        free(result.err);
+    }
 }
 
 /* --- media --- */
