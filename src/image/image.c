@@ -59,13 +59,15 @@ struct image *image_allocate(const char *name, uint32_t width, uint32_t height, 
         w = halve(w, 4), h = halve(h, 3);
     }
     image->block = mem_alloc(total);
+    image->memo = mem_alloc_zero(1, sizeof *image->memo);
     size_t length = strlen(name);
     image->name = mem_alloc(length + 1);
-    if (!image->block || !image->name) {
+    if (!image->block || !image->memo || !image->name) {
         image_release(image);
         error_no_memory(error, name);
         return NULL;
     }
+    atomic_init(&image->memo->state, IMAGE_MEMO_UNKNOWN);
     image->block_size = total;
     memcpy(image->name, name, length + 1);
     for (int level = 0; level < image->level_count; level++)
@@ -261,6 +263,7 @@ void image_release(struct image *image) {
     image_release(image->decoded);
     mem_free(image->ranges);
     mem_free(image->colours);
+    mem_free(image->memo);
     mem_free(image->block);
     mem_free(image->name);
     mem_free(image);
@@ -280,7 +283,7 @@ int image_bits(const struct image *image) {
 
 size_t image_memory(const struct image *image) {
     size_t decoded_memory = image->decoded ? image_memory(image->decoded) : 0;
-    return sizeof *image + image->block_size + strlen(image->name) + 1 + decoded_memory;
+    return sizeof *image + sizeof *image->memo + image->block_size + strlen(image->name) + 1 + decoded_memory;
 }
 
 const char *image_name(const struct image *image) {
@@ -308,7 +311,7 @@ struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y) {
     return (struct rgba){t[0] / 65535.0, t[1] / 65535.0, t[2] / 65535.0, t[3] / 65535.0};
 }
 
-struct rgba image_largest(const struct image *image) {
+static struct rgba find_largest(const struct image *image) {
     struct rgba max = {0, 0, 0, 1};
     for (uint32_t y = 0; y < image->levels[0].height; y++) {
         for (uint32_t x = 0; x < image->levels[0].width; x++) {
@@ -320,6 +323,19 @@ struct rgba image_largest(const struct image *image) {
         }
     }
     return max;
+}
+
+struct rgba image_largest(const struct image *image) {
+    struct image_memo *memo = image->memo;
+    int unknown = IMAGE_MEMO_UNKNOWN;
+    if (atomic_load_explicit(&memo->state, memory_order_acquire) == IMAGE_MEMO_KNOWN)
+        return memo->largest;
+    struct rgba largest = find_largest(image);
+    if (atomic_compare_exchange_strong(&memo->state, &unknown, IMAGE_MEMO_SETTING)) {
+        memo->largest = largest;
+        atomic_store_explicit(&memo->state, IMAGE_MEMO_KNOWN, memory_order_release);
+    }
+    return largest;
 }
 
 /* The choice of a reader. For unknown formats the PNG reader makes the error; it names the probable format. */

@@ -56,7 +56,8 @@ const char *image_name(const struct image *image);
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
 /* The largest value of a colour channel; 1 except for high dynamic range images. */
 double image_brightest(const struct image *image);
-/* The largest red, green and blue of all texels, and the smallest alpha. */
+/* The largest red, green and blue of all texels, and the smallest alpha. The first call reads all texels; thread-safe.
+ */
 struct rgba image_largest(const struct image *image);
 /* Where a lookup is, u and v finite of any size, and how wide its footprint is in u and v (0: unknown, level 0 is
  * used). */

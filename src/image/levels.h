@@ -22,7 +22,14 @@ struct image_level {
     void *texels; /* uint8_t[4], uint16_t[4] or float[4] each, row-major; points into the image's one block */
 };
 
-/* Immutable once built. Owns `block` (all levels) and `name`. */
+/* The result of image_largest, once it is known. The thread that changes the state to SETTING writes it. */
+enum image_memo_state { IMAGE_MEMO_UNKNOWN, IMAGE_MEMO_SETTING, IMAGE_MEMO_KNOWN };
+struct image_memo {
+    _Atomic int state;
+    struct rgba largest;
+};
+
+/* Immutable once built, except the memo. Owns `block` (all levels), `memo` and `name`. */
 struct image {
     _Atomic uint32_t owners;
     int bits; /* of level 0: 8, 16 or 32 (float) */
@@ -30,6 +37,7 @@ struct image {
     struct image_level levels[IMAGE_MAX_LEVELS];
     void *block;
     size_t block_size;
+    struct image_memo *memo;
     char *name;
     struct transfer_function
         transfer;                /* as its file states it; of the results of image_decode: that which was decoded */

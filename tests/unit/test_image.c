@@ -1,5 +1,6 @@
 /* Images as textures: closed forms of the filters, mips of any size, wraps, rectangles. */
 #include "base/mem.h"
+#include "base/pool.h"
 #include "image/image.h"
 #include "image/levels.h"
 #include "tests/harness.h"
@@ -297,4 +298,40 @@ TEST(image_create_survives_every_failed_allocation) {
         mem_fail_at(0);
         CHECK_EQ_INT(error.kind, ERROR_MACHINE);
     }
+}
+
+struct largest_calls {
+    const struct image *image;
+    struct rgba found[64];
+};
+
+static void call_largest(void *context, uint32_t item, int worker) {
+    struct largest_calls *calls = context;
+    (void)worker;
+    calls->found[item] = image_largest(calls->image);
+}
+
+/* Every frame and every material asks again. */
+TEST(the_largest_texel_is_that_of_all_texels_and_found_once) {
+    static const int bits[] = {8, 16};
+    char warning[256];
+    struct pool *pool = pool_create(4, warning);
+    for (int k = 0; k < 2; k++) {
+        struct image *image = make_random(37, 29, bits[k], true, 5);
+        struct rgba want = {0, 0, 0, 1};
+        for (uint32_t i = 0; i < 37 * 29; i++) {
+            struct rgba t = image_texel(image, i % 37, i / 37);
+            want = (struct rgba){fmax(want.r, t.r), fmax(want.g, t.g), fmax(want.b, t.b), fmin(want.a, t.a)};
+        }
+        struct largest_calls calls = {.image = image};
+        CHECK(pool_run(pool, 64, call_largest, &calls));
+        for (int i = 0; i < 64; i++)
+            CHECK(memcmp(&calls.found[i], &want, sizeof want) == 0);
+        CHECK_EQ_INT(atomic_load(&image->memo->state), IMAGE_MEMO_KNOWN);
+        memset(image->levels[0].texels, 0, 37 * 29 * 4); /* the next call does not read the texels */
+        struct rgba again = image_largest(image);
+        CHECK(memcmp(&again, &want, sizeof want) == 0);
+        image_release(image);
+    }
+    pool_destroy(pool);
 }
