@@ -80,11 +80,6 @@ uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint
     return first < mesh->count && t->primitive == primitive && t->part == part ? first : LIGHT_NONE;
 }
 
-bool light_mesh_has(const struct light_mesh *mesh, uint32_t primitive) {
-    uint32_t first = first_from(mesh, primitive, 0);
-    return first < mesh->count && mesh->triangles[first].primitive == primitive;
-}
-
 /* Uniform over the triangle, for x and y of the unit interval. */
 static struct vec3 triangle_point(const struct light_triangle *t, double x, double y) {
     double root = sqrt(x < 1 ? x : 1);

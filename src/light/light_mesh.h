@@ -45,8 +45,6 @@ void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, stru
 
 /* The triangle made from that part of a primitive; LIGHT_NONE: it emits no light. */
 uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part);
-/* Whether any triangle was made from a primitive. */
-bool light_mesh_has(const struct light_mesh *mesh, uint32_t primitive);
 
 /* A point of it for a point of the unit square: uniform on the triangle selected by xi.x. */
 struct light_point {

@@ -255,6 +255,7 @@ struct building {
     struct light *lights;
     struct emitter *emitters;
     uint32_t *of_primitive;
+    uint32_t *owner_of; /* by moving primitive: the first mesh light over it, or LIGHT_NONE; NULL: all of them */
     struct emission *of_prototype;
     struct arena *arena;
     struct pool *pool;
@@ -295,15 +296,36 @@ static bool take_light(struct building *b, uint32_t number) {
     return !emitter->decided || !varies || mesh_lights_estimate(world, light, b->arena, b->pool, b->error);
 }
 
+static bool has_moving_triangle(const struct world *world, const struct light_mesh *mesh) {
+    for (uint32_t k = 0; mesh && mesh->shown && k < mesh->count; k++)
+        if (primitive_moves(world, mesh->triangles[k].primitive))
+            return true;
+    return false;
+}
+
+/* One pass over the triangles of all mesh lights. */
+static bool find_owners(struct building *b) {
+    const struct world *world = b->out->world;
+    for (uint32_t i = world->light_count; i-- > 0;) {
+        const struct light_mesh *mesh = world->lights[i].mesh;
+        if (!has_moving_triangle(world, mesh))
+            continue;
+        if (!b->owner_of) {
+            b->owner_of = mem_alloc((size_t)world->primitive_count * sizeof *b->owner_of);
+            for (uint32_t k = 0; b->owner_of && k < world->primitive_count; k++)
+                b->owner_of[k] = LIGHT_NONE;
+        }
+        if (!b->owner_of)
+            return false;
+        for (uint32_t k = 0; k < mesh->count; k++)
+            b->owner_of[mesh->triangles[k].primitive] = i;
+    }
+    return true;
+}
+
 /* The first mesh light over a moving primitive; LIGHT_NONE: none. */
 static uint32_t moving_owner(const struct building *b, uint32_t primitive) {
-    const struct world *world = b->out->world;
-    for (uint32_t i = 0; i < world->light_count && primitive_moves(world, primitive); i++) {
-        const struct light_mesh *mesh = world->lights[i].mesh;
-        if (mesh && mesh->shown && light_mesh_has(mesh, primitive))
-            return i;
-    }
-    return LIGHT_NONE;
+    return b->owner_of && primitive_moves(b->out->world, primitive) ? b->owner_of[primitive] : LIGHT_NONE;
 }
 
 /* The light of a moving primitive has the lists, the emission and the colour of its mesh light. */
@@ -399,7 +421,7 @@ static bool allocate(struct building *b) {
     uint32_t emitting = 0;
     b->of_prototype = arena_alloc_array(b->arena, (size_t)world->prototype_count + 1, sizeof *b->of_prototype);
     b->of_primitive = arena_alloc_array(b->arena, (size_t)world->primitive_count + 1, sizeof *b->of_primitive);
-    if (!b->of_prototype || !b->of_primitive)
+    if (!b->of_prototype || !b->of_primitive || !find_owners(b))
         return false;
     for (uint32_t i = 0; i < world->prototype_count; i++) {
         b->of_prototype[i] = emission_of_prototype(world, &world->prototypes[i]);
@@ -450,6 +472,7 @@ bool world_lights_build(struct world_lights *out, const struct world *world, str
     struct building b = {.out = out, .arena = arena, .pool = pool, .error = error};
     *out = (struct world_lights){.world = world};
     bool ok = build(&b, options);
+    mem_free(b.owner_of);
     if (!ok)
         world_lights_destroy(out);
     return ok;

@@ -112,6 +112,9 @@ TEST(a_mesh_light_over_a_moving_mesh_has_the_light_of_all_its_positions) {
                                 "group:add_child(mesh(glow):scale(.3,.3,.3):translate(1,.6,0):velocity(.8,.3,0))";
     check_equal(&(struct pair){parts, "lights={gr.mesh_light{mesh=group}}",
                                "lights={gr.mesh_light{mesh=group, emission={3,2,1}}}"});
+    /* The first of several. */
+    check_equal(&(struct pair){still, "lights={gr.mesh_light{mesh=glow, emission={6,0,3}}}",
+                               "lights={gr.mesh_light{mesh=glow, emission={6,0,3}}, gr.mesh_light{mesh=glow}}"});
 }
 
 /* Its emission replaces that of the materials, also if it is black or negative. */
