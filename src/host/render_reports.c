@@ -102,12 +102,25 @@ void render_process_report_world(const struct render_process *process, const cha
     render_process_report_scene(process, LINE_DETAIL, line);
 }
 
+/* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its storage.
+ */
+static const char *shown_name(const struct picture_work *work, char room[NAME_LIMIT]) {
+    const struct options *options = work->process->options;
+    const struct frame *frame = &work->asked.frame;
+    if (!options->output || options_output_is_stream(options) || options->animation != ANIMATION_NONE)
+        return work->name;
+    if (!output_name_numbered(options->output))
+        return options->output;
+    bool numbered = frame->number > 0 && output_name(options->output, frame->before + frame->number, room, NAME_LIMIT);
+    return numbered ? room : work->name;
+}
+
 /* With --time-limit the number of samples that were possible, with --noise the number that were needed, or the limit
  * that came first. */
 void render_process_report_samples(const struct picture_work *work) {
     const struct settings *settings = &work->job.settings;
     const struct render_statistics *rays = &work->report.rays;
-    char line[2 * NAME_LIMIT + 256], words[256];
+    char line[2 * NAME_LIMIT + 256], words[256], room[NAME_LIMIT];
     bool has_limit = settings->noise > 0 || settings->time_limit > 0;
     if (!has_limit || !integrator_traits(settings->integrator).progressive || work->asked.in_window ||
         rays->pixels == 0)
@@ -115,8 +128,8 @@ void render_process_report_samples(const struct picture_work *work) {
     double mean = (double)rays->samples / (double)rays->pixels;
     unsigned long long samples = rays->passes_samples;
     if (!(settings->noise > 0))
-        (void)snprintf(words, sizeof words, "%llu samples per pixel in %.1f s (--spp %llu makes the same picture)",
-                       samples, rays->render_seconds, samples);
+        (void)snprintf(words, sizeof words, "%llu sample%s per pixel in %.1f s (--spp %llu makes the same picture)",
+                       samples, samples == 1 ? "" : "s", rays->render_seconds, samples);
     else if (!rays->noisy)
         (void)snprintf(words, sizeof words, "%.1f samples per pixel, for a noise of %g", mean, settings->noise);
     else if (rays->out_of_time)
@@ -126,6 +139,6 @@ void render_process_report_samples(const struct picture_work *work) {
     else
         (void)snprintf(words, sizeof words, "%.1f samples per pixel, at most %u (--spp); parts have more noise than %g",
                        mean, settings_path_samples(settings), settings->noise);
-    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, work->name, words);
+    (void)snprintf(line, sizeof line, "%s: %s: %s", work->process->script, shown_name(work, room), words);
     render_process_report_scene(work->process, LINE_NOTICE, line);
 }

@@ -126,8 +126,9 @@ static bool read_integer(const char *text, size_t length, long long low, long lo
     return true;
 }
 
+/* A decimal number; strtod would also read hexadecimal ones. */
 static bool read_number(const char *text, double low, double high, double *out) {
-    if (!isdigit((unsigned char)text[0]) && !strchr("+-.", text[0]))
+    if ((!isdigit((unsigned char)text[0]) && !strchr("+-.", text[0])) || strpbrk(text, "xX"))
         return false;
     char *end = NULL;
     double value = strtod(text, &end);

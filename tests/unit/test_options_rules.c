@@ -163,6 +163,7 @@ TEST(words_at_the_borders_of_what_is_read_are_taken_or_refused) {
     expect("--cutoff 1.5 x", "--cutoff needs a number from 0 to 1, not '1.5'");
     expect("--cutoff ~ x", "--cutoff needs a number from 0 to 1, not ''");
     expect("--cutoff 1e999 x", "--cutoff needs a number from 0 to 1, not '1e999'");
+    expect("--cutoff 0x1p-3 x", "--cutoff needs a number from 0 to 1, not '0x1p-3'");
     expect("--shard 2/2 x", NULL);
     expect("--shard 3/2 x", "--shard needs I/N, whole numbers with I from 1 to N, not '3/2'");
     expect("--shard 3 x", "--shard needs I/N, whole numbers with I from 1 to N, not '3'");

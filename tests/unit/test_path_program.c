@@ -105,3 +105,27 @@ TEST(a_path_traced_pixel_is_explained_by_its_mean_its_error_and_its_brightest_pa
     free(result.out);
     free(result.err);
 }
+
+/* The line names the file that is written. */
+TEST(with_a_time_limit_a_line_names_the_picture_and_its_samples) {
+    static const char frames[] =
+        "local r = gr.node 'r'\n"
+        "r:add_child(gr.sphere(gr.material {kd={1, 1, 1}}))\n"
+        "gr.frames {count=2, draw=function(t) return {node=r, width=8, height=8, eye={0, 0, 5 + t},\n"
+        "    integrator='path'} end}\n";
+    static const struct {
+        const char *scene, *arguments, *line;
+    } cases[] = {{scene, "--time-limit 0.001 --spp 1 scene.lua", "scene.lua: out.pfm: 1 sample per pixel in"},
+                 {scene, "--time-limit 0.001 --spp 1 -o a.pfm scene.lua", "scene.lua: a.pfm: 1 sample per pixel in"},
+                 {scene, "--noise 9 --spp 16 -o a.pfm scene.lua", "scene.lua: a.pfm: 16.0 samples per pixel"},
+                 {frames, "--time-limit 9 --spp 2 -o b%d.png scene.lua", "scene.lua: b2.png: 2 samples per pixel in"},
+                 {frames, "--time-limit 9 --spp 2 scene.lua", "scene.lua: scene.0002.png: 2 samples per pixel in"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct test_result result = test_gray_scene(cases[i].scene, cases[i].arguments, NULL);
+        CHECK_EQ_INT(result.status, 0);
+        if (!strstr(result.err, cases[i].line))
+            test_fail(__FILE__, __LINE__, "%s: not '%s' but: %s", cases[i].arguments, cases[i].line, result.err);
+        free(result.out);
+        free(result.err);
+    }
+}
