@@ -41,7 +41,7 @@ struct film_level {
     double urgency;            /* of its next level: the largest one comes first */
     _Atomic double cost, rest; /* of its samples so far, and expected of its further samples */
     _Atomic double begun;      /* how much of the rest the level in progress has used */
-    uint64_t history[16];      /* a struct noise_history */
+    uint64_t known[16];        /* a struct noise_tile */
 };
 
 struct film {

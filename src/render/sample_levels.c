@@ -157,21 +157,17 @@ static const double farm_pause = 0.004;
 /* When so much is left, relative to what is done, ranks may wait for the longest tile. */
 static const double farm_end_share = 0.1;
 
-static_assert(sizeof(struct noise_history) <= sizeof((struct film_level *)0)->history, "the record holds a history");
+static_assert(sizeof(struct noise_tile) <= sizeof((struct film_level *)0)->known, "a record holds a noise_tile");
 
 static void load_record(struct renderer *renderer, uint32_t tile) {
     const struct film_level *level = &renderer->job->film->levels[tile];
-    struct noise_tile *of_tile = &renderer->noise_estimate.tiles[tile];
-    memcpy(&of_tile->history, level->history, sizeof of_tile->history);
-    of_tile->cost = sum_load(&level->cost);
-    of_tile->urgency = level->urgency;
-    sum_store(&of_tile->rest, sum_load(&level->rest));
+    memcpy(&renderer->noise_estimate.tiles[tile], level->known, sizeof(struct noise_tile));
 }
 
 static void store_record(struct renderer *renderer, uint32_t tile) {
     struct film_level *level = &renderer->job->film->levels[tile];
     const struct noise_tile *of_tile = &renderer->noise_estimate.tiles[tile];
-    memcpy(level->history, &of_tile->history, sizeof of_tile->history);
+    memcpy(level->known, of_tile, sizeof *of_tile);
     level->urgency = of_tile->urgency;
     sum_store(&level->cost, of_tile->cost);
     sum_store(&level->rest, sum_load(&of_tile->rest));

@@ -151,7 +151,7 @@ static void paint_level(struct film *film) {
         uint32_t last = 1 + tile % LEVELS, before = level->samples, all = 0;
         CHECK(before < last && level->threads >= 1);
         for (uint32_t i = 0; i < before; i++)
-            all += (uint32_t)level->history[i];
+            all += (uint32_t)level->known[i];
         CHECK_EQ_INT(all, before * tile);
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0; y < r.y1; y++)
@@ -165,7 +165,7 @@ static void paint_level(struct film *film) {
                     film->floats[3 * at + c] = (x + y) % 3 == 0 ? -value - 1 : value + 1;
                 }
             }
-        level->history[before] = tile;
+        level->known[before] = tile;
         level->samples = before + 1;
         level->urgency = (double)tile;
         level->cost = before + 1;
