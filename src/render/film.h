@@ -36,8 +36,8 @@ enum { FILM_RECORD_FLOATS = 81 };
  * samples. */
 struct film_level {
     _Atomic uint32_t samples;  /* of each pixel */
+    _Atomic uint32_t threads;  /* of the farm, when the tile was handed out */
     uint32_t state;            /* an enum film_tile: of the tile that was passed on */
-    uint32_t threads;          /* of the farm, when the tile was handed out */
     double urgency;            /* of its next level: the largest one comes first */
     _Atomic double cost, rest; /* of its samples so far, and expected of its further samples */
     _Atomic double begun;      /* how much of the rest the level in progress has used */

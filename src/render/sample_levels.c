@@ -213,7 +213,8 @@ static void add_record(const struct film *film, uint32_t tile, struct farm_total
     totals->rest += rest;
     totals->begun += sum_load(&level->begun);
     totals->longest = fmax(totals->longest, rest);
-    totals->threads = level->threads > totals->threads ? level->threads : totals->threads;
+    uint32_t threads = atomic_load_explicit(&level->threads, memory_order_relaxed);
+    totals->threads = threads > totals->threads ? threads : totals->threads;
 }
 
 /* As noise_estimate_work. */

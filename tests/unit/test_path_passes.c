@@ -175,15 +175,17 @@ static double cost_of(const struct film *film) {
     return cost;
 }
 
-/* Hands out every tile that waits; two at a time. */
+/* Hands out a tile, unless two are under way: one without samples, or the most urgent one. */
 static void hand_out(struct film *film) {
     uint32_t waiting = film_tiles_in(film, FILM_TILE_WANTED) + film_tiles_in(film, FILM_TILE_TAKEN), next = UINT32_MAX;
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load(&film->tiles[tile]);
-        bool better = next == UINT32_MAX || film->levels[tile].urgency > film->levels[next].urgency;
-        if (film_tile_is_begun(state) && atomic_load(&film->tiles[next == UINT32_MAX ? tile : next]) != FILM_TILE_LATER)
-            next = better ? tile : next;
-        if (state == FILM_TILE_LATER)
+        if (state == FILM_TILE_LATER) {
+            next = tile;
+            break;
+        }
+        if (film_tile_is_begun(state) &&
+            (next == UINT32_MAX || film->levels[tile].urgency > film->levels[next].urgency))
             next = tile;
     }
     if (next == UINT32_MAX || waiting >= 2)
