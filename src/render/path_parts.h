@@ -11,7 +11,8 @@
 enum path_part { PATH_PART_FEATURES = 1, PATH_PART_LIGHT = 2, PATH_PART_LINE = 4, PATH_PARTS = 7 };
 
 /* Features of the first surface on a line of sight that scatters or emits light; mirrors and smooth glass in front
- * of it are skipped. */
+ * of it are skipped. But the light that the first smooth glass reflects counts as white albedo: chance chooses
+ * between reflection and refraction, and this share shows the outline of the glass without noise. */
 enum path_feature {
     PATH_ALBEDO,     /* 3 channels, 0 to 1: weights of the lobes, or L / (1 + L) of emission and skies */
     PATH_NORMAL = 3, /* 3 channels: the shading normal on the side of the viewer; 0 for skies */
@@ -36,6 +37,7 @@ enum { PATH_SCATTERINGS = (PATH_LIGHT_GROUPS - 1) / 2 };
 /* Of one camera ray. */
 struct path_parts {
     bool surface_known; /* the features are there */
+    double reflected;   /* the share of light that the first smooth glass reflects; 0 without glass */
     float features[PATH_FEATURES];
     struct vec3 light[PATH_LIGHT_GROUPS];
     /* For each kind of scattering (diffuse, specular, transmission) and each channel: its fraction of the light

@@ -109,7 +109,8 @@ static void set_features(struct path *path, struct vec3 albedo, struct vec3 norm
     if (!parts || parts->surface_known)
         return;
     parts->surface_known = true;
-    const struct vec3 a = vec3_mul(path->weight, albedo);
+    const struct vec3 behind = vec3_mul(path->weight, albedo);
+    const struct vec3 a = vec3_add(vec3_all(parts->reflected), vec3_scale(behind, 1 - parts->reflected));
     const float features[PATH_GLOW] = {in_unit(a.x),
                                        in_unit(a.y),
                                        in_unit(a.z),
@@ -124,7 +125,7 @@ static void set_features(struct path *path, struct vec3 albedo, struct vec3 norm
 static void meet_features(struct path *path, const struct hit *hit, const struct bsdf *bsdf) {
     struct vec3 albedo = light_albedo(bsdf->emission);
     bool shows = vec3_max_abs(bsdf->emission) > 0;
-    double distance = hit->t * vec3_length(path->ray.direction);
+    double distance = hit->t * vec3_length(path->ray.direction), reflected = 0, refracted = 0;
     for (int i = 0; i < bsdf->count; i++) {
         const struct lobe *lobe = &bsdf->lobes[i];
         unsigned flags = lobe_flags(lobe->kind);
@@ -133,9 +134,12 @@ static void meet_features(struct path *path, const struct hit *hit, const struct
         bool smooth = (flags & BSDF_DELTA) || (!(flags & BSDF_ROUGH) && (flags & BSDF_TRACED) && bsdf->alpha == 0);
         shows = shows || (!smooth && vec3_max_abs(lobe->weight) > 0);
         albedo = vec3_add(albedo, lobe->weight);
+        *(flags & BSDF_TRANSMITS ? &refracted : &reflected) += vec3_max_abs(lobe->weight);
     }
     if (shows)
         set_features(path, albedo, bsdf->lit, distance);
+    else if (refracted > 0 && path->parts->reflected == 0)
+        path->parts->reflected = reflected / (reflected + refracted);
     path->travelled += distance;
 }
 
