@@ -63,12 +63,12 @@ static const float same_depth = 0.03F;      /* relative difference of depths on 
 static const float edge_depth = 0.05F, edge_distance = 8;
 /* Residuals count half at these distances of features, and relative squared differences of colours. */
 static const float residual_distance = 10, residual_colour = 0.2F;
-/* How much of the mean residual is added: the part that this mean does not lose, not more, after both passes. */
-static const float residual_gain = 1.7F;
+/* How much of the mean residual is added: more than 1, since the mean of 7 x 7 pixels itself is blurred. */
+static const float residual_gain = 2.6F;
 /* The evidence that is necessary, and how fast the share then grows; and the product of the halves, in units of the
  * evidence, which is negative if the residuals are noise, since estimates contain the noise of both halves. */
-static const float evidence_limit = 0.5F, evidence_slope = 8, agreement_limit = -0.4F;
-static const float choice_slope = 4;        /* how strongly the candidate with the smallest error is preferred */
+static const float evidence_limit = 0.6F, evidence_slope = 8, agreement_limit = -0.3F;
+static const float choice_slope = 4; /* how strongly the candidate with the smallest error is preferred */
 
 /* A picture as planes of floats. */
 struct level {
