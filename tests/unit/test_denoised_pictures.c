@@ -165,7 +165,7 @@ TEST(a_signal_ends_denoising_at_once) {
         char line[512];
         (void)snprintf(line, sizeof line,
                        "$gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; for i in "
-                       "$(seq 2000); do grep -q 'samples per pixel' said && break; sleep 0.01; done; kill -%s $p; wait "
+                       "$(seq 2000); do grep -q 'per pixel' said && break; sleep 0.01; done; kill -%s $p; wait "
                        "$p; s=$?; cat said >&2; test -e big.png && exit 1; exit $s",
                        names[i]);
         gives(line, 130, "gray: interrupted, big.png is not written\n");
