@@ -253,6 +253,13 @@ static double absorption(double colour, double depth) {
     return colour < 1 ? -el_log(colour > 1e-6 ? colour : 1e-6) / depth : 0;
 }
 
+/* The kernels read a tangent of length 0 as none. */
+static bool tangent_is_fine(const struct script_parameter *parameter, const struct script_value *value,
+                            struct error *error) {
+    return !value->given || vec3_max_abs(value->vector) > 0 ||
+           error_set(error, ERROR_SCENE, "%s has length 0", parameter->name);
+}
+
 static void set_numbers(const struct script_value *args, struct openpbr *out, struct phong *phong) {
     out->base_weight = number_or(&args[BASE_WEIGHT], out->base_weight);
     out->base_diffuse_roughness = args[BASE_DIFFUSE_ROUGHNESS].number;
@@ -296,7 +303,11 @@ static bool openpbr(struct script_context *context, const struct script_value *a
     struct openpbr *numbers;
     if (args[TRANSMISSION_DEPTH].number > 0 && args[TRANSMISSION_COLOUR].texture)
         return error_set(error, ERROR_SCENE, "transmission_color must be a colour where transmission_depth is above 0");
-    struct material *m = is_there(args, error) ? layered(context, &numbers, error) : NULL;
+    if (!is_there(args, error) ||
+        !tangent_is_fine(&openpbr_parameters[GEOMETRY_TANGENT], &args[GEOMETRY_TANGENT], error) ||
+        !tangent_is_fine(&openpbr_parameters[GEOMETRY_COAT_TANGENT], &args[GEOMETRY_COAT_TANGENT], error))
+        return false;
+    struct material *m = layered(context, &numbers, error);
     if (!m)
         return false;
     set_numbers(args, numbers, &m->phong);
@@ -325,6 +336,8 @@ static bool metal(struct script_context *context, const struct script_value *arg
                   struct error *error) {
     struct openpbr *numbers;
     const struct metal *known = &metals[args[METAL_NAME].choice];
+    if (!tangent_is_fine(&metal_parameters[METAL_TANGENT], &args[METAL_TANGENT], error))
+        return false;
     struct material *m = layered(context, &numbers, error);
     if (!m)
         return false;
