@@ -109,6 +109,7 @@ struct script_context {
     bool number_repaired;         /* the notice about ".0" was printed */
     struct lenient *lenient;      /* NULL without --lenient */
     bool only_named_pictures;     /* struct order_finding */
+    uint64_t overridden;          /* by options->given: the notice was printed */
     uint32_t pictures;            /* that gr.render has made */
     struct frame frame;           /* the one that is drawn; number 0: none */
     struct shutter frame_shutter; /* in frames: of gr.frames */

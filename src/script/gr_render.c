@@ -115,6 +115,24 @@ static void apply_settings(const struct script_value *args, struct settings *set
         settings->tone.srgb = true;
 }
 
+/* One notice for each option of the command line that the call has overridden. */
+static void note_overridden(struct script_context *context, const struct settings *settings) {
+    const struct script_options *options = context->options;
+    const char *asked = (const char *)&context->host->settings, *used = (const char *)settings;
+    for (int i = 0; i < options->given_count && i < 64 && !context->host->repeats; i++) {
+        const struct given_option *given = &options->given[i];
+        char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
+        if (context->overridden >> i & 1 || memcmp(asked + given->offset, used + given->offset, given->size) == 0)
+            continue;
+        context->overridden |= UINT64_C(1) << i;
+        context_where(context, where, sizeof where);
+        (void)snprintf(text, sizeof text, "%s%.*s%s%.64s has no effect: a field of gr.render sets it", where,
+                       (int)strcspn(given->name, "|"), given->name, given->value ? " " : "",
+                       given->value ? given->value : "");
+        context->host->message(context->host->context, SCRIPT_NOTICE, text);
+    }
+}
+
 static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
                        struct error *error) {
     if (args[RENDER_FOCUS].given && args[RENDER_FOCUS_POINT].given)
@@ -278,6 +296,7 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
     }
     request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
     apply_settings(args, &request.settings);
+    note_overridden(context, &request.settings);
     repair_view(context, args, &request);
     context_warn_of_bytes(context, "ambient", request.ambient);
     if (args[RENDER_BACKGROUND].given)

@@ -26,6 +26,12 @@ struct script_define {
     const char *name, *value; /* -D name=value */
 };
 
+/* An option that was given, and the part of struct settings that it sets: fields of gr.render may set it, too. */
+struct given_option {
+    size_t offset, size;
+    const char *name, *value; /* value: NULL without one */
+};
+
 struct script_options {
     enum script_order transform_order;
     bool lenient;
@@ -33,6 +39,8 @@ struct script_options {
     uint64_t seed;       /* math.random starts from it */
     const struct script_define *defines;
     int define_count;
+    const struct given_option *given;
+    int given_count;
     /* The sandbox: what a script may read, write and use beyond the defaults (docs/security.md). */
     bool no_sandbox;
     const char *const *allow_read, *const *allow_write; /* folders */

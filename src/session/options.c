@@ -343,7 +343,23 @@ struct lists {
     struct script_define *defines;
     uint32_t (*pixels)[2];
     const char **folders[2]; /* --allow-read, --allow-write */
+    struct given_option *given;
 };
+
+/* Options that fields of gr.render override are noted for a notice; of several equal ones the last. */
+static void note_given(const struct option *option, const char *text, struct options *options,
+                       struct given_option *given) {
+    const size_t start = offsetof(struct options, settings);
+    bool picture = option->group == OPTION_GROUP_PICTURE || option->group == OPTION_GROUP_SHADING ||
+                   option->group == OPTION_GROUP_FINISH;
+    int at = 0;
+    if (!picture || option->size == 0 || option->offset < start || option->offset >= start + sizeof options->settings)
+        return;
+    while (at < options->script.given_count && given[at].offset != option->offset - start)
+        at++;
+    options->script.given_count += at == options->script.given_count;
+    given[at] = (struct given_option){option->offset - start, option->size, option->names, option->value ? text : NULL};
+}
 
 static bool apply_option(const struct option *option, const char *text, struct options *options,
                          const struct lists *lists, struct arena *arena, struct error *error) {
@@ -580,11 +596,13 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     struct lists lists = {.defines = arena_alloc_array(arena, room, sizeof *lists.defines),
                           .pixels = arena_alloc_array(arena, room, sizeof *lists.pixels),
                           .folders = {arena_alloc_array(arena, room, sizeof *lists.folders[0]),
-                                      arena_alloc_array(arena, room, sizeof *lists.folders[1])}};
-    if (!scripts || !lists.defines || !lists.pixels || !lists.folders[0] || !lists.folders[1])
+                                      arena_alloc_array(arena, room, sizeof *lists.folders[1])},
+                          .given = arena_alloc_array(arena, room, sizeof *lists.given)};
+    if (!lists.given || !scripts || !lists.defines || !lists.pixels || !lists.folders[0] || !lists.folders[1])
         return error_no_memory(error, "the command line");
     options->scripts = scripts;
     options->script.defines = lists.defines;
+    options->script.given = lists.given;
     options->pixels = (const uint32_t(*)[2])lists.pixels;
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
@@ -630,6 +648,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
+        note_given(option, text, options, lists.given);
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     if (options->action == ACTION_MERGE && not_of_merge)

@@ -129,3 +129,28 @@ TEST(with_a_time_limit_a_line_names_the_picture_and_its_samples) {
         free(result.err);
     }
 }
+
+TEST(an_option_that_a_field_overrides_has_one_notice) {
+    static const char twice[] =
+        "local r = gr.node 'r'\n"
+        "r:add_child(gr.sphere(gr.material {kd={1, 1, 1}}))\n"
+        "for i = 1, 2 do gr.render {node=r, file=i .. '.png', width=8, height=8, eye={0, 0, 5},\n"
+        "    integrator='path', spp=2, exposure=1, full=true} end\n";
+    static const struct {
+        const char *arguments, *line;
+    } cases[] = {{"--integrator path --integrator whitted scene.lua", "--integrator whitted has no effect"},
+                 {"--exposure 0 scene.lua", "--exposure 0 has no effect"},
+                 {"--integrator path --exposure 1 -full --spp 1 --max-depth 3 scene.lua", NULL},
+                 {"-q --integrator whitted scene.lua", NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct test_result result = test_gray_scene(twice, cases[i].arguments, NULL);
+        const char *notice = strstr(result.err, "has no effect");
+        CHECK_EQ_INT(result.status, 0);
+        if (cases[i].line)
+            CHECK(strstr(result.err, cases[i].line) && notice && !strstr(notice + 1, "has no effect"));
+        else
+            CHECK(!notice);
+        free(result.out);
+        free(result.err);
+    }
+}
