@@ -1,5 +1,7 @@
 /* The store of assets: equal assets are stored once, however often scripts request them. Keys are content (tables) or
- * canonical path (files); a list is enough, since a look-up costs far less than making the asset. */
+ * canonical path (files). Scenes make meshes by the hundred thousand, so a hash table finds them; files are few, and a
+ * look-up in their lists costs far less than reading one. */
+#include "base/hash.h"
 #include "base/mem.h"
 #include "image/image.h"
 #include "scene/node.h"
@@ -28,6 +30,7 @@ void assets_destroy(struct assets *assets) {
         mem_free(assets->meshes);
         assets->meshes = next;
     }
+    mem_free(assets->mesh_slots);
     while (assets->images) {
         struct asset_image *next = assets->images->next;
         image_release(assets->images->image);
@@ -38,38 +41,88 @@ void assets_destroy(struct assets *assets) {
     *assets = (struct assets){.epochs = assets->epochs};
 }
 
-/* Takes over mesh, also when it fails. */
-static bool keep_mesh(struct assets *assets, struct mesh *mesh, uint64_t key, struct error *error) {
-    struct asset_mesh *entry = mem_alloc_zero(1, sizeof *entry);
+enum { FIRST_MESH_SLOTS = 64 };
+
+static struct asset_mesh **slot_of(const struct assets *assets, uint64_t key) {
+    return &assets->mesh_slots[key & (assets->mesh_slot_count - 1)];
+}
+
+static struct asset_mesh *chain_of(const struct assets *assets, uint64_t key) {
+    return assets->mesh_slot_count ? *slot_of(assets, key) : NULL;
+}
+
+static void chain(struct assets *assets, struct asset_mesh *entry) {
+    struct asset_mesh **slot = slot_of(assets, entry->key);
+    entry->chained = *slot;
+    *slot = entry;
+}
+
+static void unchain(struct assets *assets, const struct asset_mesh *entry) {
+    struct asset_mesh **link = slot_of(assets, entry->key);
+    while (*link != entry)
+        link = &(*link)->chained;
+    *link = entry->chained;
+}
+
+/* Slots for one more mesh; a failure changes nothing. */
+static bool grow_slots(struct assets *assets) {
+    if (assets->mesh_count < assets->mesh_slot_count)
+        return true;
+    size_t count = assets->mesh_slot_count ? assets->mesh_slot_count * 2 : FIRST_MESH_SLOTS;
+    struct asset_mesh **slots = mem_alloc_zero(count, sizeof(struct asset_mesh *));
+    if (!slots)
+        return false;
+    mem_free(assets->mesh_slots);
+    assets->mesh_slots = slots;
+    assets->mesh_slot_count = count;
+    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next)
+        chain(assets, entry);
+    return true;
+}
+
+/* Takes over the mesh of `made`, also when it fails. */
+static bool keep_mesh(struct assets *assets, const struct asset_mesh *made, struct error *error) {
+    struct asset_mesh *entry = grow_slots(assets) ? mem_alloc_zero(1, sizeof *entry) : NULL;
     if (!entry) {
-        mesh_release(mesh);
+        mesh_release(made->mesh);
         return error_no_memory(error, "the store of meshes");
     }
-    *entry = (struct asset_mesh){.mesh = mesh, .key = key, .next = assets->meshes};
+    *entry = *made;
+    entry->next = assets->meshes;
     assets->meshes = entry;
+    chain(assets, entry);
     assets->mesh_count++;
     return true;
 }
 
 struct mesh *assets_mesh(struct assets *assets, const struct mesh_input *input, struct error *error) {
     uint64_t key = mesh_input_hash(input);
-    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next) {
-        if (entry->key == key && mesh_equals_input(entry->mesh, input))
+    for (struct asset_mesh *entry = chain_of(assets, key); entry; entry = entry->chained) {
+        if (entry->key == key && !entry->of_file && mesh_equals_input(entry->mesh, input))
             return entry->mesh;
     }
-    struct mesh *mesh = mesh_create(input, error);
-    return mesh && keep_mesh(assets, mesh, key, error) ? mesh : NULL;
+    struct asset_mesh made = {.mesh = mesh_create(input, error), .key = key};
+    return made.mesh && keep_mesh(assets, &made, error) ? made.mesh : NULL;
+}
+
+bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error) {
+    uint64_t key = random_mix((uintptr_t)mesh);
+    for (struct asset_mesh *entry = chain_of(assets, key); entry; entry = entry->chained)
+        if (entry->mesh == mesh)
+            return true;
+    return keep_mesh(assets, &(struct asset_mesh){.mesh = mesh_share(mesh), .key = key, .of_file = true}, error);
 }
 
 void assets_drop_meshes(struct assets *assets, const struct asset_mesh *until) {
     struct asset_mesh **link = &assets->meshes;
     while (*link != until) {
         struct asset_mesh *entry = *link;
-        if (entry->key == 0) {
+        if (entry->of_file) {
             link = &entry->next;
             continue;
         }
         *link = entry->next;
+        unchain(assets, entry);
         mesh_release(entry->mesh);
         mem_free(entry);
         assets->mesh_count--;
@@ -97,13 +150,6 @@ bool assets_add_object(struct assets *assets, const char *key, void *object, voi
     *entry = (struct asset_object){.object = object, .destroy = destroy, .key = copy, .next = assets->objects};
     assets->objects = entry;
     return true;
-}
-
-bool assets_keep_mesh(struct assets *assets, struct mesh *mesh, struct error *error) {
-    for (struct asset_mesh *entry = assets->meshes; entry; entry = entry->next)
-        if (entry->mesh == mesh)
-            return true;
-    return keep_mesh(assets, mesh_share(mesh), 0, error);
 }
 
 struct image *assets_image(struct assets *assets, const char *path, struct error *error) {

@@ -103,8 +103,10 @@ struct node {
 /* The store of assets: outlives scripts and renders. */
 struct asset_mesh {
     struct mesh *mesh;
-    uint64_t key; /* of tables; 0 for those of files */
-    struct asset_mesh *next;
+    uint64_t key;
+    bool of_file;               /* the key is that of the pointer; else that of the tables */
+    struct asset_mesh *next;    /* older */
+    struct asset_mesh *chained; /* in the same slot of the hash table */
 };
 struct asset_image {
     struct image *image;
@@ -120,7 +122,9 @@ struct asset_object {
 };
 struct assets {
     struct asset_object *objects;
-    struct asset_mesh *meshes;
+    struct asset_mesh *meshes;      /* the newest first */
+    struct asset_mesh **mesh_slots; /* the same by key: a power of two of chains, as many as meshes or more */
+    size_t mesh_slot_count;
     struct asset_image *images;
     uint32_t mesh_count, image_count;
     uint64_t memory; /* bytes that scripts with a limit have left here */
