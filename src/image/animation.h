@@ -55,8 +55,8 @@ struct frame_rate frame_rate_fraction(double rate);
 /* Whether a file begins like an animation of any kind, including video formats. */
 bool animation_is(const uint8_t *head, size_t size);
 
-/* A PNG file with 8 bits per channel, RGB, without interlacing, as png_write writes them: reading gives exactly its
- * bytes. */
+/* A PNG file with 8 bits per channel, RGB, without interlacing, as png_write_from writes them: reading gives exactly
+ * its bytes. */
 struct png_frame {
     uint32_t width, height;
     bool srgb; /* the file has an sRGB chunk */

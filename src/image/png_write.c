@@ -261,18 +261,6 @@ bool png_write_from(const struct file_target *target, const struct png_source *r
     return file_output_commit(&writer.output, error);
 }
 
-bool png_write(const struct file_target *target, uint32_t width, uint32_t height,
-               void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error) {
-    struct png_source all = {.width = width, .height = height, .bytes = rows, .context = context};
-    return png_write_from(target, &all, NULL, error);
-}
-
-bool png_write_16(const struct file_target *target, uint32_t width, uint32_t height,
-                  void (*rows)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error) {
-    struct png_source all = {.width = width, .height = height, .words = rows, .context = context};
-    return png_write_from(target, &all, NULL, error);
-}
-
 uint8_t png_write_byte(double c) {
     if (!(c > 0))
         return 0;

@@ -29,11 +29,6 @@ uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 /* Seconds of processor time to compress such a picture on this thread; writes nothing. Negative: no memory. */
 double png_write_trial(const struct png_source *source);
 
-/* Writing in this thread alone, with 8 and with 16 bits. */
-bool png_write(const struct file_target *target, uint32_t width, uint32_t height,
-               void (*rows)(void *context, uint32_t y, uint8_t *line), void *context, struct error *error);
-bool png_write_16(const struct file_target *target, uint32_t width, uint32_t height,
-                  void (*rows)(void *context, uint32_t y, uint16_t *line), void *context, struct error *error);
 /* (Not png_byte: that is a type of libpng.) floor(255 c + 0.5) after clamping to [0,1]; NaN gives 0. */
 uint8_t png_write_byte(double c);
 

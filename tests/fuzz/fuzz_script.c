@@ -70,8 +70,11 @@ static void fill_folder(void) {
     fuzz_write("flag.gltf", flag_gltf, sizeof flag_gltf - 1);
     copy_font(start);
     (void)close(start);
-    if (!png_write(FILE_AT("cross.png"), SIDE, SIDE * 3 / 4, pattern_row, NULL, &error) ||
-        !png_write(FILE_AT("square.png"), SIDE, SIDE, pattern_row, NULL, &error))
+    if (!png_write_from(FILE_AT("cross.png"),
+                        &(struct png_source){.width = SIDE, .height = SIDE * 3 / 4, .bytes = pattern_row}, NULL,
+                        &error) ||
+        !png_write_from(FILE_AT("square.png"),
+                        &(struct png_source){.width = SIDE, .height = SIDE, .bytes = pattern_row}, NULL, &error))
         abort();
 }
 

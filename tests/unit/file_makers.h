@@ -17,7 +17,9 @@ static inline void write_white_png(const char *name, uint32_t width, uint32_t he
     char path[512];
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    CHECK(png_write(FILE_AT(path), width, height, white_row, &width, &error));
+    CHECK(png_write_from(FILE_AT(path),
+                         &(struct png_source){.width = width, .height = height, .bytes = white_row, .context = &width},
+                         NULL, &error));
 }
 
 #endif

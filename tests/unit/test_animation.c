@@ -396,7 +396,9 @@ TEST(frames_are_read_back_to_the_byte_and_damaged_ones_are_refused) {
     struct error error;
     const char *path = test_path("frame.png"), *cut = test_path("cut.png");
     (void)noise_frame(NULL, 3, rgb, &error);
-    CHECK(png_write(FILE_AT(path), WIDTH, HEIGHT, noise_row, rgb, &error));
+    CHECK(png_write_from(FILE_AT(path),
+                         &(struct png_source){.width = WIDTH, .height = HEIGHT, .bytes = noise_row, .context = rgb},
+                         NULL, &error));
     CHECK(png_frame_read(path, WIDTH, HEIGHT, back, &error));
     CHECK(memcmp(rgb, back, sizeof rgb) == 0);
     CHECK(!png_frame_read(path, HEIGHT, WIDTH, back, &error));

@@ -131,7 +131,9 @@ static void one_colour(void *context, uint32_t y, uint8_t *line) {
 static void write_stated(const char *path, uint8_t colour[3], const char *kind, const void *bytes, size_t size) {
     struct error error;
     struct file_bytes file;
-    CHECK(png_write(FILE_AT(path), 1, 1, one_colour, colour, &error));
+    CHECK(png_write_from(FILE_AT(path),
+                         &(struct png_source){.width = 1, .height = 1, .bytes = one_colour, .context = colour}, NULL,
+                         &error));
     if (!kind)
         return;
     CHECK(file_map(path, 1 << 20, &file, &error));

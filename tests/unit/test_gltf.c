@@ -274,7 +274,7 @@ TEST(gltf_materials_and_embedded_pictures_become_ours) {
     char path[400];
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/p.png", test_folder());
-    CHECK(png_write(FILE_AT(path), 4, 4, rows, NULL, &error));
+    CHECK(png_write_from(FILE_AT(path), &(struct png_source){.width = 4, .height = 4, .bytes = rows}, NULL, &error));
     size_t size;
     char *png = test_read_file(path, &size);
     struct bytes buffer = {0};

@@ -296,7 +296,8 @@ static void run_seen(const char *renders,
     test_skip("failures on demand are only in builds with GRAY_FAULTS");
 #endif
     (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
-    CHECK(png_write(FILE_AT(path), 8, 6, white_row, NULL, &error));
+    CHECK(
+        png_write_from(FILE_AT(path), &(struct png_source){.width = 8, .height = 6, .bytes = white_row}, NULL, &error));
     (void)snprintf(text, sizeof text, "%s%s", objects, renders);
     failed_runs = pictures = 0;
     if (!listen_to_text(&listener, text, NULL, &error))

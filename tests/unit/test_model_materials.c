@@ -25,7 +25,9 @@ static void ramp_row(void *context, uint32_t y, uint8_t *line) {
 static void write_even(const char *name, uint8_t r, uint8_t g, uint8_t b) {
     uint8_t colour[3] = {r, g, b};
     struct error error = {0};
-    CHECK(png_write(FILE_AT(in_folder(name)), 16, 16, even_row, colour, &error));
+    CHECK(png_write_from(FILE_AT(in_folder(name)),
+                         &(struct png_source){.width = 16, .height = 16, .bytes = even_row, .context = colour}, NULL,
+                         &error));
 }
 
 /* In the middle of a square as large as its picture, seen from the front. */
@@ -78,7 +80,8 @@ TEST(mtl_maps_of_highlight_emission_opacity_bumps_and_normals_are_shown) {
     write_even("colour 1.png", 51, 102, 255);
     write_even("flat.png", 128, 128, 255);
     write_even("tilt.png", 204, 128, 230);
-    CHECK(png_write(FILE_AT(in_folder("ramp.png")), 16, 16, ramp_row, NULL, &error));
+    CHECK(png_write_from(FILE_AT(in_folder("ramp.png")),
+                         &(struct png_source){.width = 16, .height = 16, .bytes = ramp_row}, NULL, &error));
     test_write_text(in_folder("m.mtl"), "newmtl ks\nKd 1 1 1\nKs .5 .5 .5\nmap_Ks colour 1.png\n"
                                         "newmtl ks alone\nKd 1 1 1\nmap_Ks colour 1.png\n"
                                         "newmtl dull\nKd 1 1 1\nKs 1 1 1\nillum 1\nmap_Ks colour 1.png\n"

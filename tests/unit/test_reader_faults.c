@@ -160,7 +160,8 @@ static void prepare(void) {
     char path[512];
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/pic.png", test_folder());
-    CHECK(png_write(FILE_AT(path), 4, 4, write_picture_row, NULL, &error));
+    CHECK(png_write_from(FILE_AT(path), &(struct png_source){.width = 4, .height = 4, .bytes = write_picture_row}, NULL,
+                         &error));
     put("t.mtl", mtl_text, strlen(mtl_text));
 }
 

@@ -465,7 +465,8 @@ static void prepare_everything(char path[512]) {
         free(text);
     }
     (void)snprintf(path, 512, "%s/cross.png", folder);
-    CHECK(png_write(FILE_AT(path), 8, 6, white_row, NULL, &error));
+    CHECK(
+        png_write_from(FILE_AT(path), &(struct png_source){.width = 8, .height = 6, .bytes = white_row}, NULL, &error));
     (void)snprintf(path, 512, "%s/everything.lua", folder);
 }
 

@@ -303,7 +303,8 @@ TEST(deep_png_holds_sixteen_bits) {
     char path[512];
     struct error error = {0};
     (void)snprintf(path, sizeof path, "%s/a.png", test_folder());
-    CHECK(png_write_16(FILE_AT(path), 64, 5, word_row, NULL, &error));
+    CHECK(
+        png_write_from(FILE_AT(path), &(struct png_source){.width = 64, .height = 5, .words = word_row}, NULL, &error));
     struct image *image = image_read(path, &error);
     CHECK(image != NULL);
     for (uint32_t y = 0; y < 5 && image; y++) {
