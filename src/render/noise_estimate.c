@@ -1,12 +1,22 @@
 /* A tile needs samples * (noise / wanted noise)^2 samples if its noise is inversely proportional to their square root.
- * It seldom is. Stratified samples converge faster; few samples miss caustics and small bright features, so this number
- * grows with the samples, in some tiles fivefold from 16 samples to 256. The growth of a tile persists: the growth
- * during a doubling of the samples is taken as .65 times that during the doubling before, minus .1 (in logarithms), with
- * a deviation of .13 at 16 samples, less at more. Of the constants that were tried, these gave small errors of the time
- * left in the recorded levels of ten pictures (docs/progress.md). So the number of samples at the end is
- * a log-normal random variable, and the expected number of samples is the sum over the levels of their samples times
- * the probability that the noise at the beginning of the level is still too large (by the logistic distribution, which
- * is the normal one within .01).
+ * This number changes with the samples, and the change has a wide distribution. If all pixels of a tile have noise, the
+ * number is known within a few per cent. If the noise comes from few pixels that a rare bright path met, it falls as
+ * long as no other path is met, and is multiplied when one is. So the logarithm of the number at a later level has
+ *
+ * - a centre: at few samples the noise is too large, because no mean is known (rare); then it falls while
+ * stratification helps, as it did before (growth), and with the concentration of the noise on few pixels;
+ * - a spread, which is small for many samples, and large for concentrated noise and for numbers that changed.
+ *
+ * The constants were fitted to the levels of 35 pictures (docs/progress.md). The tile ends at a level with the
+ * probability that the number is at most the samples of this level (logistic distribution). Two things follow:
+ *
+ * - the expected further samples. Cases of less than a fifth do not count: a rare path makes the mean useless, because
+ *   it may need a thousand times as many samples. Their tiles come early, and then their number is known.
+ * - the deviation, which decides about the order (sample_levels.c). It counts rare cases, too, and a larger spread
+ * where the noise is concentrated.
+ *
+ * What the tiles of a picture have in common is seen in those that are ahead: half of the mean difference between their
+ * numbers and the predictions (drift) is added to the change of all.
  *
  * Tiles without samples count as the mean of the others. A finished level only changes sums, so the cost of an estimate
  * does not depend on the number of tiles, but near the end. */
@@ -19,22 +29,28 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Of the growth per doubling of the samples, in natural logarithms. */
-static const double growth_usual = -0.1;                      /* of a tile whose number did not grow */
-static const double growth_kept = 0.65, growth_fade = 0.6;     /* the next doubling, and each one relative to the last */
-static const double growth_lowest = -0.3, growth_highest = 1; /* of those that are believed */
-static const double growth_unknown = 0.3;                     /* of the first two samples */
-static const double growth_of_halves = 0.8;                   /* their weight beside that of the samples */
-/* Of the logarithm, for one doubling after 16 samples; its exponents in the samples and in the doublings. */
-static const double deviation = 0.13, deviation_fall = 0.45, deviation_rise = 0.6;
+/* Of the logarithm: shift for `rare` at one sample, and change for each doubling of the samples. */
+static const double shift_rare = -0.6;
+static const double change_usual = -0.02, change_settled = 0.1, change_growth = 0.25, change_concentrated = -0.8;
+/* Its spread after one doubling: after 16 samples, inversely proportional to the samples; by concentration and growth.
+ */
+static const double spread_usual = 0.04, spread_concentrated = 0.2, spread_growth = 0.25;
+static const double spread_order = 0.3; /* more by concentration, for the order of tiles */
+/* The drift of a picture counts by half, and less while fewer than drift_doublings are known. Single differences are
+ * believed within these limits. */
+static const double drift_share = 0.5, drift_doublings = 10, drift_lowest = -0.7, drift_highest = 1;
+/* Cases that are less probable do not count. */
+static const double improbable_expected = 0.2, improbable_order = 0.02;
 
-void noise_history_add(struct noise_history *history, struct noise_point point) {
-    if (history->count == NOISE_POINTS) {
+void noise_history_add(struct noise_history *history, const struct noise_point *point) {
+    if (history->count == NOISE_PAST) {
         history->count--;
         for (int i = 0; i < history->count; i++)
-            history->points[i] = history->points[i + 1];
+            history->past[i] = history->past[i + 1];
     }
-    history->points[history->count++] = point;
+    if (history->last.samples > 0)
+        history->past[history->count++] = (struct noise_past){history->last.samples, history->last.needed};
+    history->last = *point;
 }
 
 uint32_t noise_next_level(uint32_t samples, uint32_t limit) {
@@ -42,54 +58,83 @@ uint32_t noise_next_level(uint32_t samples, uint32_t limit) {
     return next < limit ? next : limit;
 }
 
+struct noise_limits noise_limits_for(double wanted, uint32_t limit) {
+    return (struct noise_limits){wanted > 0 ? path_minimum_samples(wanted) : 0, limit};
+}
+
 /* Pixels whose samples are all equal have no noise. */
 static double logarithm(double needed) {
     return el_log(fmax(needed, 1e-3));
 }
 
-/* The growth since the last point that has at most about half of the samples. With two or four samples, the halves are
- * one or two samples. */
-static double growth_so_far(const struct noise_history *history) {
-    const struct noise_point *now = &history->points[history->count - 1];
-    int before = history->count - 2;
-    if (before < 0)
-        return growth_unknown;
-    while (before > 0 && history->points[before].samples > now->samples / 1.8)
-        before--;
-    const struct noise_point *then = &history->points[before];
-    double doublings = el_log2((double)now->samples / then->samples);
-    double halves = logarithm(now->needed) - logarithm(then->needed);
-    double samples = logarithm(now->needed_by_samples) - logarithm(then->needed_by_samples);
-    double growth = now->samples <= 4 ? samples / 2 : growth_of_halves * halves + (1 - growth_of_halves) * samples;
-    return doublings > 0 ? fmin(fmax(growth / doublings, growth_lowest), growth_highest) : growth_unknown;
+static double clamped(double low, double value, double high) {
+    return fmin(fmax(value, low), high);
 }
 
-struct noise_further noise_further_samples(const struct noise_history *history, uint32_t limit) {
-    const struct noise_point *now = &history->points[history->count - 1];
-    double needed = logarithm(now->needed), growth = growth_kept * growth_so_far(history);
-    double deviates = deviation * el_pow(16.0 / now->samples, deviation_fall), probability = 1, sum = 0, squares = 0;
-    uint32_t samples = now->samples;
-    while (samples < limit && probability > 1e-3) {
-        uint32_t next = noise_next_level(samples, limit);
-        double from = samples - now->samples, to = next - now->samples;
+/* The change of the logarithm per doubling, since the last point that has at most about half of the samples. 0 while
+ * the halves of the samples are one or two samples. */
+static double growth_so_far(const struct noise_history *history) {
+    const struct noise_point *now = &history->last;
+    int before = history->count - 1;
+    if (before < 0 || now->samples <= 4)
+        return 0;
+    while (before > 0 && history->past[before].samples > now->samples / 1.8)
+        before--;
+    const struct noise_past *then = &history->past[before];
+    return (logarithm(now->needed) - logarithm(then->needed)) / el_log2((double)now->samples / then->samples);
+}
+
+/* The logarithm of the needed samples after d doublings: centre + change d, with the spread (and spread_to_order for
+ * the order) times the square root of d. */
+struct prediction {
+    uint32_t samples;
+    double centre, change, spread, spread_to_order;
+};
+
+static struct prediction predict(const struct noise_history *history) {
+    const struct noise_point *now = &history->last;
+    double growth = clamped(-0.5, growth_so_far(history), 1), concentration = now->concentration;
+    double spread =
+        spread_usual * 16 / now->samples + spread_concentrated * concentration + spread_growth * fabs(growth);
+    double change = change_usual + change_settled * clamped(-0.5, now->settled, 1) + change_growth * fmin(growth, 0.3) +
+                    change_concentrated * concentration * concentration;
+    return (struct prediction){now->samples, logarithm(now->needed) + shift_rare * now->rare / now->samples, change,
+                               spread, spread + spread_order * concentration};
+}
+
+/* Sums over the cases that are more probable than `improbable`. */
+static struct noise_further sum_levels(const struct prediction *of, double spread, double improbable,
+                                       struct noise_limits limits) {
+    double probability = 1, sum = 0, squares = 0;
+    uint32_t samples = of->samples;
+    while (samples < limits.limit && probability > improbable) {
+        uint32_t next = noise_next_level(samples, limits.limit);
+        double from = samples - of->samples, to = next - of->samples;
         sum += probability * (to - from);
         squares += probability * (to * to - from * from);
         samples = next;
-        if (samples < 16)
+        if (samples < limits.minimum)
             continue;
-        double doublings = el_log2((double)samples / now->samples);
-        double then =
-            needed + growth_usual * doublings + growth * (1 - el_pow(growth_fade, doublings)) / (1 - growth_fade);
-        double distance = (then - el_log(samples)) / (deviates * el_pow(doublings, deviation_rise));
-        probability = fmin(probability, 1 / (1 + el_exp(-1.702 * distance)));
+        double doublings = el_log2((double)samples / of->samples);
+        double distance = of->centre + of->change * doublings - el_log(samples);
+        probability = fmin(probability, 1 / (1 + el_exp(-distance / (spread * sqrt(doublings)))));
     }
     return (struct noise_further){sum, sqrt(fmax(squares - sum * sum, 0))};
 }
 
+struct noise_further noise_further_samples(const struct noise_history *history, double drift,
+                                           struct noise_limits limits) {
+    struct prediction prediction = predict(history);
+    prediction.change += drift;
+    struct noise_further expected = sum_levels(&prediction, prediction.spread, improbable_expected, limits);
+    struct noise_further with_rare = sum_levels(&prediction, prediction.spread_to_order, improbable_order, limits);
+    return (struct noise_further){expected.samples, with_rare.deviation};
+}
+
 /* --- of a picture --- */
 
-bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, uint32_t limit, int workers) {
-    *estimate = (struct noise_estimate){.count = count, .limit = limit, .workers = workers};
+bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, struct noise_limits limits, int workers) {
+    *estimate = (struct noise_estimate){.count = count, .limits = limits, .workers = workers};
     estimate->tiles = mem_alloc_zero(count, sizeof *estimate->tiles);
     estimate->sums = mem_alloc_zero((size_t)workers, sizeof *estimate->sums);
     return estimate->tiles && estimate->sums;
@@ -109,7 +154,7 @@ void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, doubl
 }
 
 static uint32_t samples_of(const struct noise_tile *tile) {
-    return tile->history.count > 0 ? tile->history.points[tile->history.count - 1].samples : 0;
+    return tile->history.last.samples;
 }
 
 /* The history has a point. */
@@ -129,6 +174,26 @@ void noise_estimate_part(struct noise_estimate *estimate, int worker, double par
     sum_store(&estimate->sums[worker].part, part);
 }
 
+/* What a level shows of the drift. With fewer than 8 samples before it, it says little. */
+static void add_drift(struct noise_sums *sums, const struct noise_history *before, const struct noise_point *now) {
+    if (before->last.samples < 8 || now->samples < 16 || now->needed >= noise_endless)
+        return;
+    struct prediction prediction = predict(before);
+    double doublings = el_log2((double)now->samples / prediction.samples);
+    double difference = logarithm(now->needed) - (prediction.centre + prediction.change * doublings);
+    sum_add(&sums->drift, clamped(drift_lowest, difference, drift_highest));
+    sum_add(&sums->doublings, doublings);
+}
+
+static double drift_so_far(const struct noise_estimate *estimate) {
+    double drift = 0, doublings = drift_doublings;
+    for (int w = 0; w < estimate->workers; w++) {
+        drift += sum_load(&estimate->sums[w].drift);
+        doublings += sum_load(&estimate->sums[w].doublings);
+    }
+    return drift_share * drift / doublings;
+}
+
 void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t tile, const struct noise_level *level) {
     struct noise_sums *sums = &estimate->sums[worker];
     struct noise_tile *of_tile = &estimate->tiles[tile];
@@ -137,13 +202,15 @@ void noise_estimate_done(struct noise_estimate *estimate, int worker, uint32_t t
     sum_store(&sums->planned, 0);
     if (level->point.samples < 2 && level->point.needed < noise_endless && !level->final)
         return; /* no noise yet */
-    bool first = of_tile->history.count == 0;
-    noise_history_add(&of_tile->history, level->point);
+    bool first = samples_of(of_tile) == 0;
+    add_drift(sums, &of_tile->history, &level->point);
+    noise_history_add(&of_tile->history, &level->point);
     if (!level->final) {
         uint32_t samples = level->point.samples;
-        struct noise_further further = noise_further_samples(&of_tile->history, estimate->limit);
+        struct noise_further further =
+            noise_further_samples(&of_tile->history, drift_so_far(estimate), estimate->limits);
         rest = cost_of_sample(of_tile) * further.samples;
-        of_tile->urgency = further.deviation / (noise_next_level(samples, estimate->limit) - samples);
+        of_tile->urgency = further.deviation / (noise_next_level(samples, estimate->limits.limit) - samples);
     }
     sum_add(&sums->pixels, first ? of_tile->pixels : 0);
     sum_add(&sums->done, first ? of_tile->cost : level->cost);

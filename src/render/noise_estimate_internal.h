@@ -9,33 +9,50 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What is known of a tile after some samples: how many samples it would need if its noise fell as 1/sqrt(samples).
- * Noise has two estimates: that which decides (of the halves of the samples), and a smoother one (of the samples). */
+/* What is known of a tile after some samples: how many samples it would need if its noise fell as 1/sqrt(samples), and
+ * how its noise came about (struct path_noise). */
 struct noise_point {
     uint32_t samples;
-    double needed, needed_by_samples;
+    double needed;
+    double rare;    /* natural logarithm of the variance relative to the plain one: large if no mean is known yet */
+    double settled; /* the same relative to the variance by samples: negative if stratification helps */
+    double concentration;
 };
 /* Needed by tiles that get all samples whatever their noise is: passes without --noise. */
 static const double noise_endless = 1e30;
 
-/* The last points, oldest first. */
-enum { NOISE_POINTS = 3 };
+/* The last point, and the needed samples of those before, oldest first. */
+enum { NOISE_PAST = 2 };
 struct noise_history {
-    struct noise_point points[NOISE_POINTS];
-    int count;
+    struct noise_past {
+        uint32_t samples;
+        double needed;
+    } past[NOISE_PAST];
+    struct noise_point last;
+    int count; /* of past; there is a last point if its number of samples is not 0 */
 };
-void noise_history_add(struct noise_history *history, struct noise_point point);
+void noise_history_add(struct noise_history *history, const struct noise_point *point);
 
 /* The number of samples of the level after one with so many, at most `limit`: 2, 4, 8, and the checks of the noise
  * (path_next_check). */
 uint32_t noise_next_level(uint32_t samples, uint32_t limit);
 
-/* The further samples of a tile that is not quiet: the expected number, and its standard deviation. The history has at
- * least one point with 2 or more samples, or one of a tile that gets all of them. */
+/* All tiles get at least `minimum` and at most `limit` samples. */
+struct noise_limits {
+    uint32_t minimum, limit;
+};
+/* wanted: the noise of --noise; 0: all tiles get `limit` samples. */
+struct noise_limits noise_limits_for(double wanted, uint32_t limit);
+
+/* The further samples of a tile that is not finished: the expected number, without the few cases that need very many;
+ * and its standard deviation, with most of them. drift: change of the logarithm of the needed samples for each
+ * doubling, beyond what the history says. The history has at least one point with 2 or more samples, or one of a tile
+ * that gets all of them. */
 struct noise_further {
     double samples, deviation;
 };
-struct noise_further noise_further_samples(const struct noise_history *history, uint32_t limit);
+struct noise_further noise_further_samples(const struct noise_history *history, double drift,
+                                           struct noise_limits limits);
 
 /* --- of a picture --- */
 
@@ -49,13 +66,15 @@ struct noise_tile {
 
 /* The sums of one worker, as in render/time_estimate.h. */
 struct noise_sums {
-    _Atomic double done, rest;    /* costs; rest is of tiles that have samples, and may be negative for one worker */
-    _Atomic double pixels;        /* of tiles that have samples */
-    _Atomic double planned, part; /* cost of the level in progress, and how much of it is done, 0..1 */
+    _Atomic double done, rest;       /* costs; rest is of tiles that have samples, and may be negative for one worker */
+    _Atomic double pixels;           /* of tiles that have samples */
+    _Atomic double planned, part;    /* cost of the level in progress, and how much of it is done, 0..1 */
+    _Atomic double drift, doublings; /* of levels that are done: needed samples beyond the prediction (logarithm) */
 };
 
 struct noise_estimate {
-    uint32_t count, limit;
+    uint32_t count;
+    struct noise_limits limits;
     int workers;
     double pixels; /* of all tiles that get samples here */
     struct noise_tile *tiles;
@@ -63,7 +82,7 @@ struct noise_estimate {
 };
 
 /* Memory for tiles and workers. False: no memory; noise_estimate_destroy is fine in any case. */
-bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, uint32_t limit, int workers);
+bool noise_estimate_create(struct noise_estimate *estimate, uint32_t count, struct noise_limits limits, int workers);
 void noise_estimate_destroy(struct noise_estimate *estimate);
 /* Before the first tile: this tile will get samples, and has so many. */
 void noise_estimate_expect(struct noise_estimate *estimate, uint32_t tile, double pixels, uint32_t samples);

@@ -2,6 +2,7 @@
  * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
+#include "math/elementary.h"
 #include "render/aov.h"
 #include "render/integrator_internal.h"
 #include "render/path_film.h"
@@ -185,6 +186,15 @@ static bool is_check(uint32_t samples) {
     return samples >= 16 && path_next_check(samples - 1) == samples;
 }
 
+static double square(double x) {
+    return x * x;
+}
+
+/* The natural logarithm of the ratio of two variances. Noise below 1e-5 is none. */
+static double log_of_ratio(double noise, double other) {
+    return 2 * el_log(fmax(noise, 1e-5) / fmax(other, 1e-5));
+}
+
 /* Checks the noise of the tile, and computes its expected number of samples. True: it is at a check, and its noise is
  * small enough. */
 static bool is_quiet(const struct path_tracer *tracer, const struct film *film, struct worker *worker,
@@ -195,8 +205,8 @@ static bool is_quiet(const struct path_tracer *tracer, const struct film *film, 
     bool quiet = is_check(samples) && samples >= minimum && noise.noise <= wanted;
     worker->quiet = quiet;
     worker->noise =
-        (struct noise_point){samples, path_samples_needed(samples, noise.noise, noise.plain, wanted),
-                             path_samples_needed(samples, noise.by_samples, noise.plain_by_samples, wanted)};
+        (struct noise_point){samples, samples * square(noise.noise / wanted), log_of_ratio(noise.noise, noise.plain),
+                             log_of_ratio(noise.noise, noise.by_samples), noise.concentration};
     worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise.noise, wanted, tracer->samples);
     return quiet;
 }
@@ -235,7 +245,7 @@ bool path_tracer_render(const struct path_tracer *tracer, struct renderer *rende
     if (tracer->noise > 0)
         return sample_until_quiet(tracer, renderer, worker, part);
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
-    worker->noise = (struct noise_point){worker->range.end, noise_endless, noise_endless};
+    worker->noise = (struct noise_point){.samples = worker->range.end, .needed = noise_endless};
     return sample_part(tracer, renderer, worker, part, worker->range.begin, worker->range.end);
 }
 

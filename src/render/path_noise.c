@@ -86,16 +86,16 @@ static double median_of_neighbours(struct channel (*pixels)[3], struct film_rect
 }
 
 struct relative {
-    double halves, samples, plain, plain_samples;
+    double halves, samples, plain;
 };
 
 /* The relative variances of a channel. */
 static struct relative relative_variance(const struct channel *of, double median) {
     double low = of->mean - sqrt(of->samples), mean = fmin(of->mean, fmax(low, median));
     double square = of->mean * of->mean, unsure = of->samples < square ? of->samples / square : 1;
-    double below = 1 / (mean * mean + dark), plain = 1 / (square + dark);
+    double below = 1 / (mean * mean + dark);
     return (struct relative){(of->halves + (of->samples - of->halves) * unsure) * below, of->samples * below,
-                             of->halves * plain, of->samples * plain};
+                             of->halves / (square + dark)};
 }
 
 /* The standard error of the sum over a whole tile is added as far as it exceeds `usual` times that of equal pixels,
@@ -112,7 +112,7 @@ static double noise_of(double sum, double squares, double pixels) {
 struct path_noise path_tile_noise(const struct film *film, struct film_rectangle tile) {
     struct channel pixels[SIDE * SIDE][3];
     const struct film_rectangle size = {0, 0, tile.x1 - tile.x0, tile.y1 - tile.y0};
-    struct relative sum = {0, 0, 0, 0}, squares = {0, 0, 0, 0};
+    struct relative sum = {0, 0, 0}, squares = {0, 0, 0};
     for (uint32_t y = 0; y < size.y1; y++) {
         for (uint32_t x = 0; x < size.x1; x++)
             load_pixel(film, (size_t)(tile.y0 + y - film->y0) * film->width + (tile.x0 + x - film->x0),
@@ -120,19 +120,17 @@ struct path_noise path_tile_noise(const struct film *film, struct film_rectangle
     }
     for (uint32_t y = 0; y < size.y1; y++) {
         for (uint32_t x = 0; x < size.x1; x++) {
-            struct relative pixel = {0, 0, 0, 0};
+            struct relative pixel = {0, 0, 0};
             for (int c = 0; c < 3; c++) {
                 struct relative add =
                     relative_variance(&pixels[y * SIDE + x][c], median_of_neighbours(pixels, size, x, y, c));
                 pixel.halves += add.halves / 3;
                 pixel.samples += add.samples / 3;
                 pixel.plain += add.plain / 3;
-                pixel.plain_samples += add.plain_samples / 3;
             }
             sum.halves += pixel.halves;
             sum.samples += pixel.samples;
             sum.plain += pixel.plain;
-            sum.plain_samples += pixel.plain_samples;
             squares.halves += pixel.halves * pixel.halves;
             squares.samples += pixel.samples * pixel.samples;
         }
@@ -140,7 +138,7 @@ struct path_noise path_tile_noise(const struct film *film, struct film_rectangle
     double count = (double)size.x1 * size.y1;
     return (struct path_noise){noise_of(sum.halves, squares.halves, count),
                                noise_of(sum.samples, squares.samples, count), sqrt(sum.plain / count),
-                               sqrt(sum.plain_samples / count)};
+                               sum.halves > 0 ? sqrt(squares.halves) / sum.halves : 0};
 }
 
 double path_pixel_noise_of_samples(const struct path_pixel *pixel) {
@@ -161,13 +159,6 @@ uint32_t path_next_check(uint32_t samples) {
 
 uint32_t path_minimum_samples(double wanted) {
     return (uint32_t)fmin(fmax(16, ceil(1.25 / wanted)), PATH_SAMPLES_MAX);
-}
-
-double path_samples_needed(uint32_t samples, double noise, double plain, double wanted) {
-    double minimum = path_minimum_samples(wanted), per_square = samples / (wanted * wanted);
-    double needed = fmax(noise * noise * per_square, minimum), plainly = fmax(plain * plain * per_square, minimum);
-    double share = samples > 4 ? 1 / sqrt(samples) : 0.5;
-    return needed * el_pow(plainly / needed, share);
 }
 
 uint32_t path_samples_expected(uint32_t samples, double noise, double wanted, uint32_t limit) {

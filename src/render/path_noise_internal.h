@@ -6,16 +6,15 @@
 #include "render/path_film.h"
 
 struct path_noise {
-    double noise;      /* this decides: mostly from the halves of the samples */
-    double by_samples; /* the same from the variance of the samples: smoother, for time estimates */
-    double plain, plain_by_samples; /* the same with the own mean of each pixel, without what is added for rare paths */
+    double noise; /* this decides: mostly from the halves of the samples */
+    /* For time estimates: */
+    double by_samples;    /* the same from the variance of the samples */
+    double plain;         /* the same with the own mean of each pixel, without what is added for rare paths */
+    double concentration; /* sqrt(sum of e^2) / sum of e over the pixels' e: 1 if all noise is in one pixel, 1/sqrt(n)
+                             if n pixels have the same; 0: no noise */
 };
 /* Of the pixels of a tile, or of a part of one; pixels as in film_tile_rectangle. 0 with less than two samples. */
 struct path_noise path_tile_noise(const struct film *film, struct film_rectangle tile);
-/* The number of samples that a tile with so much noise after `samples` would need if its noise fell as 1/sqrt(samples),
- * for time estimates: from `noise` and `plain`, or both by samples. Few samples make the first too large, because no
- * mean is known, and the second too small, because rare paths are missing. So their geometric mean counts first. */
-double path_samples_needed(uint32_t samples, double noise, double plain, double wanted);
 /* Of one pixel without neighbours, the square of by_samples. */
 double path_pixel_noise_of_samples(const struct path_pixel *pixel);
 

@@ -551,7 +551,8 @@ static void begin_progress(struct renderer *renderer) {
     if (!estimate)
         return;
     uint32_t count = film_tile_count(renderer->job->film);
-    if (noise_estimate_create(&renderer->noise_estimate, count, renderer->pass.end, pool_workers(renderer->pool)))
+    struct noise_limits limits = noise_limits_for(renderer->job->settings.noise, renderer->pass.end);
+    if (noise_estimate_create(&renderer->noise_estimate, count, limits, pool_workers(renderer->pool)))
         renderer_expect_levels(renderer);
     else
         noise_estimate_destroy(&renderer->noise_estimate);

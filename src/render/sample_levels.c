@@ -273,7 +273,9 @@ bool renderer_order_levels(struct renderer *renderer) {
         levels->samples = mem_alloc_zero((size_t)count + 1, sizeof *levels->samples);
         levels->waiting = mem_alloc_zero((size_t)count + 1, sizeof *levels->waiting);
         if (!levels->samples || !levels->waiting ||
-            !noise_estimate_create(&renderer->noise_estimate, count, renderer->pass.end, pool_workers(renderer->pool)))
+            !noise_estimate_create(&renderer->noise_estimate, count,
+                                   noise_limits_for(job->settings.noise, renderer->pass.end),
+                                   pool_workers(renderer->pool)))
             return false;
     }
     if (!job->handout)

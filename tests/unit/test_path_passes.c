@@ -292,17 +292,6 @@ TEST(the_samples_of_a_tile_are_expected_from_the_square_root_of_their_number) {
     CHECK_EQ_INT(path_samples_expected(32, 0, 0.1, 65536), 32);
 }
 
-/* Two samples of a tile that needs 64: the noise says 4,096 because no mean is known, the plain one says 16. */
-TEST(the_samples_that_a_tile_needs_are_between_those_of_its_noise_and_of_its_plain_noise) {
-    const double wanted = 0.08, minimum = path_minimum_samples(wanted);
-    CHECK_NEAR(path_samples_needed(2, wanted * sqrt(4096 / 2), wanted * sqrt(minimum / 2), wanted),
-               sqrt(4096 * minimum), 1e-6);
-    CHECK_NEAR(path_samples_needed(4, wanted * 16, wanted * 4, wanted), 4 * 64, 1e-6);
-    CHECK_NEAR(path_samples_needed(64, wanted * 2, wanted, wanted), 256 / pow(4, 1.0 / 8), 1e-6);
-    CHECK_NEAR(path_samples_needed(64, wanted * 2, wanted * 2, wanted), 256, 1e-6);
-    CHECK_NEAR(path_samples_needed(2, 0, 0, wanted), minimum, 1e-9);
-}
-
 /* Against a picture of many samples, as --noise defines it. */
 static double tile_error(const struct film *film, struct film_rectangle r, float reference[][3]) {
     double sum = 0;
