@@ -222,7 +222,9 @@ static struct light_sample planar_sample(const struct light *light, const struct
     struct vec3 target = light_target_at(light, context, xi);
     double weight = context->by_angle ? intensity_of(context->seen.angle)
                                       : weight_of_area(context->weight, context->axis, vec3_sub(context->from, target));
-    return surface_sample(light, context, target, weight);
+    struct light_sample sample = surface_sample(light, context, target, weight);
+    sample.target.at = light_planar_before(light, context->from, target);
+    return sample;
 }
 
 static struct light_sample sky_sample(const struct light *light, struct sample2 xi) {

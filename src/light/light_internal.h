@@ -33,7 +33,22 @@ double light_attenuation(const struct light *light, double distance);
  * them the cubic 3 s^2 - 2 s^3 of the cosine. */
 double light_cone(const struct light *light, struct vec3 from_light);
 
-/* light_shapes.c: parallelograms and discs. False: a one-sided light is seen from its dark side. */
+/* A lamp without a body may lie exactly in a ceiling or wall: both have the same t, but for rounding. So rays meet such
+ * a lamp a little before its plane, and shadow rays end there. Relative to the coordinates: size is the largest one of
+ * the lamp, distance that of the point from which the lamp is seen. */
+static inline double light_gap(double size, double distance) {
+    return 0x1p-40 * (size + distance);
+}
+/* Whether a ray that crosses the plane of a lamp at t meets it in its interval. across: of the unit normal and the
+ * ray's direction, not 0. */
+static inline bool light_plane_is_met(const struct ray *ray, double t, double across, double size) {
+    double before = t - light_gap(size, fabs(t) * vec3_length(ray->direction)) / fabs(across);
+    return before > ray->t_min && before < ray->t_max;
+}
+
+/* light_shapes.c: parallelograms and discs. The end of a shadow ray to a point of the lamp, on the way to it. */
+struct vec3 light_planar_before(const struct light *light, struct vec3 from, struct vec3 at);
+/* False: a one-sided light is seen from its dark side. */
 bool light_planar_is_behind(const struct light *light, struct vec3 normal, struct vec3 from);
 struct vec3 light_disc_target(const struct light *light, const struct light_context *context, struct sample2 xi);
 bool light_is_beside_disc(const struct light *light, struct vec3 point);

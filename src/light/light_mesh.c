@@ -210,7 +210,7 @@ bool light_triangle_meets_ray(const struct light_mesh *mesh, uint32_t triangle, 
     if (across == 0 || (mesh->one_sided && across > 0))
         return false;
     hit->t = vec3_dot(t->normal, vec3_sub(t->corner, ray->origin)) / across;
-    if (!(hit->t > ray->t_min && hit->t < ray->t_max))
+    if (!light_plane_is_met(ray, hit->t, across, t->offset * 0x1p40))
         return false;
     hit->point = ray_at(ray, hit->t);
     hit->triangle = triangle;

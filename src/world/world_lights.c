@@ -393,6 +393,18 @@ static struct box box_of_part(const struct light *light, uint32_t part) {
     return box;
 }
 
+/* Rays meet a lamp a little before its plane. */
+static struct box box_met(const struct light *light, uint32_t part) {
+    struct box box = box_of_part(light, part);
+    double gap = 0x1p-38 * fmax(vec3_max_abs(box.min), vec3_max_abs(box.max));
+    return (struct box){vec3_sub(box.min, vec3_all(gap)), vec3_add(box.max, vec3_all(gap))};
+}
+
+/* And before the surface in which they end. */
+static double end_met(double t_max) {
+    return t_max * (1 + 0x1p-38);
+}
+
 static bool build_area_lights(struct building *b) {
     struct world_lights *out = b->out;
     uint64_t total = 0;
@@ -405,7 +417,7 @@ static bool build_area_lights(struct building *b) {
     bool ok = (area_lights && boxes) || error_no_memory(b->error, "the lights of the scene");
     for (uint32_t i = 0; ok && i < out->world->light_count; i++) {
         for (uint32_t part = 0; part < surfaces_of(&b->lights[i]); part++) {
-            boxes[out->area_light_count] = box_pad(box_of_part(&b->lights[i], part));
+            boxes[out->area_light_count] = box_met(&b->lights[i], part);
             area_lights[out->area_light_count++] = (struct light_part){i, part};
         }
     }
@@ -690,7 +702,7 @@ void world_lights_met_begin(struct world_lights_traversal *traversal, const stru
 
 bool world_lights_met_next(struct world_lights_traversal *traversal, uint32_t *light, struct light_hit *hit) {
     uint32_t item;
-    while (box_tree_traversal_next(&traversal->tree, traversal->ray->t_max, &item)) {
+    while (box_tree_traversal_next(&traversal->tree, end_met(traversal->ray->t_max), &item)) {
         struct light_part part = traversal->lights->area_lights[item];
         const struct light *area_light = &traversal->lights->lights[part.light];
         *light = part.light;
@@ -711,7 +723,7 @@ bool world_lights_seen(const struct world_lights *lights, const struct ray *ray,
     if (lights->area_light_count == 0)
         return false;
     box_tree_traversal_begin(&traversal, &lights->surfaces, ray);
-    while (box_tree_traversal_next(&traversal, limited.t_max, &item)) {
+    while (box_tree_traversal_next(&traversal, end_met(limited.t_max), &item)) {
         uint32_t number = lights->area_lights[item].light;
         if (!lights->lights[number].visible || !light_meets_ray(&lights->lights[number], &limited, &met))
             continue;

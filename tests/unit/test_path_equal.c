@@ -75,6 +75,53 @@ static void check_opposite(const struct pair *pair) {
     pictures_end(&p);
 }
 
+/* Pixels differ by less than a thousandth. */
+static void check_near(const struct pair *pair) {
+    enum { COUNT = 3 * 8 * 8 };
+    struct pictures p = pictures_of(pair);
+    float a[COUNT], b[COUNT];
+    CHECK(p.size > sizeof a);
+    memcpy(a, p.a + p.size - sizeof a, sizeof a);
+    memcpy(b, p.b + p.size - sizeof b, sizeof b);
+    for (int i = 0; i < COUNT; i++) {
+        CHECK(b[i] > 0.001F);
+        CHECK_NEAR(a[i], b[i], 1e-3 * (double)b[i]);
+    }
+    pictures_end(&p);
+}
+
+/* A black ceiling 2 above the floor, turned about the axes and far from the origin or not, and a lamp a gap below it.
+ */
+#define CEILING                                                                                                        \
+    "local function turned(v, angle)\n"                                                                                \
+    "  local c, s = math.cos(math.rad(angle)), math.sin(math.rad(angle))\n"                                            \
+    "  return {v[1], c * v[2] - s * v[3], s * v[2] + c * v[3]}\nend\n"                                                 \
+    "local angle, black = 17, gr.material{kd={0,0,0}}\n"                                                               \
+    "local function at(v) local p = turned(v, angle) return {p[1], p[2] + 5, p[3]} end\n"
+
+/* The ray that finds such a lamp ends at the ceiling, at the same t but for rounding. */
+TEST(a_lamp_in_a_ceiling_has_the_light_of_one_just_below_it) {
+    static const char *const ceilings[] = {
+        "local c = gr.box(black, {-3,0,-3}, {3,1,3}) c:rotate('x', angle) c:translate(0,5,0) add(c)\n",
+        "add(gr.mesh(black, {at{-3,0,-3}, at{3,0,-3}, at{3,0,3}, at{-3,0,3}}, {{0,1,2,3}}))\n",
+        "add(gr.disc{material=black, centre=at{0,0,0}, normal=turned({0,1,0}, angle), radius=4})\n"};
+    static const char *const lamps[] = {
+        "local function lamp(gap) return gr.area_light{corner=at{-1,-gap,-1}, v1={2,0,0}, v2=turned({0,0,2}, angle), "
+        "emission={1,1,1}} end\n",
+        "local function lamp(gap) return gr.disc_light{position=at{0,-gap,0}, normal=turned({0,-1,0}, angle), "
+        "radius=1, "
+        "emission={1,1,1}} end\n",
+        "local function lamp(gap) return gr.mesh_light{emission={1,1,1}, mesh=gr.mesh(black, {at{-1,-gap,-1}, "
+        "at{1,-gap,-1}, at{1,-gap,1}, at{-1,-gap,1}}, {{0,1,2,3}})} end\n"};
+    for (size_t c = 0; c < sizeof ceilings / sizeof *ceilings; c++) {
+        for (size_t l = 0; l < sizeof lamps / sizeof *lamps; l++) {
+            char body[2048];
+            (void)snprintf(body, sizeof body, CEILING "%s%s", ceilings[c], lamps[l]);
+            check_near(&(struct pair){body, "lights={lamp(0)}", "lights={lamp(1e-6)}"});
+        }
+    }
+}
+
 /* Whitted's highlights stand for lamps that mirrors do not show. Scattered rays find them in mirrors. */
 TEST(scattered_rays_find_lamps_in_mirrors_once_whether_they_are_visible_or_not) {
     static const char mirror[] = "local m = gr.material{kd={0,0,0}, ks={.9,.9,.9}, shininess=20, reflect=1}\n"
