@@ -208,6 +208,29 @@ static double metal_albedo_bound(struct vec3 f0, struct vec3 tint) {
     return bound;
 }
 
+/* The largest component of a layer's colour; 0: the layer is not there. */
+static double layer_bound(const struct material *material, enum material_input weight_input, double weight,
+                          enum material_input colour_input, struct vec3 colour) {
+    const struct texture *texture = material_texture(material, colour_input);
+    if (!(weight > 0) && !material_texture(material, weight_input))
+        return 0;
+    if (texture)
+        colour = texture_estimate(texture, material->textures, numbers_of(material), TEXTURE_LARGEST_TEXEL);
+    return vec3_max_abs(colour);
+}
+
+/* The coat filters what is below; fuzz and transmission have their own colours. In a deep medium the colour is that of
+ * its absorption. */
+static double layers_albedo_bound(const struct material *material, double base) {
+    const struct openpbr *v = material->openpbr;
+    double transmission = v->deep ? 0
+                                  : layer_bound(material, INPUT_REFRACT, numbers_of(material)->refract,
+                                                INPUT_TRANSMISSION_COLOUR, v->transmission_colour);
+    double coat = layer_bound(material, INPUT_COAT_WEIGHT, v->coat_weight, INPUT_COAT_COLOUR, v->coat_colour);
+    double fuzz = layer_bound(material, INPUT_FUZZ_WEIGHT, v->fuzz_weight, INPUT_FUZZ_COLOUR, v->fuzz_colour);
+    return fmax(fmax(base, transmission) * fmax(coat, 1), fuzz);
+}
+
 /* At normal incidence a highlight reflects 2 ks / (e + 1) of uniform light; with a mirror it is left out. */
 double material_albedo_bound(const struct material *material) {
     const struct phong *numbers = numbers_of(material);
@@ -220,9 +243,9 @@ double material_albedo_bound(const struct material *material) {
         return 0;
     const struct openpbr *openpbr = material->openpbr;
     if (openpbr && openpbr->base_metalness >= 1 && !material_texture(material, INPUT_METALNESS))
-        return metal_albedo_bound(vec3_scale(colour, openpbr->base_weight), numbers->ks);
+        return layers_albedo_bound(material, metal_albedo_bound(vec3_scale(colour, openpbr->base_weight), numbers->ks));
     if (openpbr)
-        return fmax(diffuse, vec3_max_abs(numbers->ks));
+        return layers_albedo_bound(material, fmax(diffuse, vec3_max_abs(numbers->ks)));
     return diffuse + (specular > 0 ? specular : vec3_max_abs(numbers->ks) * 2 / (exponent + 1));
 }
 

@@ -204,6 +204,23 @@ TEST(the_table_of_metals_has_the_colours_of_metals) {
     CHECK(known >= 10);
 }
 
+TEST(the_albedo_bound_counts_the_colours_of_coat_fuzz_and_transmission_that_are_there) {
+    struct layers l;
+    layers_init(&l);
+    l.material.phong.kd = vec3_all(0.8);
+    l.numbers.coat_colour = l.numbers.transmission_colour = l.numbers.fuzz_colour = vec3_make(0.5, 3, 0.5);
+    CHECK_NEAR(material_albedo_bound(&l.material), 1, 0); /* the highlight; no layer has a weight */
+    l.numbers.fuzz_weight = 0.5;
+    CHECK_NEAR(material_albedo_bound(&l.material), 3, 0);
+    l.numbers.fuzz_weight = 0;
+    l.numbers.coat_weight = 0.5;
+    CHECK_NEAR(material_albedo_bound(&l.material), 3, 0);
+    l.material.phong.refract = 0.5;
+    CHECK_NEAR(material_albedo_bound(&l.material), 9, 0);
+    l.numbers.deep = true; /* that colour is the absorption now */
+    CHECK_NEAR(material_albedo_bound(&l.material), 3, 0);
+}
+
 /* Tints above 1 (gold, brass) reflect no more light than arrives, if the colour leaves room for them. */
 TEST(the_albedo_bound_of_metal_is_above_1_only_where_its_fresnel_reflectance_is) {
     const struct {
