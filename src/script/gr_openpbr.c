@@ -192,6 +192,21 @@ static bool with_texture(struct script_context *context, struct material *m, enu
     return texture && material_multiply(m, input, texture, arena, error);
 }
 
+/* emission_luminance is a number, and the input a colour: the ratio of a mix is read as a number. */
+static bool with_luminance(struct script_context *context, struct material *m, const struct script_value *value,
+                           struct error *error) {
+    struct arena *arena = &context->scene.arena;
+    struct script_value own = *value;
+    if (!value->texture)
+        return true;
+    own.vector = vec3_all(1);
+    const struct texture *ratio = gr_texture_of(context, &own, error);
+    const struct texture *one = texture_keep(arena, texture_constant(vec3_all(1)), error);
+    const struct texture *none = texture_keep(arena, texture_constant(vec3_all(0)), error);
+    const struct texture *mix = ratio && one && none ? texture_keep(arena, texture_mix(one, none, ratio), error) : NULL;
+    return mix && material_multiply(m, INPUT_EMISSION, mix, arena, error);
+}
+
 static bool with_textures(struct script_context *context, struct material *m, const struct script_value *args,
                           struct error *error) {
     static const struct {
@@ -218,12 +233,13 @@ static bool with_textures(struct script_context *context, struct material *m, co
                 {FUZZ_WEIGHT, INPUT_FUZZ_WEIGHT, true},
                 {FUZZ_COLOUR, INPUT_FUZZ_COLOUR, false},
                 {FUZZ_ROUGHNESS, INPUT_FUZZ_ROUGHNESS, true},
-                {EMISSION_LUMINANCE, INPUT_EMISSION, false},
                 {EMISSION_COLOUR, INPUT_EMISSION, false},
                 {GEOMETRY_OPACITY, INPUT_OPACITY, true}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!with_texture(context, m, rows[i].input, rows[i].is_share, &args[rows[i].parameter], error))
             return false;
+    if (!with_luminance(context, m, &args[EMISSION_LUMINANCE], error))
+        return false;
     const struct script_value *opacity = &args[GEOMETRY_OPACITY];
     if (opacity->texture || !(number_or(opacity, 1) < 1))
         return true;

@@ -151,6 +151,30 @@ static void write_stated(const char *path, uint8_t colour[3], const char *kind, 
     file_unmap(&file);
 }
 
+/* The mean of its three channels, which are not decoded. */
+TEST(a_picture_of_emission_luminance_is_a_number) {
+    uint8_t colour[3] = {128, 64, 200};
+    struct error error;
+    write_stated(test_path("number.png"), colour, NULL, NULL, 0);
+    struct test_result result = test_gray_scene(
+        "local m = gr.openpbr_material{base_weight=0, specular_weight=0, emission_luminance=gr.texture('number.png'),\n"
+        "                             emission_color={1, .5, 0}}\n"
+        "gr.render{node=gr.rectangle{material=m, corner={-5,-5,0}, along={10,0,0}, up={0,10,0}}, file='x.pfm', "
+        "width=2,\n"
+        "          height=2, spp=1, eye={0,0,5}, integrator='path', background={0,0,0}}\n",
+        "scene.lua", NULL);
+    CHECK_EQ_INT(result.status, 0);
+    free(result.out);
+    free(result.err);
+    struct image *image = image_read(test_path("x.pfm"), &error);
+    CHECK(image != NULL);
+    struct rgba texel = image ? image_texel(image, 0, 0) : (struct rgba){0, 0, 0, 0};
+    CHECK_NEAR(texel.r, (128 + 64 + 200) / 765.0, 1e-6);
+    CHECK_NEAR(texel.g, (128 + 64 + 200) / 765.0 / 2, 1e-6);
+    CHECK_NEAR(texel.b, 0, 0);
+    image_release(image);
+}
+
 TEST(a_png_file_states_its_transfer_function) {
     static const struct {
         const char *kind, *bytes;
