@@ -138,6 +138,25 @@ bool mesh_lights_estimate(const struct world *world, struct light *light, struct
     return true;
 }
 
+/* Rays do not hit it, so its materials are not evaluated at points. */
+static void warn_of_average(const struct mesh_light_collection *g, struct flattening *f) {
+    for (uint32_t i = 0; f->warn && !g->light->has_emission && i < g->world->primitive_count; i++) {
+        const struct prototype *prototype = primitive_prototype(g->world, i);
+        for (uint32_t slot = 0; is_source(g, i) && slot < (prototype->slot_count > 0 ? prototype->slot_count : 1);
+             slot++) {
+            if (!material_texture(g->world->authored.materials[prototype->material + slot], INPUT_EMISSION))
+                continue;
+            char text[256];
+            (void)snprintf(text, sizeof text,
+                           "node '%.100s' is a mesh light that is not in the scene: of the texture of its emission "
+                           "only the average counts",
+                           g->node->name);
+            f->warn(f->warn_context, text);
+            return;
+        }
+    }
+}
+
 /* For a node that is not in the scene. */
 static bool gather_unseen(struct mesh_light_collection *g, struct flattening *f, struct error *error) {
     const struct node *node = g->node;
@@ -152,6 +171,8 @@ static bool gather_unseen(struct mesh_light_collection *g, struct flattening *f,
         ok = error_set(error, ERROR_SCENE, "node '%.100s' is a mesh light, but there is no mesh there or below it",
                        node->name);
     ok = ok && gather(g, total, f->arena, error);
+    if (ok)
+        warn_of_average(g, f);
     world_destroy(&own);
     return ok;
 }

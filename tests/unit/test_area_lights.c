@@ -655,3 +655,22 @@ TEST(lamps_that_are_meshes_and_skies_give_the_same_bits_everywhere) {
     }
     free(reference);
 }
+
+TEST(a_mesh_light_that_is_not_in_the_scene_says_that_a_texture_of_emission_is_averaged) {
+    static const char *const emissions[] = {"gr.fn(function(p) return gr.step(p.x, .5) end)", "{1, .5, 0}"};
+    for (int k = 0; k < 2; k++) {
+        char scene[512];
+        (void)snprintf(scene, sizeof scene,
+                       "local m = gr.material{kd={0,0,0}, emission=%s}\n"
+                       "local square = gr.mesh(m, {{0,1,0},{1,1,0},{1,1,1}}, {{0,1,2}})\n"
+                       "gr.render{node=gr.sphere{name='ball'}, file='x.png', width=2, height=2, eye={0,0,5}, "
+                       "lights={gr.mesh_light(square)}}\n",
+                       emissions[k]);
+        struct test_result result = test_gray_scene(scene, "scene.lua", NULL);
+        CHECK_EQ_INT(result.status, 0);
+        CHECK((strstr(result.err, "not in the scene: of the texture of its emission only the average counts") !=
+               NULL) == (k == 0));
+        free(result.out);
+        free(result.err);
+    }
+}
