@@ -77,6 +77,7 @@ struct path_segment {
     const struct light_receiver *receiver;
     double pdf;         /* density of its direction by solid angle; 0: the only possible direction */
     struct vec3 thrown; /* the fraction of the path's weight that photons represent, for lights that send photons */
+    double passed;      /* after holes: the line began at t = -passed */
 };
 
 /* Random numbers for direct light: `choice` selects the light, and the point of `sampler` in this dimension selects a

@@ -177,8 +177,8 @@ static struct vec3 direct_of(const struct path_tracer *tracer, struct integrator
         f = vec3_scale(f, weight_of(tracer, PATH_STRATEGY_LIGHTS, pdf, other) / pdf);
     }
     struct vec3 highlight = none;
-    /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that the
-     * mirror throws replace the highlight. */
+    /* Lines of sight do not meet lights that are not visible; scattered rays meet all but delta lights. Photons that
+     * the mirror throws replace the highlight. */
     if (vertex->substitute && part.light < state->job->world->light_count &&
         (vertex->sight ? !light_is_seen(&lights->lights[part.light]) : sample.is_delta))
         highlight = without_thrown(tracer, part.light, vertex->thrown,
@@ -236,10 +236,12 @@ struct vec3 path_area_lights(const struct path_tracer *tracer, const struct path
         return sum;
     struct ray ray = *segment->ray;
     ray.t_max = t_max;
+    ray.t_min -= segment->passed;
     world_lights_met_begin(&traversal, lights, &ray);
     while (world_lights_met_next(&traversal, &number, &hit)) {
         struct medium_effect effect;
-        if (!world_lights_illuminate(lights, number, segment->receiver->primitive))
+        bool counted = segment->passed > 0 && !(hit.t > segment->ray->t_min); /* before the hole */
+        if (counted || !world_lights_illuminate(lights, number, segment->receiver->primitive))
             continue;
         (void)medium_transmittance(MEDIUM_RAY_SIGHT, NULL, &ray, hit.t * vec3_length(ray.direction), &effect);
         struct vec3 radiance = vec3_mul(light_emitted(&lights->lights[number], &ray, &hit), effect.transmittance);

@@ -136,10 +136,11 @@ static void meet_features(struct path *path, const struct hit *hit, const struct
         albedo = vec3_add(albedo, lobe->weight);
         *(flags & BSDF_TRANSMITS ? &refracted : &reflected) += vec3_max_abs(lobe->weight);
     }
-    if (shows)
+    if (shows) {
         set_features(path, albedo, bsdf->lit, distance);
-    else if (refracted > 0 && path->parts->reflected == 0)
+    } else if (refracted > 0 && path->parts->reflected == 0) {
         path->parts->reflected = reflected / (reflected + refracted);
+    }
     path->travelled += distance;
 }
 
@@ -154,6 +155,13 @@ static void note_arrival(const struct path *path, double distance) {
     note_stage(path, STAGE_BEFORE_HIT);
 }
 
+/* After holes, the distance from where the line began, in t of the ray. */
+static double passed_of(const struct path *path) {
+    if (path->kind != RAY_HOLE)
+        return 0;
+    return vec3_length(vec3_sub(path->ray.origin, path->scatter.from)) / vec3_length(path->ray.direction);
+}
+
 /* Adds everything between the origin of the ray and its hit: area lights, fog, absorption. False: the path ends at
  * an area light. */
 static bool travel(const struct path_tracer *tracer, const struct integrator_state *state, struct path *path,
@@ -164,8 +172,10 @@ static bool travel(const struct path_tracer *tracer, const struct integrator_sta
     if (path->sight)
         seen = path_area_light_seen(tracer, &path->ray, end, &end, &radiance);
     else if (tracer->lights.area_light_count > 0)
-        add_light(path, path_area_lights(
-                            tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown}, end));
+        add_light(path, path_area_lights(tracer,
+                                         &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown,
+                                                                passed_of(path)},
+                                         end));
     const struct fog *fog = path->sight ? state->job->fog : NULL;
     if (!seen && !fog && path->media.count == 0)
         return true;
@@ -191,8 +201,8 @@ static void leave_scene(const struct path_tracer *tracer, const struct integrato
         set_features(path, light_albedo(sky), vec3_all(0), -path->travelled);
         add_light(path, sky);
     } else {
-        add_light(path, path_environment(tracer,
-                                         &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown}));
+        add_light(path, path_environment(
+                            tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown, 0}));
     }
 }
 
@@ -356,7 +366,7 @@ static bool meet_surface(const struct path_tracer *tracer, struct integrator_sta
         add_light(path, bsdf.emission);
     else if (tracer->lights.met)
         add_light(path,
-                  path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown},
+                  path_emission(tracer, &(struct path_segment){&path->ray, &path->scatter, path->pdf, path->thrown, 0},
                                 hit, bsdf.emission));
     note_stage(path, STAGE_EMISSION);
     if (path->depth >= tracer->max_depth)

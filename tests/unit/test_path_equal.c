@@ -122,6 +122,17 @@ TEST(a_lamp_in_a_ceiling_has_the_light_of_one_just_below_it) {
     }
 }
 
+/* The ray met the lamp where it entered, and its continuation behind the hole began inside. */
+TEST(holes_inside_a_spherical_lamp_do_not_count_its_light_twice) {
+    check_near(&(struct pair){
+        "local clear = gr.material{kd={0,0,0}, opacity=0}\n"
+        "local holes, lamp = gr.node('holes'), gr.spherical_light{position={0,5,0}, radius=1.4, emission={1,1,1}}\n"
+        "holes:add_child(root)\n"
+        "for i = -1, 1 do\n"
+        "  holes:add_child(gr.rectangle{material=clear, corner={-4,5+.4*i,4}, along={8,0,0}, up={0,0,-8}})\nend\n",
+        "lights={lamp}, node=holes", "lights={lamp}"});
+}
+
 /* Whitted's highlights stand for lamps that mirrors do not show. Scattered rays find them in mirrors. */
 TEST(scattered_rays_find_lamps_in_mirrors_once_whether_they_are_visible_or_not) {
     static const char mirror[] = "local m = gr.material{kd={0,0,0}, ks={.9,.9,.9}, shininess=20, reflect=1}\n"
