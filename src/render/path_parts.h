@@ -38,6 +38,7 @@ enum { PATH_SCATTERINGS = (PATH_LIGHT_GROUPS - 1) / 2 };
 struct path_parts {
     bool surface_known; /* the features are there */
     double reflected;   /* the share of light that the first smooth glass reflects; 0 without glass */
+    struct vec3 seen;   /* this share of the path's weight at the glass, which may be seen in a mirror */
     float features[PATH_FEATURES];
     struct vec3 light[PATH_LIGHT_GROUPS];
     /* For each kind of scattering (diffuse, specular, transmission) and each channel: its fraction of the light

@@ -110,7 +110,7 @@ static void set_features(struct path *path, struct vec3 albedo, struct vec3 norm
         return;
     parts->surface_known = true;
     const struct vec3 behind = vec3_mul(path->weight, albedo);
-    const struct vec3 a = vec3_add(vec3_all(parts->reflected), vec3_scale(behind, 1 - parts->reflected));
+    const struct vec3 a = parts->reflected > 0 ? vec3_add_scaled(parts->seen, behind, 1 - parts->reflected) : behind;
     const float features[PATH_GLOW] = {in_unit(a.x),
                                        in_unit(a.y),
                                        in_unit(a.z),
@@ -140,6 +140,7 @@ static void meet_features(struct path *path, const struct hit *hit, const struct
         set_features(path, albedo, bsdf->lit, distance);
     } else if (refracted > 0 && path->parts->reflected == 0) {
         path->parts->reflected = reflected / (reflected + refracted);
+        path->parts->seen = vec3_scale(path->weight, path->parts->reflected);
     }
     path->travelled += distance;
 }
