@@ -351,7 +351,7 @@ static void note_given(const struct option *option, const char *text, struct opt
                        struct given_option *given) {
     const size_t start = offsetof(struct options, settings);
     bool picture = option->group == OPTION_GROUP_PICTURE || option->group == OPTION_GROUP_SHADING ||
-                   option->group == OPTION_GROUP_FINISH;
+                   option->group == OPTION_GROUP_FINISH || option->group == OPTION_GROUP_COMPATIBILITY;
     int at = 0;
     if (!picture || option->size == 0 || option->offset < start || option->offset >= start + sizeof options->settings)
         return;

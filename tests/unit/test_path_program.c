@@ -135,11 +135,12 @@ TEST(an_option_that_a_field_overrides_has_one_notice) {
         "local r = gr.node 'r'\n"
         "r:add_child(gr.sphere(gr.material {kd={1, 1, 1}}))\n"
         "for i = 1, 2 do gr.render {node=r, file=i .. '.png', width=8, height=8, eye={0, 0, 5},\n"
-        "    integrator='path', spp=2, exposure=1, full=true} end\n";
+        "    integrator='path', spp=2, exposure=1, full=true, specular='blinn'} end\n";
     static const struct {
         const char *arguments, *line;
     } cases[] = {{"--integrator path --integrator whitted scene.lua", "--integrator whitted has no effect"},
                  {"--exposure 0 scene.lua", "--exposure 0 has no effect"},
+                 {"--specular phong scene.lua", "--specular phong has no effect"},
                  {"--integrator path --exposure 1 -full --spp 1 --max-depth 3 scene.lua", NULL},
                  {"-q --integrator whitted scene.lua", NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
