@@ -13,7 +13,9 @@
 #include "output/farm.h"
 
 #include "base/mem.h"
+#include "render/render.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -237,13 +239,18 @@ static bool assign(struct farm *farm, int rank) {
     return true;
 }
 
-/* The tile waits again. Pixels that this rank was changing are of no use. */
+/* The tile waits again. Pixels that this rank was changing are of no use; a tile that no worker has taken keeps its
+ * samples. */
 static void let_wait(struct farm *farm, uint32_t tile) {
+    struct film_level *level = &farm->film->levels[tile];
+    enum film_tile state = state_of(farm->film, tile);
     farm->owner[tile] = NOBODY;
-    sum_store(&farm->film->levels[tile].begun, 0);
+    sum_store(&level->begun, 0);
+    if (state == FILM_TILE_WANTED && atomic_load(&level->samples) > 0)
+        set_state(farm->film, tile, FILM_TILE_LEVEL);
     if (film_tile_is_begun((uint8_t)state_of(farm->film, tile)))
         return;
-    memset(&farm->film->levels[tile], 0, sizeof *farm->film->levels);
+    memset(level, 0, sizeof *level);
     set_state(farm->film, tile, FILM_TILE_LATER);
     farm->from = tile < farm->from ? tile : farm->from;
 }
@@ -581,6 +588,21 @@ static bool join(struct farm *farm, bool *already, struct error *error) {
 
 /* All. */
 
+/* A tile of a checkpoint waits for its next level if all its pixels have the samples of one. The rest of its record is
+ * empty, so that samples of an earlier run are no cost of this one. */
+static void begin_tile(struct film *film, uint32_t tile, bool keep) {
+    uint8_t state = (uint8_t)state_of(film, tile);
+    bool begun = film_tile_is_begun(state);
+    uint32_t samples = keep && begun ? render_level_samples(film, tile, PATH_SAMPLES_MAX) : 0;
+    memset(&film->levels[tile], 0, sizeof *film->levels);
+    if (samples > 0) {
+        atomic_store(&film->levels[tile].samples, samples);
+        film->levels[tile].urgency = HUGE_VAL;
+    } else if (state == FILM_TILE_WANTED || begun) {
+        set_state(film, tile, FILM_TILE_LATER);
+    }
+}
+
 bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct film *film, bool *already,
                 struct error *error) {
     farm->picture = *picture;
@@ -600,11 +622,8 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
         for (int rank = 0; rank < farm->transport->size; rank++)
             farm->peers[rank].made = 0;
     }
-    for (uint32_t tile = 0; tile < count; tile++) {
-        uint8_t state = (uint8_t)state_of(film, tile);
-        if (state == FILM_TILE_WANTED || film_tile_is_begun(state))
-            set_state(film, tile, FILM_TILE_LATER);
-    }
+    for (uint32_t tile = 0; tile < count; tile++)
+        begin_tile(film, tile, farm_is_first(farm));
     farm->film = film;
     atomic_store(&farm->control->handout, HANDOUT_OPEN);
     farm_step(farm);
@@ -621,6 +640,8 @@ void farm_step(struct farm *farm) {
 void farm_end(struct farm *farm, bool given_up) {
     bool open = farm->film != NULL;
     if (farm_is_first(farm)) {
+        if (open && given_up)
+            take_back(farm, 0); /* for its checkpoint */
         if (open)
             close_picture(farm);
     } else if (open) {

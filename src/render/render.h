@@ -71,6 +71,9 @@ struct render_area {
 };
 /* Checks picture size, crop, camera; fills the area. First call of a job. Warnings: up parallel to view. */
 bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error);
+/* The number of samples of a tile that is begun, in a film of a checkpoint (--noise); 0 unless all its pixels have
+ * those of one level, below `limit`. */
+uint32_t render_level_samples(const struct film *film, uint32_t tile, uint32_t limit);
 /* Adds all data of a job that its picture depends on, except the scene. */
 void render_digest_add(const struct render_job *job, struct digest_sum *sum);
 

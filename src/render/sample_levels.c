@@ -161,7 +161,10 @@ static_assert(sizeof(struct noise_tile) <= sizeof((struct film_level *)0)->known
 
 static void load_record(struct renderer *renderer, uint32_t tile) {
     const struct film_level *level = &renderer->job->film->levels[tile];
-    memcpy(&renderer->noise_estimate.tiles[tile], level->known, sizeof(struct noise_tile));
+    struct noise_tile *of_tile = &renderer->noise_estimate.tiles[tile];
+    memcpy(of_tile, level->known, sizeof *of_tile);
+    if (of_tile->history.last.samples == 0) /* its samples come from a checkpoint */
+        of_tile->before = atomic_load_explicit(&level->samples, memory_order_relaxed);
 }
 
 static void store_record(struct renderer *renderer, uint32_t tile) {
@@ -179,13 +182,19 @@ void renderer_make_farm_levels(struct renderer *renderer, struct worker *worker,
     uint64_t begun = clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID);
     uint32_t samples = atomic_load_explicit(&level->samples, memory_order_relaxed);
     enum level_end end;
+    /* A checkpoint has more samples if the script states another limit than before. These are made again, all at once:
+     * the first rank would not take fewer samples than it has. */
+    bool again = samples >= renderer->pass.end;
+    if (again)
+        atomic_store_explicit(&level->samples, samples = 0, memory_order_relaxed);
     load_record(renderer, tile);
     do {
         end = sample_level(renderer, worker, tile, &samples);
         store_record(renderer, tile);
         atomic_store_explicit(&level->samples, end == LEVEL_BROKEN ? 0 : samples, memory_order_relaxed);
-    } while (end == LEVEL_DONE && !renderer_is_done(renderer) &&
-             1e-9 * (double)(clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun) < farm_pause * level->threads);
+    } while (
+        end == LEVEL_DONE && !renderer_is_done(renderer) &&
+        (again || 1e-9 * (double)(clock_nanoseconds(CLOCK_THREAD_CPUTIME_ID) - begun) < farm_pause * level->threads));
     if (end == LEVEL_BROKEN)
         memset(level, 0, sizeof *level);
     report_level(renderer, worker, tile, end, samples);
@@ -194,22 +203,22 @@ void renderer_make_farm_levels(struct renderer *renderer, struct worker *worker,
 /* What the records say of all tiles that get samples in this run. */
 struct farm_totals {
     double cost, rest, begun, longest; /* longest: the largest rest of a tile */
-    double pixels, pixels_sampled;     /* of all tiles, and of those that have samples */
+    double pixels, pixels_sampled;     /* of all tiles, and of those that got samples */
     uint32_t threads;
 };
 
 static void add_record(const struct film *film, uint32_t tile, struct farm_totals *totals) {
     const struct film_level *level = &film->levels[tile];
     struct film_rectangle r = film_tile_rectangle(film, tile);
-    bool sampled = atomic_load_explicit(&level->samples, memory_order_relaxed) > 0;
-    double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), rest = sum_load(&level->rest);
+    double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), cost = sum_load(&level->cost), rest = sum_load(&level->rest);
+    bool sampled = cost > 0; /* in this run */
     if (!sampled && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_DONE)
         return; /* it comes from a checkpoint */
     totals->pixels += pixels;
     if (!sampled)
         return;
     totals->pixels_sampled += pixels;
-    totals->cost += sum_load(&level->cost);
+    totals->cost += cost;
     totals->rest += rest;
     totals->begun += sum_load(&level->begun);
     totals->longest = fmax(totals->longest, rest);
@@ -232,8 +241,9 @@ struct time_estimate_work renderer_farm_work(const struct renderer *renderer) {
     return (struct time_estimate_work){done + begun, fmax(left, 0)};
 }
 
-/* The number of samples of a tile of a checkpoint; 0 unless all its pixels have those of a level. */
-static uint32_t samples_of(const struct film *film, uint32_t tile, uint32_t limit) {
+uint32_t render_level_samples(const struct film *film, uint32_t tile, uint32_t limit) {
+    if (!film_record_equal(film->record, path_film_record(path_film_parts(film->record))))
+        return 0;
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint32_t all = 0, level = 0;
     for (uint32_t y = r.y0; y < r.y1; y++) {
@@ -256,7 +266,7 @@ static void find_begun_tiles(struct renderer *renderer) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_relaxed);
         if (!film_tile_is_begun(state))
             continue;
-        uint32_t samples = renderer->levels.wanted ? samples_of(film, tile, renderer->pass.end) : 0;
+        uint32_t samples = renderer->levels.wanted ? render_level_samples(film, tile, renderer->pass.end) : 0;
         if (samples > 0)
             renderer->levels.samples[tile] = samples;
         else

@@ -371,10 +371,12 @@ TEST(a_farm_with_noise_keeps_the_samples_of_unfinished_tiles_of_all_ranks_in_its
     if (await_work(0, 0.08, NULL))
         CHECK(kill(process_of(0, false), SIGINT) == 0);
     CHECK(await_end(farm) > 0); /* mpirun ends all processes */
-    CHECK_EQ_INT(shell("$gray scene.lua " FINE " --checkpoint c.tiles --resume 2>>said.txt"), 0);
+    CHECK_EQ_INT(shell("cp c.tiles d.tiles && $gray scene.lua " FINE " --checkpoint c.tiles --resume 2>>said.txt"), 0);
     if (!strstr(said(), "more, come from the checkpoint"))
         test_fail(__FILE__, __LINE__, "no samples of unfinished tiles were kept; said:\n%s", said());
     CHECK_EQ_INT(shell(COMPARE), 0);
+    CHECK_EQ_INT(await_end(start_farm("", 3, FINE " --checkpoint d.tiles --resume")), 0);
+    expect_pictures("more, come from the checkpoint", COMPARE);
 }
 
 TEST(a_rank_that_fails_alone_is_a_line_and_no_status) {
