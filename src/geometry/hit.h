@@ -25,6 +25,7 @@ struct surface {
     double u, v;
     struct vec3 dpdu, dpdv; /* object space; zero when has_uv is false */
     double error;  /* bound of the distance between `point` and the true surface, object units, from rounding */
+    double behind; /* of a hair: as in struct hit, object units; else 0 */
     uint32_t leaf; /* CSG operand, else 0 */
     uint32_t material_slot; /* per-face materials of a mesh; 0 = the only one */
 };
@@ -39,6 +40,7 @@ static inline void surface_make(struct surface *out, struct vec3 point, struct v
     out->colour = out->dpdu = out->dpdv = zero;
     out->u = out->v = 0;
     out->error = error;
+    out->behind = 0;
     out->leaf = out->material_slot = 0;
 }
 
@@ -61,6 +63,7 @@ struct hit {
     struct vec3 raise, along_a, along_b;
     double curvature;
     double offset;        /* a secondary ray starts this far (world units) from point along the normal */
+    double behind;        /* half the width of a hair, which is a ribbon that faces each ray; 0 for other surfaces */
     double footprint;     /* diameter of the ray's cone here, world units; 0 = unknown */
     double pattern_scale; /* pattern-space units per world unit (largest stretch); for filtering */
     bool front;           /* the ray came from outside: dot(view, normal_geometric) >= 0 */
@@ -91,12 +94,31 @@ static inline uint32_t hit_skip_primitive_from(const struct hit *hit, double sid
     return skip.part ? 0 : skip.primitive;
 }
 
+/* Where a ray starts that goes on from the hit of `from` to the other side of a hair: on the line through the point
+ * where `from` meets the ribbon. A ray that goes straight on starts there, and meets all other hairs that are near. A
+ * refracted one may turn towards the middle of the hair by the sine s, at the angle a to the hair: it is nearest to the
+ * middle at most s / sin^2 a times half a width further on. The difference of the unit directions is at least s. The
+ * start is at most 4 half widths behind, so light that runs along the hair may meet it once more. */
+static inline struct vec3 hit_start_behind(const struct hit *hit, const struct ray *from, struct vec3 direction) {
+    struct vec3 unit = vec3_normalize(direction);
+    double turned = vec3_length(vec3_add(unit, hit->view)), along = vec3_dot(unit, vec3_normalize(hit->dpdu));
+    double past = fmin(turned / fmax(1 - along * along, 0x1p-40), 4);
+    double rounding = hit->offset + 0x1p-42 * vec3_max_abs(from->origin);
+    return vec3_add_scaled(ray_at(from, hit->t), unit, rounding + hit->behind * past);
+}
+/* Where a ray starts that leaves the hit of `from` in a direction. */
+static inline struct vec3 hit_start(const struct hit *hit, const struct ray *from, struct vec3 direction) {
+    double rise = vec3_dot(direction, hit->normal_geometric);
+    if (hit->behind > 0 && (hit->front ? rise <= 0 : rise >= 0))
+        return hit_start_behind(hit, from, direction);
+    return vec3_add_scaled(hit->point, hit->normal_geometric, rise < 0 ? -hit->offset : hit->offset);
+}
 /* The ray that continues from the hit of `from` in a direction, with the hit's offset from the surface. */
 static inline struct ray hit_ray(const struct hit *hit, const struct ray *from, struct vec3 direction,
                                  const struct medium_stack *media) {
     double side = vec3_dot(direction, hit->normal_geometric) < 0 ? -hit->offset : hit->offset;
     struct hit_skip skip = hit_skip_from(hit, side, direction);
-    return (struct ray){.origin = vec3_add_scaled(hit->point, hit->normal_geometric, side),
+    return (struct ray){.origin = hit_start(hit, from, direction),
                         .direction = direction,
                         .t_min = 0,
                         .t_max = INFINITY,

@@ -51,8 +51,7 @@ static struct ray shadow_ray(const struct path_vertex *vertex, const struct worl
     shadow.footprint = (struct footprint){0, 0};
     shadow.media = vertex->ray->media;
     if (!(vec3_dot(sample->direction, vertex->bsdf->geometric_side) > 0)) {
-        double offset = hit->front ? -hit->offset : hit->offset;
-        shadow.origin = vec3_add_scaled(hit->point, hit->normal_geometric, offset);
+        shadow.origin = hit_start(hit, vertex->ray, sample->direction);
         medium_stack_copy(crossed, shadow.media);
         medium_stack_cross(crossed, &vertex->bsdf->boundary);
         shadow.media = crossed;

@@ -2,10 +2,13 @@
  * curve is nearest and not farther than half the width: at local minima of p^2, roots of the polynomial p . p' of
  * degree 5 where its sign goes from - to +, with 2 |p| <= w. This is what the recursive bisection of Nakamaru and Ohno
  * ("Ray tracing for curves primitive", 2002; pbrt's Curve) converges to. At a corner between two pieces the corner
- * itself may be nearest. The ends are cut straight across. A ray that starts one width above the ribbon does not
- * hit it again if it leads away: with a hit x <= w/2 off the middle, the nearest approach ahead is at least
- * (w - w/4) sin > w/2 away. At a round hair, rays start at its surface, half a width from the middle, and lead away from
- * its tangent plane: they do not hit it either. Hence the points and errors that are reported. */
+ * itself may be nearest. The ends are cut straight across.
+ *
+ * The point that is reported is where reflected rays start. A ray that leads away from the tangent plane of the round
+ * hair, half a width from the middle, does not hit the ribbon again. Neither does one that starts half a width w above
+ * a flat ribbon at x <= w/2 off the middle: at an angle a to the ribbon, towards the middle, the nearest approach is x
+ * sin a + w/2 cos a away while it is ahead (tan a < 2 x / w), which is at least w/2. All this holds under affine maps,
+ * because the point is mapped; an offset along the normal of the world would be too long or too short. */
 #include "shape/curve.h"
 
 #include "geometry/bernstein.h"
@@ -246,7 +249,8 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
                     struct surface *out) {
     const struct curve_piece *piece = &curve->pieces[crossing->part];
     double x = crossing->u, width = fabs(cubic_value(piece->c[3], x));
-    struct vec3 point = ray_at(ray, crossing->t), middle = curve_point(piece, x), direction = vec3_normalize(ray->direction);
+    struct vec3 point = ray_at(ray, crossing->t), middle = curve_point(piece, x),
+                direction = vec3_normalize(ray->direction);
     struct vec3 along = vec3_normalize(tangent(piece, x));
     struct vec3 facing = vec3_negate(across(direction, along));
     if (!(vec3_length(facing) > 0x1p-26)) /* the ray runs along the hair */
@@ -258,14 +262,14 @@ void curve_describe(const struct curve *curve, const struct ray *ray, const stru
     struct vec3 round = vec3_add(vec3_scale(side, 2 * off), vec3_scale(facing, sqrt(1 - 4 * off * off)));
     struct vec3 normal = curve->flat ? facing : round;
     double size = fmax(vec3_max_abs(curve->bounds.min), vec3_max_abs(curve->bounds.max));
-    double away = curve->flat ? width : width * (0.5 + 0x1p-12);
-    *out = (struct surface){.point = curve->flat ? point : middle,
+    *out = (struct surface){.point = vec3_add_scaled(curve->flat ? point : middle, normal, width / 2),
                             .normal = normal,
                             .shading_normal = normal,
                             .pattern_point = point,
                             .pattern_normal = normal,
                             .has_uv = true,
-                            .error = away / HIT_OFFSET_ERRORS + 0x1p-46 * size};
+                            .error = 0x1p-46 * size + 0x1p-30 * width,
+                            .behind = width / 2};
     out->u = piece->from + (piece->to - piece->from) * x;
     out->v = 0.5 - off;
     out->dpdu = vec3_scale(tangent(piece, x), 1 / (piece->to - piece->from));

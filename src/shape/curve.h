@@ -32,9 +32,8 @@ bool curve_piece_tube(const struct curve *curve, uint32_t number, double tube[4]
 /* The part is a piece of the spline, u the place on it. Every crossing enters: the ribbon faces the ray. */
 bool curve_crossings(const struct curve *curve, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out);
-/* u runs along the curve from 0 to 1, v across from 0 to 1. The normal is that of a round hair, also the geometric one,
- * and the point is in the middle of it: secondary rays start half a width from there. A flat one has the point and the
- * normal of the ribbon, and secondary rays start one width off it. */
+/* u runs along the curve from 0 to 1, v across from 0 to 1. The normal, also the geometric one, and the point are those
+ * of the surface of a round hair. A flat one has the normal of the ribbon, and the point half a width above it. */
 void curve_describe(const struct curve *curve, const struct ray *ray, const struct crossing *crossing,
                     struct surface *out);
 uint32_t curve_scratch_need(const struct curve *curve);

@@ -168,6 +168,7 @@ static void describe_facet(const struct world *world, const struct ray *ray, uin
     hit->colour = hit->dpdu = hit->dpdv = hit->raise = hit->along_a = hit->along_b = zero;
     hit->u = hit->v = hit->curvature = hit->pattern_scale = 0;
     hit->offset = HIT_OFFSET_ERRORS * facet->error + (vec3_max_abs(point) + vec3_max_abs(hit->point)) * 0x1p-42;
+    hit->behind = 0;
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
     hit->primitive = index;
@@ -220,7 +221,9 @@ void world_describe(const struct world *world, const struct ray *ray, uint32_t i
         describe_tangents(prototype, &world_from_object.forward, leaf, hit);
     }
     hit->front = vec3_dot(hit->view, hit->normal_geometric) >= 0;
-    hit->offset = offset_of(map, map ? stretch_of(world, index, map) : 1, &surface, hit->point);
+    double stretch = map ? stretch_of(world, index, map) : 1;
+    hit->offset = offset_of(map, stretch, &surface, hit->point);
+    hit->behind = surface.behind * stretch;
     hit->footprint = ray->footprint.width + ray->footprint.spread * crossing->t * length;
     hit->pattern_scale = 0;
     if (hit->footprint > 0 && world->material_has_image[material])

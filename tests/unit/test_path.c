@@ -83,30 +83,43 @@ TEST_LONG(closed_scenes_show_the_sum_of_their_bounces) {
     }
 }
 
-/* Light that a hair reflects starts at most one width off it, on the side of its tangent plane. */
-static void check_hairy_room(bool flat, struct effort effort) {
-    static const double points[4][3] = {{-3, -2, -4}, {-1, 2, -5}, {1, 1, -6}, {3, -2, -5}};
+/* Light that a hair reflects starts at most half a width off it, on the side of its tangent plane; also if the hair is
+ * `stretched` by that factor along a straight line. */
+static void check_hairy_room(bool flat, double stretched, struct effort effort) {
+    static const double curl[4][3] = {{-3, -2, -4}, {-1, 2, -5}, {1, 1, -6}, {3, -2, -5}};
     static const double widths[4] = {0.25, 0.4, 0.3, 0.2};
+    const double line[4][3] = {
+        {-4 / stretched, -1, -4}, {-1 / stretched, -1, -4}, {1 / stretched, -1, -4}, {4 / stretched, -1, -4}};
     struct arena arena = {0};
     struct stage s;
+    char claim[80];
     begin_room(&s, 1, 0.7, 0);
     struct node *hair = stage_sphere(&s, s.root, glowing(&s, 0.2, 0.94, 0));
     const struct curve_input in = {
-        .kind = SPLINE_CATMULL_ROM, .points = points, .widths = widths, .count = 4, .flat = flat};
+        .kind = SPLINE_CATMULL_ROM, .points = stretched > 0 ? line : curl, .widths = widths, .count = 4, .flat = flat};
     hair->shape = (struct shape){.kind = SHAPE_CURVE, .curve = curve_build(&arena, &in, &s.error)};
-    estimate_check_mean(flat ? "closed room with a ribbon" : "closed room with a hair", 1 / (1 - 0.7), &s, &effort,
-                        1000);
+    if (stretched > 0)
+        stage_scale(&s, hair, stretched, 1, 1);
+    snprintf(claim, sizeof claim, "closed room with a %s%s", stretched > 0 ? "stretched " : "",
+             flat ? "ribbon" : "hair");
+    estimate_check_mean(claim, 1 / (1 - 0.7), &s, &effort, 1000);
     stage_end(&s);
     arena_destroy(&arena);
 }
 
 TEST(hair_in_a_closed_scene_is_as_bright_as_its_walls) {
-    check_hairy_room(false, (struct effort){16, 768, 1});
-    check_hairy_room(true, (struct effort){16, 768, 1});
+    check_hairy_room(false, 0, (struct effort){16, 768, 1});
+    check_hairy_room(true, 0, (struct effort){16, 768, 1});
+}
+TEST(stretched_hair_in_a_closed_scene_is_as_bright_as_its_walls) {
+    check_hairy_room(false, 40, (struct effort){16, 768, 1});
+    check_hairy_room(true, 40, (struct effort){16, 768, 1});
 }
 TEST_LONG(hair_in_a_closed_scene_is_as_bright_as_its_walls_for_every_seed) {
-    check_hairy_room(false, (struct effort){16, 1536, 3});
-    check_hairy_room(true, (struct effort){16, 1536, 3});
+    for (int stretched = 0; stretched <= 40; stretched += 40) {
+        check_hairy_room(false, stretched, (struct effort){16, 1536, 3});
+        check_hairy_room(true, stretched, (struct effort){16, 1536, 3});
+    }
 }
 
 /* Rooms whose own light is sampled by the solid angle of their bound, or of their triangles. */

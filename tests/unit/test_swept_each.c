@@ -457,7 +457,7 @@ TEST(curve_is_met_where_the_line_passes_nearer_than_half_its_width) {
             struct surface s;
             shape_describe(&shape, &ray, &scratch.items[k], &s);
             misplaced += !(vec3_dot(s.normal, d) < 0) || !(s.v >= 0 && s.v <= 1 && s.u >= 0 && s.u <= 1) ||
-                         HIT_OFFSET_ERRORS * s.error < 0.049 || !box_contains(&bounds, s.point);
+                         !(s.behind >= 0.049) || !box_contains(&bounds, s.point);
         }
     }
     CHECK(met > 300);
