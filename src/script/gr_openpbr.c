@@ -178,15 +178,20 @@ static struct material *layered(struct script_context *context, struct openpbr *
     return m;
 }
 
-/* The textures of inputs, which multiply numbers of 1. */
+/* A texture that multiplies numbers of 1. */
+static const struct texture *texture_of(struct script_context *context, const struct script_value *value,
+                                        struct error *error) {
+    struct script_value own = *value;
+    own.vector = vec3_all(1);
+    return gr_texture_of(context, &own, error);
+}
+
 static bool with_texture(struct script_context *context, struct material *m, enum material_input input, bool is_share,
                          const struct script_value *value, struct error *error) {
     struct arena *arena = &context->scene.arena;
-    struct script_value own = *value;
     if (!value->texture)
         return true;
-    own.vector = vec3_all(1);
-    const struct texture *texture = gr_texture_of(context, &own, error);
+    const struct texture *texture = texture_of(context, value, error);
     if (texture && is_share)
         texture = texture_keep(arena, texture_map(texture, FUNCTION_SATURATE, 0), error);
     return texture && material_multiply(m, input, texture, arena, error);
@@ -196,11 +201,9 @@ static bool with_texture(struct script_context *context, struct material *m, enu
 static bool with_luminance(struct script_context *context, struct material *m, const struct script_value *value,
                            struct error *error) {
     struct arena *arena = &context->scene.arena;
-    struct script_value own = *value;
     if (!value->texture)
         return true;
-    own.vector = vec3_all(1);
-    const struct texture *ratio = gr_texture_of(context, &own, error);
+    const struct texture *ratio = texture_of(context, value, error);
     const struct texture *one = texture_keep(arena, texture_constant(vec3_all(1)), error);
     const struct texture *none = texture_keep(arena, texture_constant(vec3_all(0)), error);
     const struct texture *mix = ratio && one && none ? texture_keep(arena, texture_mix(one, none, ratio), error) : NULL;
