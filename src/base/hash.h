@@ -26,7 +26,7 @@ static inline uint64_t hash_bytes(const void *data, size_t size, uint64_t seed) 
     return random_mix(h ^ tail);
 }
 
-/* 128 bits, to detect changes; the value is part of tile files (render/tile_file.h),
+/* 128 bits, to detect changes; the value is part of tile files (film/tile_file.h),
  * whose readers check the version of the program that wrote them. */
 struct digest {
     uint64_t a, b;

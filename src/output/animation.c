@@ -7,7 +7,7 @@
 #include "output/encoder_internal.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
-#include "render/frame.h"
+#include "settings/frame.h"
 
 #include <stdio.h>
 #include <string.h>

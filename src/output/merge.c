@@ -4,8 +4,8 @@
 #include "output/merge.h"
 
 #include "base/mem.h"
+#include "film/path_film.h"
 #include "output/output_session.h"
-#include "render/path_film.h"
 
 #include <signal.h>
 #include <stdio.h>

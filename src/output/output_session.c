@@ -8,11 +8,11 @@
 #include "base/mem.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
+#include "film/aov.h"
 #include "image/exr.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
 #include "output/statistics_internal.h"
-#include "render/aov.h"
 #include "session/text.h"
 
 #include <string.h>
@@ -661,8 +661,8 @@ void output_show_progress(struct output_session *output) {
     report_display(output, display_step(&output->display, progress_clock(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
     if (output->current.open && !output->current.request.in_window && progress_wants_writing_time(&output->progress))
-        progress_note_writing_time(&output->progress, picture_writing_time(output->options, &output->current,
-                                                                                output->progress.threads));
+        progress_note_writing_time(&output->progress,
+                                   picture_writing_time(output->options, &output->current, output->progress.threads));
 }
 
 void output_report(struct output_session *output, enum line_kind kind, const char *text) {

@@ -3,11 +3,11 @@
 #include "output/picture_files.h"
 
 #include "base/error.h"
+#include "film/aov.h"
+#include "film/tile_file.h"
 #include "image/animation.h"
 #include "image/image.h"
 #include "output/layers_internal.h"
-#include "render/aov.h"
-#include "render/tile_file.h"
 
 #include <stdio.h>
 #include <string.h>

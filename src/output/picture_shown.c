@@ -5,15 +5,16 @@
 #include "output/picture_shown_internal.h"
 
 #include "base/mem.h"
+#include "denoise/film_denoise.h"
+#include "film/aov.h"
+#include "film/path_film.h"
 #include "output/oidn_internal.h"
-#include "render/aov.h"
-#include "render/path_film.h"
 
 #include <string.h>
 
 static bool denoise_film(const struct film *film, const struct denoising *by, float (*out)[3], struct error *error) {
     struct film copy = *film;
-    const struct denoise_source source = path_film_denoise_source(&copy);
+    const struct denoise_source source = film_denoise_source(&copy);
     switch (by->denoiser) {
     case DENOISER_NONE:
         return true;
@@ -39,7 +40,7 @@ static bool is_whole(const struct film *film, const struct film_rectangle *part)
            part->y1 - part->y0 == film->height;
 }
 
-/* The arrays of the film besides its pixels that the part has: values of marks (render/film.h), and layers. */
+/* The arrays of the film besides its pixels that the part has: values of marks (film/film.h), and layers. */
 static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
     size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
     size_t floats = film->record.marks ? film->record.floats : 0;

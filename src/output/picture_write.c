@@ -3,13 +3,13 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "denoise/denoise.h"
+#include "film/path_film.h"
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
-#include "render/denoise.h"
-#include "render/path_film.h"
 
 #include <float.h>
 #include <math.h>

@@ -4,9 +4,9 @@
 
 #include "base/pool.h"
 #include "base/share.h"
+#include "film/film.h"
+#include "film/tile_file.h"
 #include "output/picture_files.h"
-#include "render/film.h"
-#include "render/tile_file.h"
 #include "session/messages.h"
 
 #include <stdbool.h>

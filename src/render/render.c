@@ -4,12 +4,13 @@
 #include "render/integrator_internal.h"
 
 #include "base/mem.h"
-#include "render/aov.h"
-#include "render/film.h"
-#include "render/path_film.h"
+#include "denoise/film_denoise.h"
+#include "film/aov.h"
+#include "film/film.h"
+#include "film/path_film.h"
 #include "render/pixel_trace.h"
-#include "render/settings.h"
 #include "scene/scene_digest.h"
+#include "settings/settings.h"
 
 #include <assert.h>
 #include <math.h>
@@ -428,7 +429,7 @@ static bool show_denoised(struct renderer *renderer) {
     if (!renderer->job->settings.passes || !(path_film_parts(film->record) & PATH_PART_FEATURES) ||
         film_tiles_in(film, FILM_TILE_ELSEWHERE) > 0)
         return true;
-    return path_film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
+    return film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
 }
 
 static bool make_passes(struct renderer *renderer, struct render_statistics *statistics) {
@@ -474,45 +475,6 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     end_rendering(&renderer, workers);
     statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
     return ok;
-}
-
-/* The defaults of docs/language.md 13. */
-
-struct settings settings_default(void) {
-    return (struct settings){.samples = 3,
-                             .aa_pattern = AA_ROTATED,
-                             .reflect_limit = 2,
-                             .refract_limit = 4,
-                             .side_tolerance = 0.005,
-                             .corner_tolerance = 0.01,
-                             .area_samples = 4,
-                             .line_width = -1,
-                             .toon_steps = 3,
-                             .max_depth = DEPTH_DEFAULT,
-                             .roulette_depth = ROULETTE_DEPTH_DEFAULT,
-                             .specular = SPECULAR_PHONG,
-                             .accel = ACCEL_AUTO,
-                             .shutter = {0, 1},
-                             .cutoff = 0.0001,
-                             .lens = {.view_height = 2, .angle = 180, .screen = 1}};
-}
-
-void settings_set_draft(struct settings *settings, enum draft_level draft_level) {
-    if (draft_level == DRAFT_NONE)
-        return;
-    settings->full = false;
-    settings->samples = 1;
-    settings->path_samples = draft_level == DRAFT_PREVIEW ? 1 : 4;
-    settings->side_tolerance = settings->corner_tolerance = HUGE_VAL; /* nothing is sampled again */
-    settings->coarse = true;
-    settings->area_samples = settings->area_samples < COARSE_SIDE ? settings->area_samples : COARSE_SIDE;
-    settings->caustics.photons = 0;
-    settings->lens.aperture = 0;
-    settings->shutter.close = settings->shutter.open;
-    if (draft_level == DRAFT_PREVIEW) {
-        settings->reflect_limit = settings->refract_limit = 0;
-        settings->area_samples = 1;
-    }
 }
 
 /* Passes over the picture: every pass adds samples to all pixels, so that something is to be seen soon, and the time

@@ -3,10 +3,10 @@
  * take a fraction of a second. NaN, infinities and numbers beyond NUMBER_LIMIT are errors here. */
 #include "base/unreachable.h"
 #include "math/range.h"
-#include "render/settings.h"
 #include "script/hints_internal.h"
 #include "script/lenient_internal.h"
 #include "script/record_internal.h"
+#include "settings/settings.h"
 
 #include <assert.h>
 #include <lauxlib.h>

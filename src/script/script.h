@@ -7,9 +7,9 @@
 #include "base/error.h"
 #include "base/list.h"
 #include "material/medium.h"
-#include "render/frame.h"
-#include "render/settings.h"
 #include "scene/node.h"
+#include "settings/frame.h"
+#include "settings/settings.h"
 
 #include <stdbool.h>
 #include <stddef.h>

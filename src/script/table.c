@@ -3,9 +3,9 @@
 #include "base/unreachable.h"
 #include "script/table_internal.h"
 
-#include "render/settings.h"
 #include "scene/change.h"
 #include "script/table_rows_internal.h"
+#include "settings/settings.h"
 
 #include <assert.h>
 #include <string.h>

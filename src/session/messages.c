@@ -6,7 +6,7 @@
 #include "session/messages.h"
 
 #include "base/fault.h"
-#include "render/aov.h"
+#include "film/aov.h"
 
 #include <errno.h>
 #include <math.h>

@@ -8,11 +8,11 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "math/affine.h"
-#include "render/frame.h"
 #include "render/overlay.h"
 #include "render/render.h"
 #include "scene/change.h"
 #include "scene/change_material.h"
+#include "settings/frame.h"
 
 #include <stdbool.h>
 #include <stddef.h>

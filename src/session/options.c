@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/isa.h"
-#include "render/aov.h"
+#include "film/aov.h"
 
 #include <assert.h>
 #include <ctype.h>

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/list.h"
-#include "render/settings.h"
 #include "script/script.h"
+#include "settings/settings.h"
 
 #include <stdbool.h>
 #include <stdio.h>

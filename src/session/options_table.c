@@ -2,7 +2,7 @@
 #include "session/options_internal.h"
 
 #include "base/isa.h"
-#include "render/aov.h"
+#include "film/aov.h"
 
 #include <limits.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 #ifndef GRAY_SESSION_SERVICES_H
 #define GRAY_SESSION_SERVICES_H
 
-#include "render/film.h"
+#include "film/film.h"
 #include "session/control.h"
 #include "session/messages.h"
 

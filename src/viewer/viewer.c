@@ -2,7 +2,7 @@
  * about a thirtieth of a second; then finer ones, and finally the picture with the settings of the script. The cost of
  * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
-#include "render/path_film.h"
+#include "film/path_film.h"
 #include "viewer/viewer_internal.h"
 
 #include <math.h>

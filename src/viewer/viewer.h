@@ -8,7 +8,7 @@
 
 #include "base/file_output.h"
 #include "base/share.h"
-#include "render/film.h"
+#include "film/film.h"
 #include "session/control.h"
 #include "session/messages.h"
 #include "viewer/edits.h"

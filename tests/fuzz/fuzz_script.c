@@ -4,7 +4,7 @@
 #define _GNU_SOURCE
 #include "base/mem.h"
 #include "image/png_write.h"
-#include "render/aov.h"
+#include "film/aov.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "tests/fuzz/folder.h"

@@ -1,7 +1,7 @@
 /* Any bytes as a file of tiles: a description and tiles that fit its film, or one line that names the file. If the last
  * byte is odd, the checksums of all records are corrected first; otherwise hardly any input would pass them. */
 #include "base/mem.h"
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "tests/fuzz/tile_bytes.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * in threads, with messages in queues. The test steps both ranks, so that nothing is handed out while it does not. */
 #include "base/pool.h"
 #include "output/farm.h"
-#include "render/path_film.h"
+#include "film/path_film.h"
 #include "render/render.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

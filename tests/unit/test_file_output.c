@@ -4,7 +4,7 @@
 #include "base/file_output.h"
 
 #include "image/image.h"
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "tests/harness.h"
 
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* Corner cases of the film: impossible sizes, parts outside the picture, the contents of each view, tiles whose bytes
  * do not fit; and the light layer for every kind of light. */
 #include "light/light.h"
-#include "render/aov.h"
+#include "render/aov_values_internal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -2,7 +2,7 @@
  * format keep their bytes, and pixels with different records are never mixed. */
 #include "output/checkpoint.h"
 #include "render/render.h"
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -4,7 +4,7 @@
 #include "base/fault.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
-#include "render/aov.h"
+#include "film/aov.h"
 #include "render/overlay.h"
 #include "render/render.h"
 #include "tests/unit/script_host.h"

@@ -8,7 +8,7 @@
 #include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "render/render.h"
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "session/options.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

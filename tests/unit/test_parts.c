@@ -2,7 +2,7 @@
  * divided, the bytes are those of one complete run; parts that do not belong together are refused. */
 #define _GNU_SOURCE
 #include "render/render.h"
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

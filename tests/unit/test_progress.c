@@ -4,7 +4,7 @@
 #include "base/clock.h"
 #include "base/random.h"
 #include "output/picture_shown_internal.h"
-#include "render/film.h"
+#include "film/film.h"
 #include "render/noise_estimate_internal.h"
 #include "render/time_estimate.h"
 #include "tests/stage.h"

@@ -5,7 +5,7 @@
 #include "base/hash.h"
 #include "output/checkpoint.h"
 #include "render/render.h"
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "session/options.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

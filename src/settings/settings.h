@@ -1,16 +1,13 @@
 /* The settings of a picture from the command line and the script. The zero value is NOT the default here, because many
  * defaults are not zero: settings_default() is. */
-#ifndef GRAY_RENDER_SETTINGS_H
-#define GRAY_RENDER_SETTINGS_H
+#ifndef GRAY_SETTINGS_SETTINGS_H
+#define GRAY_SETTINGS_SETTINGS_H
 
 #include "base/list.h"
 #include "image/finish.h"
 #include "image/tone.h"
-#include "light/light_sampler.h"
-#include "material/material.h"
 #include "math/motion.h"
 #include "math/vec3.h"
-#include "mesh/mesh.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -77,7 +74,7 @@ struct integrator_traits {
     bool has_light_parts; /* its light is known by kind of scattering: the layers AOV_PATH */
     bool is_linear;       /* COLOUR_AUTO is linear */
 };
-struct integrator_traits integrator_traits(enum integrator_kind integrator); /* in integrator.c */
+struct integrator_traits integrator_traits(enum integrator_kind integrator);
 /* NOISE: the limit with --noise and without --spp. */
 enum {
     PATH_SAMPLES_DEFAULT = 64,
@@ -87,7 +84,7 @@ enum {
     ROULETTE_DEPTH_DEFAULT = 2,
     DEPTH_MAX = 1000000
 };
-/* What makes noise of few samples invisible, where the picture is written. GRAY: render/denoise.h; OIDN: the program
+/* What makes noise of few samples invisible, where the picture is written. GRAY: denoise/denoise.h; OIDN: the program
  * oidnDenoise of Intel's Open Image Denoise. */
 #define DENOISERS(X)                                                                                                   \
     X(DENOISER_NONE, "none")                                                                                           \
@@ -127,6 +124,29 @@ enum { LINE_WIDTH_MAX = 32, TOON_STEPS_MAX = 64 };
     X(ORDER_CENTRE, "centre")                                                                                          \
     X(ORDER_ROWS, "rows")
 enum order { TILE_ORDERS(LIST_MEMBER) };
+
+/* The search structure over primitives and inside meshes; the results are the same. AUTO: the fastest; GRID: the
+ * uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tested. */
+#define ACCEL_KINDS(X)                                                                                                 \
+    X(ACCEL_AUTO, "auto")                                                                                              \
+    X(ACCEL_GRID, "grid")                                                                                              \
+    X(ACCEL_BVH, "bvh")                                                                                                \
+    X(ACCEL_KDTREE, "kdtree")                                                                                          \
+    X(ACCEL_NONE, "none")
+enum accel_kind { ACCEL_KINDS(LIST_MEMBER) };
+
+/* The highlight of the picture. */
+#define SPECULAR_KINDS(X)                                                                                              \
+    X(SPECULAR_PHONG, "phong")                                                                                         \
+    X(SPECULAR_BLINN, "blinn")
+enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
+
+/* How a light is chosen. UNIFORM and POWER are there to be compared with. */
+#define LIGHT_CHOICES(X)                                                                                               \
+    X(LIGHT_CHOICE_TREE, "tree")                                                                                       \
+    X(LIGHT_CHOICE_POWER, "power")                                                                                     \
+    X(LIGHT_CHOICE_UNIFORM, "uniform")
+enum light_choice { LIGHT_CHOICES(LIST_MEMBER) };
 
 /* How paths find light that rays can hit: by sampling lights and BSDFs with multiple importance sampling, or, for
  * comparison, by one of them only. */
@@ -174,7 +194,7 @@ struct settings {
     double cutoff;        /* rays that can change a pixel by less (of 1) are not followed; 0: all are */
     enum overlay overlay; /* lines over the picture */
     enum order order;     /* of the tiles; the picture does not depend on it */
-    uint32_t aov;         /* layers beside the picture: a mask of render/aov.h */
+    uint32_t aov;         /* layers beside the picture: a mask of film/aov.h */
     bool keep_first;      /* the first pass is wanted even where -full makes it needless */
     bool coarse;       /* rough surfaces send one ray, and lights area_samples of them, instead of their own numbers */
     bool show_refined; /* pixels that are to be resampled are marked in the film before (FILM_MARK_WAITS) */

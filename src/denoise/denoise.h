@@ -4,8 +4,8 @@
  *
  * A pixel depends only on pixels at most DENOISE_RIM away in each direction. So a part with a rim of that width, or
  * at the edge of the picture, gets the same values as in the whole picture. */
-#ifndef GRAY_RENDER_DENOISE_H
-#define GRAY_RENDER_DENOISE_H
+#ifndef GRAY_DENOISE_DENOISE_H
+#define GRAY_DENOISE_DENOISE_H
 
 #include "base/error.h"
 #include "base/pool.h"

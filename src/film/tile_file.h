@@ -1,14 +1,15 @@
-/* Tile files: tiles of a picture, finished ones and those with some of their samples, for later (checkpoints) or for merging (parts of a picture that several
- * machines render). A file identifies the scene and options of its tiles, so that foreign tiles are never merged. Every
- * record has a checksum, and the file has an end record, so that damaged files are refused. The checksums are not
- * signatures: they detect accidents, not forgeries; reading any file is safe. */
-#ifndef GRAY_RENDER_TILE_FILE_H
-#define GRAY_RENDER_TILE_FILE_H
+/* Tile files: tiles of a picture, finished ones and those with some of their samples, for later (checkpoints) or for
+ * merging (parts of a picture that several machines render). A file identifies the scene and options of its tiles, so
+ * that foreign tiles are never merged. Every record has a checksum, and the file has an end record, so that damaged
+ * files are refused. The checksums are not signatures: they detect accidents, not forgeries; reading any file is safe.
+ */
+#ifndef GRAY_FILM_TILE_FILE_H
+#define GRAY_FILM_TILE_FILE_H
 
 #include "base/file.h"
 #include "base/file_output.h"
 #include "base/hash.h"
-#include "render/film.h"
+#include "film/film.h"
 
 enum { TILE_FILE_NAME = 4096, TILE_FILE_VERSION_TEXT = 32 };
 
@@ -43,8 +44,8 @@ struct tile_done {
     char name[TILE_FILE_NAME];
 };
 
-/* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film` and those that are begun. The old file stays until the new
- * one is complete. */
+/* Writes the done pictures, and of `picture` (or NULL) the finished tiles of `film` and those that are begun. The old
+ * file stays until the new one is complete. */
 bool tile_file_write(const struct file_target *target, const struct tile_done *done, size_t done_count,
                      const struct tile_picture *picture, const struct film *film, struct error *error);
 
@@ -70,7 +71,8 @@ bool tile_file_read(const char *path, struct tile_file *out, struct error *error
 bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error);
 void tile_file_close(struct tile_file *file);
 /* Puts the tiles into a film of the picture's rectangle; its size, x0 and y0 must be set. *restored counts those that
- * are finished. Tiles that are there already count in *twice and are not put again; a file that has changed since it was read gives those before the change. */
+ * are finished. Tiles that are there already count in *twice and are not put again; a file that has changed since it
+ * was read gives those before the change. */
 void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t *restored, uint32_t *twice);
 
 /* Why pictures with these keys and shapes do not belong together, as a phrase for messages, or NULL if they do.

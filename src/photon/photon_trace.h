@@ -1,10 +1,12 @@
 /* Caustics: light that was refracted or reflected by specular surfaces before it hit a diffuse one. Photons are traced
  * before the picture is rendered, and stored in a map. */
-#ifndef GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
-#define GRAY_RENDER_PHOTON_TRACE_INTERNAL_H
+#ifndef GRAY_PHOTON_PHOTON_TRACE_H
+#define GRAY_PHOTON_PHOTON_TRACE_H
 
-#include "render/photon_map_internal.h"
-#include "render/render.h"
+#include "film/render_statistics.h"
+#include "material/medium.h"
+#include "photon/photon_map.h"
+#include "settings/settings.h"
 
 /* The maximum number of bounces of a photon; in lossless glass almost nothing is left by then. */
 enum { PHOTON_BOUNCES = 100 };
@@ -14,13 +16,20 @@ struct photon_statistics {
     double seconds, map_seconds; /* in all; of these: making the map */
 };
 
-/* Sends the photons of the job's settings through its world and builds the map of them; the same for any number of
+/* What photons are sent through; borrowed. */
+struct photon_scene {
+    const struct world *world;
+    const struct fog *fog; /* or NULL */
+    const struct settings *settings;
+};
+
+/* Sends the photons of the settings through the world and builds the map of them; the same for any number of
  * threads. Errors: no memory, cancelled. */
-bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
+bool photons_make(struct photon_map *map, const struct photon_scene *scene, struct pool *pool,
                   struct photon_statistics *statistics, struct error *error);
 /* The same for an integrator before its first tile: counts in the statistics of the render. With settings of no photons
  * the map is empty. */
-bool photons_send(struct photon_map *map, const struct render_job *job, struct pool *pool,
+bool photons_send(struct photon_map *map, const struct photon_scene *scene, struct pool *pool,
                   struct render_statistics *statistics, struct error *error);
 
 #endif

@@ -5,14 +5,14 @@
  *
  * A photon is a function of its number, and its place in the array is that number: threads cannot change the map. It
  * lands at most once, so memory is known before. */
+#include "photon/photon_trace.h"
 #include "base/clock.h"
-#include "render/photon_trace_internal.h"
 
 #include "base/mem.h"
 #include "base/random.h"
 #include "material/material_eval.h"
 #include "material/medium.h"
-#include "render/photon_target_internal.h"
+#include "photon/photon_target_internal.h"
 
 enum { BATCH = 1024 };
 
@@ -200,14 +200,14 @@ static bool find_targets(struct photon_job *s, struct photon_targets *targets, s
     return ok;
 }
 
-bool photons_make(struct photon_map *map, const struct render_job *job, struct pool *pool,
+bool photons_make(struct photon_map *map, const struct photon_scene *scene, struct pool *pool,
                   struct photon_statistics *statistics, struct error *error) {
     struct arena arena = {0};
     struct photon_targets targets = {0};
     double begin = clock_seconds(CLOCK_MONOTONIC);
-    const struct settings *settings = &job->settings;
-    struct photon_job s = {.world = job->world,
-                           .fog = job->fog,
+    const struct settings *settings = scene->settings;
+    struct photon_job s = {.world = scene->world,
+                           .fog = scene->fog,
                            .settings = settings,
                            .pool = pool,
                            .seed = random_combine(settings->seed, UINT64_C(0x70686f746f6e73))};
@@ -222,7 +222,7 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
         else
             ok = trace_photons(&s, statistics, error);
         double sent = clock_seconds(CLOCK_MONOTONIC);
-        ok = ok && photon_map_build(map, job->world, &(struct photon_list){s.photons, s.count},
+        ok = ok && photon_map_build(map, scene->world, &(struct photon_list){s.photons, s.count},
                                     settings->caustics.radius, pool, error);
         statistics->map_seconds += clock_seconds(CLOCK_MONOTONIC) - sent;
     }
@@ -237,13 +237,13 @@ bool photons_make(struct photon_map *map, const struct render_job *job, struct p
     return ok;
 }
 
-bool photons_send(struct photon_map *map, const struct render_job *job, struct pool *pool,
+bool photons_send(struct photon_map *map, const struct photon_scene *scene, struct pool *pool,
                   struct render_statistics *statistics, struct error *error) {
     struct photon_statistics photons = {0};
     *map = (struct photon_map){0};
-    if (job->settings.caustics.photons == 0)
+    if (scene->settings->caustics.photons == 0)
         return true;
-    bool ok = photons_make(map, job, pool, &photons, error);
+    bool ok = photons_make(map, scene, pool, &photons, error);
     statistics->photons += photons.sent;
     statistics->photons_landed += photons.landed;
     statistics->photon_rays += photons.rays;

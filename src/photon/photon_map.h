@@ -1,8 +1,8 @@
 /* A photon map: where light that went through or off specular surfaces fell, kept to sum up the light at a point
  * (Jensen, "Global Illumination using Photon Maps", EGWR 1996; "Realistic Image Synthesis Using Photon Mapping", 2001).
  * Built once before a picture, read by every thread. */
-#ifndef GRAY_RENDER_PHOTON_MAP_INTERNAL_H
-#define GRAY_RENDER_PHOTON_MAP_INTERNAL_H
+#ifndef GRAY_PHOTON_PHOTON_MAP_H
+#define GRAY_PHOTON_PHOTON_MAP_H
 
 #include "base/pool.h"
 #include "material/bsdf.h"

@@ -1,13 +1,13 @@
 /* Render layers (AOVs): the hit of the first sample of every pixel, and the cost of the pixel. Each layer has three
  * numbers per pixel; aov_colour converts them to colours, files of linear light (.pfm, .hdr, .exr) have them unchanged.
  */
-#ifndef GRAY_RENDER_AOV_H
-#define GRAY_RENDER_AOV_H
+#ifndef GRAY_FILM_AOV_H
+#define GRAY_FILM_AOV_H
 
 #include "base/list.h"
-#include "world/world.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* Each layer, with its name for --aov and in names of files, and the letters of its channels in an EXR file. */
@@ -47,10 +47,6 @@ bool aov_parse(const char *text, uint32_t *mask);
 /* The number of layers of a mask, and the index of a layer. */
 uint32_t aov_layers(uint32_t mask);
 uint32_t aov_layer(uint32_t mask, enum aov aov);
-
-/* The layers of `mask` that describe the hit of the ray; out[AOV_COUNT]. All zero without a hit. */
-void aov_surface(const struct world *world, const struct ray *ray, uint32_t mask, struct world_scratch *scratch,
-                 float out[AOV_COUNT][3]);
 
 /* The colour of a value. nearest: the smallest depth of the picture; most: its largest number of samples. */
 struct aov_scale {

@@ -5,13 +5,12 @@
  * difference of their means measures the error of the pixel, including correlations within a half. Sums are rounded to
  * the precision of the record after every sample, so a pixel has the same bytes for any division of its samples into
  * passes. */
-#ifndef GRAY_RENDER_PATH_FILM_H
-#define GRAY_RENDER_PATH_FILM_H
+#ifndef GRAY_FILM_PATH_FILM_H
+#define GRAY_FILM_PATH_FILM_H
 
+#include "film/film.h"
+#include "film/path_parts.h"
 #include "math/vec3.h"
-#include "render/denoise.h"
-#include "render/film.h"
-#include "render/path_parts.h"
 
 /* The zero value is a pixel without samples. */
 struct path_pixel {
@@ -54,13 +53,7 @@ struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_gro
 struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel);
 struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel);
 
-/* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the film.
- */
-struct denoise_source path_film_denoise_source(struct film *film);
 /* Draws the lines of the film (PATH_PART_LINE) over other colours of its pixels, for instance denoised ones. */
 void path_film_draw_lines(const struct film *film, float (*colours)[3]);
-/* Replaces the colours of the film by denoised ones, for display. Its sums do not change: more samples may follow, and
- * files are written from the sums. Errors: no memory, cancelled; then the film is unchanged. */
-bool path_film_show_denoised(struct film *film, struct pool *pool, struct error *error);
 
 #endif

@@ -1,7 +1,7 @@
 /* Emission of photons. For each light, the directions (for a distant light: the positions across its rays) from which
  * photons can hit a specular object are stored in cells: the projection maps of Jensen 1996. */
-#ifndef GRAY_RENDER_PHOTON_TARGET_INTERNAL_H
-#define GRAY_RENDER_PHOTON_TARGET_INTERNAL_H
+#ifndef GRAY_PHOTON_PHOTON_TARGET_INTERNAL_H
+#define GRAY_PHOTON_PHOTON_TARGET_INTERNAL_H
 
 #include "base/arena.h"
 #include "base/pool.h"

@@ -1,7 +1,7 @@
 /* The loops of the denoiser over vectors of floats, for the instruction set of the file that includes this one. The
  * window of a centre has DENOISE_SIDE rows of DENOISE_LANES pixels. Sums over it are first sums of columns, which
  * are then added in a fixed order. */
-#include "render/denoise_internal.h"
+#include "denoise/denoise_internal.h"
 
 #include <float.h>
 #include <math.h>

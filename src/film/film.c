@@ -1,5 +1,5 @@
 /* Film storage and its way to bytes. */
-#include "render/film.h"
+#include "film/film.h"
 
 #include "base/checked.h"
 #include "base/mem.h"

@@ -19,11 +19,11 @@
  * Tukey, "Exploratory Data Analysis", 1977: twicing).
  *
  * Numbers are floats and sums have a fixed order: the result does not depend on blocks, threads or instruction sets. */
-#include "render/denoise.h"
+#include "denoise/denoise.h"
 
 #include "base/isa.h"
 #include "base/mem.h"
-#include "render/denoise_internal.h"
+#include "denoise/denoise_internal.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* The parts that paths record besides radiance: features of the visible surface, which guide the denoiser, and
  * groups of light, whose sum is the radiance. */
-#ifndef GRAY_RENDER_PATH_PARTS_H
-#define GRAY_RENDER_PATH_PARTS_H
+#ifndef GRAY_FILM_PATH_PARTS_H
+#define GRAY_FILM_PATH_PARTS_H
 
 #include "math/vec3.h"
 

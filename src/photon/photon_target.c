@@ -14,7 +14,7 @@
  * Units (docs/light.md): a light without an extent emits its colour per steradian, times d^2 attenuation(d) after the
  * distance d, so that unblocked light arrives as colour * attenuation(d) * cosine. A lamp emits radiance / pi per area
  * and projected solid angle, because a view factor is a cosine over pi. */
-#include "render/photon_target_internal.h"
+#include "photon/photon_target_internal.h"
 
 #include "base/random.h"
 #include "base/sort.h"

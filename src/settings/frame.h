@@ -1,6 +1,6 @@
 /* Frames of an animation: their numbers, and their times. Frames are numbered from 1 everywhere. */
-#ifndef GRAY_RENDER_FRAME_H
-#define GRAY_RENDER_FRAME_H
+#ifndef GRAY_SETTINGS_FRAME_H
+#define GRAY_SETTINGS_FRAME_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -8,8 +8,8 @@
  * The tree halves the photons by the median along the longest side of their box; ranges follow from the number of a
  * node alone. Invariant: the photons under node k of level l are those from n k / 2^l to n (k + 1) / 2^l. Every
  * comparison falls back on the photon's number, so the tree is a function of the photons. */
+#include "photon/photon_map.h"
 #include "math/elementary.h"
-#include "render/photon_map_internal.h"
 
 #include "base/mem.h"
 #include "base/random.h"

@@ -1,11 +1,11 @@
 /* The film: one picture in memory that supervisor and child share. The child's workers write pixels, the supervisor
  * reads whole tiles. Colours are linear floats, nothing is clamped. */
-#ifndef GRAY_RENDER_FILM_H
-#define GRAY_RENDER_FILM_H
+#ifndef GRAY_FILM_FILM_H
+#define GRAY_FILM_FILM_H
 
 #include "base/error.h"
 #include "image/tone.h"
-#include "render/settings.h"
+#include "settings/settings.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -53,7 +53,7 @@ struct film {
     uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be; NULL without marks */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
     struct film_level *levels; /* of each tile */
-    /* Render layers (render/aov.h): the layers of the mask one after the other, width * height each; NULL
+    /* Render layers (film/aov.h): the layers of the mask one after the other, width * height each; NULL
      * without any. Filled after the tiles are done. */
     uint32_t layer_mask;
     float (*layers)[3];

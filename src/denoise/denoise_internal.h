@@ -1,10 +1,10 @@
 /* The parts of the denoiser that are compiled for each instruction set (denoise_kernel_internal.h), and the
  * declarations that they share with denoise.c. They compute with vectors, but their order of additions does not
  * depend on the vector width: the bits are the same. */
-#ifndef GRAY_RENDER_DENOISE_INTERNAL_H
-#define GRAY_RENDER_DENOISE_INTERNAL_H
+#ifndef GRAY_DENOISE_DENOISE_INTERNAL_H
+#define GRAY_DENOISE_DENOISE_INTERNAL_H
 
-#include "render/denoise.h"
+#include "denoise/denoise.h"
 
 enum {
     DENOISE_BLOCK = 96, /* side of the squares that a worker takes */

@@ -8,7 +8,7 @@
  *
  * Format 1 is of pictures that record format_1 of a pixel, and of files without a picture; format 2 states the record
  * of its picture, format 3 also the part of it that is shown. */
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 
 #include "base/mem.h"
 
@@ -574,8 +574,7 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
     for (size_t i = 0; i < file->tiles; i++) {
         struct record record;
         struct error changed;
-        if (!next_record(&reader, &record, &changed) ||
-            (record.kind != RECORD_TILE && record.kind != RECORD_BEGUN) ||
+        if (!next_record(&reader, &record, &changed) || (record.kind != RECORD_TILE && record.kind != RECORD_BEGUN) ||
             !check_tile(&reader, file, &record, &last, &changed))
             return;
         struct byte_reader input = {record.payload};
