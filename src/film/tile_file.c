@@ -6,11 +6,11 @@
  *
  * Tiles that are begun have some of their samples; gray continues them.
  *
- * Format 1 is of pictures that record format_1 of a pixel, and of files without a picture; format 2 states the record
- * of its picture, format 3 also the part of it that is shown. */
+ * A picture has the values of the settings that change the finished picture, in the order of their list. */
 #include "film/tile_file.h"
 
 #include "base/mem.h"
+#include "settings/setting.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,11 +19,7 @@
 static const char magic[8] = "GRAYTILE";
 
 enum {
-    FORMAT = 1,
-    FORMAT_RECORD = 2,
-    FORMAT_SHOWN = 3,
-    FORMAT_FINISHED = 4,
-    FORMAT_TONE = 5,
+    FORMAT = 6,
     RECORD_DONE = 1,
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
@@ -33,39 +29,21 @@ enum {
     RECORD_CHECK = 8,
     KEY_SIZE = TILE_FILE_VERSION_TEXT + 32,
     DONE_FIXED = 4 + KEY_SIZE + 16,
-    PICTURE_FIXED = 4 + KEY_SIZE + 24 + 8 + 12 + 12,
-    RECORD_FIELDS = 8,              /* after PICTURE_FIXED, from FORMAT_RECORD on */
-    SHOWN_FIELDS = 16,              /* after these, from FORMAT_SHOWN on */
-    FINISH_FIELDS = 32,             /* after these, from FORMAT_FINISHED on */
-    TONE_FIELDS = 4 * TONE_ENTRIES, /* after these, in FORMAT_TONE */
-    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + RECORD_FIELDS + SHOWN_FIELDS +
-                    FINISH_FIELDS + TONE_FIELDS,
+    PICTURE_FIXED = 4 + KEY_SIZE + 24 + 16 + 8 + 12,
+    SETTINGS_LIMIT = 8 * LIST_COUNT(SETTINGS),
+    TONE_TABLE_SIZE = 4 * TONE_ENTRIES, /* of TONE_FUNCTION */
+    PAYLOAD_LIMIT = 4 + FILM_PACKED_LIMIT + TILE_FILE_NAME + PICTURE_FIXED + SETTINGS_LIMIT + TONE_TABLE_SIZE,
     DONE_LIMIT = 1 << 18, /* finished pictures are kept in memory, 4 KiB each */
 };
 
-static const struct film_record format_1 = {.floats = 3, .marks = 1};
-
-static struct film_rectangle whole_of(const struct tile_picture *picture) {
-    return (struct film_rectangle){picture->x0, picture->y0, picture->x0 + picture->width,
-                                   picture->y0 + picture->height};
-}
-
 static struct film_rectangle shown_of(const struct tile_picture *picture) {
-    return picture->shown.x1 == 0 ? whole_of(picture) : picture->shown;
+    const struct film_rectangle whole = {picture->x0, picture->y0, picture->x0 + picture->width,
+                                         picture->y0 + picture->height};
+    return picture->shown.x1 == 0 ? whole : picture->shown;
 }
 
 static bool rectangles_equal(struct film_rectangle a, struct film_rectangle b) {
     return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
-}
-
-static uint32_t format_of(const struct tile_picture *picture) {
-    if (picture && picture->tone.curve == TONE_FUNCTION)
-        return FORMAT_TONE;
-    if (picture && !finish_is_plain(&picture->finish))
-        return FORMAT_FINISHED;
-    if (picture && !rectangles_equal(shown_of(picture), whole_of(picture)))
-        return FORMAT_SHOWN;
-    return !picture || film_record_equal(picture->record, format_1) ? FORMAT : FORMAT_RECORD;
 }
 
 /* Numbers as bytes. */
@@ -89,18 +67,26 @@ static void put_u64(struct byte_writer *output, uint64_t value) {
     put_u32(output, (uint32_t)(value >> 32));
 }
 
-static void put_double(struct byte_writer *output, double value) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put_u64(output, bits);
-}
-
 static void put_table(struct byte_writer *output, const struct tone_table *table) {
     for (int i = 0; i < TONE_ENTRIES; i++) {
         uint32_t bits;
         memcpy(&bits, &table->values[i], sizeof bits);
         put_u32(output, bits);
     }
+}
+
+static void put_settings(struct byte_writer *output, const struct settings *settings) {
+    for (int i = 0; i < setting_count; i++) {
+        if (setting_table[i].changes == CHANGES_FINISH)
+            put_u64(output, setting_bits(&setting_table[i], settings));
+    }
+}
+
+static void put_rectangle(struct byte_writer *output, struct film_rectangle r) {
+    put_u32(output, r.x0);
+    put_u32(output, r.y0);
+    put_u32(output, r.x1);
+    put_u32(output, r.y1);
 }
 
 static void put_digest(struct byte_writer *output, struct digest digest) {
@@ -135,13 +121,6 @@ static uint64_t get_u64(struct byte_reader *input) {
     return low | (uint64_t)get_u32(input) << 32;
 }
 
-static double get_double(struct byte_reader *input) {
-    uint64_t bits = get_u64(input);
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 static struct digest get_digest(struct byte_reader *input) {
     uint64_t a = get_u64(input);
     return (struct digest){a, get_u64(input)};
@@ -161,20 +140,22 @@ static struct film_record get_film_record(struct byte_reader *input) {
     return (struct film_record){floats, get_u32(input)};
 }
 
-static bool is_share(double x) {
-    return x >= 0 && x <= 1;
+static size_t settings_size(void) {
+    size_t size = 0;
+    for (int i = 0; i < setting_count; i++)
+        size += setting_table[i].changes == CHANGES_FINISH ? 8 : 0;
+    return size;
 }
 
-/* False: it is not valid. */
-static bool get_finish(struct byte_reader *input, struct finish *out) {
-    out->bloom = get_double(input);
-    out->vignette = get_double(input);
-    uint32_t gray = get_u32(input), edges = get_u32(input), fxaa = get_u32(input), dither = get_u32(input);
-    out->gray = gray != 0;
-    out->edges = edges != 0;
-    out->fxaa = fxaa != 0;
-    out->dither = (enum dither)dither;
-    return is_share(out->bloom) && is_share(out->vignette) && dither <= DITHER_BLUE;
+/* False: a value is not valid. */
+static bool get_settings(struct byte_reader *input, struct settings *out) {
+    bool valid = true;
+    *out = settings_default();
+    for (int i = 0; i < setting_count; i++) {
+        if (setting_table[i].changes == CHANGES_FINISH)
+            valid = setting_set_bits(&setting_table[i], out, get_u64(input)) && valid;
+    }
+    return valid;
 }
 
 /* False: a number is not finite. */
@@ -226,7 +207,6 @@ static bool write_done(struct text_writer *writer, const struct tile_done *done,
 
 static bool write_picture(struct text_writer *writer, const struct tile_picture *picture, struct error *error) {
     struct byte_writer output = {writer->buffer + RECORD_HEAD};
-    uint32_t format = format_of(picture);
     put_u32(&output, picture->number);
     put_key(&output, &picture->key);
     put_u32(&output, picture->full_width);
@@ -235,33 +215,14 @@ static bool write_picture(struct text_writer *writer, const struct tile_picture 
     put_u32(&output, picture->y0);
     put_u32(&output, picture->width);
     put_u32(&output, picture->height);
-    put_double(&output, picture->tone.exposure);
-    put_u32(&output, (uint32_t)picture->tone.curve);
-    put_u32(&output, picture->tone.srgb);
-    put_u32(&output, picture->deep);
+    put_rectangle(&output, shown_of(picture));
+    put_u32(&output, picture->record.floats);
+    put_u32(&output, picture->record.marks);
     put_u32(&output, picture->shard);
     put_u32(&output, picture->shards);
     put_u32(&output, picture->whole);
-    if (format >= FORMAT_RECORD) {
-        put_u32(&output, picture->record.floats);
-        put_u32(&output, picture->record.marks);
-    }
-    if (format >= FORMAT_SHOWN) {
-        struct film_rectangle shown = shown_of(picture);
-        put_u32(&output, shown.x0);
-        put_u32(&output, shown.y0);
-        put_u32(&output, shown.x1);
-        put_u32(&output, shown.y1);
-    }
-    if (format >= FORMAT_FINISHED) {
-        put_double(&output, picture->finish.bloom);
-        put_double(&output, picture->finish.vignette);
-        put_u32(&output, picture->finish.gray);
-        put_u32(&output, picture->finish.edges);
-        put_u32(&output, picture->finish.fxaa);
-        put_u32(&output, (uint32_t)picture->finish.dither);
-    }
-    if (format >= FORMAT_TONE)
+    put_settings(&output, &picture->settings);
+    if (picture->settings.tone.curve == TONE_FUNCTION)
         put_table(&output, &picture->tone_table);
     put(&output, picture->name, strlen(picture->name));
     return write_record(writer, RECORD_PICTURE, (size_t)(output.at - writer->buffer) - RECORD_HEAD, error);
@@ -288,7 +249,7 @@ static bool write_all(struct text_writer *writer, const struct tile_done *done, 
                       const struct tile_picture *picture, const struct film *film, struct error *error) {
     struct byte_writer output = {writer->buffer};
     put(&output, magic, sizeof magic);
-    put_u32(&output, format_of(picture));
+    put_u32(&output, FORMAT);
     put_u32(&output, FILM_TILE);
     bool ok = file_output_write(&writer->file, writer->buffer, sizeof magic + 8, error);
     for (size_t i = 0; ok && i < done_count; i++)
@@ -342,8 +303,6 @@ static bool wrong(const struct reader *reader, struct error *error, const char *
 /* The next bytes, which are valid until the next call; NULL when they cannot be read. */
 static const uint8_t *fetch(const struct reader *reader, size_t size) {
     const struct tile_file *file = reader->file;
-    if (!file->source.open)
-        return file->bytes.data + reader->at;
     return file_source_read(&file->source, reader->at, file->buffer, size) ? file->buffer : NULL;
 }
 
@@ -400,11 +359,7 @@ static bool is_part(const struct film_rectangle *part, const struct tile_picture
 static bool read_picture(const struct reader *reader, const struct record *record, struct tile_picture *out,
                          struct error *error) {
     struct byte_reader input = {record->payload};
-    uint32_t format = reader->file->format;
-    bool stated = format >= FORMAT_RECORD, cut = format >= FORMAT_SHOWN, finished = format >= FORMAT_FINISHED;
-    bool toned = format >= FORMAT_TONE;
-    if (record->size < (size_t)PICTURE_FIXED + (stated ? RECORD_FIELDS : 0) + (cut ? SHOWN_FIELDS : 0) +
-                           (finished ? FINISH_FIELDS : 0) + (toned ? TONE_FIELDS : 0))
+    if (record->size < PICTURE_FIXED + settings_size())
         return wrong(reader, error, "the description of the picture is too short");
     out->number = get_u32(&input);
     out->key = get_key(&input);
@@ -414,26 +369,22 @@ static bool read_picture(const struct reader *reader, const struct record *recor
     out->y0 = get_u32(&input);
     out->width = get_u32(&input);
     out->height = get_u32(&input);
-    out->tone.exposure = get_double(&input);
-    uint32_t curve = get_u32(&input), srgb = get_u32(&input), deep = get_u32(&input);
-    out->tone.curve = (enum tone_curve)curve;
-    out->tone.srgb = srgb != 0;
-    out->deep = deep != 0;
+    out->shown = get_rectangle(&input);
+    out->record = get_film_record(&input);
     out->shard = get_u32(&input);
     out->shards = get_u32(&input);
     out->whole = get_u32(&input) != 0;
-    out->record = stated ? get_film_record(&input) : format_1;
-    out->shown = cut ? get_rectangle(&input) : whole_of(out);
-    bool finish_fits = !finished || get_finish(&input, &out->finish);
-    bool tone_fits = (curve == TONE_FUNCTION) == toned && (!toned || get_table(&input, &out->tone_table));
+    bool settings_fit = get_settings(&input, &out->settings);
+    if (out->settings.tone.curve == TONE_FUNCTION)
+        settings_fit = record->size >= PICTURE_FIXED + settings_size() + TONE_TABLE_SIZE &&
+                       get_table(&input, &out->tone_table) && settings_fit;
     size_t bytes;
     struct error size_error;
     bool fits = out->full_width <= 1U << 20 && out->full_height <= 1U << 20 && out->x0 < out->full_width &&
                 out->y0 < out->full_height && out->width <= out->full_width - out->x0 &&
                 out->height <= out->full_height - out->y0 && film_record_valid(out->record) &&
                 is_part(&out->shown, out) && film_size(out->width, out->height, out->record, &bytes, &size_error);
-    if (!fits || !finish_fits || !tone_fits || curve > TONE_FUNCTION || !isfinite(out->tone.exposure) ||
-        out->number == 0 || out->shard == 0 || out->shard > out->shards)
+    if (!fits || !settings_fit || out->number == 0 || out->shard == 0 || out->shard > out->shards)
         return wrong(reader, error, "the description of the picture is invalid");
     return get_name(&input, record->payload + record->size, out->name) ||
            wrong(reader, error, "the picture has an invalid name");
@@ -523,29 +474,17 @@ static bool read_records(struct tile_file *file, struct reader *reader, struct e
     }
 }
 
-/* What there is of `out` stays when that fails. */
 static bool read_file(const char *path, uint64_t size, struct tile_file *out, struct error *error) {
     struct reader reader = {.path = path, .file = out, .size = size};
     struct byte_reader input = {size < sizeof magic + 8 ? NULL : fetch(&reader, sizeof magic + 8)};
     if (!input.at || memcmp(input.at, magic, sizeof magic) != 0)
         return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
     input.at += sizeof magic;
-    out->format = get_u32(&input);
-    if (out->format < FORMAT || out->format > FORMAT_TONE || get_u32(&input) != FILM_TILE)
+    if (get_u32(&input) != FORMAT || get_u32(&input) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;
     return read_records(out, &reader, error);
-}
-
-bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error) {
-    memset(out, 0, sizeof *out); /* no temporary of this size on the stack */
-    out->bytes = bytes;
-    if (read_file(path, bytes.size, out, error))
-        return true;
-    mem_free(out->done);
-    memset(out, 0, sizeof *out);
-    return false;
 }
 
 bool tile_file_read(const char *path, struct tile_file *out, struct error *error) {
@@ -560,7 +499,6 @@ bool tile_file_read(const char *path, struct tile_file *out, struct error *error
 
 void tile_file_close(struct tile_file *file) {
     file_source_close(&file->source);
-    file_unmap(&file->bytes);
     mem_free(file->buffer);
     mem_free(file->done);
     memset(file, 0, sizeof *file);
@@ -612,11 +550,8 @@ const char *tile_picture_difference(const struct tile_picture *have, const struc
         return "its pixels have records of another size";
     if (have->shards != want->shards)
         return "the picture was divided differently";
-    if (have->tone.exposure != want->tone.exposure || have->tone.curve != want->tone.curve ||
-        have->tone.srgb != want->tone.srgb || have->deep != want->deep ||
+    if (!settings_finish_equal(&have->settings, &want->settings) ||
         memcmp(&have->tone_table, &want->tone_table, sizeof have->tone_table) != 0)
-        return "its tone settings differ";
-    if (!finish_equal(&have->finish, &want->finish))
         return "it is finished differently";
     return NULL;
 }

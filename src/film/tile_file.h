@@ -26,13 +26,11 @@ struct tile_picture {
     struct tile_key key;
     uint32_t full_width, full_height, x0, y0, width, height;
     struct film_rectangle shown; /* the part of it that is written; zero: all */
-    struct tone tone;            /* without its table */
-    bool deep;
-    struct finish finish;
-    struct film_record record;
+    struct settings settings; /* those that change the finished picture; the table of the tone curve is the next one */
     struct tone_table tone_table; /* of TONE_FUNCTION */
-    uint32_t shard, shards;       /* 1 of 1: all tiles; both from 1 */
-    bool whole;                   /* all tiles of the shard are there */
+    struct film_record record;
+    uint32_t shard, shards; /* 1 of 1: all tiles; both from 1 */
+    bool whole;             /* all tiles of the shard are there */
     char name[TILE_FILE_NAME];
 };
 
@@ -53,13 +51,11 @@ bool tile_file_write(const struct file_target *target, const struct tile_done *d
  * any size takes the memory of one record. Owner: the caller, tile_file_close frees it. */
 struct tile_file {
     struct file_source source;
-    struct file_bytes bytes; /* in the place of the source: a file in memory */
-    uint8_t *buffer;         /* for one record of the source */
+    uint8_t *buffer; /* for one record */
     struct tile_done *done;
     size_t done_count;
     bool has_picture;
     struct tile_picture picture;
-    uint32_t format;                   /* its first number */
     uint64_t first_tile, first_record; /* where the records of tiles begin, and the number of the first one */
     size_t tiles;
 };
@@ -67,8 +63,6 @@ struct tile_file {
 bool tile_file_is(const uint8_t *head, size_t size);
 /* False: `error` names the record and its fault; ERROR_SCENE unless there was no memory. */
 bool tile_file_read(const char *path, struct tile_file *out, struct error *error);
-/* The same of bytes in memory, which are taken over when that succeeds. */
-bool tile_file_parse(const char *path, struct file_bytes bytes, struct tile_file *out, struct error *error);
 void tile_file_close(struct tile_file *file);
 /* Puts the tiles into a film of the picture's rectangle; its size, x0 and y0 must be set. *restored counts those that
  * are finished. Tiles that are there already count in *twice and are not put again; a file that has changed since it

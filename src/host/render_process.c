@@ -296,27 +296,15 @@ static bool reserve_memory(struct render_process *process, const struct picture_
 static struct picture_request picture_request_of(const struct options *options, const struct render_job *job,
                                                  struct frame frame) {
     static const struct tone_table no_table = {{0}};
-    const struct finish *finish = &job->settings.finish;
-    const struct tone *tone = &job->settings.tone;
+    const struct tone_table *table = job->settings.tone.table;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
-                                    .exposure = tone->exposure,
-                                    .curve = (uint32_t)tone->curve,
-                                    .srgb = tone->srgb,
-                                    .tone_table = tone->table ? *tone->table : no_table,
-                                    .deep = job->settings.deep,
-                                    .bloom = finish->bloom,
-                                    .vignette = finish->vignette,
-                                    .gray = finish->gray,
-                                    .edges = finish->edges,
-                                    .fxaa = finish->fxaa,
-                                    .dither = (uint32_t)finish->dither,
+                                    .settings = job->settings,
+                                    .tone_table = table ? *table : no_table,
                                     .record = render_record(&job->settings),
                                     .layers = job->settings.aov,
                                     .in_window = options->window,
-                                    .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
-                                    .lens = job->settings.lens,
                                     .frame = frame,
                                     .check = options->check || is_asked(options)};
 }

@@ -64,7 +64,7 @@ bool animation_begin(struct animation *animation, const struct picture_request *
     double rate = options->script.frames.rate > 0 ? options->script.frames.rate : FRAME_RATE_DEFAULT;
     animation->rate = request->frame.number > 0 ? request->frame.rate : rate;
     animation->loops = request->frame.number > 0 ? request->frame.loops : options->script.frames.loops;
-    animation->srgb = request->srgb != 0;
+    animation->srgb = request->settings.tone.srgb;
     animation->width = request->shown.x1 - request->shown.x0;
     animation->height = request->shown.y1 - request->shown.y0;
     animation->last = number;

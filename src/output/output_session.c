@@ -145,13 +145,11 @@ static void describe_tiles(const struct output_session *output, struct picture *
     tiles->width = request->width;
     tiles->height = request->height;
     tiles->shown = request->shown;
-    tiles->tone = picture_tone(request);
-    tiles->deep = request->deep != 0;
-    tiles->finish = picture_finish(request);
+    tiles->settings = request->settings;
     tiles->record = request->record;
     tiles->shard = options->shards ? options->shard : 1;
     tiles->shards = options->shards ? options->shards : 1;
-    tiles->tone.table = NULL;
+    tiles->settings.tone.table = NULL;
     tiles->tone_table = request->tone_table;
     memcpy(tiles->name, picture->name, sizeof tiles->name);
 }
@@ -432,7 +430,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!animation_begin(&output->animation, request, number_of(output, request), error))
         return false;
     picture->request = *request;
-    picture->request.deep = request->deep && output->options->animation == ANIMATION_NONE;
+    picture->request.settings.deep = request->settings.deep && output->options->animation == ANIMATION_NONE;
     picture->written = output->plays;
     picture->write_seconds = picture->write_processor_seconds = 0;
     if (request->check) {

@@ -13,7 +13,7 @@
 
 struct film_record path_tracer_record(const struct settings *settings) {
     unsigned parts = 0;
-    if (settings->denoise != DENOISER_NONE)
+    if (settings_denoise(settings))
         parts |= PATH_PART_FEATURES;
     if (settings->aov & AOV_LIGHT)
         parts |= PATH_PART_LIGHT;

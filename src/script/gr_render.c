@@ -4,6 +4,7 @@
 #include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
 #include "script/lenient_internal.h"
+#include "settings/setting.h"
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
@@ -32,106 +33,89 @@ static bool choose_sky(struct script_context *context, const struct script_value
     return true;
 }
 
+/* Whether the option has priority over the field. */
+static bool option_wins(const struct setting *row, const struct settings *settings) {
+    bool is_one =
+        row->offset == offsetof(struct settings, path_samples) || row->offset == offsetof(struct settings, noise);
+    return is_one && setting_bits(row, settings) != 0;
+}
+
+static void apply_setting(const struct setting *row, const struct script_value *value, struct settings *settings) {
+    switch (row->kind) {
+    case SETTING_FLAG:
+        setting_store(row, settings, value->boolean);
+        break;
+    case SETTING_WHOLE:
+    case SETTING_NUMBER:
+    case SETTING_SEED:
+        if (!option_wins(row, settings))
+            setting_store(row, settings, value->number);
+        break;
+    case SETTING_CHOICE:
+        setting_store(row, settings, value->choice);
+        break;
+    case SETTING_TONE:
+        if (!value->curve) {
+            settings->tone.curve = (enum tone_curve)value->choice;
+        } else if (!settings->keeps_tone) { /* over functions the option has priority */
+            settings->tone.curve = TONE_FUNCTION;
+            settings->tone.table = value->curve;
+        }
+        break;
+    case SETTING_DENOISE:
+        if (value->boolean && settings->denoise == DENOISER_AUTO)
+            settings->denoise = DENOISER_GRAY;
+        break;
+    case SETTING_CAUSTICS:
+        settings->caustics = (struct caustics){(int)value->number, value->vector.x};
+        break;
+    case SETTING_LAYERS:
+    case SETTING_CROP:
+    case SETTING_STATS:
+    case SETTING_BYTES:
+    case SETTING_TEXT:
+    case SETTING_SIZE:
+    case SETTING_SHARD:
+    case SETTING_FRAMES:
+    case SETTING_ACTION:
+    case SETTING_PIXEL:
+    case SETTING_DEFINE:
+    case SETTING_FOLDER:
+        break; /* options only */
+    }
+}
+
 /* The named fields of the call have priority over the command line. */
 static void apply_settings(const struct script_value *args, struct settings *settings) {
-    if (args[RENDER_SAMPLES].given)
-        settings->samples = (int)args[RENDER_SAMPLES].number;
-    if (args[RENDER_FULL].given)
-        settings->full = args[RENDER_FULL].boolean;
-    if (args[RENDER_AREA_SAMPLES].given)
-        settings->area_samples = (int)args[RENDER_AREA_SAMPLES].number;
-    if (args[RENDER_REFLECT_LIMIT].given)
-        settings->reflect_limit = (int)args[RENDER_REFLECT_LIMIT].number;
-    if (args[RENDER_REFRACT_LIMIT].given)
-        settings->refract_limit = (int)args[RENDER_REFRACT_LIMIT].number;
-    if (args[RENDER_SIDE_TOLERANCE].given)
-        settings->side_tolerance = args[RENDER_SIDE_TOLERANCE].number;
-    if (args[RENDER_CORNER_TOLERANCE].given)
-        settings->corner_tolerance = args[RENDER_CORNER_TOLERANCE].number;
-    if (args[RENDER_USE_TIR].given)
-        settings->use_tir = args[RENDER_USE_TIR].boolean;
-    if (args[RENDER_SPECULAR].given)
-        settings->specular = (enum specular_kind)args[RENDER_SPECULAR].choice;
-    if (args[RENDER_SEED].given)
-        settings->seed = (uint64_t)args[RENDER_SEED].number;
-    if (args[RENDER_ACCEL].given)
-        settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice;
+    for (int i = 0; i < setting_field_count; i++) {
+        if (args[RENDER_FIRST_SETTING + i].given)
+            apply_setting(&setting_table[i], &args[RENDER_FIRST_SETTING + i], settings);
+    }
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
-    if (args[RENDER_EXPOSURE].given)
-        settings->tone.exposure = args[RENDER_EXPOSURE].number;
-    const struct script_value *tone = &args[RENDER_TONE];
-    if (tone->curve && !settings->keeps_tone) { /* here the option has priority */
-        settings->tone.curve = TONE_FUNCTION;
-        settings->tone.table = tone->curve;
-    } else if (tone->given && !tone->curve) {
-        settings->tone.curve = (enum tone_curve)tone->choice;
-    }
-    if (args[RENDER_SRGB].given)
-        settings->tone.srgb = args[RENDER_SRGB].boolean;
-    if (args[RENDER_DEEP].given)
-        settings->deep = args[RENDER_DEEP].boolean;
-    if (args[RENDER_STYLE].given)
-        settings->style = (enum style)args[RENDER_STYLE].choice;
-    if (args[RENDER_LINE_WIDTH].given)
-        settings->line_width = args[RENDER_LINE_WIDTH].number;
-    if (args[RENDER_TOON_STEPS].given)
-        settings->toon_steps = (int)args[RENDER_TOON_STEPS].number;
-    if (args[RENDER_BLOOM].given)
-        settings->finish.bloom = args[RENDER_BLOOM].number;
-    if (args[RENDER_VIGNETTE].given)
-        settings->finish.vignette = args[RENDER_VIGNETTE].number;
-    if (args[RENDER_GRAY].given)
-        settings->finish.gray = args[RENDER_GRAY].boolean;
-    if (args[RENDER_EDGES].given)
-        settings->finish.edges = args[RENDER_EDGES].boolean;
-    if (args[RENDER_FXAA].given)
-        settings->finish.fxaa = args[RENDER_FXAA].boolean;
-    if (args[RENDER_DITHER].given)
-        settings->finish.dither = (enum dither)args[RENDER_DITHER].choice;
-    if (args[RENDER_CAUSTICS].given)
-        settings->caustics = (struct caustics){(int)args[RENDER_CAUSTICS].number, args[RENDER_CAUSTICS].vector.x};
-    if (args[RENDER_CUTOFF].given)
-        settings->cutoff = args[RENDER_CUTOFF].number;
-    if (args[RENDER_INTEGRATOR].given)
-        settings->integrator = (enum integrator_kind)args[RENDER_INTEGRATOR].choice;
-    if (args[RENDER_SPP].given && settings->path_samples == 0) /* here the option wins */
-        settings->path_samples = (int)args[RENDER_SPP].number;
-    if (args[RENDER_MAX_DEPTH].given)
-        settings->max_depth = (int)args[RENDER_MAX_DEPTH].number;
-    if (args[RENDER_NOISE].given && settings->noise == 0) /* so it does here */
-        settings->noise = args[RENDER_NOISE].number;
-    if (args[RENDER_CLAMP].given)
-        settings->clamp = args[RENDER_CLAMP].number;
-    if (args[RENDER_FILTER].given)
-        settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
-    if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE &&
-        !settings->keeps_noise)
-        settings->denoise = DENOISER_GRAY;
-    if (args[RENDER_COLOUR].given)
-        settings->colour = (enum colour_pipeline)args[RENDER_COLOUR].choice;
     /* Linear colours are shown by the sRGB curve. */
-    if (settings_linear(settings) && !args[RENDER_SRGB].given)
+    if (settings_linear(settings) && !args[RENDER_FIRST_SETTING + SETTING_INDEX(tone.srgb)].given)
         settings->tone.srgb = true;
 }
 
-/* One notice for each option of the command line that the call has overridden. */
+/* One notice for each option of the command line that the call has overridden. --seed has none: it also seeds
+ * math.random. */
 static void note_overridden(struct script_context *context, const struct settings *settings) {
-    const struct script_options *options = context->options;
-    const char *asked = (const char *)&context->host->settings, *used = (const char *)settings;
-    for (int i = 0; i < options->given_count && i < 64 && !context->host->repeats; i++) {
-        const struct given_option *given = &options->given[i];
+    const char *const *given = context->options->given;
+    for (int i = 0; i < setting_count && given && !context->host->repeats; i++) {
+        const struct setting *row = &setting_table[i];
         char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
-        if (context->overridden >> i & 1 || memcmp(asked + given->offset, used + given->offset, given->size) == 0)
+        if (!given[i] || row->kind == SETTING_SEED || context->overridden >> i & 1 ||
+            setting_bits(row, &context->host->settings) == setting_bits(row, settings))
             continue;
         context->overridden |= UINT64_C(1) << i;
         context_where(context, where, sizeof where);
         (void)snprintf(text, sizeof text, "%s%.*s%s%.64s has no effect: a field of gr.render sets it", where,
-                       (int)strcspn(given->name, "|"), given->name, given->value ? " " : "",
-                       given->value ? given->value : "");
+                       (int)strcspn(row->option, "|"), row->option, given[i][0] ? " " : "", given[i]);
         context->host->message(context->host->context, SCRIPT_NOTICE, text);
     }
 }
+_Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of overridden");
 
 static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
                        struct error *error) {

@@ -15,36 +15,14 @@
 #include <lauxlib.h>
 #include <stdio.h>
 
-enum {
-    HOOK_STEPS = 10000, /* some tenths of a millisecond */
-    STANDARD_TIME = 60,
-};
-static const uint64_t standard_memory = 4 * GIBIBYTE, standard_output = 64 * MEBIBYTE;
-
-double script_time_limit(const struct script_options *options) {
-    return options->time_limit > 0 || options->no_sandbox ? options->time_limit : STANDARD_TIME;
-}
-
-/* 0: no limit. */
-static uint64_t limit_of(uint64_t given, uint64_t standard, bool unlimited) {
-    return given > 0 ? given : unlimited ? 0 : standard;
-}
-
-static uint64_t memory_limit(const struct script_options *options) {
-    return limit_of(options->memory_limit, standard_memory, options->no_sandbox);
-}
-
-uint64_t script_picture_memory(const struct script_options *options) {
-    uint64_t limit = memory_limit(options);
-    return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
-}
+enum { HOOK_STEPS = 10000 }; /* some tenths of a millisecond */
 
 void limits_begin(struct script_context *context) {
     const struct script_options *options = context->options;
     struct limits *limits = &context->limits;
     *limits = (struct limits){
-        .account = {.limit = memory_limit(options), .option = "--script-memory", .words = limits->memory_words},
-        .output_limit = limit_of(options->output_limit, standard_output, options->no_sandbox),
+        .account = {.limit = script_memory_limit(options), .option = "--script-memory", .words = limits->memory_words},
+        .output_limit = script_output_limit(options),
         .time_limit = script_time_limit(options),
         .time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
     };

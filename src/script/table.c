@@ -651,6 +651,19 @@ static const struct script_parameter fog_field_parameters[] = {
                            "A function f(p, s) of the point and s.time; it returns a number of at least 0."},
 };
 
+/* The parameter of a setting: its type, range and words by its kind. */
+#define PARAMETER_FLAG(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
+#define PARAMETER_WHOLE(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
+#define PARAMETER_NUMBER(low, high, list) KIND_NUMBER, OPTIONAL, low, high, NULL
+#define PARAMETER_SEED(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
+#define PARAMETER_CHOICE(low, high, list) KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(list)
+#define PARAMETER_TONE(low, high, list) KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(list)
+#define PARAMETER_DENOISE(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
+#define PARAMETER_CAUSTICS(low, high, list) KIND_CAUSTICS, OPTIONAL, 0, 0, NULL
+#define PARAMETER_OF_SETTING(kind, type, member, change, initial, low, high, list, option, value, unit, field, ...)    \
+    {field, PARAMETER_##kind(low, high, list), unit, option, FIRST_HELP(__VA_ARGS__)},
+#define FIRST_HELP(words, group, help) help
+
 _Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
 static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
@@ -673,79 +686,7 @@ static const struct script_parameter render_parameters[] = {
                            "or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form "
                            "gr.render{...} without background, the default is light and neutral."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
-    [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
-                        "N x N samples for a marked pixel."},
-    [RENDER_FULL] = {"full", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-full", "Whether every pixel gets N x N samples."},
-    [RENDER_AREA_SAMPLES] = {"area_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-al-samples",
-                             "N x N shadow rays for an area light."},
-    [RENDER_REFLECT_LIMIT] = {"reflect_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-reflect-limit",
-                              "How often a path may reflect."},
-    [RENDER_REFRACT_LIMIT] = {"refract_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-refract-limit",
-                              "How often a path may refract."},
-    [RENDER_SIDE_TOLERANCE] = {"side_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-side-tolerance",
-                               "Squared distance of colours between side neighbours that marks a pixel."},
-    [RENDER_CORNER_TOLERANCE] = {"corner_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-corner-tolerance",
-                                 "The same between corner neighbours."},
-    [RENDER_USE_TIR] = {"use_tir", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-use-tir",
-                        "Whether total internal reflection adds the refracted amount to the reflected one."},
-    [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPECULAR_KINDS), NULL, "--specular",
-                         "Formula of highlights."},
-    [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 0x1p53 - 1), NULL, "--seed", "Seed of random numbers."},
-    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(ACCEL_KINDS), NULL, "'auto'",
-                      "Acceleration structure; the picture is the same."},
-    [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
-    [RENDER_CAUSTICS] = {"caustics", KIND_CAUSTICS, OPTIONAL, ANY, NULL, "--caustics",
-                         "Caustics: number of photons (default 200000) and radius of the disc that each one lights "
-                         "(default: from their density)."},
-    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--cutoff",
-                       "gray does not trace rays that can change a pixel by less than this."},
-    [RENDER_INTEGRATOR] =
-        {"integrator", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(INTEGRATORS), NULL, "--integrator",
-         "The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces."},
-    [RENDER_SPP] = {"spp", KIND_WHOLE, OPTIONAL, IN_RANGE(1, PATH_SAMPLES_MAX), NULL, "--spp, else 64",
-                    "Samples per pixel of integrator path; the option has priority."},
-    [RENDER_MAX_DEPTH] = {"max_depth", KIND_WHOLE, OPTIONAL, IN_RANGE(0, DEPTH_MAX), NULL, "--max-depth",
-                          "Scattering events of a path: 0 shows emission only, 1 direct light."},
-    [RENDER_NOISE] =
-        {"noise", KIND_NUMBER, OPTIONAL, IN_RANGE(1e-6, 10), NULL, "--noise, else all samples",
-         "Relative standard error at which a tile of integrator path is finished; the option has priority."},
-    [RENDER_CLAMP] =
-        {"clamp", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "--clamp",
-         "Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker."},
-    [RENDER_FILTER] = {"filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(FILTERS), NULL, "--filter",
-                       "Reconstruction filter of a pixel."},
-    [RENDER_DENOISE] = {"denoise", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--denoise",
-                        "Whether integrator path removes noise; the option has priority."},
-    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, IN_RANGE(-100, 100), "stops", "--exposure",
-                         "Light is multiplied by 2^exposure when a PNG file is written."},
-    [RENDER_TONE] =
-        {"tone", KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
-         "Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x "
-         "from 0 on, the same for red, green and blue; the option has priority over a function."},
-    [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
-                     "Whether PNG files are encoded with the sRGB transfer function."},
-    [RENDER_COLOUR] = {"colour", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(COLOUR_PIPELINES), NULL, "--colour",
-                       "Whether colours are linear light or the numbers of files; auto: linear with integrator path."},
-    [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep",
-                     "Whether PNG files have 16 bits per channel."},
-    [RENDER_STYLE] =
-        {"style", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STYLES), NULL, "--style",
-         "Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted."},
-    [RENDER_LINE_WIDTH] = {"line_width", KIND_NUMBER, OPTIONAL, IN_RANGE(0, LINE_WIDTH_MAX), "pixels", "--line-width",
-                           "Width of lines where objects, normals and depths change."},
-    [RENDER_TOON_STEPS] = {"toon_steps", KIND_WHOLE, OPTIONAL, IN_RANGE(1, TOON_STEPS_MAX), NULL, "--toon-steps",
-                           "Number of levels of light of style toon, not counting shadow."},
-    [RENDER_BLOOM] = {"bloom", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--bloom",
-                      "Weight of the light above white that spreads around it."},
-    [RENDER_VIGNETTE] = {"vignette", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--vignette",
-                         "Darkens the corners; with 1 they have a quarter of their light."},
-    [RENDER_GRAY] = {"gray", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--gray", "Whether the picture is its luminance."},
-    [RENDER_EDGES] = {"edges", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--edges",
-                      "Whether PNG files show the edges of the picture, white on black."},
-    [RENDER_FXAA] = {"fxaa", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--fxaa",
-                     "Whether the edges in PNG files are smoothed."},
-    [RENDER_DITHER] = {"dither", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(DITHERS), NULL, "--dither",
-                       "Pattern by which PNG files are rounded to 8 bits."},
+    SETTINGS_WITH_FIELD(PARAMETER_OF_SETTING)[RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
                            "Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude."},
     [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",

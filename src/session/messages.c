@@ -7,6 +7,7 @@
 
 #include "base/fault.h"
 #include "film/aov.h"
+#include "settings/setting.h"
 
 #include <errno.h>
 #include <math.h>
@@ -40,13 +41,9 @@ static bool frame_is_valid(const struct frame *frame) {
                                   frame->rate >= FRAME_RATE_MIN && frame->rate <= FRAME_RATE_MAX);
 }
 
-static bool is_share(double x) {
-    return x >= 0 && x <= 1;
-}
-
-static bool tone_is_valid(const struct picture_request *request) {
-    bool fine = request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FUNCTION;
-    for (int i = 0; i < TONE_ENTRIES && fine && request->curve == TONE_FUNCTION; i++)
+static bool settings_fit(const struct picture_request *request) {
+    bool fine = settings_are_valid(&request->settings);
+    for (int i = 0; i < TONE_ENTRIES && fine && request->settings.tone.curve == TONE_FUNCTION; i++)
         fine = isfinite(request->tone_table.values[i]);
     return fine;
 }
@@ -65,11 +62,7 @@ bool message_is_valid(const struct message *message) {
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && shown_is_valid(request) &&
-               tone_is_valid(request) && is_share(request->bloom) && is_share(request->vignette) &&
-               request->dither <= DITHER_BLUE && frame_is_valid(&request->frame) &&
-               film_record_valid(request->record) && request->overlay <= OVERLAY_OF_GRID &&
-               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
-               (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
+               settings_fit(request) && frame_is_valid(&request->frame) && film_record_valid(request->record);
     case MESSAGE_DONE:
         return message->size == sizeof message->body.report;
     case MESSAGE_PREVIEW_REPLY:
@@ -94,8 +87,9 @@ bool message_is_valid(const struct message *message) {
 }
 
 struct tone picture_tone(const struct picture_request *request) {
-    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0,
-                         request->curve == TONE_FUNCTION ? &request->tone_table : NULL};
+    struct tone tone = request->settings.tone;
+    tone.table = tone.curve == TONE_FUNCTION ? &request->tone_table : NULL;
+    return tone;
 }
 
 bool picture_request_enlarge(const struct picture_request *request, uint32_t width, uint32_t height,

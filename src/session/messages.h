@@ -104,22 +104,15 @@ struct picture_request {
     uint32_t full_width, full_height; /* of the whole picture */
     uint32_t x0, y0, width, height;   /* the part that is rendered */
     struct film_rectangle shown;      /* the part of that which is written: less where it is denoised with a rim */
-    double exposure;                  /* of its file, as in struct tone */
-    uint32_t curve, srgb;             /* the same; an enum tone_curve, and not 0 for sRGB */
-    struct tone_table tone_table;     /* the same, of TONE_FUNCTION */
-    uint32_t deep;                    /* not 0: 16 bits a channel in a PNG file */
-    double bloom, vignette;           /* as in struct finish */
-    uint32_t gray, edges, fxaa;       /* the same, not 0: true */
-    uint32_t dither;                  /* an enum dither */
+    struct settings settings;         /* the table of its tone curve is the next one */
+    struct tone_table tone_table;     /* of TONE_FUNCTION */
     struct film_record record;        /* of its film */
     uint32_t layers;                  /* mask of the layers beside the picture */
     uint32_t in_window;               /* not 0: in a window */
-    uint32_t overlay;                 /* in a window: an enum overlay, the requested lines */
     struct camera camera;             /* its view a direction */
-    struct lens lens;
-    uint32_t keep;       /* not 0: a picture that exists under this name is not replaced */
-    uint32_t check;      /* not 0 for --check: only the names are checked, no film is needed */
-    struct digest files; /* of all files read so far; zero if not needed */
+    uint32_t keep;                    /* not 0: a picture that exists under this name is not replaced */
+    uint32_t check;                   /* not 0 for --check: only the names are checked, no film is needed */
+    struct digest files;              /* of all files read so far; zero if not needed */
     struct digest shows; /* digest of a frame: equal digests of one render process mean equal frames; zero: not known */
     struct frame frame;  /* of an animation, or number 0 */
     char file[4096];     /* as the script wrote it */

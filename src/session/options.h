@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/list.h"
-#include "script/script.h"
+#include "settings/script_options.h"
 #include "settings/settings.h"
 
 #include <stdbool.h>

@@ -1,5 +1,5 @@
 /* The settings of a picture: defaults, drafts, and what they mean together. */
-#include "settings/settings.h"
+#include "settings/setting.h"
 
 #include "base/unreachable.h"
 
@@ -15,25 +15,11 @@ struct integrator_traits integrator_traits(enum integrator_kind integrator) {
     UNREACHABLE("an integrator of no kind");
 }
 
-/* The defaults of docs/language.md 13. */
-
 struct settings settings_default(void) {
-    return (struct settings){.samples = 3,
-                             .aa_pattern = AA_ROTATED,
-                             .reflect_limit = 2,
-                             .refract_limit = 4,
-                             .side_tolerance = 0.005,
-                             .corner_tolerance = 0.01,
-                             .area_samples = 4,
-                             .line_width = -1,
-                             .toon_steps = 3,
-                             .max_depth = DEPTH_DEFAULT,
-                             .roulette_depth = ROULETTE_DEPTH_DEFAULT,
-                             .specular = SPECULAR_PHONG,
-                             .accel = ACCEL_AUTO,
-                             .shutter = {0, 1},
-                             .cutoff = 0.0001,
-                             .lens = {.view_height = 2, .angle = 180, .screen = 1}};
+    struct settings settings = {.shutter = {0, 1}, .lens = {.view_height = 2, .angle = 180, .screen = 1}};
+    for (int i = 0; i < setting_count; i++)
+        setting_store(&setting_table[i], &settings, setting_table[i].initial);
+    return settings;
 }
 
 void settings_set_draft(struct settings *settings, enum draft_level draft_level) {

@@ -1,6 +1,6 @@
 /* Render layers (AOVs) against closed forms, and statistics that must agree with one another. */
-#include "output/layers_internal.h"
 #include "film/aov.h"
+#include "output/layers_internal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

@@ -773,8 +773,9 @@ TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
     }
 }
 
-/* A highlight of a mirror stands for the light of lamps that no ray can hit. Photons that the mirror throws are the same
- * light: scattered rays must not add the highlight to it. The floor has the light of the lamp and of its mirror image. */
+/* A highlight of a mirror stands for the light of lamps that no ray can hit. Photons that the mirror throws are the
+ * same light: scattered rays must not add the highlight to it. The floor has the light of the lamp and of its mirror
+ * image. */
 TEST(photons_replace_the_highlights_of_mirrors_on_which_scattered_rays_see_lights_without_body) {
     struct vec3 light[2];
     for (int mirrored = 0; mirrored < 2; mirrored++) {

@@ -20,8 +20,12 @@ static enum channel_result receive(struct message *message) {
 }
 
 static struct picture_request sound_request(void) {
-    struct picture_request request = {
-        .full_width = 100, .full_height = 80, .width = 100, .height = 80, .shown = {0, 0, 100, 80}};
+    struct picture_request request = {.full_width = 100,
+                                      .full_height = 80,
+                                      .width = 100,
+                                      .height = 80,
+                                      .shown = {0, 0, 100, 80},
+                                      .settings = settings_default()};
     memcpy(request.file, "a.png", 6);
     return request;
 }
@@ -131,23 +135,23 @@ TEST(requests_for_impossible_pictures_are_refused) {
     }
     for (int side = -1; side <= 1; side += 2) {
         request = sound_request();
-        request.exposure = 101 * side;
+        request.settings.tone.exposure = 101 * side;
         broken_request(request);
     }
     request = sound_request();
-    request.curve = 1000;
+    request.settings.tone.curve = (enum tone_curve)1000;
     broken_request(request);
     for (int i = 0; i < 3; i++) {
         request = sound_request();
-        request.curve = TONE_FUNCTION;
+        request.settings.tone.curve = TONE_FUNCTION;
         request.tone_table.values[i == 0 ? 0 : i == 1 ? 77 : TONE_ENTRIES - 1] = i == 1 ? (float)NAN : (float)INFINITY;
         broken_request(request);
     }
     request = sound_request();
-    request.lens.projection = (enum projection)1000;
+    request.settings.lens.projection = (enum projection)1000;
     broken_request(request);
     request = sound_request();
-    request.lens.stereo = (enum stereo)1000;
+    request.settings.lens.stereo = (enum stereo)1000;
     broken_request(request);
     request = sound_request();
     static struct message message;

@@ -3,8 +3,8 @@
 #define _GNU_SOURCE
 #include "base/file_output.h"
 
-#include "image/image.h"
 #include "film/tile_file.h"
+#include "image/image.h"
 #include "tests/harness.h"
 
 #include <errno.h>

@@ -161,7 +161,7 @@ TEST(stats_takes_its_form_only_behind_an_equals_sign) {
     parsed = parse("--stats=text s.lua");
     CHECK_EQ_INT(taken(parsed)->statistics, STATISTICS_TEXT);
     forget(parsed);
-    refused("--stats=csv s.lua", "--stats needs one of text|json, not 'csv'");
+    refused("--stats=csv s.lua", "--stats needs one of none|text|json, not 'csv'");
 }
 
 TEST(alsamples_and_attached_thread_counts_are_understood) {

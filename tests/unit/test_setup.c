@@ -122,7 +122,8 @@ static void make_gallery(const char *plan) {
                  "cat >gray <<'END'\n"
                  "#!/bin/sh\n"
                  "for word in \"$@\"; do case $word in *%%02d.png) out=${word%%%%%%02d*}; esac; done\n"
-                 "case $out in *broken*) exit 1;; *sleeper*) sleep 2;; *clock*) echo picture >${out}02.png;; *path*) echo printed;; esac\n"
+                 "case $out in *broken*) exit 1;; *sleeper*) sleep 2;; *clock*) echo picture >${out}02.png;; *path*) "
+                 "echo printed;; esac\n"
                  "echo picture >${out}01.png\n"
                  "END\n"
                  "chmod +x gray",
