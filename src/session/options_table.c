@@ -163,9 +163,6 @@ const struct option option_table[] = {
      "keep the frames of the animation FILE as PNG files in the folder FILE.frames"},
     {OPTION_GROUP_FRAMES, "--contact-sheet", OPTION_FLAG, NULL, NO_RANGE, FIELD(contact_sheet), NULL,
      "for the animation dir/foo.gif also write dir/foo.sheet.png: small pictures of all frames"},
-    {OPTION_GROUP_FRAMES, "--no-copies", OPTION_FLAG, NULL, NO_RANGE, FIELD(no_copies), NULL,
-     "render every frame; without this option, gray copies a frame that is equal to an earlier one, with the same "
-     "bytes"},
 
     {OPTION_GROUP_COMPATIBILITY, "--transform-order", OPTION_CHOICE, LIST_BARS(SCRIPT_ORDERS), NO_RANGE,
      FIELD(script.transform_order), "auto",
