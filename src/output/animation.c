@@ -23,8 +23,6 @@ void animation_restart(struct animation *animation) {
     for (uint32_t index = 0; index < animation->count; index++)
         mem_free((void *)(uintptr_t)animation->frames[index]);
     animation->count = animation->last = 0;
-    mem_free(animation->last_frame);
-    animation->last_frame = NULL;
 }
 
 bool animation_streams(const struct animation *animation, const struct picture_request *request) {
@@ -123,24 +121,10 @@ bool animation_put(struct animation *animation, const struct picture *picture, s
     if (ok) {
         y4m_frame(rgb, pixels, frame);
         ok = file_output_write(&animation->stream, frame, Y4M_FRAME_HEAD + 3 * pixels, error);
-        mem_free(animation->last_frame);
-        animation->last_frame = frame;
-        animation->last_shows = picture->request.shows;
-        animation->last_number = picture->request.frame.number;
-        frame = NULL;
     }
     mem_free(rgb);
     mem_free(frame);
     return ok;
-}
-
-bool animation_repeat(struct animation *animation, const struct picture_request *request, bool *done, uint32_t *number,
-                      struct error *error) {
-    size_t pixels = (size_t)animation->width * animation->height;
-    *number = animation->last_number;
-    *done =
-        !digest_is_zero(request->shows) && animation->last_frame && digest_equal(animation->last_shows, request->shows);
-    return !*done || file_output_write(&animation->stream, animation->last_frame, Y4M_FRAME_HEAD + 3 * pixels, error);
 }
 
 /* --- files --- */

@@ -9,7 +9,6 @@
 #include "film/film.h"
 #include "film/path_film.h"
 #include "render/pixel_trace.h"
-#include "scene/scene_digest.h"
 #include "settings/settings.h"
 
 #include <assert.h>
@@ -541,85 +540,4 @@ bool renderer_make_passes(struct renderer *renderer) {
         renderer->pass.begin = done;
         renderer->pass.end = done + next_samples(renderer, limit, seconds, now);
     }
-}
-
-/* --- digests --- */
-
-/* A new field of one of these structs changes its size, and the assertions fail: then update these functions. */
-
-static void digest_add(struct digest_sum *sum, int64_t whole) {
-    digest_sum_add(sum, (uint64_t)whole);
-}
-
-static void digest_add_numbers(struct digest_sum *sum, double a, double b, double c) {
-    const double numbers[3] = {a, b, c};
-    digest_sum_add_numbers(sum, numbers, 3);
-}
-
-static void digest_add_camera(struct digest_sum *sum, const struct render_job *job) {
-    const struct camera *camera = &job->camera;
-    const struct camera_motion *motion = &job->settings.motion;
-    const struct lens *lens = &job->settings.lens;
-    digest_sum_add_vector(sum, camera->eye);
-    digest_sum_add_vector(sum, camera->view);
-    digest_sum_add_vector(sum, camera->up);
-    digest_add(sum, motion->moves);
-    digest_sum_add_vector(sum, motion->eye);
-    digest_sum_add_vector(sum, motion->view);
-    digest_sum_add_vector(sum, motion->up);
-    digest_add_numbers(sum, camera->fov, job->settings.shutter.open, job->settings.shutter.close);
-    digest_add(sum, lens->projection);
-    digest_add_numbers(sum, lens->view_height, lens->angle, lens->aperture);
-    digest_add_numbers(sum, lens->shift_x, lens->shift_y, lens->focus);
-    digest_sum_add_vector(sum, lens->focus_point);
-    digest_add(sum, lens->blades);
-    digest_add(sum, lens->stereo);
-    digest_add_numbers(sum, lens->blade_angle, lens->eye_distance, lens->screen);
-}
-
-static void digest_add_display(struct digest_sum *sum, const struct settings *s) {
-    const struct tone *tone = &s->tone;
-    const struct finish *finish = &s->finish;
-    digest_add_numbers(sum, tone->exposure, finish->bloom, finish->vignette);
-    digest_add(sum, tone->curve);
-    if (tone->table)
-        digest_sum_add_digest(sum, digest_bytes(tone->table, sizeof *tone->table, (struct digest){0}));
-    digest_add(sum, tone->srgb | finish->gray << 1 | finish->edges << 2 | finish->fxaa << 3 | s->deep << 4);
-    digest_add(sum, finish->dither);
-    digest_add(sum, s->style);
-    digest_add(sum, s->toon_steps);
-    digest_add_numbers(sum, s->line_width, s->side_tolerance, s->corner_tolerance);
-}
-
-static void digest_add_settings(struct digest_sum *sum, const struct settings *s) {
-    digest_add(sum, (int64_t)s->integrator << 32 | s->colour);
-    digest_add(sum, (int64_t)s->path_strategy << 32 | s->light_choice);
-    digest_add(sum, s->caustics.photons);
-    digest_add_numbers(sum, s->caustics.radius, s->cutoff, s->noise);
-    digest_add_numbers(sum, s->time_limit, s->clamp, 0);
-    digest_add(sum, (int64_t)s->samples << 32 | s->aa_pattern);
-    digest_add(sum, (int64_t)s->reflect_limit << 32 | s->refract_limit);
-    digest_add(sum, (int64_t)s->area_samples << 32 | s->path_samples);
-    digest_add(sum, (int64_t)s->max_depth << 32 | s->roulette_depth);
-    digest_add(sum, (int64_t)s->filter << 32 | s->denoise);
-    digest_add(sum, (int64_t)s->specular << 32 | s->accel);
-    digest_add(sum, (int64_t)s->overlay << 32 | s->order);
-    digest_sum_add(sum, s->seed);
-    digest_add(sum, s->aov);
-    digest_add(sum, s->full | s->use_tir << 1 | s->passes << 2 | s->view_is_target << 4 | s->pixel_corner << 5 |
-                        s->ambient_plain << 6 | s->keep_first << 7 | s->coarse << 8 | s->show_refined << 9 |
-                        s->cropped << 10 | s->keeps_tone << 11);
-    digest_add(sum, s->crop_x);
-    digest_add(sum, s->crop_y);
-    digest_add(sum, s->crop_width);
-    digest_add(sum, s->crop_height);
-}
-
-void render_digest_add(const struct render_job *job, struct digest_sum *sum) {
-    digest_add(sum, (int64_t)job->width << 32 | job->height);
-    digest_add(sum, job->background_lights);
-    digest_sum_add_vector(sum, job->ambient);
-    digest_add_camera(sum, job);
-    digest_add_display(sum, &job->settings);
-    digest_add_settings(sum, &job->settings);
 }

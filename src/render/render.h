@@ -4,7 +4,6 @@
 #ifndef GRAY_RENDER_RENDER_H
 #define GRAY_RENDER_RENDER_H
 
-#include "base/hash.h"
 #include "base/pool.h"
 #include "film/film.h"
 #include "film/render_statistics.h"
@@ -60,7 +59,5 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
 /* The number of samples of a tile that is begun, in a film of a checkpoint (--noise); 0 unless all its pixels have
  * those of one level, below `limit`. */
 uint32_t render_level_samples(const struct film *film, uint32_t tile, uint32_t limit);
-/* Adds all data of a job that its picture depends on, except the scene. */
-void render_digest_add(const struct render_job *job, struct digest_sum *sum);
 
 #endif

@@ -240,6 +240,22 @@ bool script_path_policy(const char *path, const struct script_options *options, 
     return ok;
 }
 
+/* What the pointers in it lead to stays the same while the epoch does, but for the lights and the table of the tone. */
+struct digest render_request_digest(const struct render_request *request) {
+    const struct tone_table *table = request->settings.tone.table;
+    struct digest digest = {request->scene->epoch, table != NULL};
+    struct render_request shown;
+    memcpy(&shown, request, sizeof shown);
+    shown.file = shown.where = NULL;
+    shown.frame = (struct frame){0};
+    shown.lights = NULL;
+    shown.settings.tone.table = NULL;
+    digest = digest_bytes(&shown, sizeof shown, digest);
+    if (table)
+        digest = digest_bytes(table, sizeof *table, digest);
+    return digest_bytes(request->lights, request->light_count * sizeof *request->lights, digest);
+}
+
 static bool prepare(struct script_context *context, struct path_policy *path_policy, struct error *error) {
     const char *slash = strrchr(context->path, '/');
     size_t length = slash ? (size_t)(slash - context->path) + 1 : 0;

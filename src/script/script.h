@@ -5,6 +5,7 @@
 #define GRAY_SCRIPT_SCRIPT_H
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "material/medium.h"
 #include "scene/node.h"
 #include "settings/script_options.h"
@@ -35,6 +36,10 @@ struct render_request {
     struct frame frame;       /* of an animation; else its number is 0 */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
+
+/* Of all that the picture shows except the nodes of the scene, which note their changes (scene/node.h). It is a digest
+ * of the request's bytes, so it includes every field. Different padding only means that an equal frame is rendered. */
+struct digest render_request_digest(const struct render_request *request);
 
 enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };
 

@@ -113,9 +113,9 @@ struct picture_request {
     uint32_t keep;                    /* not 0: a picture that exists under this name is not replaced */
     uint32_t check;                   /* not 0 for --check: only the names are checked, no film is needed */
     struct digest files;              /* of all files read so far; zero if not needed */
-    struct digest shows; /* digest of a frame: equal digests of one render process mean equal frames; zero: not known */
-    struct frame frame;  /* of an animation, or number 0 */
-    char file[4096];     /* as the script wrote it */
+    uint32_t repeats;                 /* not 0: equal to the last picture that this process rendered */
+    struct frame frame;               /* of an animation, or number 0 */
+    char file[4096];                  /* as the script wrote it */
 };
 
 /* The statistics of a finished picture. */

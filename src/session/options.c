@@ -428,7 +428,18 @@ static const struct setting *find_attached(const char *word, const char **text) 
     return find_option((struct piece){word + 1, 1});
 }
 
+/* Options of the version before, and what replaces them. */
+static const struct {
+    const char *name, *instead;
+} removed_options[] = {
+    {"no-copies", "leave it out; copied frames have the bytes of rendered ones"},
+};
+
 static bool unknown_option(const char *word, struct piece name, struct error *error) {
+    for (size_t i = 0; i < sizeof removed_options / sizeof *removed_options; i++)
+        if (same_name(name, (struct piece){removed_options[i].name, strlen(removed_options[i].name)}))
+            return error_set(error, ERROR_USAGE, "there is no --%s any more: %s", removed_options[i].name,
+                             removed_options[i].instead);
     struct piece near = nearest_name(name);
     if (near.length == 0)
         return error_set(error, ERROR_USAGE, "there is no option '%s'", word);

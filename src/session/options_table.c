@@ -67,9 +67,6 @@ static const struct setting options_table[] = {
      NULL, "Keep the frames of the animation FILE as PNG files in the folder FILE.frames."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--contact-sheet", NULL, "", NULL, FIELD(contact_sheet), 0, 0,
      0, NULL, "For the animation dir/foo.gif also write dir/foo.sheet.png: small pictures of all frames."},
-    {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--no-copies", NULL, "", NULL, FIELD(no_copies), 0, 0, 0, NULL,
-     "Render every frame; without this option, gray copies a frame that is equal to an earlier one, with the same "
-     "bytes."},
     {SETTING_CHOICE, CHANGES_SAMPLES, OPTION_GROUP_OTHER_PROGRAMS, "--transform-order", NULL, LIST_BARS(SCRIPT_ORDERS),
      NULL, FIELD(script.transform_order), 0, 0, 0, "auto",
      "Order of transforms; new: in the order in which they are written; old: the last one acts first; separate: scale, "

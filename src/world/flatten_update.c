@@ -20,7 +20,7 @@ struct update {
 static bool mark_posed(struct update *u, const struct scene_changes *changes, bool *done) {
     const struct flatten_log *log = u->f->log;
     for (uint32_t i = 0; i < changes->posed_count; i++) {
-        const struct node *node = changes->posed[i];
+        const struct node *node = changes->posed[i].node;
         if (node->index >= log->node_total)
             continue; /* newer than the world, so it is not below the root */
         if (node->singular || (log->inside && log->inside[node->index]))

@@ -171,6 +171,11 @@ TEST(alsamples_and_attached_thread_counts_are_understood) {
     forget(parsed);
 }
 
+TEST(a_removed_option_is_answered_with_what_replaces_it) {
+    refused("--no-copies s.lua",
+            "there is no --no-copies any more: leave it out; copied frames have the bytes of rendered ones");
+}
+
 TEST(a_misspelt_option_is_answered_with_the_nearest_name) {
     refused("-fulll s.lua", "there is no option '-fulll'; did you mean -full?");
     refused("--reflectlimit=3 s.lua", "there is no option '--reflectlimit=3'; did you mean -reflect-limit?");
