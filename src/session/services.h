@@ -9,6 +9,9 @@
 
 #include <stdbool.h>
 
+struct preview_reply;
+struct preview_command;
+
 struct host_services {
     void *context;
     struct control *control;
