@@ -82,7 +82,7 @@ fi
             while (("ls src/*/*.h" | getline path) > 0) {
                 path = substr(path, 5)
                 if (!(path in seen) && module(path) != last && path !~ /_internal\.h$/)
-                    print "src/" path ": no other module sees it, so its name ends in _internal.h (tools/rename.sh)"
+                    print "src/" path ": no other module sees it, so its name ends in _internal.h"
             }
         }'
 } | sort -u >"$work/bad"
