@@ -163,8 +163,3 @@ bool cpu_select_isa(const char *name) {
         return false;
     return true;
 }
-
-const char *cpu_isa_name(void) {
-    static const char *const names[] = {CPU_ISAS(LIST_WORD)};
-    return names[cpu_isa_chosen];
-}

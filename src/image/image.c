@@ -238,10 +238,6 @@ struct image *image_decode(struct image *image, struct transfer_function transfe
     return image->decoded = out;
 }
 
-struct transfer_function image_transfer(const struct image *image) {
-    return image->transfer;
-}
-
 struct transfer_function image_colour_transfer(const struct image *image) {
     if (image->transfer.kind != TRANSFER_UNSTATED || image->bits != 8)
         return image->transfer;

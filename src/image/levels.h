@@ -40,7 +40,7 @@ struct image {
     struct image_memo *memo;
     char *name;
     struct transfer_function
-        transfer;                /* as its file states it; of the results of image_decode: that which was decoded */
+        transfer;                /* as its file states it, if it does; of the results of image_decode: that which was decoded */
     char *colours;               /* what image_colours returns, or NULL; owned */
     struct image *decoded;       /* the first result of image_decode, in which it is the next one; owned */
     struct image_ranges *ranges; /* of image_make_ranges (image_function.h), or NULL; owned */
@@ -53,7 +53,7 @@ bool image_build_levels(struct image *image, struct error *error);
 /* Sets what the file states about its colours: `transfer` and `colours`. False: no memory. */
 bool png_colour_read(struct image *image, const uint8_t *data, size_t size);
 /* A PNG file in memory: every colour type, bit depth and interlace; texels are not changed by cICP, iCCP, sRGB and gAMA
- * (image_transfer); tRNS gives alpha. Errors name `path` and what libpng said; sizes over 2^15 per side or 2^28 pixels
+ * (transfer); tRNS gives alpha. Errors name `path` and what libpng said; sizes over 2^15 per side or 2^28 pixels
  * are errors before memory is allocated. */
 struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
 
