@@ -2,9 +2,9 @@
 #include "light/light_mesh.h"
 
 #include "base/arena.h"
-#include "light/light_internal.h"
+#include "light/light_shapes_internal.h"
 #include "math/frame.h"
-#include "math/spherical_triangle.h"
+#include "math/sampling.h"
 
 #include <math.h>
 
