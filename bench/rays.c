@@ -545,8 +545,8 @@ static void print_json(const struct timing *results, int count) {
             printf(", \"%s\": {\"rays\": %llu, \"mrays\": [%.3f, %.3f], \"ratio\": %.4f, \"disagreements\": %llu}",
                    kind_names[k], (unsigned long long)r->rays[k], r->speed[0][k], r->speed[1][k], r->ratio[k],
                    (unsigned long long)r->disagreements[k]);
-        printf(", \"packets\": {\"mrays\": [%.3f, %.3f], \"ratio\": %.4f}}%s\n", r->packet_speed[0],
-               r->packet_speed[1], r->packet_ratio, i + 1 < count ? "," : "");
+        printf(", \"packets\": {\"mrays\": [%.3f, %.3f], \"ratio\": %.4f}}%s\n", r->packet_speed[0], r->packet_speed[1],
+               r->packet_ratio, i + 1 < count ? "," : "");
     }
     printf("]\n");
 }
@@ -652,9 +652,8 @@ static void run_all(struct bench *bench) {
     static const char *const models[] = {"teapot", "cow", "spot", "fandisk", "cessna", "stanford-bunny", "nefertiti"};
     struct bench_scene scene = {0};
     if (!bench->options.json)
-        printf("%-18s %8s | %7s %5s | %6s %5s | %-20s | %-17s | %-19s | %s\n", "scene", "tris", "build",
-               "ratio", "B/tri", "ratio", "camera shadow bounce", "ratio to Embree", "packets, 16, ratio",
-               "disagreements");
+        printf("%-18s %8s | %7s %5s | %6s %5s | %-20s | %-17s | %-19s | %s\n", "scene", "tris", "build", "ratio",
+               "B/tri", "ratio", "camera shadow bounce", "ratio to Embree", "packets, 16, ratio", "disagreements");
     for (size_t i = 0; i < sizeof models / sizeof *models; i++)
         if (wanted(bench, models[i]) && load_model(bench, models[i], &scene)) {
             run_scene(bench, &scene);

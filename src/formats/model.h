@@ -134,7 +134,6 @@ void model_warn(struct model *model, const char *format, ...) __attribute__((for
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
 const char *model_why_missing(const struct model *model);
 
-
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error);

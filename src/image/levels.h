@@ -40,7 +40,7 @@ struct image {
     struct image_memo *memo;
     char *name;
     struct transfer_function
-        transfer;                /* as its file states it, if it does; of the results of image_decode: that which was decoded */
+        transfer;                /* as its file states it; of the results of image_decode: that which was decoded */
     char *colours;               /* what image_colours returns, or NULL; owned */
     struct image *decoded;       /* the first result of image_decode, in which it is the next one; owned */
     struct image_ranges *ranges; /* of image_make_ranges (image_function.h), or NULL; owned */
