@@ -3,6 +3,7 @@
 #ifndef GRAY_RENDER_INTEGRATOR_STATE_INTERNAL_H
 #define GRAY_RENDER_INTEGRATOR_STATE_INTERNAL_H
 
+#include "math/range.h"
 #include "render/observer.h"
 #include "render/path_parts.h"
 #include "render/photon_map_internal.h"
@@ -40,6 +41,14 @@ struct integrator_state {
  * whether to stop. */
 static inline bool integrator_cancelled(const struct integrator_state *state) {
     return state->pool && pool_cancelled(state->pool);
+}
+
+/* The colour with channels up to the limit, and a note if that changes it. */
+static inline struct vec3 integrator_clamp_light(struct integrator_state *state, struct vec3 colour, double limit) {
+    if (vec3_within(colour, limit))
+        return colour;
+    state->clamped = true;
+    return vec3_clamped(colour, limit);
 }
 
 #endif
