@@ -159,7 +159,7 @@ $(BUILD)/src/expr/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq
 $(BUILD)/src/render/%_avx2.o: override CFLAGS += -mavx2 -fno-trapping-math
 $(BUILD)/src/render/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -fno-trapping-math
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
-$(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
+$(BUILD)/src/script/libraries.o: override CFLAGS += -fno-builtin
 
 # Tests of the release build are optimized less: they compile in half the time, and what they test is optimized as ever.
 $(TEST_OBJECTS): private override CFLAGS := $(CFLAGS:-O3=-O1)

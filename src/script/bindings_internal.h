@@ -3,7 +3,7 @@
 #ifndef GRAY_SCRIPT_BINDINGS_INTERNAL_H
 #define GRAY_SCRIPT_BINDINGS_INTERNAL_H
 
-#include "script/table_internal.h"
+#include "script/context_internal.h"
 
 typedef bool binding(struct script_context *context, const struct script_value *args, struct script_result *result,
                      struct error *error);
@@ -46,7 +46,6 @@ binding gr_change_node, gr_change_delete, gr_change_add, gr_change_material, gr_
     gr_change_exposure;
 
 /* gr_methods.c: args[0] is the node itself */
-enum { SELF };
 enum { CHILD_NODE = 1, CHILD_COUNT };
 enum { SET_MATERIAL = 1, SET_MATERIAL_COUNT };
 enum { SET_TEXTURE = 1, SET_TEXTURE_COUNT };
@@ -79,13 +78,6 @@ enum {
     MESH_FACE_MATERIALS,
     MESH_COUNT
 };
-/* record_bounds.c: registers that a recorded function is used within these bounds of p. It is compared with Lua there
- * before the next picture. For any other program this does nothing. */
-void record_use(struct script_context *context, const struct expr_program *program, const struct box *bounds);
-/* Adds the bounds of the shapes at and below the node to the functions of their materials, and compares every function
- * whose bounds have grown. False: one differs from Lua. */
-bool record_check(struct script_context *context, const struct node *root, struct error *error);
-
 struct height_field_input;
 /* gr_displace.c: the heights of a grid, or 0 if it has none, plus those of a function; in the arena of the call. NULL
  * with an error. */
@@ -153,14 +145,6 @@ const struct texture_image *gr_image(struct script_context *context, const struc
                                      struct error *error);
 /* The bump map for node:set_bump: a result of gr.bump, or any other image with the default height. */
 const struct bump *read_bump_values(struct script_context *context, const struct script_value *value,
-                                    struct error *error);
-
-/* gr_textures.c */
-/* The handle of a texture; NULL with an error. */
-struct script_texture *gr_keep_texture(struct script_context *context, const struct script_texture *value,
-                                       struct error *error);
-/* The texture of an input, or a constant texture of its number or colour; NULL with an error. */
-const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error);
 
 /* gr_environment.c; the fields of the sun follow one another from SUN_DIRECTION on */

@@ -1,11 +1,12 @@
 /* Functions of Lua 5.0 and 5.1 that 5.4 no longer has (Lua reference manuals 5.0 to 5.4,
  * "Changes since the previous version"). Not possible: the implicit table `arg` of vararg functions. */
-#include "script/context_internal.h"
+#include "script/compat_internal.h"
 
 #include "math/elementary.h"
 
 #include <lauxlib.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -104,9 +105,9 @@ static int math_ldexp(lua_State *L) {
 }
 
 /* math.randomseed without arguments would use the time: here it restarts the sequence. Floats are truncated, as in
- * Lua 5.1. Upvalue 1: Lua's own function. */
+ * Lua 5.1. Upvalues: Lua's own function, the seed of the command line. */
 static int math_seed(lua_State *L) {
-    lua_Integer seed = (lua_Integer)context_of(L)->options->seed, second = 0;
+    lua_Integer seed = lua_tointeger(L, lua_upvalueindex(2)), second = 0;
     if (!lua_isnoneornil(L, 1)) {
         lua_Number x = luaL_checknumber(L, 1);
         if (lua_isinteger(L, 1))
@@ -330,7 +331,7 @@ static void set_functions(lua_State *L, const char *library, const luaL_Reg *fun
     lua_pop(L, 1);
 }
 
-void compat_open(lua_State *L) {
+void compat_open(lua_State *L, uint64_t seed) {
     static const luaL_Reg tables[] = {{"getn", table_length},
                                       {"setn", table_set_length},
                                       {"maxn", table_largest},
@@ -363,7 +364,8 @@ void compat_open(lua_State *L) {
 
     lua_getglobal(L, "math");
     lua_getfield(L, -1, "randomseed");
-    lua_pushcclosure(L, math_seed, 1);
+    lua_pushinteger(L, (lua_Integer)seed);
+    lua_pushcclosure(L, math_seed, 2);
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "randomseed");
     lua_call(L, 0, 0); /* random numbers start from the seed of the command line */

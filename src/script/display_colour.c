@@ -1,7 +1,6 @@
 /* Colours as a screen shows them: '#rgb', '#rrggbb', and the results of gr.srgb, which are tables {r, g, b, encoding =
  * 'srgb'}. Classic colours are these numbers; linear colours decode them (docs/colour.md). */
-#include "script/context_internal.h"
-#include "script/record_internal.h"
+#include "script/display_colour_internal.h"
 
 #include "image/transfer.h"
 
@@ -53,7 +52,7 @@ bool display_colour_at(lua_State *L, int index, struct vec3 *out) {
     if (lua_type(L, index) != LUA_TSTRING || lua_tostring(L, index)[0] != '#')
         return false;
     if (!read_hexadecimal(lua_tostring(L, index), out))
-        context_raise(context_of(L), "'%.40s' is not a colour; colours are '#rgb' or '#rrggbb' with hexadecimal digits",
+        sandbox_raise(sandbox_of(L), "'%.40s' is not a colour; colours are '#rgb' or '#rrggbb' with hexadecimal digits",
                       lua_tostring(L, index));
     return true;
 }
@@ -62,19 +61,19 @@ bool display_colour_read(struct script_context *c, int index, const struct scrip
                          struct script_value *value) {
     struct vec3 colour;
     struct error error;
-    if (!display_colour_at(c->lua, index, &colour))
+    if (!display_colour_at(c->sandbox.lua, index, &colour))
         return false;
     if (!(p->flags & (OR_TEXTURE | OR_DISPLAY)) && p->kind != KIND_BACKGROUND)
-        context_raise(c, "%s must be light: gr.linear converts a display colour to light", p->name);
+        sandbox_raise(&c->sandbox, "%s must be light: gr.linear converts a display colour to light", p->name);
     value->vector = colour;
     value->display = true;
     if (!(p->flags & OR_TEXTURE))
         return true;
     struct arena *arena = &c->scene.arena;
     struct script_texture texture = {.texture = texture_keep(arena, texture_display_colour(colour), &error)};
-    value->texture = texture.texture ? gr_keep_texture(c, &texture, &error) : NULL;
+    value->texture = texture.texture ? context_keep_texture(c, &texture, &error) : NULL;
     if (!value->texture)
-        context_raise_no_memory(c);
+        sandbox_raise_no_memory(&c->sandbox);
     value->number = 1;
     value->vector = vec3_all(1);
     return true;
@@ -95,14 +94,14 @@ static struct vec3 colour_of_call(lua_State *L) {
         else
             lua_pushnil(L);
         if (lua_type(L, -1) != LUA_TNUMBER)
-            context_raise(context_of(L), "a colour is needed: '#rrggbb', {r, g, b} or r, g, b");
+            sandbox_raise(sandbox_of(L), "a colour is needed: '#rrggbb', {r, g, b} or r, g, b");
         x[k] = lua_tonumber(L, -1);
         lua_pop(L, 1);
     }
     return vec3_make(x[0], x[1], x[2]);
 }
 
-int display_colour_make(lua_State *L) {
+static int make_display_colour(lua_State *L) {
     struct vec3 colour = colour_of_call(L);
     const double x[3] = {colour.x, colour.y, colour.z};
     lua_createtable(L, 3, 1);
@@ -115,7 +114,7 @@ int display_colour_make(lua_State *L) {
     return 1;
 }
 
-int display_colour_to_light(lua_State *L) {
+static int light_of_display_colour(lua_State *L) {
     struct vec3 light = transfer_decode_colour((struct transfer_function){TRANSFER_SRGB, 0}, colour_of_call(L));
     lua_pushnumber(L, light.x);
     lua_pushnumber(L, light.y);
@@ -123,3 +122,11 @@ int display_colour_to_light(lua_State *L) {
     push_vector(L);
     return 1;
 }
+
+static const struct value_function functions[] = {
+    {"srgb", "colour", "A display colour: '#rrggbb', {r, g, b} or r, g, b; gray decodes it for linear colours.",
+     "gr.triple", make_display_colour},
+    {"linear", "colour", "The light of a display colour as a vector, decoded by the sRGB function.", "gr.vector",
+     light_of_display_colour},
+};
+const struct value_functions display_colour_functions = {functions, sizeof functions / sizeof functions[0]};

@@ -1,17 +1,30 @@
 /* Edits of the window, as calls: they are recorded, and applied to every picture that is rendered afterwards. The
  * script's own tree is not changed permanently. */
+#include "script/gr_changes_internal.h"
+
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
+#include "script/script_internal.h"
 
 #include <math.h>
 #include <string.h>
 
+/* gr.change_view and gr.change_exposure: of the picture of that file name. */
+struct changed_view {
+    const char *picture;
+    bool has_camera, has_exposure;
+    struct camera camera;
+    double exposure;
+    struct changed_view *next;
+};
+
 /* Adds an entry, set to zero. */
 static struct change *note(struct script_context *context, enum change_kind kind, const char *name, double serial,
                            struct error *error) {
-    if (context->change_count == context->change_room) {
-        uint32_t room = context->change_room ? 2 * context->change_room : 16;
-        struct change *more = room <= CHANGE_LIMIT ? arena_alloc_array(&context->keep, room, sizeof *more) : NULL;
+    struct script_changes *changes = &script_of(context)->changes;
+    if (changes->count == changes->room) {
+        uint32_t room = changes->room ? 2 * changes->room : 16;
+        struct change *more =
+            room <= CHANGE_LIMIT ? arena_alloc_array(&context->sandbox.keep, room, sizeof *more) : NULL;
         if (!more) {
             if (room > CHANGE_LIMIT)
                 error_set(error, ERROR_SCENE, "a script makes more than %d changes", CHANGE_LIMIT);
@@ -19,12 +32,12 @@ static struct change *note(struct script_context *context, enum change_kind kind
                 error_no_memory(error, "the changes of the scene");
             return NULL;
         }
-        if (context->change_count > 0)
-            memcpy(more, context->changes, context->change_count * sizeof *more);
-        context->changes = more;
-        context->change_room = room;
+        if (changes->count > 0)
+            memcpy(more, changes->list, changes->count * sizeof *more);
+        changes->list = more;
+        changes->room = room;
     }
-    struct change *change = &context->changes[context->change_count++];
+    struct change *change = &changes->list[changes->count++];
     *change = (struct change){.kind = kind, .serial = (uint32_t)serial};
     size_t length = name ? strlen(name) : 0;
     memcpy(change->name, name ? name : "", length < sizeof change->name ? length : sizeof change->name - 1);
@@ -68,7 +81,7 @@ bool gr_change_add(struct script_context *context, const struct script_value *ar
     if (!change)
         return false;
     change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice;
-    change->number = context->added++;
+    change->number = script_of(context)->changes.added++;
     change->source = (uint32_t)args[CHANGEADD_SOURCE].number;
     put(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].vector : vec3_all(0.7));
     return true;
@@ -113,7 +126,7 @@ bool gr_change_own(struct script_context *context, const struct script_value *ar
     struct change *change = note(context, CHANGE_OWN, args[CHANGEOWN_NAME].text, args[CHANGEOWN_SERIAL].number, error);
     if (!change)
         return false;
-    change->number = context->owned++;
+    change->number = script_of(context)->changes.owned++;
     change->source = (uint32_t)args[CHANGEOWN_LIKE].number;
     return true;
 }
@@ -171,14 +184,14 @@ bool gr_change_copy_light(struct script_context *context, const struct script_va
 }
 
 static struct changed_view *note_view(struct script_context *context, const char *picture, struct error *error) {
-    struct changed_view *view = arena_alloc(&context->keep, sizeof *view);
-    const char *name = arena_copy_text(&context->keep, picture, strlen(picture));
+    struct changed_view *view = arena_alloc(&context->sandbox.keep, sizeof *view);
+    const char *name = arena_copy_text(&context->sandbox.keep, picture, strlen(picture));
     if (!view || !name) {
         error_no_memory(error, "the changes of the scene");
         return NULL;
     }
-    *view = (struct changed_view){.picture = name, .next = context->views};
-    context->views = view;
+    *view = (struct changed_view){.picture = name, .next = script_of(context)->changes.views};
+    script_of(context)->changes.views = view;
     return view;
 }
 
@@ -208,7 +221,7 @@ bool gr_change_exposure(struct script_context *context, const struct script_valu
 /* The latest of each kind is used. */
 static void change_views(const struct script_context *context, struct render_request *request) {
     bool camera = false, exposure = false;
-    for (const struct changed_view *view = context->views; view; view = view->next) {
+    for (const struct changed_view *view = script_of(context)->changes.views; view; view = view->next) {
         if (strcmp(view->picture, request->file) != 0)
             continue;
         if (view->has_camera && !camera) {
@@ -225,23 +238,24 @@ static void change_views(const struct script_context *context, struct render_req
 
 static void warn_once(void *user, const char *text) {
     struct script_context *context = user;
-    if (!context->changes_reported)
-        context_warn(context, "%s", text);
+    if (!script_of(context)->changes.reported)
+        sandbox_warn(&context->sandbox, "%s", text);
 }
 
 bool changes_begin(struct script_context *context, struct render_request *request, struct changed_scene *changed,
                    struct error *error) {
+    struct script_changes *changes = &script_of(context)->changes;
     *changed = (struct changed_scene){0};
-    request->added = context->added;
-    request->owned = context->owned;
+    request->added = changes->added;
+    request->owned = changes->owned;
     change_views(context, request);
-    if (context->change_count == 0)
+    if (changes->count == 0)
         return true;
-    if (!changes_lay_over((struct change_range){context->changes, context->change_count},
+    if (!changes_lay_over((struct change_range){changes->list, changes->count},
                           &(struct change_target){request->scene, request->root, request->lights, request->light_count},
                           warn_once, context, changed, error))
         return false;
-    context->changes_reported = true;
+    changes->reported = true;
     request->lights = changed->lights;
     request->light_count = changed->light_count;
     return true;

@@ -3,6 +3,7 @@
 #include "math/elementary.h"
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
+#include "script/record_bounds_internal.h"
 
 static bool give_sky(struct script_context *context, struct sky *sky, const struct script_value *args,
                      struct script_result *result, struct error *error) {
@@ -210,9 +211,9 @@ bool gr_fog_field(struct script_context *context, const struct script_value *arg
                                        .size = args[FOG_SIZE].vector};
     struct fog fog = {.kind = FOG_FIELD, .field = fog_field_build(&context->scene.arena, &in, error)};
     const struct box bounds = {in.corner, vec3_add(in.corner, in.size)};
-    record_use(context, in.density, &bounds);
+    record_use(&context->sandbox, in.density, &bounds);
     if (in.colour)
-        record_use(context, in.colour, &bounds);
+        record_use(&context->sandbox, in.colour, &bounds);
     if (!fog.field || !give_fog(context, &fog, args, result, error))
         return false;
     if (colour->program)

@@ -1,6 +1,7 @@
 /* Lights of the language: the parameters, the function and the table row of each. */
 #include "math/elementary.h"
 #include "script/context_internal.h"
+#include "script/table_internal.h"
 #include "script/table_rows_internal.h"
 
 enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };

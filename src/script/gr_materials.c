@@ -1,6 +1,8 @@
 /* Materials, their decorators, and textures. */
 #include "script/bindings_internal.h"
+#include "script/gr_textures_internal.h"
 #include "script/lenient_internal.h"
+#include "script/lenient_picture_internal.h"
 
 #include "base/file.h"
 #include "material/bump.h"
@@ -137,7 +139,7 @@ static struct image *image_of_file(struct script_context *context, const struct 
     if (value->image)
         return value->image;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    if (!files_require(context, value->text, path, error))
+    if (!files_require(&context->sandbox, value->text, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical))
         memcpy(canonical, path, sizeof canonical);
@@ -280,12 +282,12 @@ bool gr_texture(struct script_context *context, const struct script_value *args,
                 struct error *error) {
     struct script_texture texture = {.texture =
                                          read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error)};
-    result->pointer = texture.texture ? gr_keep_texture(context, &texture, error) : NULL;
+    result->pointer = texture.texture ? context_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
 }
 
 static struct script_texture *keep_bump(struct script_context *context, const struct bump *bump, struct error *error) {
-    return gr_keep_texture(
+    return context_keep_texture(
         context, &(struct script_texture){.texture = bump->texture.authored, .is_bump = true, .bump = *bump}, error);
 }
 
@@ -325,6 +327,6 @@ const struct texture_image *gr_image(struct script_context *context, const struc
     if (!kept)
         return NULL;
     image_defaults(kept, value, image);
-    context->scene.material_count++; /* as gr_keep_texture does */
+    context->scene.material_count++; /* as context_keep_texture does */
     return kept;
 }

@@ -2,6 +2,8 @@
  * that builds its scene again for every picture does not build its meshes again. */
 #include "script/bindings_internal.h"
 #include "script/lenient_internal.h"
+#include "script/lenient_picture_internal.h"
+#include "script/suggestion_internal.h"
 
 #include "base/file.h"
 #include "formats/font.h"
@@ -22,12 +24,12 @@ static const struct model *model_of_file(struct script_context *context, const s
                                          struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    struct model_options options = {.path_policy = context->path_policy,
+    struct model_options options = {.path_policy = context->sandbox.path_policy,
                                     .search = files_search,
-                                    .search_context = context,
+                                    .search_context = &context->sandbox,
                                     .forgive = context->lenient != NULL};
     read_options(args, &options);
-    if (!files_require(context, name, path, error))
+    if (!files_require(&context->sandbox, name, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical)) {
         error_set(error, ERROR_SCENE, "cannot find '%s'", name);
@@ -36,7 +38,7 @@ static const struct model *model_of_file(struct script_context *context, const s
     bool fresh;
     const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
     for (int i = 0; model && fresh && i < model->warning_count; i++)
-        context_warn(context, "%s", model->warnings[i]);
+        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
     return model;
 }
 
@@ -98,7 +100,7 @@ static bool face_slots(struct script_context *context, const struct script_value
     if (numbers->single || numbers->count != args[MESH_FACES].count)
         return error_set(error, ERROR_SCENE, "face_materials has %u entries, but faces has %u", numbers->count,
                          args[MESH_FACES].count);
-    uint32_t *slots = arena_alloc_array(&context->call, numbers->count, sizeof *slots);
+    uint32_t *slots = arena_alloc_array(&context->sandbox.call, numbers->count, sizeof *slots);
     if (!slots)
         return error_no_memory(error, "the materials of the faces");
     for (uint32_t f = 0; f < numbers->count; f++) {
@@ -250,18 +252,19 @@ bool gr_glyphs(struct script_context *context, const struct script_value *args, 
                struct error *error) {
     char path[PATH_SIZE];
     struct file_bytes bytes;
-    struct font_text *text = arena_alloc(&context->call, sizeof *text);
+    struct font_text *text = arena_alloc(&context->sandbox.call, sizeof *text);
     if (!text)
         return error_no_memory(error, "letters");
     /* Errors that do not depend on files are reported before files are searched. */
     if (!FONTS_READABLE)
-        return font_layout(&(struct font_file){args[GLYPHS_FONT].text, NULL, 0}, "", &context->call, text, error);
-    if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
-        !path_policy_map(context->path_policy, path, FILE_LIMIT, &bytes, error))
+        return font_layout(&(struct font_file){args[GLYPHS_FONT].text, NULL, 0}, "", &context->sandbox.call, text,
+                           error);
+    if (!files_require(&context->sandbox, args[GLYPHS_FONT].text, path, error) ||
+        !path_policy_map(context->sandbox.path_policy, path, FILE_LIMIT, &bytes, error))
         return false;
     uint64_t refusals = mem_refusals();
-    bool done = font_layout(&(struct font_file){path, bytes.data, bytes.size}, args[GLYPHS_TEXT].text, &context->call,
-                            text, error);
+    bool done = font_layout(&(struct font_file){path, bytes.data, bytes.size}, args[GLYPHS_TEXT].text,
+                            &context->sandbox.call, text, error);
     file_unmap(&bytes);
     if (!done)
         (void)error_of_file(error, path, refusals);

@@ -22,9 +22,9 @@ bool gr_add_child(struct script_context *context, const struct script_value *arg
 static bool is_shape(struct script_context *context, const struct node *node, const char *what, struct error *error) {
     if (node->kind == NODE_GEOMETRY || node->kind == NODE_CSG)
         return true;
-    if (!context->options->lenient)
+    if (!context->lenient)
         return error_set(error, ERROR_SCENE, "a plain node has no %s", what);
-    context_warn(context, "a plain node has no %s", what);
+    sandbox_warn(&context->sandbox, "a plain node has no %s", what);
     return false;
 }
 

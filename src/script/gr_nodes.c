@@ -202,7 +202,7 @@ static bool show_rest(struct script_context *context, const char *name, struct n
 static struct node **list_operands(struct script_context *context, const struct script_value *args, uint32_t *count) {
     const struct script_value *list = &args[CSG_OPERANDS];
     bool named = !list->given || list->single || args[CSG_A].given || args[CSG_B].given;
-    struct node **operands = arena_alloc_array(&context->call, (size_t)list->count + 2, sizeof *operands);
+    struct node **operands = arena_alloc_array(&context->sandbox.call, (size_t)list->count + 2, sizeof *operands);
     *count = 0;
     if (operands && named) {
         operands[(*count)++] = args[CSG_A].node;
@@ -290,7 +290,7 @@ bool gr_transform_order(struct script_context *context, const struct script_valu
 
 bool gr_bounds(struct script_context *context, const struct script_value *args, struct script_result *result,
                struct error *error) {
-    struct box *box = arena_alloc(&context->call, sizeof *box);
+    struct box *box = arena_alloc(&context->sandbox.call, sizeof *box);
     if (!box)
         return error_no_memory(error, "a box");
     if (!node_bounds(args[SELF].node, box, error))

@@ -2,6 +2,8 @@
  * gr.metal_material, whose reflectances are measured. Both are one kind of material (material/openpbr.h). */
 #include "script/bindings_internal.h"
 #include "script/context_internal.h"
+#include "script/gr_textures_internal.h"
+#include "script/table_internal.h"
 #include "script/table_rows_internal.h"
 
 #include "material/material_inputs.h"

@@ -4,6 +4,9 @@
 #include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
 #include "script/lenient_internal.h"
+#include "script/lenient_picture_internal.h"
+#include "script/record_bounds_internal.h"
+#include "script/script_internal.h"
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
@@ -12,7 +15,7 @@ static bool choose_sky(struct script_context *context, const struct script_value
     static const double neutral[][4] = {{-1, 0.62, 0.61, 0.6}, {0, 0.8, 0.81, 0.82}, {1, 0.9, 0.93, 0.96}};
     const struct script_value *background = &args[RENDER_BACKGROUND];
     *sky = (struct sky){.kind = SKY_GRADIENT};
-    if (context->only_named_pictures && !background->given)
+    if (script_of(context)->only_named_pictures && !background->given)
         *sky = (struct sky){.kind = SKY_STOPS, .stops = neutral, .stop_count = 3};
     if (args[RENDER_SKY].given && background->given)
         return error_set(error, ERROR_SCENE, "sky and background exclude each other");
@@ -117,19 +120,20 @@ static void apply_settings(const struct script_value *args, struct settings *set
 
 /* One notice for each option of the command line that the call has overridden. */
 static void note_overridden(struct script_context *context, const struct settings *settings) {
-    const struct script_options *options = context->options;
-    const char *asked = (const char *)&context->host->settings, *used = (const char *)settings;
-    for (int i = 0; i < options->given_count && i < 64 && !context->host->repeats; i++) {
+    const struct script_options *options = script_of(context)->options;
+    const char *asked = (const char *)&script_of(context)->host->settings, *used = (const char *)settings;
+    for (int i = 0; i < options->given_count && i < 64 && !script_of(context)->host->repeats; i++) {
         const struct given_option *given = &options->given[i];
         char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
-        if (context->overridden >> i & 1 || memcmp(asked + given->offset, used + given->offset, given->size) == 0)
+        if (script_of(context)->overridden >> i & 1 ||
+            memcmp(asked + given->offset, used + given->offset, given->size) == 0)
             continue;
-        context->overridden |= UINT64_C(1) << i;
-        context_where(context, where, sizeof where);
+        script_of(context)->overridden |= UINT64_C(1) << i;
+        sandbox_where(&context->sandbox, where, sizeof where);
         (void)snprintf(text, sizeof text, "%s%.*s%s%.64s has no effect: a field of gr.render sets it", where,
                        (int)strcspn(given->name, "|"), given->name, given->value ? " " : "",
                        given->value ? given->value : "");
-        context->host->message(context->host->context, SCRIPT_NOTICE, text);
+        sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
     }
 }
 
@@ -237,7 +241,7 @@ static void turn_camera(struct render_request *request, const struct render_requ
 
 /* --turntable: renders the pictures of one call. Without it, `render` renders one picture. */
 static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
-    const struct frame_options *options = &context->options->frames;
+    const struct frame_options *options = &script_of(context)->options->frames;
     struct render_request request = *first;
     struct vec3 middle = turntable_middle(first, first->camera.view);
     uint32_t count = (uint32_t)options->turntable;
@@ -246,9 +250,9 @@ static bool render_turntable(struct script_context *context, const struct render
     if (options->selection.step > 0 && options->selection.last > count)
         return error_set(error, ERROR_SCENE, "--frames selects frame %u, but the last frame is %u",
                          options->selection.last, count);
-    const struct script_host *host = context->host;
+    const struct script_host *host = script_of(context)->host;
     request.frame = (struct frame){0, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true,
-                                   .before = context->pictures * count};
+                                   .before = script_of(context)->pictures * count};
     while ((request.frame.number = host->next_frame ? host->next_frame(host->context, &request.frame)
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
@@ -264,8 +268,8 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
     char where[PATH_SIZE + 32], title[96];
-    context_where(context, where, sizeof where);
-    const char *call = arena_format(&context->call, "%s%s", where, function_title(context->function, title));
+    sandbox_where(&context->sandbox, where, sizeof where);
+    const char *call = arena_format(&context->sandbox.call, "%s%s", where, function_title(context->function, title));
     if (!call)
         return error_no_memory(error, "a picture");
     struct render_request request = {
@@ -285,8 +289,8 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .lights = args[RENDER_LIGHTS].lights,
         .light_count = args[RENDER_LIGHTS].count,
         .fog = args[RENDER_FOG].fog,
-        .settings = context->host->settings,
-        .frame = context->frame,
+        .settings = script_of(context)->host->settings,
+        .frame = script_of(context)->animation.frame,
     };
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct camera fitted;
@@ -313,21 +317,22 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         fog->display = false;
         request.fog = fog;
     }
-    if (!record_check(context, request.root, error) ||
+    if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||
-        !apply_motion(args, &context->frame, context->frame_shutter, &request.settings, &request.camera, error) ||
+        !apply_motion(args, &script_of(context)->animation.frame, script_of(context)->animation.shutter,
+                      &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))
         return false;
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))
         return false;
-    request.changed = context->change_count > 0;
-    limits_pause(context);
-    bool turns = context->options->frames.turntable > 0;
+    request.changed = script_of(context)->changes.count > 0;
+    limits_pause(&context->sandbox.limits);
+    bool turns = script_of(context)->options->frames.turntable > 0;
     bool done = turns ? render_turntable(context, &request, error)
-                      : context->host->render(context->host->context, &request, error);
-    limits_resume(context);
+                      : script_of(context)->host->render(script_of(context)->host->context, &request, error);
+    limits_resume(&context->sandbox.limits);
     changes_take_off(&changed);
-    context->pictures += done;
+    script_of(context)->pictures += done;
     return done;
 }

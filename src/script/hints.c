@@ -6,6 +6,9 @@
 
 #include "base/file.h"
 #include "script/lexer_internal.h"
+#include "script/libraries_internal.h"
+#include "script/sandbox_internal.h"
+#include "script/suggestion_internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,10 +24,10 @@ struct running {
     size_t size;
 };
 
-static bool read_text(struct script_context *c, struct running *running, const char *path) {
+static bool read_text(struct sandbox *sandbox, struct running *running, const char *path) {
     struct file_bytes bytes;
     struct error error = {0};
-    if (!path_policy_map(files_policy(c, path), path, FILE_LIMIT, &bytes, &error))
+    if (!path_policy_map(files_policy(sandbox, path), path, FILE_LIMIT, &bytes, &error))
         return false;
     const char *from = (const char *)bytes.data, *end = from + bytes.size;
     for (int line = 1; from && line < running->at.currentline; line++) {
@@ -33,7 +36,7 @@ static bool read_text(struct script_context *c, struct running *running, const c
     }
     if (from) {
         running->size = (size_t)(end - from) < TEXT_LIMIT ? (size_t)(end - from) : TEXT_LIMIT;
-        running->text = arena_copy_text(&c->call, from, running->size);
+        running->text = arena_copy_text(&sandbox->call, from, running->size);
     }
     file_unmap(&bytes);
     return running->text != NULL;
@@ -87,7 +90,7 @@ static bool has_usual_globals(const struct running *running) {
 }
 
 /* False: no Lua function runs, or its text cannot be read. */
-static bool find_running(struct script_context *c, lua_State *L, struct running *running) {
+static bool find_running(struct sandbox *sandbox, lua_State *L, struct running *running) {
     *running = (struct running){.L = L};
     if (!lua_checkstack(L, 20))
         return false;
@@ -96,7 +99,7 @@ static bool find_running(struct script_context *c, lua_State *L, struct running 
         if (running->at.currentline <= 0)
             continue;
         const char *source = running->at.source;
-        return source[0] == '@' && has_usual_globals(running) && read_text(c, running, source + 1);
+        return source[0] == '@' && has_usual_globals(running) && read_text(sandbox, running, source + 1);
     }
     return false;
 }
@@ -225,16 +228,16 @@ struct names {
     size_t count;
 };
 
-static void add_name(struct script_context *c, struct names *names, const char *name) {
-    const char *copy = names->count < NAMES_LIMIT ? arena_copy_text(&c->call, name, strlen(name)) : NULL;
+static void add_name(struct sandbox *sandbox, struct names *names, const char *name) {
+    const char *copy = names->count < NAMES_LIMIT ? arena_copy_text(&sandbox->call, name, strlen(name)) : NULL;
     if (copy)
         names->list[names->count++] = copy;
 }
 
-static void add_keys(struct script_context *c, lua_State *L, struct names *names) {
+static void add_keys(struct sandbox *sandbox, lua_State *L, struct names *names) {
     for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
         if (lua_type(L, -2) == LUA_TSTRING)
-            add_name(c, names, lua_tostring(L, -2));
+            add_name(sandbox, names, lua_tostring(L, -2));
 }
 
 static const char *nearest(struct names *names, const char *name) {
@@ -246,55 +249,55 @@ static const char *nearest(struct names *names, const char *name) {
     return suggestion.best;
 }
 
-static bool begin_names(struct script_context *c, struct names *names) {
-    *names = (struct names){.list = arena_alloc_array(&c->call, NAMES_LIMIT, sizeof *names->list)};
+static bool begin_names(struct sandbox *sandbox, struct names *names) {
+    *names = (struct names){.list = arena_alloc_array(&sandbox->call, NAMES_LIMIT, sizeof *names->list)};
     return names->list != NULL;
 }
 
 /* The variable with the most similar name. */
-static const char *nearest_variable(struct script_context *c, const struct running *running, const char *name) {
+static const char *nearest_variable(struct sandbox *sandbox, const struct running *running, const char *name) {
     struct names names;
     lua_State *L = running->L;
     lua_Debug at = running->at;
     const char *other;
-    if (!begin_names(c, &names))
+    if (!begin_names(sandbox, &names))
         return NULL;
     for (int n = 1; (other = lua_getlocal(L, &at, n)) != NULL; lua_pop(L, 1), n++)
         if (other[0] != '(' && !lua_isnil(L, -1))
-            add_name(c, &names, other);
+            add_name(sandbox, &names, other);
     lua_getinfo(L, "f", &at);
     for (int n = 1; (other = lua_getupvalue(L, -1, n)) != NULL; lua_pop(L, 1), n++)
         if (!lua_isnil(L, -1))
-            add_name(c, &names, other);
+            add_name(sandbox, &names, other);
     lua_pop(L, 1);
     lua_rawgeti(L, LUA_REGISTRYINDEX, LUA_RIDX_GLOBALS);
-    add_keys(c, L, &names);
+    add_keys(sandbox, L, &names);
     lua_pop(L, 1);
     return nearest(&names, name);
 }
 
-static const char *nil_words(struct script_context *c, const struct running *running, const char *name) {
-    const char *meant = nearest_variable(c, running, name);
-    const char *words = meant ? arena_format(&c->call, "; '%s' is nil, did you mean '%s'?", name, meant)
-                              : arena_format(&c->call, "; '%s' is nil", name);
+static const char *nil_words(struct sandbox *sandbox, const struct running *running, const char *name) {
+    const char *meant = nearest_variable(sandbox, running, name);
+    const char *words = meant ? arena_format(&sandbox->call, "; '%s' is nil, did you mean '%s'?", name, meant)
+                              : arena_format(&sandbox->call, "; '%s' is nil", name);
     return words ? words : "";
 }
 
-const char *hint_of_nil(struct script_context *c) {
+const char *hint_of_nil(struct sandbox *sandbox) {
     struct running running;
     char name[NAME_SIZE];
-    if (!find_running(c, c->lua, &running) || !find_token(&running, visit_nil, name))
+    if (!find_running(sandbox, sandbox->lua, &running) || !find_token(&running, visit_nil, name))
         return "";
-    return nil_words(c, &running, name);
+    return nil_words(sandbox, &running, name);
 }
 
-void hint_check_field(struct script_context *c, const char *name) {
+void hint_check_field(struct sandbox *sandbox, const char *name) {
     struct running running;
     struct field field = {.name = name};
-    if (!context_is_new_line(c)) /* a loop */
+    if (!sandbox_is_new_line(sandbox)) /* a loop */
         return;
-    if (find_running(c, c->lua, &running) && find_token(&running, visit_field, &field))
-        context_raise(c, "%s is missing%s", name, nil_words(c, &running, field.value));
+    if (find_running(sandbox, sandbox->lua, &running) && find_token(&running, visit_field, &field))
+        sandbox_raise(sandbox, "%s is missing%s", name, nil_words(sandbox, &running, field.value));
 }
 
 /* Errors of Lua. */
@@ -313,7 +316,7 @@ static bool visit_access(const struct running *running, const struct token *w, v
            copy_name(&w[1], access->table);
 }
 
-static const char *field_words(struct script_context *c, const struct running *running, const char *field) {
+static const char *field_words(struct sandbox *sandbox, const struct running *running, const char *field) {
     struct access access = {.field = field};
     struct names names;
     lua_State *L = running->L;
@@ -322,14 +325,14 @@ static const char *field_words(struct script_context *c, const struct running *r
         return "";
     push_variable(running, access.table, &is_global);
     const char *words = "", *meant = NULL;
-    if (lua_istable(L, -1) && is_global && !c->options->no_sandbox && sandbox_removes(access.table, field))
-        words = arena_format(&c->call, "; the sandbox has no %s.%s (docs/security.md)", access.table, field);
-    else if (lua_istable(L, -1) && begin_names(c, &names)) {
-        add_keys(c, L, &names);
+    if (lua_istable(L, -1) && is_global && !sandbox->options.is_off && libraries_lack(access.table, field))
+        words = arena_format(&sandbox->call, "; the sandbox has no %s.%s (docs/security.md)", access.table, field);
+    else if (lua_istable(L, -1) && begin_names(sandbox, &names)) {
+        add_keys(sandbox, L, &names);
         meant = nearest(&names, field);
     }
     if (meant)
-        words = arena_format(&c->call, "; did you mean '%s.%s'?", access.table, meant);
+        words = arena_format(&sandbox->call, "; did you mean '%s.%s'?", access.table, meant);
     lua_pop(L, 1);
     return words ? words : "";
 }
@@ -348,11 +351,11 @@ static bool read_culprit(const char *message, const char *kind, char name[NAME_S
 }
 
 /* A variable that is nil and was set at the beginning of the file, as in `local execute = os.execute`. */
-static const char *alias_words(struct script_context *c, const struct running *running, const char *name) {
+static const char *alias_words(struct sandbox *sandbox, const struct running *running, const char *name) {
     struct running file = {.L = running->L, .at = {.currentline = 1}};
     struct token w[5] = {{0}};
     char library[NAME_SIZE], field[NAME_SIZE];
-    if (c->options->no_sandbox || !read_text(c, &file, running->at.source + 1))
+    if (sandbox->options.is_off || !read_text(sandbox, &file, running->at.source + 1))
         return "";
     struct lexer lexer = {file.text, file.text + file.size, 1};
     do {
@@ -360,8 +363,9 @@ static const char *alias_words(struct script_context *c, const struct running *r
             w[k] = w[k + 1];
         w[4] = lexer_next(&lexer);
         if (token_is(&w[0], TOKEN_NAME, name) && token_is_symbol(&w[1], '=') && token_is_symbol(&w[3], '.') &&
-            copy_name(&w[2], library) && copy_name(&w[4], field) && sandbox_removes(library, field)) {
-            const char *words = arena_format(&c->call, "; the sandbox has no %s.%s (docs/security.md)", library, field);
+            copy_name(&w[2], library) && copy_name(&w[4], field) && libraries_lack(library, field)) {
+            const char *words =
+                arena_format(&sandbox->call, "; the sandbox has no %s.%s (docs/security.md)", library, field);
             return words ? words : "";
         }
     } while (w[4].kind != TOKEN_END && w[4].line <= running->at.currentline);
@@ -369,18 +373,18 @@ static const char *alias_words(struct script_context *c, const struct running *r
 }
 
 const char *hint_of_lua_error(lua_State *L, const char *message) {
-    struct script_context *c = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     struct running running;
     char name[NAME_SIZE];
     bool field = read_culprit(message, "field", name), global = !field && read_culprit(message, "global", name);
     bool local = !field && !global && (read_culprit(message, "local", name) || read_culprit(message, "upvalue", name));
-    if ((!field && !global && !local) || !find_running(c, L, &running))
+    if ((!field && !global && !local) || !find_running(sandbox, L, &running))
         return "";
     if (local)
-        return alias_words(c, &running, name);
+        return alias_words(sandbox, &running, name);
     if (field)
-        return field_words(c, &running, name);
-    const char *meant = nearest_variable(c, &running, name);
-    const char *words = meant ? arena_format(&c->call, "; did you mean '%s'?", meant) : NULL;
+        return field_words(sandbox, &running, name);
+    const char *meant = nearest_variable(sandbox, &running, name);
+    const char *words = meant ? arena_format(&sandbox->call, "; did you mean '%s'?", meant) : NULL;
     return words ? words : "";
 }

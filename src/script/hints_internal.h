@@ -2,12 +2,14 @@
 #ifndef GRAY_SCRIPT_HINTS_INTERNAL_H
 #define GRAY_SCRIPT_HINTS_INTERNAL_H
 
-#include "script/context_internal.h"
+#include <lua.h>
+
+struct sandbox;
 
 /* "; 'redd' is nil, did you mean 'red'?": about the first name in the running call that is an undefined global. */
-const char *hint_of_nil(struct script_context *context);
+const char *hint_of_nil(struct sandbox *sandbox);
 /* Raises an error if the running call has `name = VARIABLE` with an undefined global; once for each line. */
-void hint_check_field(struct script_context *context, const char *name);
+void hint_check_field(struct sandbox *sandbox, const char *name);
 /* A hint for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is called while an error
  * is handled. */
 const char *hint_of_lua_error(lua_State *L, const char *message);

@@ -5,10 +5,13 @@
  * with the mix of the field. So a value that does not change keeps its bits. The inner control values of curve =
  * 'catmull' are a third of a step along the tangents of Catmull and Rom, "A Class of Local Interpolating Splines",
  * 1974, for keys at any distances. */
-#include "script/record_internal.h"
+#include "script/keys_internal.h"
 
 #include "base/unreachable.h"
 #include "math/elementary.h"
+#include "script/display_colour_internal.h"
+#include "script/script_internal.h"
+#include "script/symbol_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>
@@ -474,7 +477,7 @@ static int value_at(lua_State *L) {
     if (given && !lua_isnumber(L, 1))
         luaL_error(L, "gr.keys: the time must be a number of seconds, not %s",
                    is_symbol(L, 1) ? "a number of a recorded function" : value_words(L, 1));
-    double time = given ? lua_tonumber(L, 1) : frame_time(&context_of(L)->frame);
+    double time = given ? lua_tonumber(L, 1) : frame_time(&script_of(context_of(L))->animation.frame);
     if (isnan(time))
         luaL_error(L, "gr.keys: the time is not a number (nan)");
     /* low: the last key that is not later; high: the first key that is later. */
@@ -535,8 +538,8 @@ static void check_fields(lua_State *L, lua_Unsigned count) {
     }
 }
 
-int make_keys(lua_State *L) {
-    context_of(L)->function = NULL; /* for messages about colours */
+static int make_keys(lua_State *L) {
+    sandbox_of(L)->running.name = NULL; /* for messages about colours */
     if (lua_gettop(L) != 1 || lua_type(L, 1) != LUA_TTABLE)
         return luaL_error(L, "gr.keys: one table of keys {seconds, value} is needed");
     lua_Unsigned count = lua_rawlen(L, 1);
@@ -571,3 +574,11 @@ int make_keys(lua_State *L) {
     lua_pushcclosure(L, value_at, 3);
     return 1;
 }
+
+static const struct value_function functions[] = {
+    {"keys", "keys",
+     "A function of seconds (gr.time) that interpolates keys {seconds, value}; fields: curve = 'linear', 'catmull' or "
+     "'bezier', and ease.",
+     "fun(seconds?: number): any", make_keys},
+};
+const struct value_functions key_functions = {functions, sizeof functions / sizeof functions[0]};

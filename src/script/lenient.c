@@ -8,7 +8,12 @@
 #include "script/lenient_internal.h"
 
 #include "base/hash.h"
-#include "script/bindings_internal.h"
+#include "script/argument_internal.h"
+#include "script/arguments_internal.h"
+#include "script/lenient_handles_internal.h"
+#include "script/lenient_picture_internal.h"
+#include "script/lenient_values_internal.h"
+#include "script/suggestion_internal.h"
 
 #include <lauxlib.h>
 #include <stdarg.h>
@@ -32,7 +37,7 @@ static uint64_t kind_of_warning(const char *where, const char *text) {
 static void warn_line(struct script_context *c, const char *line) {
     struct lenient *lenient = c->lenient;
     char where[PATH_SIZE + 32];
-    context_where(c, where, sizeof where);
+    sandbox_where(&c->sandbox, where, sizeof where);
     uint64_t kind = kind_of_warning(where, line);
     for (uint32_t i = 0; i < lenient->warned_count; i++)
         if (lenient->warned[i] == kind)
@@ -40,10 +45,7 @@ static void warn_line(struct script_context *c, const char *line) {
     if (lenient->warned_count == LENIENT_WARNINGS)
         return;
     lenient->warned[lenient->warned_count++] = kind;
-    char message[PATH_SIZE + 2048];
-    snprintf(message, sizeof message, "%swarning: %s", where, line);
-    limits_count_output(c, strlen(message));
-    c->host->message(c->host->context, SCRIPT_WARNING, message);
+    sandbox_warn_line(&c->sandbox, line);
 }
 
 void lenient_warn(struct script_context *c, const char *format, ...) {
@@ -52,15 +54,17 @@ void lenient_warn(struct script_context *c, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    context_compose(c, text, line, sizeof line);
+    sandbox_compose(&c->sandbox, text, line, sizeof line);
     warn_line(c, line);
 }
 
 /* Nodes and lights that the script has made. */
 
 bool lenient_begin(struct script_context *c) {
-    c->lenient = c->options->lenient ? arena_alloc(&c->keep, sizeof *c->lenient) : NULL;
-    return c->lenient || !c->options->lenient;
+    c->lenient = arena_alloc(&c->sandbox.keep, sizeof *c->lenient);
+    c->ghost_as = lenient_ghost_as;
+    c->sandbox.replace_module = lenient_replace_module;
+    return c->lenient != NULL;
 }
 
 void lenient_note_node(struct script_context *c, struct node *node) {
@@ -68,9 +72,9 @@ void lenient_note_node(struct script_context *c, struct node *node) {
     lenient->last = node;
     if (lenient->node_count == lenient->node_room) {
         uint32_t room = lenient->node_room ? 2 * lenient->node_room : 256;
-        struct node **more = arena_alloc_array(&c->keep, room, sizeof *more);
+        struct node **more = arena_alloc_array(&c->sandbox.keep, room, sizeof *more);
         if (!more)
-            context_raise_no_memory(c);
+            sandbox_raise_no_memory(&c->sandbox);
         if (lenient->node_count > 0)
             memcpy(more, lenient->nodes, lenient->node_count * sizeof *more);
         lenient->nodes = more;
@@ -103,27 +107,34 @@ struct protected_reading {
 static int read_protected(lua_State *L) {
     struct protected_reading *reading = lua_touserdata(L, 1);
     struct script_context *c = context_of(L);
-    c->lua = L;
+    c->sandbox.lua = L;
     if (reading->parameter)
-        reading->complete = arguments_read_one(c, 2, reading->parameter, reading->args);
+        reading->complete = argument_read(c, 2, reading->parameter, reading->args);
     else
         reading->complete = arguments_read(c, reading->function, 2, reading->args);
     return 0;
 }
 
+bool lenient_renders(const struct script_function *function) {
+    for (int k = 0; k < function->parameter_count; k++)
+        if (function->parameters[k].kind == KIND_OUTPUT)
+            return true;
+    return false;
+}
+
 /* Calls the function below `count` arguments at the top, which are popped. False: it raised an error, and
- * context->raised has the line. What must not be caught is raised again. */
+ * context->sandbox.raised has the line. What must not be caught is raised again. */
 static bool survives(struct script_context *c, int count) {
-    lua_State *L = c->lua;
-    c->raised[0] = '\0';
+    lua_State *L = c->sandbox.lua;
+    c->sandbox.raised[0] = '\0';
     int status = lua_pcall(L, count, 0, 0);
-    c->lua = L;
+    c->sandbox.lua = L;
     if (status == LUA_OK)
         return true;
-    if (status == LUA_ERRMEM || c->ended || c->fatal.kind != ERROR_NONE || c->limits.memory_out)
+    if (status == LUA_ERRMEM || sandbox_is_over(&c->sandbox))
         lua_error(L);
-    if (c->raised[0] == '\0' && lua_isstring(L, -1))
-        snprintf(c->raised, sizeof c->raised, "%s", lua_tostring(L, -1));
+    if (c->sandbox.raised[0] == '\0' && lua_isstring(L, -1))
+        snprintf(c->sandbox.raised, sizeof c->sandbox.raised, "%s", lua_tostring(L, -1));
     lua_pop(L, 1);
     return false;
 }
@@ -131,7 +142,7 @@ static bool survives(struct script_context *c, int count) {
 /* Reads all arguments from `first` on in the usual way. False: it raised an error. */
 static bool read_all(struct script_context *c, const struct script_function *function, int first,
                      struct script_value *args, bool *complete) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     struct protected_reading reading = {.function = function, .args = args};
     int top = lua_gettop(L);
     luaL_checkstack(L, top + 10, NULL);
@@ -221,7 +232,7 @@ static void match_form(struct script_context *c, const struct script_function *f
     }
     for (int p = 0; p < m->parameter_count; p++)
         for (int a = 0; a < m->argument_count; a++)
-            m->fit[p][a] = lenient_fit(c->lua, m->arguments[a], m->parameters[p]);
+            m->fit[p][a] = lenient_fit(c->sandbox.lua, m->arguments[a], m->parameters[p]);
     match_in_order(m);
     match_rest(m);
     for (int p = 0; p < m->parameter_count; p++)
@@ -276,7 +287,7 @@ static void free_loose_numbers(lua_State *L, struct match *m) {
 /* Pushes the first unused argument that can be converted, or nil. */
 static void push_convertible(struct script_context *c, const struct script_function *function, struct match *m,
                              const struct script_parameter *p, const struct script_value *args) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     bool nothing = c->lenient->nothing;
     for (int a = 1; a <= m->argument_count; a++) {
         if (m->used[a] || lua_isnil(L, m->arguments[a - 1]) || p->kind == KIND_BOOLEAN)
@@ -306,7 +317,7 @@ static bool is_gr(lua_State *L, int index) {
 /* Positional arguments become the fields of the table at `named`. wanted: the parameters that need a value. */
 static void name_positional(struct script_context *c, const struct script_function *function, int first, int named,
                             bool wanted[PARAMETER_LIMIT]) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     struct match empty = {.argument_count = 0}, best = empty;
     const struct script_value none[PARAMETER_LIMIT] = {{0}};
     for (int i = first; i < named && empty.argument_count < MATCHED_MAX; i++)
@@ -353,7 +364,7 @@ static const struct script_parameter *meant_field(const struct script_function *
 
 /* The fields of the table at `table`, which is not changed, with the names of parameters. */
 static void name_fields(struct script_context *c, const struct script_function *function, int table, int named) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     for (int exact = 1; exact >= 0; exact--) {
         for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
             if (lua_type(L, -2) != LUA_TSTRING)
@@ -396,7 +407,7 @@ static bool is_meant_by_type(lua_State *L, const struct script_parameter *p) {
 /* Fields with unknown names, for parameters without a value; of several, the first in byte order. */
 static void name_fields_by_type(struct script_context *c, const struct script_function *function, int table,
                                 int named) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         const char *first = NULL;
@@ -420,7 +431,7 @@ static void name_fields_by_type(struct script_context *c, const struct script_fu
 
 /* Nodes after the positional arguments, or unnamed entries, for the parameter that accepts any number of nodes. */
 static void name_rest(struct script_context *c, const struct script_function *function, int first, int named) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     int index;
     const struct script_parameter *rest = function_rest(function, &index);
     if (!rest)
@@ -436,7 +447,7 @@ static void name_rest(struct script_context *c, const struct script_function *fu
 /* Reads the arguments from the table at `named`. */
 static void read_named(struct script_context *c, const struct script_function *function, int named,
                        const bool wanted[PARAMETER_LIMIT], struct script_value *args) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
         lua_settop(L, named);
@@ -458,20 +469,30 @@ static void read_named(struct script_context *c, const struct script_function *f
     }
 }
 
+/* The index of a parameter that the function has. */
+static int index_of(const struct script_function *function, const char *name) {
+    int index = 0;
+    while (strcmp(function->parameters[index].name, name) != 0)
+        index++;
+    return index;
+}
+
 /* A missing factor of node:scale is equal to that of x. */
-static void complete_scale(struct script_value *args) {
-    if (args[STEP_VECTOR].given || !args[STEP_X].given)
+static void complete_scale(const struct script_function *function, struct script_value *args) {
+    const struct script_value *x = &args[index_of(function, "x")];
+    if (args[index_of(function, "vector")].given || !x->given)
         return;
-    for (int k = STEP_Y; k <= STEP_Z; k++)
+    for (int k = index_of(function, "y"); k <= index_of(function, "z"); k++)
         if (!args[k].given)
-            args[k] = args[STEP_X];
+            args[k] = *x;
 }
 
 /* False: an argument without a default is missing. */
 static bool forgive(struct script_context *c, const struct script_function *function, int first,
                     struct script_value *args) {
-    lua_State *L = c->lua;
-    bool wanted[PARAMETER_LIMIT] = {false}, is_scale = function->run == gr_scale;
+    lua_State *L = c->sandbox.lua;
+    bool wanted[PARAMETER_LIMIT] = {false},
+         is_scale = function->owner == OWNER_NODE && strcmp(function->name, "scale") == 0;
     int named = lua_gettop(L) + 1;
     luaL_checkstack(L, 60, NULL);
     memset(args + (function->owner == OWNER_NODE), 0,
@@ -485,18 +506,17 @@ static bool forgive(struct script_context *c, const struct script_function *func
             wanted[k] = !(function->parameters[k].flags & OPTIONAL);
     } else {
         name_positional(c, function, first, named, wanted);
-        for (int k = STEP_Y; is_scale && k <= STEP_Z; k++)
-            wanted[k] = false;
+        if (is_scale)
+            wanted[index_of(function, "y")] = wanted[index_of(function, "z")] = false;
         name_rest(c, function, first, named);
     }
     read_named(c, function, named, wanted, args);
     if (is_scale)
-        complete_scale(args);
+        complete_scale(function, args);
     lua_settop(L, named - 1);
     for (int k = 0; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
-        bool may_miss =
-            (p->flags & (OPTIONAL | GHOST_IS_NONE)) || (function->run == gr_render && p->kind == KIND_POINT);
+        bool may_miss = (p->flags & (OPTIONAL | GHOST_IS_NONE)) || (lenient_renders(function) && p->kind == KIND_POINT);
         if (wanted[k] && !args[k].given && !may_miss)
             return false;
     }
@@ -553,7 +573,7 @@ static int push_lost(lua_State *L, const struct script_function *function, int f
     }
     luaL_checkstack(L, 20, NULL);
     lenient_push_ghost(L, function->name, false);
-    if (function->run == gr_difference) /* its first operand remains */
+    if (strstr(function->name, "difference")) /* its first operand remains */
         for (int i = first; i <= last && !lenient_ghost_as(c, handle_at(L, last + 1), HANDLE_NODE, false); i++)
             lenient_ghost_take(c, last + 1, i, i);
     else
@@ -570,7 +590,7 @@ static bool run(struct script_context *c, const struct script_function *function
         return true;
     c->lenient->refused = c->lenient->refused || error.refused;
     if (error.kind != ERROR_SCENE || error.limit || error.elsewhere || error.refused)
-        context_raise_error(c, &error);
+        sandbox_raise_error(&c->sandbox, &error);
     lenient_warn(c, "%s", error.text);
     return false;
 }
@@ -578,26 +598,26 @@ static bool run(struct script_context *c, const struct script_function *function
 /* gr.sphere('head', skin): a material among the arguments that the form does not accept. */
 static void take_material(struct script_context *c, const struct script_function *function, int first,
                           struct node *node) {
-    int last = lua_gettop(c->lua);
+    int last = lua_gettop(c->sandbox.lua);
     if (function->result != RESULT_NODE || node->kind != NODE_GEOMETRY || node->material || node->slots)
         return;
     for (int i = first; i <= last && !node->material; i++) {
-        const struct handle *handle = handle_at(c->lua, i);
+        const struct handle *handle = handle_at(c->sandbox.lua, i);
         if (handle && handle->type == HANDLE_MATERIAL)
             node->material = handle->pointer;
     }
 }
 
 static struct node *self_of(struct script_context *c) {
-    const struct handle *handle = handle_at(c->lua, 1);
+    const struct handle *handle = handle_at(c->sandbox.lua, 1);
     if (!handle || (handle->type != HANDLE_NODE && handle->type != HANDLE_GHOST))
         return NULL;
     return handle->type == HANDLE_NODE ? handle->pointer : lenient_ghost_as(c, handle, HANDLE_NODE, true);
 }
 
-int lenient_call(lua_State *L, struct script_context *c, const struct script_function *function) {
+int lenient_call(struct script_context *c, const struct script_function *function, struct script_result *result) {
+    lua_State *L = c->sandbox.lua;
     struct script_value args[PARAMETER_LIMIT] = {{0}};
-    struct script_result result = {0};
     int first = function->owner == OWNER_NODE ? 2 : 1;
     bool complete = false;
     if (function->owner == OWNER_NODE) {
@@ -606,45 +626,42 @@ int lenient_call(lua_State *L, struct script_context *c, const struct script_fun
             char title[96];
             const char *given = value_words(L, 1);
             function_title(function, title);
-            c->function = NULL;
+            c->sandbox.running = (struct running_function){0};
             lenient_warn(c, "%s must be called with a colon on a node, as in n:%s(...), not on %s", title,
                          function->name, given);
             lua_settop(L, lua_gettop(L) > 0 ? lua_gettop(L) : 1);
             return push_lost(L, function, first);
         }
         args[SELF] = (struct script_value){.given = true, .node = node};
-        c->subject = node->name;
+        c->sandbox.running.subject = node->name;
     }
     c->lenient->nothing = false;
     context_note_line(c);
     bool read = read_all(c, function, first, args, &complete);
     if (!read)
-        warn_line(c, c->raised);
+        warn_line(c, c->sandbox.raised);
     if (read && !complete && function->result != RESULT_NOTHING) /* an argument is a ghost, which was reported */
         return push_lost(L, function, first);
-    bool done = read && complete && run(c, function, args, &result);
+    bool done = read && complete && run(c, function, args, result);
     if (!done) {
         if (!forgive(c, function, first, args) || c->lenient->nothing)
             return push_lost(L, function, first);
-        done = run(c, function, args, &result);
+        done = run(c, function, args, result);
     }
     if (!done) {
         drop_fields(function, args);
-        done = run(c, function, args, &result);
+        done = run(c, function, args, result);
     }
-    if (!done && function->run == gr_render) {
+    if (!done && lenient_renders(function)) {
         lenient_simplify(c);
-        done = run(c, function, args, &result);
-        if (!done && args[RENDER_NODE].node)
-            c->lenient->root = args[RENDER_NODE].node;
+        done = run(c, function, args, result);
+        struct node *root = args[index_of(function, "node")].node;
+        if (!done && root)
+            c->lenient->root = root;
     }
     if (!done)
         return push_lost(L, function, first);
-    take_material(c, function, first, result.pointer);
-    note_result(c, function, args, &result);
-    return dispatch_answer(L, function, &result);
-}
-
-void lenient_push_function(lua_State *L, const char *name) {
-    dispatch_push(L, function_find(OWNER_GR, name));
+    take_material(c, function, first, result->pointer);
+    note_result(c, function, args, result);
+    return -1;
 }

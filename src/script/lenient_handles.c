@@ -1,11 +1,21 @@
 /* Handles with --lenient. A ghost is the result of a function that does not exist: it accepts every call, index and
  * operator. Other handles ignore fields and operators that they do not have, with a warning; fields that a script sets
  * are kept in a table of their own. */
+#include "script/lenient_handles_internal.h"
+
 #include "script/lenient_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
 #include <string.h>
+
+/* It contains the nodes of the call, and is ignored if no value can replace it. */
+struct ghost {
+    const char *name;
+    struct node *node; /* NULL until it has a child or a parent */
+    const struct material *material;
+    bool is_method; /* a call returns the node before the colon */
+};
 
 static struct ghost *ghost_of(const struct handle *handle) {
     return handle && handle->type == HANDLE_GHOST ? handle->pointer : NULL;
@@ -13,12 +23,12 @@ static struct ghost *ghost_of(const struct handle *handle) {
 
 void lenient_push_ghost(lua_State *L, const char *name, bool is_method) {
     struct script_context *c = context_of(L);
-    struct ghost *ghost = arena_alloc(&c->keep, sizeof *ghost);
-    const char *copy = ghost ? arena_copy_text(&c->keep, name, strlen(name)) : NULL;
+    struct ghost *ghost = arena_alloc(&c->sandbox.keep, sizeof *ghost);
+    const char *copy = ghost ? arena_copy_text(&c->sandbox.keep, name, strlen(name)) : NULL;
     if (!copy) {
         struct error error;
         error_no_memory(&error, "the script");
-        context_raise_error(c, &error);
+        sandbox_raise_error(&c->sandbox, &error);
     }
     *ghost = (struct ghost){.name = copy, .is_method = is_method};
     handle_push(L, HANDLE_GHOST, ghost);
@@ -35,7 +45,7 @@ void *lenient_ghost_as(struct script_context *c, const struct handle *handle, en
     if (!ghost->node && make) {
         ghost->node = scene_node(&c->scene, NODE_GROUP, ghost->name, &error);
         if (!ghost->node)
-            context_raise_error(c, &error);
+            sandbox_raise_error(&c->sandbox, &error);
         lenient_note_node(c, ghost->node);
     }
     return ghost->node;
@@ -43,7 +53,7 @@ void *lenient_ghost_as(struct script_context *c, const struct handle *handle, en
 
 /* Adds the value at `index`, if it is a node, to the ghost at `at` as a child. */
 static void ghost_take(struct script_context *c, int at, int index) {
-    const struct handle *given = handle_at(c->lua, index), *holder = handle_at(c->lua, at);
+    const struct handle *given = handle_at(c->sandbox.lua, index), *holder = handle_at(c->sandbox.lua, at);
     struct ghost *ghost = ghost_of(holder);
     struct error ignored = {0};
     void *node = NULL;
@@ -62,7 +72,7 @@ static void ghost_take(struct script_context *c, int at, int index) {
 }
 
 void lenient_ghost_take(struct script_context *c, int at, int first, int last) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     for (int i = first; i <= last; i++) {
         ghost_take(c, at, i);
         if (!lua_istable(L, i))
@@ -78,13 +88,13 @@ void lenient_ghost_take(struct script_context *c, int at, int first, int last) {
 
 /* gr.shiny_material({1, 0, 0}, ...) has a colour: the result is a plain material of that colour. */
 static void ghost_take_colour(struct script_context *c, struct ghost *ghost, int first, int last) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     if (ghost->material || !(strstr(ghost->name, "aterial") || strstr(ghost->name, "MATERIAL")))
         return;
     for (int i = first; i <= last && !ghost->material; i++) {
         bool is_colour = lua_istable(L, i) && lua_rawlen(L, i) == 3 && lua_rawgeti(L, i, 1) == LUA_TNUMBER;
         if (is_colour) {
-            lenient_push_function(L, "material");
+            context_push_function(L, "material");
             lua_createtable(L, 0, 1);
             lua_pushvalue(L, i);
             lua_setfield(L, -2, "kd");
@@ -96,15 +106,25 @@ static void ghost_take_colour(struct script_context *c, struct ghost *ghost, int
     }
 }
 
+/* The value of a module that does not exist. Upvalue 1: its name. */
+static int ghost_module(lua_State *L) {
+    lenient_push_ghost(L, lua_tostring(L, lua_upvalueindex(1)), false);
+    return 1;
+}
+
+void lenient_replace_module(lua_State *L, const char *name) {
+    lenient_warn(context_of(L), "require: module '%.200s' does not exist and is ignored", name);
+    lua_pushstring(L, name);
+    lua_pushcclosure(L, ghost_module, 1);
+}
+
 /* A call of the ghost at index 1. A method returns the object before the colon. */
 static int ghost_call(lua_State *L) {
     struct script_context *c = context_of(L);
     const struct handle *handle = handle_at(L, 1);
     const struct ghost *ghost = ghost_of(handle);
     int last = lua_gettop(L);
-    c->lua = L;
-    c->function = NULL;
-    c->subject = NULL;
+    (void)sandbox_enter(L);
     assert(ghost);
     if (ghost->is_method && last >= 2 && handle_at(L, 2)) {
         if (ghost_of(handle_at(L, 2)))
@@ -150,9 +170,7 @@ int lenient_handle_index(lua_State *L) {
     lua_settop(L, 2);
     if (lenient_own_field(L))
         return 1;
-    c->lua = L;
-    c->function = NULL;
-    c->subject = NULL;
+    (void)sandbox_enter(L);
     if (lua_type(L, 2) != LUA_TSTRING)
         return 0;
     const struct handle *handle = handle_at(L, 1);
@@ -165,9 +183,7 @@ static int handle_newindex(lua_State *L) {
     struct script_context *c = context_of(L);
     const struct handle *handle = handle_at(L, 1);
     lua_settop(L, 3);
-    c->lua = L;
-    c->function = NULL;
-    c->subject = NULL;
+    (void)sandbox_enter(L);
     if (lua_isnil(L, 2))
         return 0;
     if (handle->type != HANDLE_GHOST)
@@ -225,9 +241,7 @@ static int warn_of_operator(lua_State *L, const char *what) {
     struct script_context *c = context_of(L);
     const struct handle *handle = handle_at(L, handle_at(L, 1) ? 1 : 2);
     assert(handle); /* one operand has this metatable */
-    c->lua = L;
-    c->function = NULL;
-    c->subject = NULL;
+    (void)sandbox_enter(L);
     lenient_warn(c, "%s has no %s, which is ignored", handle_words(handle->type), what);
     return handle_operand(L);
 }
@@ -288,8 +302,6 @@ void lenient_open(lua_State *L) {
         {"__lt", handle_comparison},  {"__le", handle_comparison},   {"__len", handle_length},
         {"__concat", ghost_concat},   {"__pairs", handle_pairs},     {NULL, NULL},
     };
-    if (!context_of(L)->lenient)
-        return;
     lua_newtable(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &fields);
     for (int type = 0; type < HANDLE_TYPES; type++) {

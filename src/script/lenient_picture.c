@@ -1,10 +1,11 @@
-/* Replacements of --lenient: a cube for a missing mesh, a checker pattern for a picture, and a picture of the scene
- * with a default camera if a script ends without a picture. */
-#include "script/lenient_internal.h"
+/* Replacements of --lenient: a cube for a missing mesh, a checker pattern for a picture, and the root and
+ * the camera of a picture that has none. */
+#include "script/lenient_picture_internal.h"
 
 #include "math/elementary.h"
+#include "render/settings.h"
 #include "scene/node_bounds.h"
-#include "script/bindings_internal.h"
+#include "script/lenient_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,7 +79,7 @@ void lenient_simplify(struct script_context *c) {
     }
 }
 
-enum { FIELD_OF_VIEW = 40, SIDE = 256 };
+enum { FIELD_OF_VIEW = 40 };
 
 void lenient_camera(const struct node *root, struct camera *camera) {
     struct box box;
@@ -142,56 +143,10 @@ struct node *lenient_root(struct script_context *c) {
 }
 
 void lenient_picture_name(const struct script_context *c, char *out, size_t size) {
-    const char *slash = strrchr(c->path, '/'), *name = slash ? slash + 1 : c->path, *dot = strrchr(name, '.');
+    const char *slash = strrchr(c->sandbox.files.path, '/'), *name = slash ? slash + 1 : c->sandbox.files.path,
+               *dot = strrchr(name, '.');
     int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
     while (length > 1 && name[0] == '.') /* a picture has no hidden name */
         name++, length--;
     snprintf(out, size, "%.*s-lenient.png", length, name);
-}
-
-void lenient_last_picture(struct script_context *c, bool failed) {
-    struct lenient *lenient = c->lenient;
-    char name[PATH_SIZE], text[3 * PATH_SIZE];
-    if (c->pictures > 0 || lenient->refused || c->fatal.kind != ERROR_NONE)
-        return;
-    struct node *root = lenient_root(c);
-    if (!root)
-        return;
-    lenient_picture_name(c, name, sizeof name);
-    struct render_request request = {.where = c->path,
-                                     .scene = &c->scene,
-                                     .root = root,
-                                     .file = name,
-                                     .width = SIDE,
-                                     .height = SIDE,
-                                     .ambient = {0.3, 0.3, 0.3},
-                                     .lights = lenient->lights,
-                                     .light_count = lenient->light_count,
-                                     .sky = {.kind = SKY_GRADIENT},
-                                     .keep = true,
-                                     .settings = c->host->settings};
-    lenient_camera(root, &request.camera);
-    request.settings.view_is_target = false;
-    request.settings.lens = (struct lens){.projection = request.settings.lens.projection,
-                                          .view_height = request.settings.lens.view_height,
-                                          .angle = request.settings.lens.angle,
-                                          .focus = 1,
-                                          .screen = 1};
-    struct scene_light above = {
-        .light = {
-            .kind = LIGHT_POINT, .position = request.camera.eye, .colour = {0.7, 0.7, 0.7}, .falloff = {1, 0, 0}}};
-    if (lenient->light_count == 0) {
-        request.lights = &above;
-        request.light_count = 1;
-    }
-    struct error error = {0};
-    limits_pause(c);
-    bool done = c->host->render(c->host->context, &request, &error);
-    limits_resume(c);
-    if (done)
-        snprintf(text, sizeof text, "%s: %s: the picture of --lenient shows node '%.200s'", c->path,
-                 failed ? "an error ended the script" : "the script has rendered no picture", root->name);
-    else
-        snprintf(text, sizeof text, "%s: warning: no picture of --lenient: %s", c->path, error.text);
-    c->host->message(c->host->context, done ? SCRIPT_NOTICE : SCRIPT_WARNING, text);
 }

@@ -1,10 +1,12 @@
 /* Values in the form that a parameter wants: a number for a table and the reverse, tables with fields x, y, z or r, g,
  * b, one handle for a list of them, colours for materials. Numbers are brought into the range of the parameter. What
  * has no sensible form becomes nil, and the parameter gets its default. */
-#include "script/lenient_internal.h"
+#include "script/lenient_values_internal.h"
 
 #include "math/range.h"
-#include "script/bindings_internal.h"
+#include "script/argument_internal.h"
+#include "script/lenient_internal.h"
+#include "script/lenient_picture_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>
@@ -56,19 +58,19 @@ static bool into_range(const struct script_parameter *p, double *x) {
 static void push_number(struct script_context *c, int index, const struct script_function *function,
                         const struct script_parameter *p) {
     double x;
-    if (!number_of(c->lua, index, 0, &x)) {
-        lua_pushnil(c->lua);
+    if (!number_of(c->sandbox.lua, index, 0, &x)) {
+        lua_pushnil(c->sandbox.lua);
         return;
     }
     if (into_range(p, &x)) {
-        lua_pushnumber(c->lua, x);
+        lua_pushnumber(c->sandbox.lua, x);
         return;
     }
     /* A ball of radius 0 draws nothing. */
     bool has_extent = (p->flags & NOT_ZERO) || ((p->flags & LOW_OPEN) && x <= p->low);
     if (function->result == RESULT_NODE && has_extent)
         c->lenient->nothing = true;
-    lua_pushnil(c->lua);
+    lua_pushnil(c->sandbox.lua);
 }
 
 static int hex_digit(char c) {
@@ -107,7 +109,7 @@ static void push_component(lua_State *L, int index, int k, int count) {
 /* Pushes a table of `count` numbers, or nil. */
 static void push_tuple(struct script_context *c, int index, const struct script_function *function,
                        const struct script_parameter *p, int count) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     int top = lua_gettop(L);
     double x, colour[3];
     bool is_colour = lua_type(L, index) == LUA_TSTRING && colour_of_text(lua_tostring(L, index), colour);
@@ -181,7 +183,7 @@ static void push_list(lua_State *L, int index, enum handle_type type) {
 
 /* A group of the nodes of a table, where the parameter is one node. */
 static void push_node(struct script_context *c, int index) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     if (is_handle(L, index, HANDLE_NODE)) {
         lua_pushvalue(L, index);
         return;
@@ -197,7 +199,7 @@ static void push_node(struct script_context *c, int index) {
     lua_rawgeti(L, list, 1);
     if (count > 1) {
         lua_pop(L, 1);
-        lenient_push_function(L, "node");
+        context_push_function(L, "node");
         lua_createtable(L, 0, 1);
         lua_pushvalue(L, list);
         lua_setfield(L, -2, "children");
@@ -208,7 +210,7 @@ static void push_node(struct script_context *c, int index) {
 
 /* A colour becomes the kd of a material. */
 static void push_material(struct script_context *c, int index) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     if (is_handle(L, index, HANDLE_MATERIAL)) {
         lua_pushvalue(L, index);
         return;
@@ -220,7 +222,7 @@ static void push_material(struct script_context *c, int index) {
         lua_pushnil(L);
         return;
     }
-    lenient_push_function(L, "material");
+    context_push_function(L, "material");
     lua_createtable(L, 0, 1);
     lua_pushvalue(L, index);
     lua_setfield(L, -2, "kd");
@@ -229,7 +231,7 @@ static void push_material(struct script_context *c, int index) {
 
 static void push_points(struct script_context *c, int index, const struct script_function *function,
                         const struct script_parameter *p, int count) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     if (!lua_istable(L, index)) {
         lua_pushnil(L);
         return;
@@ -356,7 +358,7 @@ static uint32_t vertex_count(const struct script_function *function, const struc
 
 void lenient_convert(struct script_context *c, int index, const struct script_function *function,
                      const struct script_parameter *p, const struct script_value *args) {
-    lua_State *L = c->lua;
+    lua_State *L = c->sandbox.lua;
     const struct handle *handle = handle_at(L, index);
     bool is_texture =
         (p->flags & OR_TEXTURE) && ((handle && handle->type == HANDLE_TEXTURE) || lua_isfunction(L, index));
@@ -457,8 +459,8 @@ static void push_triple(lua_State *L, double x, double y, double z) {
 
 void lenient_default(struct script_context *c, const struct script_function *function,
                      const struct script_parameter *p) {
-    lua_State *L = c->lua;
-    bool is_render = function->run == gr_render;
+    lua_State *L = c->sandbox.lua;
+    bool is_render = lenient_renders(function);
     double x = function->owner == OWNER_NODE && !is_render ? strcmp(function->name, "scale") == 0 : 1;
     if (is_render && p->kind == KIND_WHOLE)
         x = 256;
@@ -511,7 +513,7 @@ void lenient_default(struct script_context *c, const struct script_function *fun
             lua_pushnil(L);
         return;
     case KIND_MATERIAL:
-        lenient_push_function(L, "material");
+        context_push_function(L, "material");
         lua_createtable(L, 0, 1);
         push_triple(L, 0.7, 0.7, 0.7);
         lua_setfield(L, -2, "kd");

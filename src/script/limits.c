@@ -4,13 +4,13 @@
  * supervisor watches the same clock from outside (host/supervisor.c): the hook gives a good message with a line number,
  * the supervisor ends the script in any case.
  *
- * An exceeded limit is a fatal error of the context, which no script can catch. After it the hook raises it again at
+ * An exceeded limit is a fatal error of the sandbox, which no script can catch. After it the hook raises it again at
  * every step, so that handlers of to-be-closed variables end too. */
-#include "base/clock.h"
-#include "script/context_internal.h"
+#include "script/limits_internal.h"
 
-#include "base/error.h"
-#include "base/mem.h"
+#include "base/clock.h"
+
+#include "script/sandbox_internal.h"
 
 #include <lauxlib.h>
 #include <stdio.h>
@@ -21,31 +21,24 @@ enum {
 };
 static const uint64_t standard_memory = 4 * GIBIBYTE, standard_output = 64 * MEBIBYTE;
 
-double script_time_limit(const struct script_options *options) {
-    return options->time_limit > 0 || options->no_sandbox ? options->time_limit : STANDARD_TIME;
-}
-
 /* 0: no limit. */
 static uint64_t limit_of(uint64_t given, uint64_t standard, bool unlimited) {
     return given > 0 ? given : unlimited ? 0 : standard;
 }
 
-static uint64_t memory_limit(const struct script_options *options) {
-    return limit_of(options->memory_limit, standard_memory, options->no_sandbox);
+double limits_time(const struct sandbox_options *options) {
+    return options->time_limit > 0 || options->is_off ? options->time_limit : STANDARD_TIME;
 }
 
-uint64_t script_picture_memory(const struct script_options *options) {
-    uint64_t limit = memory_limit(options);
-    return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
+uint64_t limits_memory(const struct sandbox_options *options) {
+    return limit_of(options->memory_limit, standard_memory, options->is_off);
 }
 
-void limits_begin(struct script_context *context) {
-    const struct script_options *options = context->options;
-    struct limits *limits = &context->limits;
+void limits_begin(struct limits *limits, const struct sandbox_options *options) {
     *limits = (struct limits){
-        .account = {.limit = memory_limit(options), .option = "--script-memory", .words = limits->memory_words},
-        .output_limit = limit_of(options->output_limit, standard_output, options->no_sandbox),
-        .time_limit = script_time_limit(options),
+        .account = {.limit = limits_memory(options), .option = "--script-memory", .words = limits->memory_words},
+        .output_limit = limit_of(options->output_limit, standard_output, options->is_off),
+        .time_limit = limits_time(options),
         .time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
     };
     char size[SIZE_WORDS];
@@ -55,18 +48,17 @@ void limits_begin(struct script_context *context) {
     limits->charged_before = mem_charge(limits->account.limit > 0 ? &limits->account : NULL);
 }
 
-/* The memory that is still allocated belongs to the assets. */
-void limits_end(struct script_context *context) {
-    int64_t left = context->limits.account.held;
-    context->scene.assets->memory += left > 0 ? (uint64_t)left : 0;
-    (void)mem_charge(context->limits.charged_before);
+uint64_t limits_end(struct limits *limits) {
+    int64_t left = limits->account.held;
+    (void)mem_charge(limits->charged_before);
+    return left > 0 ? (uint64_t)left : 0;
 }
 
 /* A refused request is final, unless Lua repeats it after a garbage collection and it succeeds: the repetition follows
  * at once, so a later reader of `memory_out` sees the final state. Later requests, by the error handler, change
  * nothing, even if they have the same size. */
 void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
-    struct limits *limits = &((struct script_context *)user)->limits;
+    struct limits *limits = user;
     bool grows = !block || size > old_size;
     if (size == 0)
         return mem_resize_known(block, old_size, 0);
@@ -89,26 +81,24 @@ void *limits_allocate(void *user, void *block, size_t old_size, size_t size) {
 }
 
 _Noreturn static void end_script(lua_State *L, enum error_kind kind, const char *what) {
-    struct script_context *context = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     char where[PATH_SIZE + 32];
-    context->lua = L;
-    context_where(context, where, sizeof where);
-    char frame[FRAME_WORDS];
-    frames_name_frame(context, frame);
-    error_set(&context->fatal, kind, "%s%s%s", where, what, frame);
-    context_raise_fatal(L);
+    sandbox->lua = L;
+    sandbox_where(sandbox, where, sizeof where);
+    error_set(&sandbox->fatal, kind, "%s%s%s", where, what, sandbox->place);
+    sandbox_raise_fatal(L);
 }
 
 void limits_end_for_memory(lua_State *L) {
-    end_script(L, ERROR_SCENE, context_of(L)->limits.memory_words);
+    end_script(L, ERROR_SCENE, sandbox_of(L)->limits.memory_words);
 }
 
 void limits_check(lua_State *L) {
-    struct script_context *context = context_of(L);
-    struct limits *limits = &context->limits;
-    if (context->ended || context->fatal.kind != ERROR_NONE)
-        context_raise_fatal(L);
-    if (context->host->cancelled && context->host->cancelled(context->host->context))
+    struct sandbox *sandbox = sandbox_of(L);
+    struct limits *limits = &sandbox->limits;
+    if (sandbox->ended || sandbox->fatal.kind != ERROR_NONE)
+        sandbox_raise_fatal(L);
+    if (sandbox->host.cancelled && sandbox->host.cancelled(sandbox->host.context))
         end_script(L, ERROR_CANCELLED, "cancelled");
     if (limits->memory_out)
         limits_end_for_memory(L);
@@ -124,8 +114,8 @@ void limits_check(lua_State *L) {
 
 static void hook(lua_State *L, lua_Debug *frame) {
     (void)frame;
-    const struct script_context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE)
+    const struct sandbox *sandbox = sandbox_of(L);
+    if (sandbox->ended || sandbox->fatal.kind != ERROR_NONE)
         lua_sethook(L, hook, LUA_MASKCOUNT, 1);
     limits_check(L);
 }
@@ -134,13 +124,13 @@ void limits_open(lua_State *L) {
     lua_sethook(L, hook, LUA_MASKCOUNT, HOOK_STEPS);
 }
 
-void limits_count_output(struct script_context *context, size_t size) {
-    context->limits.output += size;
+void limits_count_output(struct limits *limits, size_t size) {
+    limits->output += size;
 }
 
 void limits_output(lua_State *L, size_t size) {
-    const struct script_host *host = context_of(L)->host;
-    struct limits *limits = &context_of(L)->limits;
+    const struct sandbox_host *host = &sandbox_of(L)->host;
+    struct limits *limits = &sandbox_of(L)->limits;
     if (host->prints)
         host->prints(host->context);
     limits->output += size;
@@ -152,14 +142,14 @@ void limits_output(lua_State *L, size_t size) {
     end_script(L, ERROR_SCENE, what);
 }
 
-void limits_pause(struct script_context *context) {
-    context->limits.time_begun -= clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+void limits_pause(struct limits *limits) {
+    limits->time_begun -= clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-void limits_restart_time(struct script_context *context) {
-    context->limits.time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+void limits_restart_time(struct limits *limits) {
+    limits->time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-void limits_resume(struct script_context *context) {
-    context->limits.time_begun += clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+void limits_resume(struct limits *limits) {
+    limits->time_begun += clock_seconds(CLOCK_THREAD_CPUTIME_ID);
 }

@@ -1,16 +1,18 @@
 /* Replacements of the functions that could catch a fatal error: pcall, xpcall, coroutine.resume and close, load. They
- * do the same and then raise the error again if the context has a fatal error or the script has ended.
+ * do the same and then raise the error again if the sandbox has a fatal error or the script has ended.
  *
  * Two more ways to avoid the limits are prevented here. Lua runs the handler of xpcall without hooks if the error came
  * from the hook: our handler returns a fatal error itself. Lua always runs finalizers (__gc) without hooks:
  * setmetatable removes them, so that no code of a scene runs while garbage is collected or the state is closed. */
-#include "script/context_internal.h"
+
+#include "script/protect_internal.h"
+
+#include "script/sandbox_internal.h"
 
 #include <lauxlib.h>
 
 static void pass_on_fatal(lua_State *L) {
-    const struct script_context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+    if (sandbox_is_over(sandbox_of(L)))
         limits_check(L);
 }
 
@@ -35,8 +37,7 @@ static int protected_call(lua_State *L) {
 
 /* Upvalue 1: the script's handler. */
 static int guarded_handler(lua_State *L) {
-    const struct script_context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+    if (sandbox_is_over(sandbox_of(L)))
         return 1;
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
@@ -141,7 +142,7 @@ void protect_open(lua_State *L) {
     wrap_function(L, "coroutine", "resume", use_coroutine);
     wrap_function(L, "coroutine", "close", use_coroutine);
     wrap_function(L, "coroutine", "wrap", wrap_coroutine);
-    if (context_of(L)->options->no_sandbox) {
+    if (sandbox_of(L)->options.is_off) {
         wrap_function(L, LUA_GNAME, "load", call_and_pass_on);
         return;
     }

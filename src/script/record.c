@@ -6,9 +6,11 @@
  * more than its arguments. */
 #include "script/record_internal.h"
 
-#include "base/mem.h"
 #include "base/random.h"
 #include "math/exact.h"
+#include "script/record_bounds_internal.h"
+#include "script/record_interval_internal.h"
+#include "script/symbol_internal.h"
 
 #include <assert.h>
 #include <float.h>
@@ -32,14 +34,20 @@ enum { RECORD_POINTS = 1000, WORK_BEFORE_COUNTING = 300000, WORK_OF_COUNTING = 1
     "; the bounds of a for loop must not depend on the arguments of the function, gr.loop(n, state, f) may end "       \
     "earlier"
 
+/* Whether the function that runs is called again, for another path or a comparison. */
+static bool is_silent(const struct recorder *recorder) {
+    bool is_first = recorder->prints;
+    for (uint32_t k = 1; recorder->active && k <= recorder->level; k++)
+        is_first = is_first && recorder->frames[k].is_first;
+    return recorder->busy && !is_first;
+}
+
 void record_open(lua_State *L) {
-    struct script_context *context = context_of(L);
-    context->recorder = arena_alloc(&context->keep, sizeof *context->recorder);
-    if (!context->recorder) {
-        struct error error;
-        (void)error_no_memory(&error, "the script");
-        context_raise_error(context, &error);
-    }
+    struct sandbox *sandbox = sandbox_of(L);
+    sandbox->recorder = arena_alloc(&sandbox->keep, sizeof *sandbox->recorder);
+    if (!sandbox->recorder)
+        sandbox_raise_no_memory(sandbox);
+    sandbox->is_silent = is_silent;
     symbols_open(L);
     vectors_open(L);
 }
@@ -58,11 +66,11 @@ void recorder_destroy(struct recorder *recorder) {
     recorder->active = recorder->busy = recorder->samples = false;
 }
 
-bool record_is_silent(const struct recorder *recorder) {
-    bool is_first = recorder->prints;
-    for (uint32_t k = 1; recorder->active && k <= recorder->level; k++)
-        is_first = is_first && recorder->frames[k].is_first;
-    return recorder->busy && !is_first;
+const char *record_activity(lua_State *L) {
+    const struct recorder *recorder = recorder_of(L);
+    if (!recorder->busy)
+        return NULL;
+    return recorder->samples ? "tone curve" : "function that is recorded";
 }
 
 /* --- calls --- */
@@ -93,9 +101,9 @@ static void push_arguments(lua_State *L, int first) {
 }
 
 int record_add_position(lua_State *L) {
-    struct script_context *context = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     char where[PATH_SIZE + 32];
-    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+    if (sandbox_is_over(sandbox))
         return 1;
     const char *text = lua_type(L, 1) == LUA_TSTRING ? lua_tostring(L, 1) : NULL;
     if (!text) {
@@ -104,8 +112,8 @@ int record_add_position(lua_State *L) {
     } else if (strstr(text, ":") && strspn(strstr(text, ":") + 1, "0123456789") > 0) {
         return 1;
     }
-    context->lua = L;
-    context_where(context, where, sizeof where);
+    sandbox->lua = L;
+    sandbox_where(sandbox, where, sizeof where);
     lua_pushfstring(L, "%s%s", where, text);
     return 1;
 }
@@ -124,14 +132,14 @@ static void name_function(lua_State *L, int function) {
 
 /* Calls the function at `function` with the values from `first` on. Pushes its first result, or the error. */
 static bool call_function(lua_State *L, int function, int first) {
-    struct script_context *context = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     lua_pushcfunction(L, record_add_position);
     int handler = lua_gettop(L);
     lua_pushvalue(L, function);
     push_arguments(L, first);
     int status = lua_pcall(L, 2, LUA_MULTRET, handler);
-    context->lua = L;
-    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+    sandbox->lua = L;
+    if (sandbox_is_over(sandbox))
         limits_check(L);
     int results = lua_gettop(L) - handler;
     if (status == LUA_OK && results != 1) {
@@ -165,7 +173,7 @@ static const char *result_hint(lua_State *L, int index) {
  * describes the value replaces it. */
 static bool is_result(lua_State *L, int function, int *count) {
     int top = lua_gettop(L);
-    if (is_symbol(L, top) && !context_of(L)->recorder->active) {
+    if (is_symbol(L, top) && !recorder_of(L)->active) {
         lua_pushliteral(L, "a number of a recorded function is used outside the function");
         name_function(L, function);
         lua_replace(L, top);
@@ -226,7 +234,7 @@ static const char *hint_of(const char *text) {
 }
 
 void record_keep_error(lua_State *L, int index) {
-    struct recorder *recorder = context_of(L)->recorder;
+    struct recorder *recorder = recorder_of(L);
     const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tostring(L, index) : "";
     if (!recorder->path_error[0])
         (void)snprintf(recorder->path_error, sizeof recorder->path_error, "%.300s%s", text, hint_of(text));
@@ -234,7 +242,7 @@ void record_keep_error(lua_State *L, int index) {
 
 /* One call. The index `error` holds the first error of all calls. */
 static struct path_result record_path(lua_State *L, int function, int first, int error) {
-    struct recorder *recorder = context_of(L)->recorder;
+    struct recorder *recorder = recorder_of(L);
     struct path_result result = {.count = 0};
     int top = lua_gettop(L);
     record_begin_path(L);
@@ -282,7 +290,7 @@ _Noreturn static void raise_too_many_paths(lua_State *L, int function) {
 }
 
 static void raise_if_given_up(lua_State *L) {
-    const struct recorder *recorder = context_of(L)->recorder;
+    const struct recorder *recorder = recorder_of(L);
     if (!recorder->gave_up)
         return;
     lua_pushstring(L, recorder->error);
@@ -291,7 +299,7 @@ static void raise_if_given_up(lua_State *L) {
 
 /* Records all paths. False: they are not finished after WORK_BEFORE_COUNTING, and `may_stop`. */
 static bool record_paths(lua_State *L, int function, int first, bool may_stop, struct path_result *out) {
-    struct recorder *recorder = context_of(L)->recorder;
+    struct recorder *recorder = recorder_of(L);
     struct record_frame *frame = &recorder->frames[0];
     lua_pushnil(L);
     int error = lua_gettop(L);
@@ -341,7 +349,7 @@ static void begin_with(struct recorder *recorder, const struct branch *branches,
  * more path. Breadth first, because decisions near the beginning lead to the most others; depth first, thousands of
  * long paths would come before. Every other call answers `false`: where `true` ends a recursion, that call is long. */
 static void count_paths(lua_State *L, int function, int first) {
-    struct recorder *recorder = context_of(L)->recorder;
+    struct recorder *recorder = recorder_of(L);
     struct record_frame *frame = &recorder->frames[0];
     struct branch *branches = lua_newuserdatauv(L, RECORD_PATHS * sizeof *branches, 0);
     uint32_t count = 0, next = 0;
@@ -465,7 +473,7 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
     lua_pushvalue(L, function);
     (void)lua_getinfo(L, ">S", &where);
     char text[2 * RECORD_ERROR];
-    const char *path_error = comparison->bounds ? "" : context_of(L)->recorder->path_error;
+    const char *path_error = comparison->bounds ? "" : recorder_of(L)->path_error;
     if (path_error[0])
         (void)snprintf(text, sizeof text,
                        "the function of line %d cannot be recorded: at p = {%.17g, %.17g, %.17g} it gives %s, recorded "
@@ -485,15 +493,15 @@ static void compare_point(lua_State *L, int function, uint32_t i, struct compari
 /* --- all of it --- */
 
 static void begin(lua_State *L) {
-    struct script_context *context = context_of(L);
-    struct recorder *recorder = context->recorder;
+    struct sandbox *sandbox = sandbox_of(L);
+    struct recorder *recorder = sandbox->recorder;
     expr_graph_destroy(&recorder->graph);
     if (!recorder->frames[0].decisions)
         recorder->frames[0].decisions = mem_alloc_zero(RECORD_PATHS, sizeof *recorder->frames[0].decisions);
     if (!recorder->answers)
         recorder->answers = mem_alloc_zero(EXPR_NODES, sizeof *recorder->answers);
     if (!recorder->frames[0].decisions || !recorder->answers)
-        context_raise_no_memory(context);
+        sandbox_raise_no_memory(sandbox);
     memset(recorder->answers, 0, EXPR_NODES * sizeof *recorder->answers);
     recorder->serial++;
     recorder->level = recorder->calls = recorder->loop_depth = 0;
@@ -507,33 +515,34 @@ static void begin(lua_State *L) {
     recorder->active = true;
 }
 
-/* The result of a recording. */
-struct recording {
+/* A recording on its way. */
+struct work {
+    struct arena *arena;
     enum record_domain domain;
     struct expr_program *program;
     const char *source;
     struct comparison comparison;
 };
 
-static void compile(lua_State *L, const struct path_result *result, struct recording *recording) {
-    struct script_context *context = context_of(L);
-    struct arena *arena = &context->scene.arena;
+static void compile(lua_State *L, const struct path_result *result, struct work *work) {
+    struct sandbox *sandbox = sandbox_of(L);
+    struct arena *arena = work->arena;
     struct error error = {0};
     lua_Debug where;
     lua_pushvalue(L, 1);
     (void)lua_getinfo(L, ">S", &where);
-    recording->source = arena_format(arena, "%s:%d", where.short_src, where.linedefined);
-    recording->program = arena_alloc(arena, sizeof *recording->program);
-    if (!recording->source || !recording->program)
-        context_raise_no_memory(context);
-    if (!expr_compile(&context->recorder->graph, result->nodes, result->count, arena, recording->program, &error))
-        context_raise_error(context, &error);
-    recording->program->source = recording->source;
+    work->source = arena_format(arena, "%s:%d", where.short_src, where.linedefined);
+    work->program = arena_alloc(arena, sizeof *work->program);
+    if (!work->source || !work->program)
+        sandbox_raise_no_memory(sandbox);
+    if (!expr_compile(&sandbox->recorder->graph, result->nodes, result->count, arena, work->program, &error))
+        sandbox_raise_error(sandbox, &error);
+    work->program->source = work->source;
 }
 
 /* Begins with an empty graph. The inputs are the values from index 3 on. */
 static void begin_with_inputs(lua_State *L) {
-    struct recorder *recorder = context_of(L)->recorder;
+    struct recorder *recorder = recorder_of(L);
     lua_settop(L, FIRST_INPUT - 1);
     begin(L);
     for (int k = 0; k < EXPR_INPUT_COUNT; k++)
@@ -542,8 +551,8 @@ static void begin_with_inputs(lua_State *L) {
 
 /* Arguments: the function, and the struct recording. */
 static int record_protected(lua_State *L) {
-    struct recorder *recorder = context_of(L)->recorder;
-    struct recording *recording = lua_touserdata(L, 2);
+    struct recorder *recorder = recorder_of(L);
+    struct work *work = lua_touserdata(L, 2);
     struct path_result result;
     luaL_checkstack(L, 2 * EXPR_INPUT_COUNT + 20, "a function");
     begin_with_inputs(L);
@@ -555,11 +564,10 @@ static int record_protected(lua_State *L) {
     }
     recorder->active = false;
     lua_settop(L, 2);
-    compile(L, &result, recording);
-    recording->comparison =
-        (struct comparison){.program = recording->program, .domain = recording->domain, .largest = {1, 1, 1}};
+    compile(L, &result, work);
+    work->comparison = (struct comparison){.program = work->program, .domain = work->domain, .largest = {1, 1, 1}};
     for (uint32_t i = 0; i < RECORD_POINTS; i++)
-        compare_point(L, 1, i, &recording->comparison);
+        compare_point(L, 1, i, &work->comparison);
     return 0;
 }
 
@@ -580,85 +588,61 @@ static bool reads_coordinates(const struct expr_program *program) {
 }
 
 /* Where no hit is known, the mean and the largest value at the points of the comparison represent the function. */
-static struct texture texture_of(const struct recording *recording) {
-    const struct comparison *comparison = &recording->comparison;
-    int last = recording->program->output_count - 1;
+static struct texture texture_of(const struct work *work) {
+    const struct comparison *comparison = &work->comparison;
+    int last = work->program->output_count - 1;
     struct vec3 sum = vec3_make(comparison->sum[0], comparison->sum[last / 2], comparison->sum[last]);
     struct vec3 largest = vec3_make(comparison->largest[0], comparison->largest[last / 2], comparison->largest[last]);
-    struct texture out = texture_function(recording->program, reads_coordinates(recording->program),
+    struct texture out = texture_function(work->program, reads_coordinates(work->program),
                                           vec3_scale(sum, 1.0 / RECORD_POINTS), largest);
-    out.recorded.source = recording->source;
+    out.recorded.source = work->source;
     return out;
 }
 
 /* Calls `run` with the function at an absolute index and `data`. Leaves an error on top. */
-static int run_once(struct script_context *context, lua_CFunction run, int index, void *data) {
-    lua_State *L = context->lua;
-    struct recorder *recorder = context->recorder;
+static int run_once(struct sandbox *sandbox, lua_CFunction run, int index, void *data) {
+    lua_State *L = sandbox->lua;
+    struct recorder *recorder = sandbox->recorder;
     lua_pushcfunction(L, run);
     lua_pushvalue(L, index);
     lua_pushlightuserdata(L, data);
     int status = lua_pcall(L, 2, 0, 0);
     recorder->active = false;
     expr_graph_destroy(&recorder->graph);
-    context->lua = L;
+    sandbox->lua = L;
     return status;
 }
 
 /* Calls `run` with the function at an absolute index and `data`. If a step of a loop does something that a symbol does
  * not support (it compares its number with ==), calls it again and records all steps one by one. Raises every error,
  * prefixed by the name of the argument. */
-static void run_protected(struct script_context *context, lua_CFunction run, int index, void *data, const char *name) {
-    lua_State *L = context->lua;
-    struct recorder *recorder = context->recorder;
+static void run_protected(struct sandbox *sandbox, lua_CFunction run, int index, void *data, const char *name) {
+    lua_State *L = sandbox->lua;
+    struct recorder *recorder = sandbox->recorder;
     recorder->busy = recorder->prints = true;
     recorder->unrolls = recorder->has_loop = false;
-    int status = run_once(context, run, index, data);
-    bool is_final = recorder->gave_up || context->fatal.kind != ERROR_NONE || context->limits.memory_out;
+    int status = run_once(sandbox, run, index, data);
+    bool is_final = recorder->gave_up || sandbox->fatal.kind != ERROR_NONE || sandbox->limits.memory_out;
     if (status != LUA_OK && recorder->has_loop && !is_final) {
         recorder->unrolls = true;
-        if (run_once(context, run, index, data) == LUA_OK)
+        if (run_once(sandbox, run, index, data) == LUA_OK)
             status = LUA_OK;
-        bool is_fatal = context->fatal.kind != ERROR_NONE || context->limits.memory_out;
+        bool is_fatal = sandbox->fatal.kind != ERROR_NONE || sandbox->limits.memory_out;
         lua_remove(L, status == LUA_OK || !is_fatal ? -1 : -2); /* of two errors, the first one is more useful */
     }
     recorder->busy = recorder->samples = recorder->prints = false;
-    if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !context->limits.memory_out)
-        context_raise(context, "%s: %s", name, lua_tostring(L, -1));
+    if (status != LUA_OK && lua_type(L, -1) == LUA_TSTRING && !sandbox->limits.memory_out)
+        sandbox_raise(sandbox, "%s: %s", name, lua_tostring(L, -1));
     if (status != LUA_OK)
-        lua_error(L); /* a fatal error, which the context has recorded */
+        lua_error(L); /* a fatal error, which the sandbox has recorded */
 }
 
-static void record(struct script_context *context, int index, const char *name, struct recording *recording) {
-    run_protected(context, record_protected, index, recording, name);
-    record_remember(context, index, recording->program, recording->domain);
-}
-
-const struct expr_program *record_function(struct script_context *context, int index, const char *name,
-                                           enum record_domain domain, const char **source) {
-    struct recording recording = {.domain = domain};
-    const struct handle *handle = handle_at(context->lua, index);
-    const struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
-    if (texture && texture->texture->kind == TEXTURE_FUNCTION) {
-        *source = texture->texture->recorded.source;
-        return texture->texture->recorded.program;
-    }
-    if (lua_type(context->lua, index) != LUA_TFUNCTION)
-        return NULL;
-    record(context, index, name, &recording);
-    *source = recording.source;
-    return recording.program;
-}
-
-const struct script_texture *record_texture(struct script_context *context, int index, const char *name) {
-    struct recording recording = {.program = NULL};
-    struct error error = {0};
-    record(context, index, name, &recording);
-    struct script_texture out = {.texture = texture_keep(&context->scene.arena, texture_of(&recording), &error)};
-    const struct script_texture *kept = out.texture ? gr_keep_texture(context, &out, &error) : NULL;
-    if (!kept)
-        context_raise_error(context, &error);
-    return kept;
+void record_function(struct sandbox *sandbox, int index, const char *name, enum record_domain domain,
+                     struct arena *arena, struct recording *out) {
+    struct work work = {.arena = arena, .domain = domain};
+    run_protected(sandbox, record_protected, index, &work, name);
+    record_remember(sandbox, index, work.program, domain);
+    *out = (struct recording){.program = work.program, .source = work.source, .texture = texture_of(&work)};
 }
 
 /* --- tone curves --- */
@@ -677,7 +661,7 @@ static int sample_curve(lua_State *L) {
         lua_pushvalue(L, 1);
         lua_pushnumber(L, tone_table_light(i));
         lua_call(L, 1, LUA_MULTRET);
-        context_of(L)->recorder->prints = false;
+        recorder_of(L)->prints = false;
         int results = lua_gettop(L) - 2;
         if (results != 1) {
             lua_pushfstring(L, "the function returns %d values, not a number", results);
@@ -712,11 +696,11 @@ static int sample_protected(lua_State *L) {
     return 0;
 }
 
-const struct tone_table *record_tone_curve(struct script_context *context, int index, const char *name) {
-    struct tone_table *table = arena_alloc(&context->call, sizeof *table);
+const struct tone_table *record_tone_curve(struct sandbox *sandbox, int index, const char *name) {
+    struct tone_table *table = arena_alloc(&sandbox->call, sizeof *table);
     if (!table)
-        context_raise_no_memory(context);
-    context->recorder->samples = true;
-    run_protected(context, sample_protected, index, table, name);
+        sandbox_raise_no_memory(sandbox);
+    sandbox->recorder->samples = true;
+    run_protected(sandbox, sample_protected, index, table, name);
     return table;
 }

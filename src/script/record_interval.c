@@ -2,7 +2,7 @@
  * by interval arithmetic (expr/expr_interval.h) from inputs of any finite size. Each decision of the path narrows the
  * bounds of the two sides of its comparison. So `if r < 1 ... elseif r < 2` makes no path without points. The bounds
  * depend only on the decisions of the path, so every call on that path computes the same bounds. */
-#include "script/record_internal.h"
+#include "script/record_interval_internal.h"
 
 #include "base/mem.h"
 #include "expr/expr_interval.h"

@@ -5,9 +5,10 @@
  *
  * Steps are recorded one by one in place of a loop while the states are plain numbers, where there are few, and where
  * the body cannot have a symbol as the number of its step (an index of a table, a bound of a `for`). */
-#include "script/record_internal.h"
+#include "script/record_loop_internal.h"
 
-#include "base/mem.h"
+#include "script/record_internal.h"
+#include "script/symbol_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>
@@ -22,10 +23,6 @@ struct states {
     bool is_vector[EXPR_STATES];
     struct number numbers[EXPR_STATES];
 };
-
-static struct recorder *recorder_of(lua_State *L) {
-    return context_of(L)->recorder;
-}
 
 static bool is_state(lua_State *L, int index) {
     return lua_type(L, index) == LUA_TNUMBER || is_symbol(L, index) ||
@@ -145,15 +142,15 @@ static void join_states(lua_State *L, uint32_t condition, const struct states *a
 /* One call on one path. After an error there are no states; the first error is kept at the index `error`. */
 static void call_step(lua_State *L, int function, struct number step, const struct states *in, int error,
                       struct states *out) {
-    struct script_context *context = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     int top = lua_gettop(L);
     lua_pushcfunction(L, record_add_position);
     lua_pushvalue(L, function);
     push_symbol(L, step);
     push_states(L, in);
     int status = lua_pcall(L, in->count + 1, in->count, top + 1);
-    context->lua = L;
-    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+    sandbox->lua = L;
+    if (sandbox_is_over(sandbox))
         limits_check(L);
     if (recorder_of(L)->gave_up) { /* even if the function caught the error */
         lua_pushstring(L, recorder_of(L)->error);
@@ -354,19 +351,19 @@ static int record_others(lua_State *L) {
 
 /* Calls it; an error means a refusal, except at limits. */
 static void try_loop(lua_State *L, int function, struct looping *l) {
-    struct script_context *context = context_of(L);
-    struct recorder *recorder = context->recorder;
+    struct sandbox *sandbox = sandbox_of(L);
+    struct recorder *recorder = sandbox->recorder;
     const uint32_t depth = recorder->loop_depth, level = recorder->level;
     lua_pushcfunction(L, record_others);
     lua_pushvalue(L, function);
     lua_pushlightuserdata(L, l);
     int status = lua_pcall(L, 2, 0, 0);
-    context->lua = L;
+    sandbox->lua = L;
     recorder->loop_depth = depth;
     recorder->level = level;
     if (status == LUA_OK)
         return;
-    if (context->ended || context->fatal.kind != ERROR_NONE || context->limits.memory_out)
+    if (sandbox_is_over(sandbox))
         limits_check(L);
     if (recorder->gave_up)
         lua_error(L);
@@ -413,7 +410,7 @@ int record_loop(lua_State *L) {
     lua_pushvalue(L, states + 2);
     lua_pushlightuserdata(L, &l);
     int status = lua_pcall(L, 2, 0, 0);
-    context_of(L)->lua = L;
+    sandbox_of(L)->lua = L;
     recorder->loop_depth = depth;
     recorder->level = level;
     if (status != LUA_OK)

@@ -1,215 +1,211 @@
-/* The Lua libraries of a scene. Scenes are untrusted: the lists below name the functions that are known to be harmless;
- * everything else in a library (of this or a later Lua) is removed. No function starts programs, loads machine code or
- * byte code, changes the locale or reads the environment; debug only shows the position of a script. Functions for
- * files are in files.c and streams.c, functions that could catch or avoid a limit in protect.c. With --no-sandbox
- * nothing is removed. */
-#include "math/elementary.h"
-#include "script/context_internal.h"
+/* Source positions, warnings and errors of a running script. The position is that of the nearest Lua function on the
+ * stack with a known line, so that C functions called through pcall or other C functions still name the script's line.
+ */
+#include "script/sandbox_internal.h"
+
+#include "base/hash.h"
+#include "script/libraries_internal.h"
+#include "script/protect_internal.h"
+#include "script/streams_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
-#include <lualib.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-/* os.exit ends the script, not the program: finished pictures are kept, and the next script runs. */
-static int end_script(lua_State *L) {
-    struct script_context *context = context_of(L);
-    context->lua = L;
-    bool well = lua_isnoneornil(L, 1) || (lua_isboolean(L, 1) ? lua_toboolean(L, 1) : luaL_checkinteger(L, 1) == 0);
-    if (!well) {
-        char where[PATH_SIZE + 32];
-        context_where(context, where, sizeof where);
-        error_set(&context->fatal, ERROR_SCENE, "%sos.exit: the script reports a failure", where);
-    }
-    context->ended = true;
-    context_raise_fatal(L);
+enum { CHECKED_LINES = 1024 };
+
+struct sandbox *sandbox_of(lua_State *L) {
+    return *(struct sandbox **)lua_getextraspace(L);
 }
 
-/* debug.getinfo([thread,] function or level [, what]): source, short_src, currentline, and nothing that can be called.
- */
-static int position_info(lua_State *L) {
-    lua_State *from = L;
-    int at = 1;
-    lua_Debug frame;
-    if (lua_isthread(L, 1)) {
-        from = lua_tothread(L, 1);
-        at = 2;
-    }
-    if (lua_isfunction(L, at)) {
-        lua_pushvalue(L, at);
-        lua_xmove(L, from, 1);
-        lua_getinfo(from, ">Sl", &frame);
-    } else {
-        lua_Integer level = luaL_checkinteger(L, at);
-        if (level < 0 || level > 1000000 || !lua_getstack(from, (int)level, &frame)) {
-            lua_pushnil(L);
-            return 1;
-        }
-        lua_getinfo(from, "Sl", &frame);
-    }
-    lua_createtable(L, 0, 3);
-    lua_pushlstring(L, frame.source, frame.srclen);
-    lua_setfield(L, -2, "source");
-    lua_pushstring(L, frame.short_src);
-    lua_setfield(L, -2, "short_src");
-    lua_pushinteger(L, frame.currentline);
-    lua_setfield(L, -2, "currentline");
-    return 1;
-}
+/* --- begin and end --- */
 
-/* The environment may contain secrets; only variables for this program are visible. */
-static int environment_variable(lua_State *L) {
-    const char *name = luaL_checkstring(L, 1);
-    lua_pushstring(L, strncmp(name, "GRAY_", 5) == 0 ? getenv(name) : NULL);
-    return 1;
-}
-
-/* Generational collection has been the source of most memory errors of Lua 5.4 (lua.org/bugs.html): a request for it
- * has a result but no effect. Upvalue 1: Lua's own function. */
-static int collect_garbage(lua_State *L) {
-    const char *option = luaL_optstring(L, 1, "collect");
-    if (strcmp(option, "generational") == 0 || strcmp(option, "incremental") == 0) {
-        lua_pushliteral(L, "incremental");
-        return 1;
-    }
-    lua_pushvalue(L, lua_upvalueindex(1));
-    lua_insert(L, 1);
-    lua_call(L, lua_gettop(L) - 1, LUA_MULTRET);
-    return lua_gettop(L);
-}
-
-struct allowed {
-    const char *library, *names; /* separated by blanks, one before and one after */
-};
-
-static const struct allowed allowed_names[] = {
-    {LUA_GNAME, " _G _VERSION assert collectgarbage dofile error getmetatable ipairs load loadfile next pairs pcall "
-                "print rawequal rawget rawlen rawset require select setmetatable tonumber tostring type warn xpcall "
-                "coroutine debug io math os package string table utf8 "},
-    {LUA_COLIBNAME, " close create isyieldable resume running status wrap yield "},
-    {LUA_TABLIBNAME, " concat insert move pack remove sort unpack "},
-    {LUA_STRLIBNAME,
-     " byte char dump find format gmatch gsub len lower match pack packsize rep reverse sub unpack upper "},
-    {LUA_MATHLIBNAME, " abs acos asin atan atan2 ceil cos cosh deg exp floor fmod frexp huge ldexp log log10 max "
-                      "maxinteger min mininteger modf pi pow rad random randomseed sin sinh sqrt tan tanh tointeger "
-                      "type ult "},
-    {LUA_UTF8LIBNAME, " char charpattern codepoint codes len offset "},
-    {LUA_OSLIBNAME, " clock date difftime exit getenv remove rename time "},
-    {LUA_IOLIBNAME, " close flush input lines open output read stderr stdin stdout type write "},
-    {LUA_LOADLIBNAME, " config cpath loaded path preload searchers searchpath "},
-    {LUA_DBLIBNAME, " getinfo traceback "},
-};
-
-/* Functions of Lua 5.4 that older versions did not have. */
-static const struct allowed removed_names[] = {
-    {LUA_OSLIBNAME, " execute setlocale tmpname "},
-    {LUA_IOLIBNAME, " popen tmpfile "},
-    {LUA_LOADLIBNAME, " loadlib "},
-    {LUA_DBLIBNAME, " debug gethook getlocal getmetatable getregistry getupvalue getuservalue sethook setlocal "
-                    "setmetatable setupvalue setuservalue upvalueid upvaluejoin "},
-};
-
-static bool is_allowed(const char *names, const char *name) {
-    char word[64];
-    int length = snprintf(word, sizeof word, " %s ", name);
-    return (size_t)length < sizeof word && strstr(names, word);
-}
-
-bool sandbox_removes(const char *library, const char *name) {
-    for (size_t k = 0; k < sizeof removed_names / sizeof removed_names[0]; k++)
-        if (strcmp(removed_names[k].library, library) == 0 && is_allowed(removed_names[k].names, name))
-            return true;
-    return false;
-}
-
-static void keep_allowed(lua_State *L, const struct allowed *allowed) {
-    lua_getglobal(L, allowed->library);
-    lua_pushnil(L);
-    while (lua_next(L, -2)) {
-        lua_pop(L, 1);
-        assert(lua_type(L, -1) == LUA_TSTRING);
-        if (is_allowed(allowed->names, lua_tostring(L, -1)))
-            continue;
-        lua_pushvalue(L, -1); /* a field may be cleared while its table is traversed */
-        lua_pushnil(L);
-        lua_rawset(L, -4);
-    }
-    lua_pop(L, 1);
-}
-
-static void set_function(lua_State *L, const char *library, const char *name, lua_CFunction function) {
-    lua_getglobal(L, library);
-    lua_pushcfunction(L, function);
-    lua_setfield(L, -2, name);
-    lua_pop(L, 1);
+bool sandbox_begin(struct sandbox *sandbox, struct error *error) {
+    struct files *files = &sandbox->files;
+    limits_begin(&sandbox->limits, &sandbox->options);
+    const char *slash = strrchr(files->path, '/');
+    size_t length = slash ? (size_t)(slash - files->path) + 1 : 0;
+    if (strlen(files->path) >= PATH_SIZE - 64)
+        return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", files->path);
+    memcpy(files->folder, files->path, length);
+    sandbox->checked_lines = arena_alloc_array(&sandbox->keep, CHECKED_LINES, sizeof *sandbox->checked_lines);
+    return sandbox->checked_lines || error_no_memory(error, "the script");
 }
 
 void sandbox_open(lua_State *L) {
-    static const luaL_Reg libraries[] = {
-        {LUA_GNAME, luaopen_base},        {LUA_LOADLIBNAME, luaopen_package}, {LUA_COLIBNAME, luaopen_coroutine},
-        {LUA_TABLIBNAME, luaopen_table},  {LUA_IOLIBNAME, luaopen_io},        {LUA_OSLIBNAME, luaopen_os},
-        {LUA_STRLIBNAME, luaopen_string}, {LUA_MATHLIBNAME, luaopen_math},    {LUA_UTF8LIBNAME, luaopen_utf8},
-        {LUA_DBLIBNAME, luaopen_debug},
-    };
-    for (size_t k = 0; k < sizeof libraries / sizeof libraries[0]; k++) {
-        luaL_requiref(L, libraries[k].name, libraries[k].func, 1);
-        lua_pop(L, 1);
-    }
-    set_function(L, "os", "exit", end_script);
-    if (context_of(L)->options->no_sandbox)
-        return;
-    for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)
-        keep_allowed(L, &allowed_names[k]);
-    set_function(L, "debug", "getinfo", position_info);
-    set_function(L, "os", "getenv", environment_variable);
-    lua_getglobal(L, "collectgarbage");
-    lua_pushcclosure(L, collect_garbage, 1);
-    lua_setglobal(L, "collectgarbage");
-    /* Files are userdata with finalizers; a script that could reach their metatable could replace the finalizer. */
-    luaL_getmetatable(L, LUA_FILEHANDLE);
-    lua_pushliteral(L, "file");
-    lua_setfield(L, -2, "__metatable");
-    lua_pop(L, 1);
+    libraries_open(L);
+    protect_open(L);
+    files_open(L);
+    streams_open(L);
 }
 
-/* Makes Lua use the project's elementary functions.
- *
- * Lua's library and its ^ operator call libm, whose last bits differ between processors; scene scripts place things
- * with them, so pictures would differ too. Symbols defined by the executable come before those of shared libraries (ELF
- * interposition; System V ABI, "Shared Object Dependencies"), and before archive members when Lua is linked statically:
- * either way Lua finds these.
- *
- * Covered is every inexact libm function that Lua 5.4 refers to in any configuration (compatibility functions
- * included); floor, ceil, sqrt, fmod, frexp and ldexp are exact and stay the library's. Compile with -fno-builtin, so
- * that the compiler does not take these definitions for the functions it knows. Arguments and results as in <math.h>,
- * except that errno is left alone. */
+uint64_t sandbox_end(struct sandbox *sandbox) {
+    streams_close(sandbox);
+    arena_destroy(&sandbox->files.search.arena);
+    arena_destroy(&sandbox->call);
+    arena_destroy(&sandbox->keep);
+    return limits_end(&sandbox->limits);
+}
 
-#define LIBM_ONE(name)                                                                                                 \
-    __attribute__((visibility("default"))) double name(double x);                                                      \
-    double name(double x) {                                                                                            \
-        return el_##name(x);                                                                                           \
-    }
-#define LIBM_TWO(name)                                                                                                 \
-    __attribute__((visibility("default"))) double name(double x, double y);                                            \
-    double name(double x, double y) {                                                                                  \
-        return el_##name(x, y);                                                                                        \
-    }
+bool sandbox_is_over(const struct sandbox *sandbox) {
+    return sandbox->ended || sandbox->fatal.kind != ERROR_NONE || sandbox->limits.memory_out;
+}
 
-LIBM_ONE(sin)
-LIBM_ONE(cos)
-LIBM_ONE(tan)
-LIBM_ONE(asin)
-LIBM_ONE(acos)
-LIBM_ONE(atan)
-LIBM_TWO(atan2)
-LIBM_ONE(exp)
-LIBM_ONE(exp2)
-LIBM_ONE(log)
-LIBM_ONE(log2)
-LIBM_ONE(log10)
-LIBM_TWO(pow)
-LIBM_ONE(sinh)
-LIBM_ONE(cosh)
-LIBM_ONE(tanh)
+struct sandbox *sandbox_enter(lua_State *L) {
+    struct sandbox *sandbox = sandbox_of(L);
+    sandbox->lua = L;
+    sandbox->running = (struct running_function){0};
+    return sandbox;
+}
+
+/* --- positions --- */
+
+bool sandbox_find_frame(lua_State *L, lua_Debug *frame) {
+    for (int level = 0; lua_getstack(L, level, frame); level++) {
+        lua_getinfo(L, "l", frame);
+        if (frame->currentline > 0 && lua_getinfo(L, "S", frame))
+            return true;
+    }
+    return false;
+}
+
+const char *sandbox_frame_file(const lua_Debug *frame) {
+    return frame->source[0] == '@' ? frame->source + 1 : frame->short_src;
+}
+
+void sandbox_where(const struct sandbox *sandbox, char *out, size_t size) {
+    lua_Debug frame;
+    if (sandbox_find_frame(sandbox->lua, &frame))
+        snprintf(out, size, "%s:%d: ", sandbox_frame_file(&frame), frame.currentline);
+    else
+        snprintf(out, size, "%s: ", sandbox->files.path);
+}
+
+bool sandbox_is_new_line(struct sandbox *sandbox) {
+    lua_Debug frame;
+    if (!sandbox_find_frame(sandbox->lua, &frame))
+        return true;
+    const struct script_line line = {frame.source, frame.currentline};
+    uint64_t hash = hash_bytes(&line.source, sizeof line.source, (uint64_t)line.number);
+    struct script_line *slot = &sandbox->checked_lines[hash % CHECKED_LINES];
+    bool is_new = slot->source != line.source || slot->number != line.number;
+    *slot = line;
+    return is_new;
+}
+
+/* --- messages --- */
+
+/* Names may contain line ends. */
+void sandbox_compose(const struct sandbox *sandbox, const char *text, char *out, size_t size) {
+    const struct running_function *running = &sandbox->running;
+    size_t used = running->name ? (size_t)snprintf(out, size, "%s%s: %s", running->owner, running->name, text)
+                                : (size_t)snprintf(out, size, "%s", text);
+    assert(used < size); /* large enough for a title and the longest text */
+    if (running->subject)
+        snprintf(out + used, size - used, " (node '%.200s')", running->subject);
+    for (char *end = out; (end = strpbrk(end, "\n\r"));)
+        *end = '?';
+}
+
+void sandbox_message(const struct sandbox *sandbox, enum script_message kind, const char *text) {
+    sandbox->host.message(sandbox->host.context, kind, text);
+}
+
+void sandbox_warn_line(struct sandbox *sandbox, const char *line) {
+    char where[PATH_SIZE + 32], message[PATH_SIZE + 2048];
+    sandbox_where(sandbox, where, sizeof where);
+    snprintf(message, sizeof message, "%swarning: %s", where, line);
+    limits_count_output(&sandbox->limits, strlen(message));
+    sandbox_message(sandbox, SCRIPT_WARNING, message);
+}
+
+void sandbox_warn_list(struct sandbox *sandbox, const char *format, va_list arguments) {
+    char text[1024], line[1536];
+    vsnprintf(text, sizeof text, format, arguments);
+    sandbox_compose(sandbox, text, line, sizeof line);
+    sandbox_warn_line(sandbox, line);
+}
+
+void sandbox_warn(struct sandbox *sandbox, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    sandbox_warn_list(sandbox, format, arguments);
+    va_end(arguments);
+}
+
+/* --- errors --- */
+
+void sandbox_raise(struct sandbox *sandbox, const char *format, ...) {
+    char text[1024], where[PATH_SIZE + 32];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    sandbox_compose(sandbox, text, sandbox->raised, sizeof sandbox->raised);
+    sandbox_where(sandbox, where, sizeof where);
+    lua_pushfstring(sandbox->lua, "%s%s", where, sandbox->raised);
+    lua_error(sandbox->lua);
+    __builtin_unreachable();
+}
+
+/* The value has no meaning: C functions that a script has stored in __close are called with it. */
+void sandbox_raise_fatal(lua_State *L) {
+    lua_pushnil(L);
+    lua_error(L);
+    __builtin_unreachable();
+}
+
+void sandbox_raise_error(struct sandbox *sandbox, const struct error *error) {
+    sandbox->unforgivable = error->refused;
+    if (error->kind == ERROR_SCENE && !error->elsewhere && !error->limit)
+        sandbox_raise(sandbox, "%s", error->text);
+    sandbox->fatal = *error;
+    if (error->limit) {
+        char where[PATH_SIZE + 32], line[1536];
+        sandbox_compose(sandbox, error->text, line, sizeof line);
+        sandbox_where(sandbox, where, sizeof where);
+        (void)error_set_limit(&sandbox->fatal, "%s%s", where, line);
+    }
+    sandbox_raise_fatal(sandbox->lua);
+}
+
+void sandbox_raise_no_memory(struct sandbox *sandbox) {
+    struct error error;
+    error_no_memory(&error, sandbox->running.name ? sandbox->running.name : "the script");
+    sandbox_raise_error(sandbox, &error);
+}
+
+/* --- values --- */
+
+/* The words of a type of userdata, or NULL. They stay in the metatable. */
+static const char *own_words(lua_State *L, int index) {
+    if (lua_type(L, index) != LUA_TUSERDATA || luaL_getmetafield(L, index, WORDS_FIELD) == LUA_TNIL)
+        return NULL;
+    const char *words = lua_tostring(L, -1);
+    lua_pop(L, 1);
+    return words;
+}
+
+const char *value_words(lua_State *L, int index) {
+    const char *own = own_words(L, index);
+    switch (lua_type(L, index)) {
+    case LUA_TNIL:
+        return "nil";
+    case LUA_TNONE:
+        return "nothing";
+    case LUA_TBOOLEAN:
+        return "a boolean";
+    case LUA_TNUMBER:
+        return "a number";
+    case LUA_TSTRING:
+        return "a string";
+    case LUA_TTABLE:
+        return "a table";
+    case LUA_TFUNCTION:
+        return "a function";
+    case LUA_TTHREAD:
+        return "a coroutine";
+    default:
+        return own ? own : "a userdata";
+    }
+}

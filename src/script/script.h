@@ -10,6 +10,7 @@
 #include "render/frame.h"
 #include "render/settings.h"
 #include "scene/node.h"
+#include "script/message_internal.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -73,8 +74,6 @@ struct render_request {
     struct frame frame;       /* of an animation; else its number is 0 */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
-
-enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };
 
 struct script_host {
     void *context;

@@ -4,9 +4,10 @@
  * only, below the folders of the list. Everything written counts towards the output limit, on standard output too.
  * Refusals are returned like any failure of io.open: nil, a sentence, a number. */
 #define _GNU_SOURCE
-#include "script/record_internal.h"
+#include "script/streams_internal.h"
 
 #include "base/fault.h"
+#include "script/sandbox_internal.h"
 
 #include <errno.h>
 #include <lauxlib.h>
@@ -24,12 +25,12 @@ static int close_stream(lua_State *L) {
 }
 
 /* Why a name was refused, for messages. */
-static const char *refusal(const struct script_context *context, const char *name, bool write) {
-    if (errno != EACCES || !context->path_policy)
+static const char *refusal(const struct sandbox *sandbox, const char *name, bool write) {
+    if (errno != EACCES || !sandbox->path_policy)
         return strerror(errno);
     if (write)
         return "scenes cannot write files (--allow-write DIR allows it)";
-    if (path_policy_is_outside(context->path_policy, name))
+    if (path_policy_is_outside(sandbox->path_policy, name))
         return "lies outside the folders that scenes may read (--allow-read DIR adds one)";
     return "cannot be read by scenes, or is not a regular file";
 }
@@ -57,18 +58,18 @@ static void push_failure(lua_State *L, const char *name, const char *why) {
 /* Pushes the stream, or nil, a sentence and a number. Reading looks in the working directory first, as always, then
  * where meshes and images are looked for. */
 static int open_stream(lua_State *L, const char *name, const char *mode) {
-    struct script_context *context = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     char found[PATH_SIZE];
     bool write = mode[0] != 'r' || strchr(mode, '+');
     const char *path = name;
-    if (!write && !path_policy_is_readable(context->path_policy, name) && files_find(context, name, found))
+    if (!write && !path_policy_is_readable(sandbox->path_policy, name) && files_find(sandbox, name, found))
         path = found;
     luaL_Stream *stream = lua_newuserdatauv(L, sizeof *stream, 0);
     stream->closef = NULL; /* closed, for its finalizer */
     luaL_setmetatable(L, LUA_FILEHANDLE);
     if (!mem_reserve(STREAM_COST))
         limits_end_for_memory(L);
-    stream->f = path_policy_stream(context->path_policy, path, mode);
+    stream->f = path_policy_stream(sandbox->path_policy, path, mode);
     if (!stream->f)
         mem_unreserve(STREAM_COST);
     if (stream->f) {
@@ -77,7 +78,7 @@ static int open_stream(lua_State *L, const char *name, const char *mode) {
     }
     int why = errno;
     lua_pushnil(L);
-    push_failure(L, name, refusal(context, name, write));
+    push_failure(L, name, refusal(sandbox, name, write));
     lua_pushinteger(L, why);
     return 3;
 }
@@ -130,10 +131,14 @@ static int io_default(lua_State *L) {
     return 1;
 }
 
+static bool is_silent(const struct sandbox *sandbox) {
+    return sandbox->is_silent && sandbox->is_silent(sandbox->recorder);
+}
+
 /* io.write and file:write. Upvalue 1: Lua's own. */
 static int counted_write(lua_State *L) {
     size_t size = 0;
-    if (record_is_silent(context_of(L)->recorder))
+    if (is_silent(sandbox_of(L)))
         lua_settop(L, luaL_testudata(L, 1, LUA_FILEHANDLE) ? 1 : 0);
     for (int k = 1; k <= lua_gettop(L); k++)
         size += lua_type(L, k) == LUA_TSTRING ? (size_t)lua_rawlen(L, k) : lua_type(L, k) == LUA_TNUMBER ? 24 : 0;
@@ -145,10 +150,10 @@ static int counted_write(lua_State *L) {
 }
 
 static int print(lua_State *L) {
-    const struct script_context *context = context_of(L);
-    FILE *out = context->output ? context->output : stdout;
+    const struct sandbox *sandbox = sandbox_of(L);
+    FILE *out = sandbox->output ? sandbox->output : stdout;
     int count = lua_gettop(L);
-    if (record_is_silent(context->recorder))
+    if (is_silent(sandbox))
         return 0;
     for (int k = 1; k <= count; k++) {
         size_t size;
@@ -170,19 +175,19 @@ static int answer_change(lua_State *L, bool done, const char *name) {
     }
     int why = errno;
     lua_pushnil(L);
-    lua_pushfstring(L, "%s: %s", name, refusal(context_of(L), name, true));
+    lua_pushfstring(L, "%s: %s", name, refusal(sandbox_of(L), name, true));
     lua_pushinteger(L, why);
     return 3;
 }
 
 static int os_remove(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
-    return answer_change(L, path_policy_remove(context_of(L)->path_policy, name), name);
+    return answer_change(L, path_policy_remove(sandbox_of(L)->path_policy, name), name);
 }
 
 static int os_rename(lua_State *L) {
     const char *from = luaL_checkstring(L, 1), *to = luaL_checkstring(L, 2);
-    return answer_change(L, path_policy_rename(context_of(L)->path_policy, from, to), from);
+    return answer_change(L, path_policy_rename(sandbox_of(L)->path_policy, from, to), from);
 }
 
 /* package.searchpath(name, templates [, separator [, replacement]]). */
@@ -192,7 +197,7 @@ static int search_path(lua_State *L) {
     char path[PATH_SIZE];
     if (*separator)
         name = luaL_gsub(L, name, separator, replacement);
-    if (files_on_path(context_of(L), templates, name, path)) {
+    if (files_on_path(sandbox_of(L), templates, name, path)) {
         lua_pushstring(L, path);
         return 1;
     }
@@ -211,19 +216,19 @@ static void replace(lua_State *L, const char *name, lua_CFunction function, cons
 }
 
 static ssize_t write_to_host(void *cookie, const char *text, size_t size) {
-    const struct script_context *context = cookie;
-    context->host->error_text(context->host->context, text, size);
+    const struct sandbox *sandbox = cookie;
+    sandbox->host.error_text(sandbox->host.context, text, size);
     return (ssize_t)size;
 }
 
 /* Replaces the process's stream of that name in the table io, which is on top of the stack, by a stream to the host. It
  * has no buffer, so that its output appears before the next message of the program. */
 static FILE *redirect(lua_State *L, const char *name) {
-    struct script_context *context = context_of(L);
-    FILE *stream = MAY_GIVE_NULL(fopencookie(context, "w", (cookie_io_functions_t){.write = write_to_host}));
+    struct sandbox *sandbox = sandbox_of(L);
+    FILE *stream = MAY_GIVE_NULL(fopencookie(sandbox, "w", (cookie_io_functions_t){.write = write_to_host}));
     if (!stream) {
-        error_no_memory(&context->fatal, "the streams of the script");
-        context_raise_fatal(L);
+        error_no_memory(&sandbox->fatal, "the streams of the script");
+        sandbox_raise_fatal(L);
     }
     (void)setvbuf(stream, NULL, _IONBF, 0);
     lua_getfield(L, -1, name);
@@ -233,20 +238,20 @@ static FILE *redirect(lua_State *L, const char *name) {
     return stream;
 }
 
-void streams_close(struct script_context *context) {
-    if (context->output)
-        (void)fclose(context->output);
-    if (context->errors)
-        (void)fclose(context->errors);
+void streams_close(struct sandbox *sandbox) {
+    if (sandbox->output)
+        (void)fclose(sandbox->output);
+    if (sandbox->errors)
+        (void)fclose(sandbox->errors);
 }
 
 void streams_open(lua_State *L) {
-    struct script_context *context = context_of(L);
+    struct sandbox *sandbox = sandbox_of(L);
     lua_getglobal(L, "io");
-    if (context->host->error_text && !context->options->no_sandbox)
-        context->errors = redirect(L, "stderr");
-    if (context->host->error_text && context->host->output_is_error)
-        context->output = redirect(L, "stdout");
+    if (sandbox->host.error_text && !sandbox->options.is_off)
+        sandbox->errors = redirect(L, "stderr");
+    if (sandbox->host.error_text && sandbox->host.output_is_error)
+        sandbox->output = redirect(L, "stdout");
     replace(L, "open", io_open, NULL);
     replace(L, "lines", io_lines, NULL);
     replace(L, "input", io_default, "r");
@@ -258,7 +263,7 @@ void streams_open(lua_State *L) {
     lua_pop(L, 3);
     lua_pushcfunction(L, print);
     lua_setglobal(L, "print");
-    if (context->options->no_sandbox)
+    if (sandbox->options.is_off)
         return;
     lua_getglobal(L, "os");
     lua_pushcfunction(L, os_remove);

@@ -2,9 +2,10 @@
  * two integers give an integer, / and ^ give floats, anything else is done in floats; comparisons of an integer with a
  * float are exact. What Lua decides by a value (whether a float has an integer value, which of two numbers math.max
  * returns) becomes a decision of the path, or a selection. */
-#include "script/record_internal.h"
+#include "script/symbol_internal.h"
 
-#include "base/mem.h"
+#include "script/protect_internal.h"
+#include "script/record_interval_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>
@@ -19,10 +20,6 @@ struct symbol {
     uint32_t serial;
     struct number number;
 };
-
-static struct recorder *recorder_of(lua_State *L) {
-    return context_of(L)->recorder;
-}
 
 static bool has_metatable(lua_State *L, int index, const void *metatable) {
     if (!lua_getmetatable(L, index))
@@ -58,8 +55,8 @@ void push_symbol(lua_State *L, struct number number) {
 void record_give_up(lua_State *L, const char *format, ...) {
     struct recorder *recorder = recorder_of(L);
     va_list arguments;
-    context_of(L)->lua = L;
-    context_where(context_of(L), recorder->error, PATH_SIZE + 32);
+    sandbox_of(L)->lua = L;
+    sandbox_where(sandbox_of(L), recorder->error, PATH_SIZE + 32);
     size_t used = strlen(recorder->error);
     va_start(arguments, format);
     (void)vsnprintf(recorder->error + used, sizeof recorder->error - used, format, arguments);
@@ -75,8 +72,8 @@ uint32_t record_node(lua_State *L, uint32_t node) {
     if (node != EXPR_NONE)
         return node;
     if (recorder->graph.out_of_memory) {
-        context_of(L)->lua = L;
-        context_raise_no_memory(context_of(L));
+        sandbox_of(L)->lua = L;
+        sandbox_raise_no_memory(sandbox_of(L));
     }
     record_give_up(L,
                    "the function has more than %d operations; gr.where, gr.step, gr.min and gr.max need one operation "
@@ -185,7 +182,7 @@ struct record_frame *record_begin_paths(lua_State *L) {
     if (!frame->decisions)
         frame->decisions = mem_alloc_zero(RECORD_PATHS, sizeof *frame->decisions);
     if (!frame->decisions)
-        context_raise_no_memory(context_of(L));
+        sandbox_raise_no_memory(sandbox_of(L));
     frame->depth = frame->taken = frame->branches = 0;
     frame->serial = ++recorder->decision_serial;
     recorder->level++;
@@ -247,8 +244,8 @@ bool record_decide(lua_State *L, uint32_t condition) {
     }
     know_answer(recorder, condition, decision->answer);
     if (!record_bounds_narrow(recorder, decision)) {
-        context_of(L)->lua = L;
-        context_raise_no_memory(context_of(L));
+        sandbox_of(L)->lua = L;
+        sandbox_raise_no_memory(sandbox_of(L));
     }
     return decision->answer;
 }
@@ -676,6 +673,18 @@ static int to_number(lua_State *L) {
         return lua_tocfunction(L, lua_upvalueindex(1))(L);
     return 1;
 }
+
+static int is_recorded(lua_State *L) {
+    luaL_checkany(L, 1);
+    lua_pushboolean(L, is_symbol(L, 1));
+    return 1;
+}
+
+static const struct value_function functions[] = {
+    {"is_recorded", "x", "Whether x is a number of a recorded function, whose value is not known yet.", "boolean",
+     is_recorded},
+};
+const struct value_functions symbol_functions = {functions, sizeof functions / sizeof functions[0]};
 
 void symbols_open(lua_State *L) {
     static const luaL_Reg operators[] = {{"__add", symbol_add},

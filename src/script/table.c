@@ -1,13 +1,14 @@
 /* The table of gr functions. One row for each function; its documentation and every check of its arguments come from
  * here. The rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
-#include "base/unreachable.h"
 #include "script/table_internal.h"
 
 #include "render/settings.h"
 #include "scene/change.h"
+#include "script/display_colour_internal.h"
+#include "script/keys_internal.h"
+#include "script/symbol_internal.h"
 #include "script/table_rows_internal.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define CHILDREN                                                                                                       \
@@ -985,13 +986,6 @@ const struct script_function *function_at(int index) {
     return &parts[part]->rows[index];
 }
 
-int function_index(const struct script_function *function) {
-    int index = 0;
-    while (function_at(index) != function)
-        index++;
-    return index;
-}
-
 const struct script_function *function_find(enum owner owner, const char *name) {
     for (int i = 0; i < function_count(); i++) {
         const struct script_function *function = function_at(i);
@@ -1001,104 +995,16 @@ const struct script_function *function_find(enum owner owner, const char *name) 
     return NULL;
 }
 
-bool function_takes_names(const struct script_function *function) {
-    bool all_optional = function->parameter_count > 1;
-    if (function->owner == OWNER_GR || function->result == RESULT_NOTHING)
-        return true;
-    for (int k = 1; k < function->parameter_count; k++)
-        all_optional = all_optional && (function->parameters[k].flags & OPTIONAL) != 0;
-    return all_optional;
-}
+/* Likewise. */
+static const struct value_functions *const value_parts[] = {&vector_functions, &display_colour_functions,
+                                                            &key_functions, &symbol_functions};
 
-bool form_next(const struct script_function *function, const char **form, int *index, bool *optional) {
-    const char *word = *form;
-    while (*word == ' ')
-        word++;
-    if (*word == '\0')
-        return false;
-    size_t length = strcspn(word, " ?");
-    *optional = word[length] == '?';
-    *form = word + length + (*optional ? 1 : 0);
-    for (*index = 0;; (*index)++) {
-        assert(*index <
-               function->parameter_count); /* every name in a form is that of a parameter: a test checks this */
-        const char *name = function->parameters[*index].name;
-        if (strncmp(name, word, length) == 0 && name[length] == '\0')
-            return true;
+const struct value_function *value_function_at(size_t index) {
+    for (int part = 0; part < COUNT(value_parts); part++) {
+        size_t count = (size_t)value_parts[part]->count;
+        if (index < count)
+            return &value_parts[part]->functions[index];
+        index -= count;
     }
-}
-
-const char *kind_words(enum kind kind) {
-    switch (kind) {
-    case KIND_NUMBER:
-        return "a number";
-    case KIND_WHOLE:
-        return "a whole number";
-    case KIND_BOOLEAN:
-        return "true or false";
-    case KIND_TEXT:
-        return "a string";
-    case KIND_FILE:
-        return "the name of a file";
-    case KIND_OUTPUT:
-        return "the name of a file";
-    case KIND_CHOICE:
-        return "a word";
-    case KIND_AXIS:
-        return "'x', 'y' or 'z'";
-    case KIND_POINT:
-        return "a point {x, y, z}";
-    case KIND_DIRECTION:
-        return "a direction {x, y, z}";
-    case KIND_COLOUR:
-        return "a colour {r, g, b}";
-    case KIND_TRIPLE:
-        return "a table of 3 numbers";
-    case KIND_INTERVAL:
-        return "a table of two rising numbers";
-    case KIND_SIZE:
-        return "a number or a table of 3 numbers";
-    case KIND_QUATERNION:
-        return "a table of 4 numbers {w, x, y, z}";
-    case KIND_PAIR:
-        return "a number or a table of 2 numbers";
-    case KIND_NODE:
-        return "a node";
-    case KIND_MATERIAL:
-        return "a material";
-    case KIND_MATERIALS:
-        return "a table of materials";
-    case KIND_IMAGE:
-        return "the name of a picture file or a texture";
-    case KIND_BACKGROUND:
-        return "a colour {r, g, b}, a sky, a function or 'gradient'";
-    case KIND_FOG:
-        return "a fog";
-    case KIND_CAUSTICS:
-        return "a number of photons or {photons = ..., radius = ...}";
-    case KIND_STOPS:
-        return "a table of stops {height, r, g, b}";
-    case KIND_NODES:
-        return "a table of nodes";
-    case KIND_LIGHTS:
-        return "a table of lights";
-    case KIND_POINTS:
-        return "a table of points {x, y, z}";
-    case KIND_PAIRS:
-        return "a table of pairs {u, v}";
-    case KIND_FACES:
-        return "a table of tuples of indices";
-    case KIND_NUMBERS:
-        return "a number or a table of numbers";
-    case KIND_ROWS:
-        return "a table of tables of numbers";
-    case KIND_CURVES:
-        return "a table of tables of pairs {x, z}";
-    case KIND_FUNCTION:
-    case KIND_CALLBACK:
-        return "a function";
-    case KIND_COUNT:
-        break;
-    }
-    UNREACHABLE("a parameter of no kind");
+    return NULL;
 }

@@ -2,9 +2,10 @@
  * differ from run to run. Here: 1..n in order, other numbers ascending, false, true, strings in byte order, our handles
  * by age, then the rest in Lua's order. A table that is a pure sequence takes one pass and no memory; others cost a
  * list of their keys and a heap sort. Entries removed during the traversal are skipped, as with Lua's own. */
-#include "script/context_internal.h"
+#include "script/traverse_internal.h"
 
 #include "base/sort.h"
+#include "script/handle_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

@@ -1,20 +1,19 @@
 /* Vectors, and the functions of gr that take numbers, vectors and symbols alike: what a pattern is written with. A
  * vector is a table {x, y, z} with a metatable, so it is also a colour or a point wherever gr takes one. A function on
  * symbols does the operations of the same function on numbers in the same order, so that their bits are equal. */
-#include "script/lenient_internal.h"
-#include "script/record_internal.h"
+#include "script/vector_internal.h"
 
+#include "image/image_function.h"
 #include "math/noise.h"
+#include "script/record_internal.h"
+#include "script/record_loop_internal.h"
+#include "script/symbol_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>
 #include <string.h>
 
 static const char vector_key = 0; /* the metatable is in the registry under its address */
-
-static struct recorder *recorder_of(lua_State *L) {
-    return context_of(L)->recorder;
-}
 
 bool is_vector(lua_State *L, int index) {
     if (lua_type(L, index) != LUA_TTABLE || !lua_getmetatable(L, index))
@@ -540,56 +539,7 @@ static int turbulence(lua_State *L) {
 
 /* --- pictures --- */
 
-/* The picture of a texture as a function, with the lookup of gr.texture. Its numbers are those of the file, unless the
- * texture has an explicit encoding. */
-static struct image_function *make_image_function(struct script_context *context, const struct texture_image *image) {
-    struct error error = {0};
-    struct transfer_function transfer = {TRANSFER_UNSTATED, 0};
-    struct image_function *out = arena_alloc(&context->scene.arena, sizeof *out);
-    if (!out)
-        context_raise_no_memory(context);
-    if (image->gamma > 0)
-        transfer = (struct transfer_function){TRANSFER_POWER, image->gamma};
-    else if (image->encoding == ENCODING_SRGB)
-        transfer = (struct transfer_function){TRANSFER_SRGB, 0};
-    struct image *decoded = image_decode(image->image, transfer, &error);
-    if (!decoded || !image_make_ranges(decoded, &error))
-        context_raise_error(context, &error);
-    *out = (struct image_function){.image = decoded,
-                                   .sampling = {image->filter, image->wrap, image->apart ? image->wrap_v : image->wrap},
-                                   .scale = {1, 1},
-                                   .flip_u = image->flip_u,
-                                   .tint = {1, 1, 1}};
-    if (!image->apart)
-        return out;
-    for (int k = 0; k < 2; k++) {
-        out->scale[k] = image->scale[k];
-        out->offset[k] = image->offset[k];
-    }
-    out->tint[0] = image->tint.x;
-    out->tint[1] = image->tint.y;
-    out->tint[2] = image->tint.z;
-    return out;
-}
-
-static const struct image_function *image_function_at(lua_State *L, int index) {
-    struct script_context *context = context_of(L);
-    const struct handle *handle = handle_at(L, index);
-    struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
-    const struct texture_image *image = texture && !texture->is_bump ? texture_as_image(texture->texture) : NULL;
-    context->lua = L;
-    if (!image)
-        luaL_error(L, "img:at(u, v) needs a picture, a result of gr.texture, not %s", value_words(L, index));
-    if (!texture->function) {
-        texture->function = make_image_function(context, image);
-        context->scene.escaped = true; /* the texture may be older */
-    }
-    return texture->function;
-}
-
-/* img:at(u, v): the colour, multiplied by alpha, and alpha. */
-static int image_at(lua_State *L) {
-    const struct image_function *function = image_function_at(L, 1);
+int push_image_value(lua_State *L, const struct image_function *function) {
     double values[TEXEL_CHANNELS];
     lua_settop(L, 3);
     for (int k = 2; k <= 3; k++)
@@ -615,16 +565,6 @@ static int image_at(lua_State *L) {
     return 2;
 }
 
-static int texture_index(lua_State *L) {
-    if (lua_type(L, 2) == LUA_TSTRING && strcmp(lua_tostring(L, 2), "at") == 0) {
-        lua_pushcfunction(L, image_at);
-        return 1;
-    }
-    if (context_of(L)->lenient)
-        return lenient_handle_index(L);
-    return luaL_error(L, "a texture has no field '%s'; img:at(u, v) reads a picture", luaL_tolstring(L, 2, NULL));
-}
-
 /* Combines any number of arguments, from the left. */
 static int all_of(lua_State *L, lua_CFunction of_two) {
     luaL_checkany(L, 1);
@@ -647,61 +587,34 @@ static int max_of_all(lua_State *L) {
     return all_of(L, two_max);
 }
 
-static int is_recorded(lua_State *L) {
-    luaL_checkany(L, 1);
-    lua_pushboolean(L, is_symbol(L, 1));
-    return 1;
-}
-
-static const struct {
-    struct value_function function;
-    lua_CFunction run;
-} functions[] = {
-    {{"vec", "x, y, z", "A vector: a table {x, y, z} with operators. One number becomes all three components.",
-      "gr.vector"},
-     make_vector},
-    {{"dot", "a, b", "The scalar product of two vectors.", "number"}, dot},
-    {{"cross", "a, b", "The vector product of two vectors.", "gr.vector"}, cross},
-    {{"length", "v", "The length of a vector.", "number"}, length},
-    {{"normalize", "v", "The vector divided by its length.", "gr.vector"}, normalize},
-    {{"mix", "a, b, t", "a + (b - a) * t, of numbers or vectors.", "any"}, mix},
-    {{"clamp", "x, low, high", "x clamped to low..high; vectors by components.", "any"}, clamp},
-    {{"smoothstep", "low, high, x", "0 below low, 1 above high, smooth between them.", "any"}, smoothstep},
-    {{"step", "edge, x", "0 where x < edge, else 1.", "any"}, step},
-    {{"min", "...", "The minimum of numbers or vectors, by components.", "any"}, min_of_all},
-    {{"max", "...", "The maximum of numbers or vectors, by components.", "any"}, max_of_all},
-    {{"where", "x, a, b", "a where x > 0, else b: a choice without a branch.", "any"}, where},
-    {{"lookup", "t, i", "Entry i of a table of numbers or vectors; i is rounded down and clamped to 1..#t.", "any"},
+static const struct value_function functions[] = {
+    {"vec", "x, y, z", "A vector: a table {x, y, z} with operators. One number becomes all three components.",
+     "gr.vector", make_vector},
+    {"dot", "a, b", "The scalar product of two vectors.", "number", dot},
+    {"cross", "a, b", "The vector product of two vectors.", "gr.vector", cross},
+    {"length", "v", "The length of a vector.", "number", length},
+    {"normalize", "v", "The vector divided by its length.", "gr.vector", normalize},
+    {"mix", "a, b, t", "a + (b - a) * t, of numbers or vectors.", "any", mix},
+    {"clamp", "x, low, high", "x clamped to low..high; vectors by components.", "any", clamp},
+    {"smoothstep", "low, high, x", "0 below low, 1 above high, smooth between them.", "any", smoothstep},
+    {"step", "edge, x", "0 where x < edge, else 1.", "any", step},
+    {"min", "...", "The minimum of numbers or vectors, by components.", "any", min_of_all},
+    {"max", "...", "The maximum of numbers or vectors, by components.", "any", max_of_all},
+    {"where", "x, a, b", "a where x > 0, else b: a choice without a branch.", "any", where},
+    {"lookup", "t, i", "Entry i of a table of numbers or vectors; i is rounded down and clamped to 1..#t.", "any",
      lookup},
-    {{"loop", "n, ...", "Replaces the state s1, s2, ... by f(i, s1, s2, ...) for i = 1 to n while s1 > 0; f is last.",
-      "any ..."},
-     record_loop},
-    {{"noise", "p", "Perlin noise at a point, or at x, y, z: about -1..1.", "number"}, noise},
-    {{"turbulence", "p, octaves", "The sum of |noise(2^k p)| / 2^k for octaves (4) values of k from 0 on.", "number"},
+    {"loop", "n, ...", "Replaces the state s1, s2, ... by f(i, s1, s2, ...) for i = 1 to n while s1 > 0; f is last.",
+     "any ...", record_loop},
+    {"noise", "p", "Perlin noise at a point, or at x, y, z: about -1..1.", "number", noise},
+    {"turbulence", "p, octaves", "The sum of |noise(2^k p)| / 2^k for octaves (4) values of k from 0 on.", "number",
      turbulence},
-    {{"cells", "p",
-      "Distances to the nearest and the second nearest of random points, and a number in 0..1 that identifies the "
-      "nearest.",
-      "number, number, number"},
-     cells},
-    {{"hash", "p", "A random number in 0..1 for each point.", "number"}, hash},
-    {{"srgb", "colour", "A display colour: '#rrggbb', {r, g, b} or r, g, b; gray decodes it for linear colours.",
-      "gr.triple"},
-     display_colour_make},
-    {{"linear", "colour", "The light of a display colour as a vector, decoded by the sRGB function.", "gr.vector"},
-     display_colour_to_light},
-    {{"keys", "keys",
-      "A function of seconds (gr.time) that interpolates keys {seconds, value}; fields: curve = 'linear', 'catmull' or "
-      "'bezier', and ease.",
-      "fun(seconds?: number): any"},
-     make_keys},
-    {{"is_recorded", "x", "Whether x is a number of a recorded function, whose value is not known yet.", "boolean"},
-     is_recorded},
+    {"cells", "p",
+     "Distances to the nearest and the second nearest of random points, and a number in 0..1 that identifies the "
+     "nearest.",
+     "number, number, number", cells},
+    {"hash", "p", "A random number in 0..1 for each point.", "number", hash},
 };
-
-const struct value_function *value_function_at(size_t index) {
-    return index < sizeof functions / sizeof functions[0] ? &functions[index].function : NULL;
-}
+const struct value_functions vector_functions = {functions, sizeof functions / sizeof functions[0]};
 
 void vectors_open(lua_State *L) {
     static const luaL_Reg operators[] = {
@@ -723,14 +636,4 @@ void vectors_open(lua_State *L) {
     lua_setfield(L, -2, "__metatable");
     recorder_of(L)->vector_metatable = lua_topointer(L, -1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &vector_key);
-    lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key(HANDLE_TEXTURE));
-    lua_pushcfunction(L, texture_index);
-    lua_setfield(L, -2, "__index");
-    lua_pop(L, 1);
-    lua_getglobal(L, "gr");
-    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
-        lua_pushcfunction(L, functions[i].run);
-        lua_setfield(L, -2, functions[i].function.name);
-    }
-    lua_pop(L, 1);
 }
