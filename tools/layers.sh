@@ -23,7 +23,7 @@ BEGIN {
     owner[3] = "^src/base/(mem|file|system)[.]c$"
     rule[3] = "mappings outside base/"
     calls[4] = "sin|cos|tan|asin|acos|atan|atan2|exp|exp2|log|log2|log10|pow|cbrt|hypot|sincos|fma"
-    owner[4] = "^src/script/libraries[.]c$"
+    owner[4] = "^src/sandbox/libraries[.]c$"
     rule[4] = "elementary functions come from math/elementary"
     for (i = 1; i <= kinds; i++)
         calls[i] = "(^|[^A-Za-z0-9_.>])(" calls[i] ")[ \t]*[(]"

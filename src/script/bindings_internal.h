@@ -3,7 +3,7 @@
 #ifndef GRAY_SCRIPT_BINDINGS_INTERNAL_H
 #define GRAY_SCRIPT_BINDINGS_INTERNAL_H
 
-#include "script/context_internal.h"
+#include "call/context.h"
 
 typedef bool binding(struct script_context *context, const struct script_value *args, struct script_result *result,
                      struct error *error);

@@ -4,13 +4,13 @@
 #include "script/dispatch_internal.h"
 
 #include "base/version.h"
+#include "call/arguments.h"
+#include "compat/lenient.h"
+#include "compat/lenient_handles.h"
 #include "formats/font.h"
-#include "script/arguments_internal.h"
+#include "record/record.h"
+#include "sandbox/suggestion.h"
 #include "script/gr_frames_internal.h"
-#include "script/lenient_handles_internal.h"
-#include "script/lenient_internal.h"
-#include "script/record.h"
-#include "script/suggestion_internal.h"
 #include "script/table_internal.h"
 
 #include <assert.h>

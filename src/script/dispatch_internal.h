@@ -2,7 +2,7 @@
 #ifndef GRAY_SCRIPT_DISPATCH_INTERNAL_H
 #define GRAY_SCRIPT_DISPATCH_INTERNAL_H
 
-#include "script/function_internal.h"
+#include "call/function.h"
 
 #include <lua.h>
 

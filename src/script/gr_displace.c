@@ -1,6 +1,6 @@
 /* Displacement by recorded functions: node:displace of meshes and height fields. */
-#include "script/context_internal.h"
-#include "script/record_bounds_internal.h"
+#include "call/context.h"
+#include "record/record_bounds.h"
 #include "script/table_internal.h"
 #include "script/table_rows_internal.h"
 

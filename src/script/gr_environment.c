@@ -1,9 +1,9 @@
 /* Skies, and the light of the sun. */
+#include "call/context.h"
 #include "material/fog_field.h"
 #include "math/elementary.h"
+#include "record/record_bounds.h"
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
-#include "script/record_bounds_internal.h"
 
 static bool give_sky(struct script_context *context, struct sky *sky, const struct script_value *args,
                      struct script_result *result, struct error *error) {

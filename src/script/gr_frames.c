@@ -98,10 +98,10 @@ static void set_frame(lua_State *L, const struct frame *frame) {
     script->animation.frame = *frame;
     /* With --frames, the first run of a script is a frame only if the script does not call gr.frames. An error before
      * or after the frames of gr.frames belongs to no frame. */
-    char *place = script->context.sandbox.place;
-    place[0] = '\0';
+    char *suffix = script->context.sandbox.error_suffix;
+    suffix[0] = '\0';
     if (script->animation.runs || script->host->repeats)
-        (void)snprintf(place, PLACE_WORDS, " (frame %u)", frame->number);
+        (void)snprintf(suffix, SUFFIX_SIZE, " (frame %u)", frame->number);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &gr_key);
     lua_pushinteger(L, frame->number);
     lua_setfield(L, -2, "frame");

@@ -2,7 +2,7 @@
 #ifndef GRAY_SCRIPT_GR_FRAMES_INTERNAL_H
 #define GRAY_SCRIPT_GR_FRAMES_INTERNAL_H
 
-#include "script/function_internal.h"
+#include "call/function.h"
 #include "script/script.h"
 
 #include <lua.h>

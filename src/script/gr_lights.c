@@ -1,6 +1,6 @@
 /* Lights of the language: the parameters, the function and the table row of each. */
+#include "call/context.h"
 #include "math/elementary.h"
-#include "script/context_internal.h"
 #include "script/table_internal.h"
 #include "script/table_rows_internal.h"
 

@@ -1,8 +1,8 @@
 /* Materials, their decorators, and textures. */
+#include "compat/lenient.h"
+#include "compat/lenient_picture.h"
 #include "script/bindings_internal.h"
 #include "script/gr_textures_internal.h"
-#include "script/lenient_internal.h"
-#include "script/lenient_picture_internal.h"
 
 #include "base/file.h"
 #include "material/bump.h"

@@ -1,9 +1,9 @@
 /* Meshes from tables and from files. Both are assets: equal tables, or the same file, give one mesh, so that a script
  * that builds its scene again for every picture does not build its meshes again. */
+#include "compat/lenient.h"
+#include "compat/lenient_picture.h"
+#include "sandbox/suggestion.h"
 #include "script/bindings_internal.h"
-#include "script/lenient_internal.h"
-#include "script/lenient_picture_internal.h"
-#include "script/suggestion_internal.h"
 
 #include "base/file.h"
 #include "formats/font.h"

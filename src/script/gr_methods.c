@@ -1,6 +1,6 @@
 /* Methods of nodes. args[SELF] is the node before the colon. */
+#include "call/context.h"
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
 
 #include <math.h>
 

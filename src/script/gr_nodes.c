@@ -1,7 +1,7 @@
 /* Nodes and primitives. A primitive is a geometry node: everything that can have a pose is a node. */
+#include "call/context.h"
 #include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
-#include "script/context_internal.h"
 
 #include <string.h>
 

@@ -1,11 +1,11 @@
 /* gr.render. */
+#include "compat/lenient.h"
+#include "compat/lenient_picture.h"
 #include "image/transfer.h"
 #include "math/elementary.h"
+#include "record/record_bounds.h"
 #include "scene/node_bounds.h"
 #include "script/bindings_internal.h"
-#include "script/lenient_internal.h"
-#include "script/lenient_picture_internal.h"
-#include "script/record_bounds_internal.h"
 #include "script/script_internal.h"
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,

@@ -1,7 +1,7 @@
 /* Analytic shapes: every row of the table becomes a geometry node with one shape. Checked here are the conditions on
  * several numbers together, which the table cannot express, and sizes that the root-finders cannot handle. */
+#include "call/context.h"
 #include "math/range.h"
-#include "script/context_internal.h"
 #include "script/table_internal.h"
 #include "script/table_rows_internal.h"
 #include "shape/planar.h"

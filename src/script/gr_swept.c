@@ -1,7 +1,7 @@
 /* Shapes with many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
  * shape live in the arena of the scene; the builder of the shape reports their errors. */
-#include "script/context_internal.h"
-#include "script/record_bounds_internal.h"
+#include "call/context.h"
+#include "record/record_bounds.h"
 #include "script/table_internal.h"
 #include "script/table_rows_internal.h"
 

@@ -3,11 +3,11 @@
  */
 #include "script/gr_textures_internal.h"
 
+#include "compat/lenient_handles.h"
 #include "image/image_function.h"
-#include "script/lenient_handles_internal.h"
+#include "record/vector.h"
 #include "script/table_internal.h"
 #include "script/table_rows_internal.h"
-#include "script/vector_internal.h"
 
 #include <lauxlib.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef GRAY_SCRIPT_GR_TEXTURES_INTERNAL_H
 #define GRAY_SCRIPT_GR_TEXTURES_INTERNAL_H
 
-#include "script/context_internal.h"
+#include "call/context.h"
 
 /* The texture of an input, or a constant texture of its number or colour; NULL with an error. */
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,

@@ -4,18 +4,18 @@
 #include "script/script.h"
 
 #include "base/file.h"
-#include "script/compat_internal.h"
-#include "script/dialect_internal.h"
+#include "compat/compat.h"
+#include "compat/dialect.h"
+#include "compat/lenient.h"
+#include "compat/lenient_handles.h"
+#include "compat/lenient_picture.h"
+#include "compat/order.h"
+#include "compat/traverse.h"
+#include "record/record.h"
+#include "sandbox/hints.h"
 #include "script/dispatch_internal.h"
 #include "script/gr_textures_internal.h"
-#include "script/hints_internal.h"
-#include "script/lenient_handles_internal.h"
-#include "script/lenient_internal.h"
-#include "script/lenient_picture_internal.h"
-#include "script/order_internal.h"
-#include "script/record.h"
 #include "script/script_internal.h"
-#include "script/traverse_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -155,7 +155,7 @@ static int describe_error(lua_State *L) {
     }
     size_t first = strcspn(message, "\n");
     error_set(&script->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
-              hint_of_lua_error(L, message), sandbox->place);
+              hint_of_lua_error(L, message), sandbox->error_suffix);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     if (is_forgivable(&script->context, message)) {
@@ -240,23 +240,38 @@ static bool choose_order(struct script *script, struct error *error) {
     return true;
 }
 
-static struct sandbox_options sandbox_options_of(const struct script_options *options) {
-    return (struct sandbox_options){.is_off = options->no_sandbox,
-                                    .memory_limit = options->memory_limit,
-                                    .time_limit = options->time_limit,
-                                    .output_limit = options->output_limit};
-}
+/* --- limits --- */
+
+enum { STANDARD_TIME = 60 };
+static const uint64_t standard_memory = 4 * GIBIBYTE, standard_output = 64 * MEBIBYTE;
 
 double script_time_limit(const struct script_options *options) {
-    const struct sandbox_options sandbox = sandbox_options_of(options);
-    return limits_time(&sandbox);
+    return options->time_limit > 0 || options->no_sandbox ? options->time_limit : STANDARD_TIME;
+}
+
+/* 0: no limit. */
+static uint64_t limit_of(uint64_t given, uint64_t standard, bool unlimited) {
+    return given > 0 ? given : unlimited ? 0 : standard;
+}
+
+static uint64_t memory_limit(const struct script_options *options) {
+    return limit_of(options->memory_limit, standard_memory, options->no_sandbox);
 }
 
 uint64_t script_picture_memory(const struct script_options *options) {
-    const struct sandbox_options sandbox = sandbox_options_of(options);
-    uint64_t limit = limits_memory(&sandbox);
+    uint64_t limit = memory_limit(options);
     return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
 }
+
+static struct sandbox_options sandbox_options_of(const struct script_options *options) {
+    return (struct sandbox_options){.is_off = options->no_sandbox,
+                                    .memory_limit = memory_limit(options),
+                                    .time_limit = script_time_limit(options),
+                                    .output_limit =
+                                        limit_of(options->output_limit, standard_output, options->no_sandbox)};
+}
+
+/* --- the run --- */
 
 bool script_dialect_file(const struct script_options *options, char *out, size_t size) {
     return dialect_file(options->dialect, options->library_folder, out, size);

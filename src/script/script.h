@@ -9,8 +9,8 @@
 #include "material/medium.h"
 #include "render/frame.h"
 #include "render/settings.h"
+#include "sandbox/message.h"
 #include "scene/node.h"
-#include "script/message_internal.h"
 
 #include <stdbool.h>
 #include <stddef.h>

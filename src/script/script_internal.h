@@ -2,7 +2,7 @@
 #ifndef GRAY_SCRIPT_SCRIPT_INTERNAL_H
 #define GRAY_SCRIPT_SCRIPT_INTERNAL_H
 
-#include "script/context_internal.h"
+#include "call/context.h"
 #include "script/gr_changes_internal.h"
 #include "script/gr_frames_internal.h"
 #include "script/script.h"

@@ -2,11 +2,11 @@
  * here. The rows of shapes and lights are in the files that make them. docs/language.md describes all of them. */
 #include "script/table_internal.h"
 
+#include "call/display_colour.h"
+#include "record/symbol.h"
 #include "render/settings.h"
 #include "scene/change.h"
-#include "script/display_colour_internal.h"
-#include "script/keys_internal.h"
-#include "script/symbol_internal.h"
+#include "script/gr_keys_internal.h"
 #include "script/table_rows_internal.h"
 
 #include <string.h>

@@ -2,8 +2,8 @@
 #ifndef GRAY_SCRIPT_TABLE_INTERNAL_H
 #define GRAY_SCRIPT_TABLE_INTERNAL_H
 
-#include "script/function_internal.h"
-#include "script/vector_internal.h"
+#include "call/function.h"
+#include "record/vector.h"
 
 extern const struct function_rows shape_functions, swept_functions, displace_functions, texture_functions,
     layered_functions, light_functions, frame_functions;

@@ -3,8 +3,8 @@
  * allocation and system call on such paths. */
 #define _GNU_SOURCE
 #include "base/fault.h"
-#include "script/limits_internal.h"
-#include "script/order_internal.h"
+#include "compat/order.h"
+#include "sandbox/limits.h"
 #include "script/table_internal.h"
 #include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
