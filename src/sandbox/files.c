@@ -2,7 +2,6 @@
  * base/file.h. A relative name is looked for in (docs/language.md 12.3): the scene's folder, the working directory,
  * Assets/ beside and above the scene, and the bare file name in the scene's folder; then below these folders
  * (search.c). */
-
 #include "sandbox/files.h"
 
 #include "base/file.h"

@@ -9,7 +9,6 @@
 #include "sandbox/limits.h"
 
 #include "base/clock.h"
-
 #include "sandbox/sandbox.h"
 
 #include <lauxlib.h>

@@ -4,7 +4,6 @@
  * Two more ways to avoid the limits are prevented here. Lua runs the handler of xpcall without hooks if the error came
  * from the hook: our handler returns a fatal error itself. Lua always runs finalizers (__gc) without hooks:
  * setmetatable removes them, so that no code of a scene runs while garbage is collected or the state is closed. */
-
 #include "sandbox/protect.h"
 
 #include "sandbox/sandbox.h"

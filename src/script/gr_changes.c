@@ -2,11 +2,16 @@
  * script's own tree is not changed permanently. */
 #include "script/gr_changes_internal.h"
 
-#include "script/bindings_internal.h"
+#include "script/rows_internal.h"
 #include "script/script_internal.h"
 
 #include <math.h>
 #include <string.h>
+
+#define SERIAL_HELP "Its number in order of creation, from 0; nodes added in the window count down from 4294967295."
+#define CHANGED_NAME "Name of the node; gray ignores a node with another name."
+#define SERIALS IN_RANGE(0, 4294967295.0)
+#define PICTURE_HELP "The file name that gr.render has for the picture."
 
 /* gr.change_view and gr.change_exposure: of the picture of that file name. */
 struct changed_view {
@@ -50,8 +55,17 @@ static void put(double *numbers, struct vec3 v) {
     numbers[2] = v.z;
 }
 
-bool gr_change_node(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+enum { CHANGENODE_NAME, CHANGENODE_SERIAL, CHANGENODE_MATRIX };
+static const struct script_parameter change_node_parameters[] = {
+    [CHANGENODE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGENODE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGENODE_MATRIX] =
+        {"matrix", KIND_NUMBERS, 0, ANY, NULL, NULL,
+         "Three rows of a matrix, 12 numbers, applied after its own transforms, in the space of its parent."},
+};
+
+static bool gr_change_node(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     (void)result;
     const struct script_value *matrix = &args[CHANGENODE_MATRIX];
     struct affine map;
@@ -68,14 +82,31 @@ bool gr_change_node(struct script_context *context, const struct script_value *a
     return change != NULL;
 }
 
-bool gr_change_delete(struct script_context *context, const struct script_value *args, struct script_result *result,
-                      struct error *error) {
+enum { CHANGEGONE_NAME, CHANGEGONE_SERIAL };
+static const struct script_parameter change_delete_parameters[] = {
+    [CHANGEGONE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGEGONE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+};
+
+static bool gr_change_delete(struct script_context *context, const struct script_value *args,
+                             struct script_result *result, struct error *error) {
     (void)result;
     return note(context, CHANGE_GONE, args[CHANGEGONE_NAME].text, args[CHANGEGONE_SERIAL].number, error) != NULL;
 }
 
-bool gr_change_add(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+enum { CHANGEADD_NAME, CHANGEADD_SERIAL, CHANGEADD_SHAPE, CHANGEADD_COLOUR, CHANGEADD_SOURCE };
+static const struct script_parameter change_add_parameters[] = {
+    [CHANGEADD_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, "Name of the parent node."},
+    [CHANGEADD_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(ADDED), NULL, NULL,
+                         "Shape of the new node, about the size of a unit sphere, or a copy of a node."},
+    [CHANGEADD_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.7, 0.7, 0.7}", "Its colour."},
+    [CHANGEADD_SOURCE] = {"source", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
+                          "For a copy: the number of the node to copy."},
+};
+
+static bool gr_change_add(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_ADD, args[CHANGEADD_NAME].text, args[CHANGEADD_SERIAL].number, error);
     if (!change)
@@ -87,8 +118,15 @@ bool gr_change_add(struct script_context *context, const struct script_value *ar
     return true;
 }
 
-bool gr_change_material(struct script_context *context, const struct script_value *args, struct script_result *result,
-                        struct error *error) {
+enum { CHANGEMATERIAL_SERIAL, CHANGEMATERIAL_COLOUR };
+static const struct script_parameter change_material_parameters[] = {
+    [CHANGEMATERIAL_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                               "Number of the material in order of creation, from 1."},
+    [CHANGEMATERIAL_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "New kd of its base material."},
+};
+
+static bool gr_change_material(struct script_context *context, const struct script_value *args,
+                               struct script_result *result, struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGEMATERIAL_SERIAL].number, error);
     if (change)
@@ -96,8 +134,18 @@ bool gr_change_material(struct script_context *context, const struct script_valu
     return change != NULL;
 }
 
-bool gr_change_look(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+enum { CHANGELOOK_SERIAL, CHANGELOOK_PART, CHANGELOOK_VALUE };
+static const struct script_parameter change_look_parameters[] = {
+    [CHANGELOOK_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                           "Number of the material in order of creation, from 1."},
+    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(MATERIAL_PART_LIST), NULL, NULL,
+                         "Argument of gr.material to change in its base material."},
+    [CHANGELOOK_VALUE] = {"value", KIND_NUMBERS, 0, ANY, NULL, NULL,
+                          "New value: three numbers for a colour, else one."},
+};
+
+static bool gr_change_look(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     (void)result;
     enum material_part part = (enum material_part)args[CHANGELOOK_PART].choice;
     const struct script_value *value = &args[CHANGELOOK_VALUE];
@@ -120,8 +168,16 @@ bool gr_change_look(struct script_context *context, const struct script_value *a
     return true;
 }
 
-bool gr_change_own(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+enum { CHANGEOWN_NAME, CHANGEOWN_SERIAL, CHANGEOWN_LIKE };
+static const struct script_parameter change_own_parameters[] = {
+    [CHANGEOWN_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGEOWN_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGEOWN_LIKE] = {"like", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
+                        "For a shape without a material: number of the material to copy; 0: plain gray."},
+};
+
+static bool gr_change_own(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_OWN, args[CHANGEOWN_NAME].text, args[CHANGEOWN_SERIAL].number, error);
     if (!change)
@@ -131,8 +187,19 @@ bool gr_change_own(struct script_context *context, const struct script_value *ar
     return true;
 }
 
-bool gr_change_light(struct script_context *context, const struct script_value *args, struct script_result *result,
-                     struct error *error) {
+enum { CHANGELIGHT_NUMBER, CHANGELIGHT_MOVE, CHANGELIGHT_FACTOR, CHANGELIGHT_TURN, CHANGELIGHT_COLOUR };
+static const struct script_parameter change_light_parameters[] = {
+    [CHANGELIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                            "Index in the list of lights of gr.render, from 1."},
+    [CHANGELIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "Translation."},
+    [CHANGELIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}", "Factor of its colour."},
+    [CHANGELIGHT_TURN] = {"linear", KIND_NUMBERS, OPTIONAL, ANY, NULL, "none",
+                          "Three rows of a matrix, 9 numbers: rotation and scale about its position."},
+    [CHANGELIGHT_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "its own", "New colour, before the factor."},
+};
+
+static bool gr_change_light(struct script_context *context, const struct script_value *args,
+                            struct script_result *result, struct error *error) {
     (void)result;
     const struct script_value *turn = &args[CHANGELIGHT_TURN], *colour = &args[CHANGELIGHT_COLOUR];
     if (turn->given && turn->count != TURN_NUMBERS)
@@ -153,14 +220,26 @@ bool gr_change_light(struct script_context *context, const struct script_value *
     return true;
 }
 
-bool gr_change_delete_light(struct script_context *context, const struct script_value *args,
-                            struct script_result *result, struct error *error) {
+enum { CHANGEDARK_NUMBER };
+static const struct script_parameter change_delete_light_parameters[] = {
+    [CHANGEDARK_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                           "Index in the list of lights of gr.render, from 1."},
+};
+
+static bool gr_change_delete_light(struct script_context *context, const struct script_value *args,
+                                   struct script_result *result, struct error *error) {
     (void)result;
     return note(context, CHANGE_DARK, NULL, args[CHANGEDARK_NUMBER].number, error) != NULL;
 }
 
-bool gr_change_add_light(struct script_context *context, const struct script_value *args, struct script_result *result,
-                         struct error *error) {
+enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR };
+static const struct script_parameter change_add_light_parameters[] = {
+    [CHANGENEWLIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it is."},
+    [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour."},
+};
+
+static bool gr_change_add_light(struct script_context *context, const struct script_value *args,
+                                struct script_result *result, struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
     if (!change)
@@ -170,8 +249,17 @@ bool gr_change_add_light(struct script_context *context, const struct script_val
     return true;
 }
 
-bool gr_change_copy_light(struct script_context *context, const struct script_value *args, struct script_result *result,
-                          struct error *error) {
+enum { CHANGECOPYLIGHT_NUMBER, CHANGECOPYLIGHT_MOVE, CHANGECOPYLIGHT_FACTOR };
+static const struct script_parameter change_copy_light_parameters[] = {
+    [CHANGECOPYLIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                                "Index in the list of lights of gr.render, from 1."},
+    [CHANGECOPYLIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "Translation of the copy."},
+    [CHANGECOPYLIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}",
+                                "Factor of the colour of the copy."},
+};
+
+static bool gr_change_copy_light(struct script_context *context, const struct script_value *args,
+                                 struct script_result *result, struct error *error) {
     const struct script_value *factor = &args[CHANGECOPYLIGHT_FACTOR];
     (void)result;
     struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
@@ -195,8 +283,18 @@ static struct changed_view *note_view(struct script_context *context, const char
     return view;
 }
 
-bool gr_change_view(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+enum { CHANGEVIEW_PICTURE, CHANGEVIEW_EYE, CHANGEVIEW_VIEW, CHANGEVIEW_UP, CHANGEVIEW_FOV };
+static const struct script_parameter change_view_parameters[] = {
+    [CHANGEVIEW_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
+    [CHANGEVIEW_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
+    [CHANGEVIEW_VIEW] = {"view", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction of view."},
+    [CHANGEVIEW_UP] = {"up", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction that is up in the picture."},
+    [CHANGEVIEW_FOV] = {"fov", KIND_NUMBER, LOW_OPEN | HIGH_OPEN, IN_RANGE(0, 180), "degrees", NULL,
+                        "Full vertical angle of view."},
+};
+
+static bool gr_change_view(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     (void)result;
     struct changed_view *view = note_view(context, args[CHANGEVIEW_PICTURE].text, error);
     if (!view)
@@ -207,8 +305,14 @@ bool gr_change_view(struct script_context *context, const struct script_value *a
     return true;
 }
 
-bool gr_change_exposure(struct script_context *context, const struct script_value *args, struct script_result *result,
-                        struct error *error) {
+enum { CHANGEEXPOSURE_PICTURE, CHANGEEXPOSURE_STOPS };
+static const struct script_parameter change_exposure_parameters[] = {
+    [CHANGEEXPOSURE_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
+    [CHANGEEXPOSURE_STOPS] = {"stops", KIND_NUMBER, 0, IN_RANGE(-100, 100), "stops", NULL, "New exposure."},
+};
+
+static bool gr_change_exposure(struct script_context *context, const struct script_value *args,
+                               struct script_result *result, struct error *error) {
     (void)result;
     struct changed_view *view = note_view(context, args[CHANGEEXPOSURE_PICTURE].text, error);
     if (!view)
@@ -260,3 +364,34 @@ bool changes_begin(struct script_context *context, struct render_request *reques
     request->light_count = changed->light_count;
     return true;
 }
+
+static const struct script_function change_rows[] = {
+    GR("change_node", change_node_parameters, RESULT_NOTHING, gr_change_node,
+       "Transforms a node in all later pictures. The window saves edits as a file of such calls; require loads it.",
+       "name serial matrix"),
+    GR("change_delete", change_delete_parameters, RESULT_NOTHING, gr_change_delete,
+       "Removes a node and its children from all later pictures.", "name serial"),
+    GR("change_add", change_add_parameters, RESULT_NOTHING, gr_change_add,
+       "Adds a node to all later pictures; gr.change_node places it.", "name serial shape colour? source?"),
+    GR("change_material", change_material_parameters, RESULT_NOTHING, gr_change_material,
+       "Changes the colour of a material in all later pictures.", "serial colour"),
+    GR("change_look", change_look_parameters, RESULT_NOTHING, gr_change_look,
+       "Changes an input of a base material in all later pictures.", "serial part value"),
+    GR("change_own", change_own_parameters, RESULT_NOTHING, gr_change_own,
+       "Gives a shape its own copy of its material in all later pictures. The copies are numbered 2147483647, "
+       "2147483646 and so on.",
+       "name serial like?"),
+    GR("change_light", change_light_parameters, RESULT_NOTHING, gr_change_light,
+       "Moves, rotates, scales or recolours a light in all later pictures.", "number move factor? linear? colour?"),
+    GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, gr_change_delete_light,
+       "Removes a light from all later pictures.", "number"),
+    GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, gr_change_add_light,
+       "Adds a point light to all later pictures.", "position colour"),
+    GR("change_copy_light", change_copy_light_parameters, RESULT_NOTHING, gr_change_copy_light,
+       "Adds a copy of a light to all later pictures.", "number move factor?"),
+    GR("change_view", change_view_parameters, RESULT_NOTHING, gr_change_view, "Changes the camera of a picture.",
+       "picture eye view up fov"),
+    GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, gr_change_exposure,
+       "Changes the exposure of a picture.", "picture stops"),
+};
+const struct function_rows change_functions = {change_rows, COUNT(change_rows)};

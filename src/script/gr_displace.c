@@ -1,12 +1,13 @@
 /* Displacement by recorded functions: node:displace of meshes and height fields. */
-#include "call/context.h"
-#include "record/record_bounds.h"
-#include "script/table_internal.h"
-#include "script/table_rows_internal.h"
+#include "script/gr_displace_internal.h"
 
+#include "call/context.h"
 #include "expr/expr_field.h"
 #include "mesh/mesh_displace.h"
+#include "record/record_bounds.h"
 #include "scene/traversal.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
 #include "shape/height_field.h"
 
 #include <math.h>
@@ -144,7 +145,7 @@ static bool displace_all(const struct displacing *d, const struct node *root, st
 
 enum { DISPLACE_F = SELF + 1, DISPLACE_EDGE, DISPLACE_LEVEL, DISPLACE_SMOOTH };
 static const struct script_parameter displace_parameters[] = {
-    [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."},
+    SELF_PARAMETER,
     [DISPLACE_F] = {"f", KIND_FUNCTION, OPTIONAL, ANY, NULL, NULL,
                     "A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}."},
     [DISPLACE_EDGE] = {"edge", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "level",

@@ -4,9 +4,9 @@
 #include "script/gr_frames_internal.h"
 
 #include "script/dispatch_internal.h"
+#include "script/rows_internal.h"
 #include "script/script_internal.h"
 #include "script/table_internal.h"
-#include "script/table_rows_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>

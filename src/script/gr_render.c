@@ -5,8 +5,206 @@
 #include "math/elementary.h"
 #include "record/record_bounds.h"
 #include "scene/node_bounds.h"
-#include "script/bindings_internal.h"
+#include "script/gr_materials_internal.h"
+#include "script/rows_internal.h"
 #include "script/script_internal.h"
+
+enum {
+    RENDER_NODE,
+    RENDER_FILE,
+    RENDER_SKY,
+    RENDER_WIDTH,
+    RENDER_HEIGHT,
+    RENDER_EYE,
+    RENDER_VIEW,
+    RENDER_UP,
+    RENDER_FOV,
+    RENDER_AMBIENT,
+    RENDER_LIGHTS,
+    RENDER_TARGET,
+    RENDER_BACKGROUND,
+    RENDER_MIRROR,
+    RENDER_SAMPLES,
+    RENDER_FULL,
+    RENDER_AREA_SAMPLES,
+    RENDER_REFLECT_LIMIT,
+    RENDER_REFRACT_LIMIT,
+    RENDER_SIDE_TOLERANCE,
+    RENDER_CORNER_TOLERANCE,
+    RENDER_USE_TIR,
+    RENDER_SPECULAR,
+    RENDER_SEED,
+    RENDER_ACCEL,
+    RENDER_FOG,
+    RENDER_CAUSTICS,
+    RENDER_CUTOFF,
+    RENDER_INTEGRATOR,
+    RENDER_SPP,
+    RENDER_MAX_DEPTH,
+    RENDER_NOISE,
+    RENDER_CLAMP,
+    RENDER_FILTER,
+    RENDER_DENOISE,
+    RENDER_EXPOSURE,
+    RENDER_TONE,
+    RENDER_SRGB,
+    RENDER_COLOUR,
+    RENDER_DEEP,
+    RENDER_STYLE,
+    RENDER_LINE_WIDTH,
+    RENDER_TOON_STEPS,
+    RENDER_BLOOM,
+    RENDER_VIGNETTE,
+    RENDER_GRAY,
+    RENDER_EDGES,
+    RENDER_FXAA,
+    RENDER_DITHER,
+    RENDER_PROJECTION,
+    RENDER_VIEW_HEIGHT,
+    RENDER_ANGLE,
+    RENDER_SHIFT_X,
+    RENDER_SHIFT_Y,
+    RENDER_APERTURE,
+    RENDER_FOCUS,
+    RENDER_FOCUS_POINT,
+    RENDER_BLADES,
+    RENDER_BLADE_ANGLE,
+    RENDER_STEREO,
+    RENDER_EYE_DISTANCE,
+    RENDER_SCREEN,
+    RENDER_SHUTTER,
+    RENDER_EYE_TO,
+    RENDER_VIEW_TO,
+    RENDER_TARGET_TO,
+    RENDER_UP_TO,
+    RENDER_COUNT
+};
+_Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
+static const struct script_parameter render_parameters[] = {
+    [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
+    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
+                     "Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders."},
+    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
+                    "A PNG or JPEG file with six views of the sky in a 4 x 3 cross."},
+    [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
+    [RENDER_HEIGHT] = {"height", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Height of the picture."},
+    [RENDER_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
+    [RENDER_VIEW] = {"view", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}", "Direction of view."},
+    [RENDER_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Direction that is up in the picture."},
+    [RENDER_FOV] = {"fov", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, 0, 180, NULL, "degrees", "50",
+                    "Full vertical angle of view."},
+    [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0, 0, 0}", "Ambient light."},
+    [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "The lights."},
+    [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
+    [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
+                           "Background for rays that hit nothing: a colour, a sky, a function of the unit direction, "
+                           "or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form "
+                           "gr.render{...} without background, the default is light and neutral."},
+    [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
+    [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
+                        "N x N samples for a marked pixel."},
+    [RENDER_FULL] = {"full", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-full", "Whether every pixel gets N x N samples."},
+    [RENDER_AREA_SAMPLES] = {"area_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-al-samples",
+                             "N x N shadow rays for an area light."},
+    [RENDER_REFLECT_LIMIT] = {"reflect_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-reflect-limit",
+                              "How often a path may reflect."},
+    [RENDER_REFRACT_LIMIT] = {"refract_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-refract-limit",
+                              "How often a path may refract."},
+    [RENDER_SIDE_TOLERANCE] = {"side_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-side-tolerance",
+                               "Squared distance of colours between side neighbours that marks a pixel."},
+    [RENDER_CORNER_TOLERANCE] = {"corner_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-corner-tolerance",
+                                 "The same between corner neighbours."},
+    [RENDER_USE_TIR] = {"use_tir", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-use-tir",
+                        "Whether total internal reflection adds the refracted amount to the reflected one."},
+    [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPECULAR_KINDS), NULL, "--specular",
+                         "Formula of highlights."},
+    [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 0x1p53 - 1), NULL, "--seed", "Seed of random numbers."},
+    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(ACCEL_KINDS), NULL, "'auto'",
+                      "Acceleration structure; the picture is the same."},
+    [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
+    [RENDER_CAUSTICS] = {"caustics", KIND_CAUSTICS, OPTIONAL, ANY, NULL, "--caustics",
+                         "Caustics: number of photons (default 200000) and radius of the disc that each one lights "
+                         "(default: from their density)."},
+    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--cutoff",
+                       "gray does not trace rays that can change a pixel by less than this."},
+    [RENDER_INTEGRATOR] =
+        {"integrator", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(INTEGRATORS), NULL, "--integrator",
+         "The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces."},
+    [RENDER_SPP] = {"spp", KIND_WHOLE, OPTIONAL, IN_RANGE(1, PATH_SAMPLES_MAX), NULL, "--spp, else 64",
+                    "Samples per pixel of integrator path; the option has priority."},
+    [RENDER_MAX_DEPTH] = {"max_depth", KIND_WHOLE, OPTIONAL, IN_RANGE(0, DEPTH_MAX), NULL, "--max-depth",
+                          "Scattering events of a path: 0 shows emission only, 1 direct light."},
+    [RENDER_NOISE] =
+        {"noise", KIND_NUMBER, OPTIONAL, IN_RANGE(1e-6, 10), NULL, "--noise, else all samples",
+         "Relative standard error at which a tile of integrator path is finished; the option has priority."},
+    [RENDER_CLAMP] =
+        {"clamp", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "--clamp",
+         "Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker."},
+    [RENDER_FILTER] = {"filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(FILTERS), NULL, "--filter",
+                       "Reconstruction filter of a pixel."},
+    [RENDER_DENOISE] = {"denoise", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--denoise",
+                        "Whether integrator path removes noise; the option has priority."},
+    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, IN_RANGE(-100, 100), "stops", "--exposure",
+                         "Light is multiplied by 2^exposure when a PNG file is written."},
+    [RENDER_TONE] =
+        {"tone", KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
+         "Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x "
+         "from 0 on, the same for red, green and blue; the option has priority over a function."},
+    [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
+                     "Whether PNG files are encoded with the sRGB transfer function."},
+    [RENDER_COLOUR] = {"colour", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(COLOUR_PIPELINES), NULL, "--colour",
+                       "Whether colours are linear light or the numbers of files; auto: linear with integrator path."},
+    [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep",
+                     "Whether PNG files have 16 bits per channel."},
+    [RENDER_STYLE] =
+        {"style", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STYLES), NULL, "--style",
+         "Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted."},
+    [RENDER_LINE_WIDTH] = {"line_width", KIND_NUMBER, OPTIONAL, IN_RANGE(0, LINE_WIDTH_MAX), "pixels", "--line-width",
+                           "Width of lines where objects, normals and depths change."},
+    [RENDER_TOON_STEPS] = {"toon_steps", KIND_WHOLE, OPTIONAL, IN_RANGE(1, TOON_STEPS_MAX), NULL, "--toon-steps",
+                           "Number of levels of light of style toon, not counting shadow."},
+    [RENDER_BLOOM] = {"bloom", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--bloom",
+                      "Weight of the light above white that spreads around it."},
+    [RENDER_VIGNETTE] = {"vignette", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--vignette",
+                         "Darkens the corners; with 1 they have a quarter of their light."},
+    [RENDER_GRAY] = {"gray", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--gray", "Whether the picture is its luminance."},
+    [RENDER_EDGES] = {"edges", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--edges",
+                      "Whether PNG files show the edges of the picture, white on black."},
+    [RENDER_FXAA] = {"fxaa", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--fxaa",
+                     "Whether the edges in PNG files are smoothed."},
+    [RENDER_DITHER] = {"dither", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(DITHERS), NULL, "--dither",
+                       "Pattern by which PNG files are rounded to 8 bits."},
+    [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
+                           "Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude."},
+    [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
+                            "Height of an orthographic picture, in units of the scene."},
+    [RENDER_ANGLE] = {"angle", KIND_NUMBER, OPTIONAL | LOW_OPEN, IN_RANGE(0, 360), "degrees", "180",
+                      "Full angle of a fisheye across the height."},
+    [RENDER_SHIFT_X] = {"shift_x", KIND_NUMBER, OPTIONAL, ANY, "widths", "0", "Shift of the window to the right."},
+    [RENDER_SHIFT_Y] = {"shift_y", KIND_NUMBER, OPTIONAL, ANY, "heights", "0", "Shift of the window upwards."},
+    [RENDER_APERTURE] =
+        {"aperture", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
+         "Radius of the lens, in units of the scene; 0 is a pinhole. With a lens, gray resamples every pixel."},
+    [RENDER_FOCUS] = {"focus", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "target, else 1",
+                      "Distance of the plane in focus, along the view."},
+    [RENDER_FOCUS_POINT] = {"focus_point", KIND_POINT, OPTIONAL, ANY, NULL, NULL,
+                            "A point of the plane in focus, instead of focus."},
+    [RENDER_BLADES] = {"blades", KIND_WHOLE, OPTIONAL, IN_RANGE(3, 64), NULL, "round",
+                       "Number of blades: the aperture is a polygon."},
+    [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0", "Rotation of that polygon."},
+    [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STEREOS), NULL, "'none'",
+                       "Two eyes: side by side (left picture on the left), or red and cyan."},
+    [RENDER_EYE_DISTANCE] = {"eye_distance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 30",
+                             "Distance between the eyes."},
+    [RENDER_SCREEN] = {"screen", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "focus",
+                       "Distance along the view where both eyes see the same point of the picture."},
+    [RENDER_SHUTTER] = {"shutter", KIND_INTERVAL, OPTIONAL, ANY, NULL, "{0, 1}",
+                        "Times when the shutter opens and closes, {open, close}; motion between them is blurred."},
+    [RENDER_EYE_TO] = {"eye_to", KIND_POINT, OPTIONAL, ANY, NULL, "eye", "Position of a moving camera at time 1."},
+    [RENDER_VIEW_TO] = {"view_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "view", "Its direction of view at time 1."},
+    [RENDER_TARGET_TO] = {"target_to", KIND_POINT, OPTIONAL, ANY, NULL, "target", "The point to look at, at time 1."},
+    [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "Its up direction at time 1."},
+};
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
@@ -262,8 +460,8 @@ static bool render_turntable(struct script_context *context, const struct render
     return true;
 }
 
-bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
-               struct error *error) {
+static bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     (void)result;
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
@@ -336,3 +534,19 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
     script_of(context)->pictures += done;
     return done;
 }
+
+#define RENDER_TAIL " width height eye view up fov ambient? lights?"
+
+static const struct script_function render_rows[] = {
+    GR("render", render_parameters, RESULT_NOTHING, gr_render, "Renders a picture into a file.",
+       "node file" RENDER_TAIL),
+    GR("render_skybox", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render, with a sky picture.",
+       "node file sky" RENDER_TAIL),
+};
+const struct function_rows render_functions = {render_rows, COUNT(render_rows)};
+
+static const struct script_function render_method_rows[] = {
+    NODE("render", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render with this node.",
+         "file" RENDER_TAIL),
+};
+const struct function_rows render_method_functions = {render_method_rows, COUNT(render_method_rows)};

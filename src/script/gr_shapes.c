@@ -2,8 +2,8 @@
  * several numbers together, which the table cannot express, and sizes that the root-finders cannot handle. */
 #include "call/context.h"
 #include "math/range.h"
+#include "script/rows_internal.h"
 #include "script/table_internal.h"
-#include "script/table_rows_internal.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
 

@@ -1,11 +1,12 @@
 /* Shapes with many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
  * shape live in the arena of the scene; the builder of the shape reports their errors. */
 #include "call/context.h"
-#include "record/record_bounds.h"
-#include "script/table_internal.h"
-#include "script/table_rows_internal.h"
-
 #include "mesh/patch.h"
+#include "record/record_bounds.h"
+#include "script/gr_displace_internal.h"
+#include "script/gr_materials_internal.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
 #include "shape/blob.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"

@@ -6,8 +6,8 @@
 #include "compat/lenient_handles.h"
 #include "image/image_function.h"
 #include "record/vector.h"
+#include "script/rows_internal.h"
 #include "script/table_internal.h"
-#include "script/table_rows_internal.h"
 
 #include <lauxlib.h>
 #include <string.h>

@@ -2,6 +2,7 @@
  * and after it the scene. Invariant: after every error lua_close is called first, then the arenas are destroyed;
  * nothing else is owned here. */
 #include "script/script.h"
+#include "script/script_internal.h"
 
 #include "base/file.h"
 #include "compat/compat.h"
@@ -15,7 +16,6 @@
 #include "sandbox/hints.h"
 #include "script/dispatch_internal.h"
 #include "script/gr_textures_internal.h"
-#include "script/script_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>

@@ -1,30 +1,23 @@
-/* Shared by the files with rows of the table of gr functions: the macros of its columns. */
-#ifndef GRAY_SCRIPT_TABLE_ROWS_INTERNAL_H
-#define GRAY_SCRIPT_TABLE_ROWS_INTERNAL_H
+/* What lights of other files share with those of gr_lights.c. */
+#ifndef GRAY_SCRIPT_GR_LIGHTS_INTERNAL_H
+#define GRAY_SCRIPT_GR_LIGHTS_INTERNAL_H
 
-#include "script/bindings_internal.h"
+#include "script/rows_internal.h"
 
-#include <math.h>
-
-/* The range of a parameter, and no choices. */
-#define ANY 0, 0, NULL
-#define ABOVE(low) (low), (double)INFINITY, NULL
-#define IN_RANGE(low, high) (low), (high), NULL
-
-#define NAME_HELP "Name of the node, for messages."
-#define MATERIAL_HELP "Material of the surface."
-
-#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
-#define GR(name, parameters, result, run, help, ...)                                                                   \
-    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
-#define NODE(name, parameters, result, run, help, ...)                                                                 \
-    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
-
-/* Every shape begins with these parameters; its own start at SHAPE_FIRST. */
-enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
-#define SHAPE(otherwise)                                                                                               \
-    [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
-    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
+/* Every light has these first; fields of fading and of lamps only where the kind has them. */
+enum {
+    LIGHT_COLOUR,
+    LIGHT_INCLUDE,
+    LIGHT_EXCLUDE,
+    LIGHT_FALLOFF,
+    LIGHT_RANGE,
+    LIGHT_INTENSITY,
+    LIGHT_EMISSION,
+    LIGHT_SAMPLES,
+    LIGHT_VISIBLE,
+    LIGHT_OWN /* the first field of the kind itself */
+};
+enum { DISTANT_DIRECTION = LIGHT_EXCLUDE + 1, DISTANT_COUNT };
 
 /* The first parameters of every light. */
 #define LIGHT_LISTS                                                                                                    \
@@ -43,5 +36,9 @@ enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
                           ? "Colour and strength, or a function of the unit direction in which light leaves."          \
                           : "Colour and strength."},                                                                   \
     LIGHT_LISTS
+
+/* A directional light, or the sun; see struct script_function. */
+bool gr_directional_light(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error);
 
 #endif
