@@ -61,7 +61,7 @@ void recorder_destroy(struct recorder *recorder) {
         recorder->frames[k].decisions = NULL;
     }
     mem_free(recorder->answers);
-    record_bounds_end(recorder);
+    record_interval_end(recorder);
     recorder->answers = NULL;
     recorder->active = recorder->busy = recorder->samples = false;
 }

@@ -19,7 +19,7 @@ struct path_bounds {
     uint32_t serial, path; /* serials begin with 1 */
 };
 
-void record_bounds_end(struct recorder *recorder) {
+void record_interval_end(struct recorder *recorder) {
     mem_free(recorder->narrowed);
     recorder->narrowed = NULL;
 }
@@ -105,7 +105,7 @@ static struct expr_interval bounds_of(const struct recorder *recorder, uint32_t 
     return within_path(recorder, at, out);
 }
 
-int record_bounds_prove(const struct recorder *recorder, uint32_t condition) {
+int record_interval_prove(const struct recorder *recorder, uint32_t condition) {
     int visits = MAX_VISITS;
     struct expr_interval truth = bounds_of(recorder, condition, &visits);
     return truth.low > 0 ? 1 : truth.high > 0 ? -1 : 0;
@@ -149,7 +149,7 @@ static void find_narrowings(const struct recorder *recorder, struct decision *de
     narrow(recorder, more, meet(b, above), &decision->narrowings[1]);
 }
 
-bool record_bounds_narrow(struct recorder *recorder, struct decision *decision) {
+bool record_interval_narrow(struct recorder *recorder, struct decision *decision) {
     if (!recorder->narrowed)
         recorder->narrowed = mem_alloc_zero(EXPR_NODES, sizeof *recorder->narrowed);
     if (!recorder->narrowed)

@@ -221,7 +221,7 @@ bool record_decide(lua_State *L, uint32_t condition) {
     if (answer < 0 && !is_repeated) {
         answer = implied_answer(L, condition);
         if (answer < 0)
-            answer = record_bounds_prove(recorder, condition);
+            answer = record_interval_prove(recorder, condition);
         if (answer >= 0)
             know_answer(recorder, condition, answer == 1);
     }
@@ -243,7 +243,7 @@ bool record_decide(lua_State *L, uint32_t condition) {
         record_give_up(L, "the function is not pure: a second call with the same arguments took another branch");
     }
     know_answer(recorder, condition, decision->answer);
-    if (!record_bounds_narrow(recorder, decision)) {
+    if (!record_interval_narrow(recorder, decision)) {
         sandbox_of(L)->lua = L;
         sandbox_raise_no_memory(sandbox_of(L));
     }

@@ -121,8 +121,4 @@ bool script_dialect_file(const struct script_options *options, char *out, size_t
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct arena *arena, const char **traceback, struct error *error);
 
-/* The table of functions as documents; the text is allocated in the arena. */
-const char *script_manual(struct arena *arena);      /* for --man: plain text, 100 columns */
-const char *script_annotations(struct arena *arena); /* lua/gr.lua, LuaLS ---@meta */
-
 #endif

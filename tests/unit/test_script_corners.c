@@ -2,6 +2,7 @@
  * Lua, unknown names under --lenient, values of -D, truncated texts for the transform order. */
 #include "base/fault.h"
 #include "compat/order.h"
+#include "script/document.h"
 #include "script/table_internal.h"
 #include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
