@@ -4,9 +4,9 @@
 # scenes and their times, from which the time left is estimated.
 # A scene describes itself in comments of its first lines:
 #   -- TITLE: its name in the gallery           -- OPTIONS: words for the command line
+# A scene that takes far longer than its part of the plan is ended; GRAY_SCENE_LIMIT sets another limit, in seconds.
 cd "$(dirname "$0")" || exit 1
 gallery=gallery
-limit=${GRAY_SCENE_LIMIT:-300} # seconds for one scene
 failed=""
 
 # The plan: lines "[title]" and "SCRIPT SECONDS". Scenes that data/gallery.txt does not name come before its last part.
@@ -33,6 +33,13 @@ about_time() {
     }'
 }
 
+# Seconds that a scene of this cost may take: thirty times its time on this machine, and five minutes.
+limit_of() { # limit_of COST
+    [ -z "${GRAY_SCENE_LIMIT:-}" ] || { echo "$GRAY_SCENE_LIMIT"; return; }
+    awk "BEGIN { slow = $planned > 5 && $taken_all > $planned ? $taken_all / $planned : 1
+                 printf \"%d\", 300 + 30 * slow * $1 / $processors }"
+}
+
 processors=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 plan=$(plan)
 scenes=$(echo "$plan" | grep -c '^data/')
@@ -57,9 +64,10 @@ as_html() {
 
 # Renders a scene into gallery/NAME-01.png ...; a single picture is called gallery/NAME.png, and an animation
 # gallery/NAME.apng.
-render() { # render SCRIPT NAME
+render() { # render SCRIPT NAME COST
     script=$1
     name=$2
+    limit=$(limit_of "$3")
     options=$(about "$script" OPTIONS)
     case $name in
     10demo | 14demo) options="$options --size 1280x960 -ss 4 -al-samples 8" ;;
@@ -70,14 +78,21 @@ render() { # render SCRIPT NAME
     echo "scene $number of $scenes: $script" $options
     begun=$(date +%s%N)
     # shellcheck disable=SC2086
-    timeout "$limit" ./gray $options -o "$output" -- "$script" >"$gallery/$name.txt"
+    timeout -k 10 "$limit" ./gray $options -o "$output" -- "$script" >"$gallery/$name.txt"
     status=$?
     ended=$(date +%s%N)
     seconds=$(awk "BEGIN { printf \"%.1f\", ($ended - $begun) / 1e9 }")
-    if [ $status -ne 0 ]; then
+    case $status in
+    0) ;;
+    124 | 137)
+        echo "render_all.sh: $script was ended at its limit of $limit seconds; GRAY_SCENE_LIMIT=SECONDS sets another" >&2
+        failed="$failed $script"
+        ;;
+    *)
         echo "render_all.sh: $script failed with status $status" >&2
         failed="$failed $script"
-    fi
+        ;;
+    esac
     set -- "$gallery/$name"-[0-9]*.png
     [ $# -eq 1 ] && [ -f "$1" ] && mv -- "$1" "$gallery/$name.png"
     [ -s "$gallery/$name.txt" ] || rm -f "$gallery/$name.txt"
@@ -133,7 +148,7 @@ while read -r script cost <&3; do
     number=$((number + 1))
     base=$(basename "$script" .lua)
     case $script in data/classic/*) base="classic-$base" ;; esac
-    render "$script" "$base"
+    render "$script" "$base" "$cost"
     # The plan is for one kind of machine: after some seconds, what was taken so far corrects it.
     planned=$(awk "BEGIN { print $planned + $cost / $processors + 0.1 }")
     taken_all=$(awk "BEGIN { print $taken_all + $seconds }")
@@ -178,7 +193,7 @@ for name in 10demo 14demo; do
 done
 
 if [ -n "$failed" ]; then
-    echo "render_all.sh: failed:$failed" >&2
+    echo "render_all.sh: these failed:$failed; the reasons are above, the other pictures in $gallery/index.html" >&2
     exit 1
 fi
-echo "done: $gallery/index.html, screenshot01.png, screenshot02.png"
+echo "done: open $gallery/index.html in a browser; screenshot01.png and screenshot02.png show 10demo and 14demo"

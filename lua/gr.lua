@@ -1699,41 +1699,41 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
 ---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
----@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
----@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for an area light.
+---@field full? boolean full (true or false; default -full): N x N samples for every pixel, not only for marked ones.
+---@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): A pixel is marked when the squared RGB distance to a side neighbour exceeds X.
+---@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same for the corner neighbours.
 ---@field reflect_limit? integer reflect_limit (a whole number, 0 to 1000; default -reflect-limit): How often a path may reflect.
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
----@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): Squared distance of colours between side neighbours that marks a pixel.
----@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same between corner neighbours.
----@field use_tir? boolean use_tir (true or false; default -use-tir): Whether total internal reflection adds the refracted amount to the reflected one.
----@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of highlights.
----@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of random numbers.
----@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): Acceleration structure; the picture is the same.
----@field fog? gr.fog fog (a fog; default none): A fog.
----@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
----@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
----@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples per pixel of integrator path; the option has priority.
----@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
----@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error at which a tile of integrator path is finished; the option has priority.
----@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker.
+---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
+---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path; the option has priority over the field.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X; the option has priority over the field.
+---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
----@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
----@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x from 0 on, the same for red, green and blue; the option has priority over a function.
----@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
----@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
----@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
----@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted.
----@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
+---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
+---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: linear with integrator path.
+---@field deep? boolean deep (true or false; default --deep): 16 bits per channel in PNG files.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings, with integrator whitted; ink: lines on white paper; toon: a few levels of light; gooch: cool to warm colours.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
----@field bloom? number bloom (a number, 0 to 1; default --bloom): Weight of the light above white that spreads around it.
----@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; with 1 they have a quarter of their light.
----@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
----@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
----@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
----@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Pattern by which PNG files are rounded to 8 bits.
+---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue, over which the option has priority.
+---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): A gray picture: the luminance.
+---@field edges? boolean edges (true or false; default --edges): A picture of the edges of the picture, white on black (Sobel); PNG files only.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Smooth the edges of the finished picture (FXAA); PNG files only.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
+---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1782,41 +1782,41 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
 ---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
----@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
----@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for an area light.
+---@field full? boolean full (true or false; default -full): N x N samples for every pixel, not only for marked ones.
+---@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): A pixel is marked when the squared RGB distance to a side neighbour exceeds X.
+---@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same for the corner neighbours.
 ---@field reflect_limit? integer reflect_limit (a whole number, 0 to 1000; default -reflect-limit): How often a path may reflect.
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
----@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): Squared distance of colours between side neighbours that marks a pixel.
----@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same between corner neighbours.
----@field use_tir? boolean use_tir (true or false; default -use-tir): Whether total internal reflection adds the refracted amount to the reflected one.
----@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of highlights.
----@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of random numbers.
----@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): Acceleration structure; the picture is the same.
----@field fog? gr.fog fog (a fog; default none): A fog.
----@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
----@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
----@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples per pixel of integrator path; the option has priority.
----@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
----@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error at which a tile of integrator path is finished; the option has priority.
----@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker.
+---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
+---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path; the option has priority over the field.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X; the option has priority over the field.
+---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
----@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
----@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x from 0 on, the same for red, green and blue; the option has priority over a function.
----@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
----@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
----@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
----@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted.
----@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
+---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
+---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: linear with integrator path.
+---@field deep? boolean deep (true or false; default --deep): 16 bits per channel in PNG files.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings, with integrator whitted; ink: lines on white paper; toon: a few levels of light; gooch: cool to warm colours.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
----@field bloom? number bloom (a number, 0 to 1; default --bloom): Weight of the light above white that spreads around it.
----@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; with 1 they have a quarter of their light.
----@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
----@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
----@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
----@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Pattern by which PNG files are rounded to 8 bits.
+---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue, over which the option has priority.
+---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): A gray picture: the luminance.
+---@field edges? boolean edges (true or false; default --edges): A picture of the edges of the picture, white on black (Sobel); PNG files only.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Smooth the edges of the finished picture (FXAA); PNG files only.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
+---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.
@@ -1977,41 +1977,41 @@ function node:translate(x, y, z) end
 ---@field target? gr.triple target (a point {x, y, z}; optional): Point to look at, instead of view.
 ---@field background? gr.triple|string|gr.sky|gr.texture|function|'gradient' background (a colour {r, g, b}, a sky, a function or 'gradient'; default 'gradient'): Background for rays that hit nothing: a colour, a sky, a function of the unit direction, or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form gr.render{...} without background, the default is light and neutral.
 ---@field mirror? boolean mirror (true or false; default false): Whether the sky cross is mirrored.
+---@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
 ---@field samples? integer samples (a whole number, 1 to 64; default -ss): N x N samples for a marked pixel.
----@field full? boolean full (true or false; default -full): Whether every pixel gets N x N samples.
----@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for an area light.
+---@field full? boolean full (true or false; default -full): N x N samples for every pixel, not only for marked ones.
+---@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): A pixel is marked when the squared RGB distance to a side neighbour exceeds X.
+---@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same for the corner neighbours.
 ---@field reflect_limit? integer reflect_limit (a whole number, 0 to 1000; default -reflect-limit): How often a path may reflect.
 ---@field refract_limit? integer refract_limit (a whole number, 0 to 1000; default -refract-limit): How often a path may refract.
----@field side_tolerance? number side_tolerance (a number, >= 0; default -side-tolerance): Squared distance of colours between side neighbours that marks a pixel.
----@field corner_tolerance? number corner_tolerance (a number, >= 0; default -corner-tolerance): The same between corner neighbours.
----@field use_tir? boolean use_tir (true or false; default -use-tir): Whether total internal reflection adds the refracted amount to the reflected one.
----@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of highlights.
----@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of random numbers.
----@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default 'auto'): Acceleration structure; the picture is the same.
----@field fog? gr.fog fog (a fog; default none): A fog.
----@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Caustics: number of photons (default 200000) and radius of the disc that each one lights (default: from their density).
----@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): gray does not trace rays that can change a pixel by less than this.
----@field integrator? 'whitted'|'path' integrator ('whitted'|'path'; default --integrator): The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp, else 64): Samples per pixel of integrator path; the option has priority.
----@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): Scattering events of a path: 0 shows emission only, 1 direct light.
----@field noise? number noise (a number, 1e-06 to 10; default --noise, else all samples): Relative standard error at which a tile of integrator path is finished; the option has priority.
----@field clamp? number clamp (a number, >= 0; default --clamp): Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker.
+---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
+---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
+---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path; the option has priority over the field.
+---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X; the option has priority over the field.
+---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
----@field denoise? boolean denoise (true or false; default --denoise): Whether integrator path removes noise; the option has priority.
----@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Light is multiplied by 2^exposure when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x from 0 on, the same for red, green and blue; the option has priority over a function.
----@field srgb? boolean srgb (true or false; default --srgb): Whether PNG files are encoded with the sRGB transfer function.
----@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): Whether colours are linear light or the numbers of files; auto: linear with integrator path.
----@field deep? boolean deep (true or false; default --deep): Whether PNG files have 16 bits per channel.
----@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted.
----@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of lines where objects, normals and depths change.
+---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
+---@field seed? integer seed (a whole number, 0 to 9.00719925474099e+15; default --seed): Seed of all random numbers; the option also seeds math.random in scripts.
+---@field accel? 'auto'|'grid'|'bvh'|'kdtree'|'none' accel ('auto'|'grid'|'bvh'|'kdtree'|'none'; default --accel): Acceleration structure; the picture is the same.
+---@field colour? 'auto'|'classic'|'linear' colour ('auto'|'classic'|'linear'; default --colour): linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; auto: linear with integrator path.
+---@field deep? boolean deep (true or false; default --deep): 16 bits per channel in PNG files.
+---@field style? 'none'|'ink'|'toon'|'gooch' style ('none'|'ink'|'toon'|'gooch'; default --style): Pictures that look like drawings, with integrator whitted; ink: lines on white paper; toon: a few levels of light; gooch: cool to warm colours.
+---@field line_width? number line_width (a number, 0 to 32, in pixels; default --line-width): Width of the lines where objects, normals and depths change.
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
----@field bloom? number bloom (a number, 0 to 1; default --bloom): Weight of the light above white that spreads around it.
----@field vignette? number vignette (a number, 0 to 1; default --vignette): Darkens the corners; with 1 they have a quarter of their light.
----@field gray? boolean gray (true or false; default --gray): Whether the picture is its luminance.
----@field edges? boolean edges (true or false; default --edges): Whether PNG files show the edges of the picture, white on black.
----@field fxaa? boolean fxaa (true or false; default --fxaa): Whether the edges in PNG files are smoothed.
----@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Pattern by which PNG files are rounded to 8 bits.
+---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
+---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue, over which the option has priority.
+---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
+---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
+---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.
+---@field gray? boolean gray (true or false; default --gray): A gray picture: the luminance.
+---@field edges? boolean edges (true or false; default --edges): A picture of the edges of the picture, white on black (Sobel); PNG files only.
+---@field fxaa? boolean fxaa (true or false; default --fxaa): Smooth the edges of the finished picture (FXAA); PNG files only.
+---@field dither? 'none'|'ordered'|'blue' dither ('none'|'ordered'|'blue'; default --dither): Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.
+---@field caustics? integer|{photons?: integer, radius?: number} caustics (a number of photons or {photons = ..., radius = ...}; default --caustics): Trace N photons for caustics, the light that glass and mirrors focus; 0: none. A field may also have the radius of the disc that each photon lights (default: from their density).
+---@field fog? gr.fog fog (a fog; default none): A fog.
 ---@field projection? 'perspective'|'orthographic'|'fisheye'|'panorama' projection ('perspective'|'orthographic'|'fisheye'|'panorama'; default 'perspective'): Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude.
 ---@field view_height? number view_height (a number, > 0; default 2): Height of an orthographic picture, in units of the scene.
 ---@field angle? number angle (a number, > 0 and <= 360, in degrees; default 180): Full angle of a fisheye across the height.

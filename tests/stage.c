@@ -1,7 +1,7 @@
 /* See stage.h. */
 #include "tests/stage.h"
 
-#include "render/aov.h"
+#include "film/aov.h"
 #include "tests/harness.h"
 
 #include <stdlib.h>

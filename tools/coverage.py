@@ -22,7 +22,7 @@ with open(os.path.join(ROOT, "Makefile")) as makefile:
 CATEGORIES = {
     "binding": r"src/(sandbox|record|call|compat|script)/",
     "sandbox": r"src/host/confine\.c|src/base/path_policy\.c|src/sandbox/(libraries|limits|protect|files|streams)\.c",
-    "checkpoint": r"src/render/tile_file\.c|src/output/checkpoint\.c",
+    "checkpoint": r"src/film/tile_file\.c|src/output/checkpoint\.c",
     "readers": r"src/formats/|src/image/(png_read|jpeg_read|float_read|exr)\.c",
 }
 ALL_LINES, ALL_BRANCHES = 95.0, 90.0

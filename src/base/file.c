@@ -193,14 +193,6 @@ bool file_version_of(const char *path, const struct file_version *known, struct 
     return ok;
 }
 
-bool file_version_without_content(const char *path, struct file_version *out) {
-    struct stat status;
-    bool ok = stat(path, &status) == 0 && S_ISREG(status.st_mode);
-    if (ok)
-        *out = version_of(&status);
-    return ok;
-}
-
 bool file_digest(const char *path, struct digest *digest) {
     struct stat status;
     char name[64];

@@ -80,8 +80,6 @@ void file_set_listener(const struct file_listener *listener);
 /* The current version of the file with this name; false: it cannot be read. `known` (or NULL): if size and time equal
  * its own, the content is assumed equal, too. */
 bool file_version_of(const char *path, const struct file_version *known, struct file_version *out);
-/* The same without its content; false: there is no regular file. */
-bool file_version_without_content(const char *path, struct file_version *out);
 /* For functions outside of file.c that search files by name. */
 void file_note_search(void);
 /* Notes the content of an open regular file without moving its position. For readers beside file_map. */

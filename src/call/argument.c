@@ -7,9 +7,9 @@
 #include "call/display_colour.h"
 #include "math/range.h"
 #include "record/record.h"
-#include "render/settings.h"
 #include "sandbox/hints.h"
 #include "sandbox/suggestion.h"
+#include "settings/settings.h"
 
 #include <assert.h>
 #include <lauxlib.h>

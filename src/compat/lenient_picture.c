@@ -4,8 +4,8 @@
 
 #include "compat/lenient.h"
 #include "math/elementary.h"
-#include "render/settings.h"
 #include "scene/node_bounds.h"
+#include "settings/settings.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,6 +2,8 @@
  * fails as "cancelled", which ends the scripts. */
 #include "host/channel_services.h"
 
+#include "viewer/preview_messages.h"
+
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -71,9 +73,8 @@ static bool link_reply(void *context, const struct preview_reply *reply, struct 
     struct channel_services *link = context;
     struct message message;
     if (!channel_send(&link->channel, MESSAGE_PREVIEW_REPLY, reply, sizeof *reply, -1) ||
-        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || message.kind != MESSAGE_PREVIEW_COMMAND)
+        channel_receive(&link->channel, &message) != CHANNEL_MESSAGE || !preview_command_read(&message, command))
         return nobody_there(link, error);
-    *command = message.body.command;
     return attach_large(link, message.descriptor, command, error);
 }
 

@@ -8,6 +8,8 @@
 #define _GNU_SOURCE
 #include "host/confine.h"
 
+#include "script/script.h"
+
 #include "base/fault.h"
 #include "base/file.h"
 #include "base/path_policy.h"

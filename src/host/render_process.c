@@ -8,16 +8,15 @@
 #include "base/mem.h"
 #include "base/pool.h"
 #include "base/terminal_text.h"
+#include "denoise/denoise.h"
+#include "film/aov.h"
+#include "film/path_film.h"
 #include "image/image.h"
 #include "inspect/inspect.h"
 #include "output/picture_files.h"
 #include "output/progress.h"
-#include "render/aov.h"
-#include "render/denoise.h"
 #include "render/overlay.h"
-#include "render/path_film.h"
 #include "render/render.h"
-#include "scene/scene_digest.h"
 #include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
@@ -34,8 +33,8 @@ static bool is_cancelled(void *context) {
     return atomic_load(&process->services->control->cancel) == CANCEL_ALL;
 }
 
-/* The supervisor writes the files of a frame while the script and the digest of the next one run. Whatever could show
- * the difference waits: reading files, printing, the next picture, the end of the script. */
+/* The supervisor writes the files of a frame while the script of the next one runs. Whatever could show the difference
+ * waits: reading files, printing, the next picture, the end of the script. */
 static void wait_for_files(void *context) {
     const struct render_process *process = context;
     if (process->services->wait)
@@ -296,27 +295,15 @@ static bool reserve_memory(struct render_process *process, const struct picture_
 static struct picture_request picture_request_of(const struct options *options, const struct render_job *job,
                                                  struct frame frame) {
     static const struct tone_table no_table = {{0}};
-    const struct finish *finish = &job->settings.finish;
-    const struct tone *tone = &job->settings.tone;
+    const struct tone_table *table = job->settings.tone.table;
     return (struct picture_request){.full_width = job->width,
                                     .full_height = job->height,
-                                    .exposure = tone->exposure,
-                                    .curve = (uint32_t)tone->curve,
-                                    .srgb = tone->srgb,
-                                    .tone_table = tone->table ? *tone->table : no_table,
-                                    .deep = job->settings.deep,
-                                    .bloom = finish->bloom,
-                                    .vignette = finish->vignette,
-                                    .gray = finish->gray,
-                                    .edges = finish->edges,
-                                    .fxaa = finish->fxaa,
-                                    .dither = (uint32_t)finish->dither,
+                                    .settings = job->settings,
+                                    .tone_table = table ? *table : no_table,
                                     .record = render_record(&job->settings),
                                     .layers = job->settings.aov,
                                     .in_window = options->window,
-                                    .overlay = (uint32_t)job->settings.overlay,
                                     .camera = job->camera,
-                                    .lens = job->settings.lens,
                                     .frame = frame,
                                     .check = options->check || is_asked(options)};
 }
@@ -331,22 +318,17 @@ static void add_rim(struct picture_request *asked, uint32_t rim) {
     asked->height = shown.y1 + (below > rim ? rim : below) - asked->y0;
 }
 
-/* The digest of a frame; zero: the frame is always rendered. With --lenient, scripts change their scene for a picture.
- * */
+/* Of a frame that a later one may be equal to; else zero. With --lenient, scripts change their scene for a picture. */
 static struct digest digest_of_frame(const struct picture_work *work) {
-    const struct options *options = work->process->options;
-    const struct render_request *request = work->request;
-    const struct scene_content content = {.scene = request->scene,
-                                          .root = request->root,
-                                          .lights = request->lights,
-                                          .light_count = request->light_count,
-                                          .sky = &request->sky,
-                                          .fog = work->job.fog};
-    struct digest_sum sum = {.count = 0};
-    if (!is_frame(work) || work->asked.check || options->no_copies || options->script.lenient || request->changed)
-        return (struct digest){0};
-    render_digest_add(&work->job, &sum);
-    return scene_digest_add(&content, &sum) ? digest_sum_end(&sum) : (struct digest){0};
+    bool never = !is_frame(work) || work->asked.check || work->asked.in_window || work->request->changed ||
+                 work->process->options->script.lenient;
+    return never ? (struct digest){0} : render_request_digest(work->request);
+}
+
+/* The last rendered picture was such a frame, with an equal request, and no node has changed since. */
+static bool repeats_frame(const struct picture_work *work) {
+    return !digest_is_zero(work->shows) && digest_equal(work->shows, work->process->rendered) &&
+           !scene_has_changes(work->request->scene);
 }
 
 /* Names the picture and creates its film. *already: there is nothing to do. */
@@ -383,7 +365,8 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return error_no_memory(error, "the list of files that were read");
     if (!reserve_memory(process, asked, &job->settings, error))
         return false;
-    asked->shows = digest_of_frame(work);
+    work->shows = digest_of_frame(work);
+    asked->repeats = repeats_frame(work);
     if (!settle(process, error))
         return false;
     if (!process->services->begin(process->services->context, asked, film, already, error)) {
@@ -459,6 +442,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
     const struct options *options = process->options;
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
+    process->rendered = (struct digest){0};
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
     if (!early)
         clear_picture(&work);
@@ -468,6 +452,8 @@ static bool render_job_run(struct render_process *process, const struct render_r
         services->abandon(services->context);
     if (early)
         clear_picture(&work);
+    if (ok)
+        process->rendered = work.shows;
     return ok;
 }
 

@@ -22,6 +22,7 @@ struct render_process {
     struct arena job;   /* memory of the current picture */
     struct assets assets;
     struct world_cache world_cache;  /* of the frame before, in an animation */
+    struct digest rendered;          /* picture_work.shows of the last picture that was rendered */
     struct scene_writer *errors;     /* what scripts write to standard error */
     uint64_t pictures;               /* of this run of the scripts, including those that cannot be rendered */
     uint64_t played;                 /* those of them that are frames in a window: nothing is written */
@@ -49,8 +50,9 @@ struct picture_work {
     struct picture_request asked;
     struct film film;
     struct world world;
-    bool built; /* the world is complete */
-    bool ok;    /* the film is */
+    struct digest shows; /* of a frame, without its nodes; zero: none is equal to it */
+    bool built;          /* the world is complete */
+    bool ok;             /* the film is */
     struct picture_report report;
     char name[NAME_LIMIT]; /* in messages: that of the script, with the number of a frame */
 };

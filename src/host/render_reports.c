@@ -2,8 +2,8 @@
 #include "host/render_process_internal.h"
 
 #include "base/hash.h"
+#include "film/aov.h"
 #include "image/image.h"
-#include "render/aov.h"
 #include "session/text.h"
 
 #include <stdio.h>

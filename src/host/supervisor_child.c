@@ -160,7 +160,6 @@ bool supervisor_start_child(struct supervisor *supervisor, struct error *error) 
         run_as_child(supervisor, ends[1], parent);
     int saved = errno;
     supervisor->had_child = true;
-    picture_copies_clear(&supervisor->output.copies); /* their digests are of the previous process */
     supervisor->script.used = 0;
     supervisor->script.frames = 0;
     supervisor->script.out_of_time = supervisor->stall.found = false;

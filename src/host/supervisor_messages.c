@@ -308,6 +308,7 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
 /* A message out of turn (a second picture before the first is finished ...) is not answered: it breaks the protocol. */
 void supervisor_take_message(struct supervisor *supervisor, const struct message *message) {
     const struct picture *current = &supervisor->output.current;
+    struct preview_reply reply;
     struct error ignored;
     switch (message->kind) {
     case MESSAGE_LINE:
@@ -329,9 +330,10 @@ void supervisor_take_message(struct supervisor *supervisor, const struct message
         answer_done(supervisor, message);
         return;
     case MESSAGE_PREVIEW_REPLY:
-        if (!current->open || !supervisor->window || supervisor->viewer.pass.state == PASS_WAITING)
+        if (!current->open || !supervisor->window || supervisor->viewer.pass.state == PASS_WAITING ||
+            !preview_reply_read(message, &reply))
             break;
-        viewer_take_reply(&supervisor->viewer, &message->body.reply, progress_clock());
+        viewer_take_reply(&supervisor->viewer, &reply, progress_clock());
         if (supervisor->deadline > 0)
             end_picture(supervisor, true);
         return;

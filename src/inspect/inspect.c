@@ -102,8 +102,8 @@ bool inspect_pixels(const struct inspected *picture, const uint32_t (*pixels)[2]
             return error_set(error, ERROR_USAGE, "--pixel %u,%u is not in the picture of %u x %u", pixels[i][0],
                              pixels[i][1], job->width, job->height);
     }
-    bool ok =
-        render_pixels(&with_all_samples, picture->pool, (struct pixel_list){pixels, count}, report_pixel, &trace_context, error);
+    bool ok = render_pixels(&with_all_samples, picture->pool, (struct pixel_list){pixels, count}, report_pixel,
+                            &trace_context, error);
     text_writer_flush(writer);
     return ok;
 }

@@ -2,8 +2,35 @@
 #ifndef GRAY_INSPECT_PICK_H
 #define GRAY_INSPECT_PICK_H
 
-#include "session/messages.h"
+#include "math/affine.h"
+#include "render/render.h"
+#include "scene/change_material.h"
 #include "world/path.h"
+
+/* The result of a click. */
+enum { PICK_PATH = 512, PICK_NAME = 64 };
+
+struct picked {
+    bool hit;
+    char path[PICK_PATH]; /* the names and creation numbers from the root to the node */
+    char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
+    uint32_t serial, parent_serial; /* of the node, and of the one above it */
+    char parent_name[PICK_NAME];
+    uint64_t route;                        /* to it (viewer/view_overlay_internal.h); 0: not known */
+    uint64_t solid;                        /* of an operand: the route to the solid; else 0 */
+    uint32_t levels;                       /* nodes above it */
+    int32_t up;                            /* as requested, limited by the number of nodes */
+    uint32_t below;                        /* operands below it on the path to the surface that was hit */
+    uint32_t material_serial;              /* of the base material, which can be changed; 0: the default gray */
+    double inputs[MATERIAL_PART_PARTS][3]; /* of that base */
+    uint32_t idle_parts; /* bit k: part k changes nothing at the point, as glTF's metalness replaces ks */
+    bool can_own;        /* a shape was hit and selected: it can be given a material of its own */
+    double distance;     /* from the eye */
+    struct vec3 position, normal;
+    bool has_box;
+    struct vec3 corners[8];          /* of a box around the node: bit 0 of the number is its first axis, and so on */
+    struct affine world_from_parent; /* the space of the node */
+};
 
 /* A name cut to this size; control characters become '?'. */
 void pick_copy_name(char out[PICK_NAME], const char *text);

@@ -13,6 +13,7 @@
 #include "base/list.h"
 #include "base/pool.h"
 #include "light/light.h"
+#include "settings/settings.h"
 
 /* Bounds of a light, or of several together. */
 struct light_bounds {
@@ -36,13 +37,6 @@ struct light_bounds light_bounds_join(const struct light_bounds *a, const struct
 /* An estimate of its contribution at a surface with that normal (both sides; {0,0,0}: at a point without a surface). 0:
  * none. */
 double light_bounds_importance(const struct light_bounds *bounds, struct vec3 point, struct vec3 normal);
-
-/* How a light is chosen. UNIFORM and POWER are there to be compared with. */
-#define LIGHT_CHOICES(X)                                                                                               \
-    X(LIGHT_CHOICE_TREE, "tree")                                                                                       \
-    X(LIGHT_CHOICE_POWER, "power")                                                                                     \
-    X(LIGHT_CHOICE_UNIFORM, "uniform")
-enum light_choice { LIGHT_CHOICES(LIST_MEMBER) };
 
 /* A light, and of a mesh the triangle; 0 of others. */
 struct light_part {

@@ -9,6 +9,7 @@
 #include "base/list.h"
 #include "geometry/hit.h"
 #include "material/texture.h"
+#include "settings/settings.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -30,12 +31,6 @@ enum { MATERIAL_DEPTH = 1000 };
     X(MATERIAL_OPENPBR, "openpbr")
 enum material_kind { MATERIAL_KINDS(LIST_MEMBER) };
 enum { MATERIAL_KIND_COUNT = LIST_COUNT(MATERIAL_KINDS) };
-
-/* The highlight of the picture. */
-#define SPECULAR_KINDS(X)                                                                                              \
-    X(SPECULAR_PHONG, "phong")                                                                                         \
-    X(SPECULAR_BLINN, "blinn")
-enum specular_kind { SPECULAR_KINDS(LIST_MEMBER) };
 
 /* The default height: white is this fraction of the size of the image on the surface above black. */
 #define BUMP_HEIGHT 0.02

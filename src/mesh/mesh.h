@@ -14,6 +14,7 @@
 #include "math/affine.h"
 #include "math/box.h"
 #include "math/ray.h"
+#include "settings/settings.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -40,16 +41,6 @@ struct mesh_input {
     const uint32_t *face_material; /* material slot per face, or NULL */
     const float (*colours)[3];     /* of the vertices, or NULL */
 };
-
-/* The search structure over primitives and inside meshes; the results are the same. AUTO: the fastest; GRID: the
- * uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tested. */
-#define ACCEL_KINDS(X)                                                                                                 \
-    X(ACCEL_AUTO, "auto")                                                                                              \
-    X(ACCEL_GRID, "grid")                                                                                              \
-    X(ACCEL_BVH, "bvh")                                                                                                \
-    X(ACCEL_KDTREE, "kdtree")                                                                                          \
-    X(ACCEL_NONE, "none")
-enum accel_kind { ACCEL_KINDS(LIST_MEMBER) };
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
  * drops degenerate faces without a message (counted). NULL and error on no memory. Deterministic. Not more than 2^31

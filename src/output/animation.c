@@ -7,7 +7,7 @@
 #include "output/encoder_internal.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
-#include "render/frame.h"
+#include "settings/frame.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -23,8 +23,6 @@ void animation_restart(struct animation *animation) {
     for (uint32_t index = 0; index < animation->count; index++)
         mem_free((void *)(uintptr_t)animation->frames[index]);
     animation->count = animation->last = 0;
-    mem_free(animation->last_frame);
-    animation->last_frame = NULL;
 }
 
 bool animation_streams(const struct animation *animation, const struct picture_request *request) {
@@ -64,7 +62,7 @@ bool animation_begin(struct animation *animation, const struct picture_request *
     double rate = options->script.frames.rate > 0 ? options->script.frames.rate : FRAME_RATE_DEFAULT;
     animation->rate = request->frame.number > 0 ? request->frame.rate : rate;
     animation->loops = request->frame.number > 0 ? request->frame.loops : options->script.frames.loops;
-    animation->srgb = request->srgb != 0;
+    animation->srgb = request->settings.tone.srgb;
     animation->width = request->shown.x1 - request->shown.x0;
     animation->height = request->shown.y1 - request->shown.y0;
     animation->last = number;
@@ -123,24 +121,10 @@ bool animation_put(struct animation *animation, const struct picture *picture, s
     if (ok) {
         y4m_frame(rgb, pixels, frame);
         ok = file_output_write(&animation->stream, frame, Y4M_FRAME_HEAD + 3 * pixels, error);
-        mem_free(animation->last_frame);
-        animation->last_frame = frame;
-        animation->last_shows = picture->request.shows;
-        animation->last_number = picture->request.frame.number;
-        frame = NULL;
     }
     mem_free(rgb);
     mem_free(frame);
     return ok;
-}
-
-bool animation_repeat(struct animation *animation, const struct picture_request *request, bool *done, uint32_t *number,
-                      struct error *error) {
-    size_t pixels = (size_t)animation->width * animation->height;
-    *number = animation->last_number;
-    *done =
-        !digest_is_zero(request->shows) && animation->last_frame && digest_equal(animation->last_shows, request->shows);
-    return !*done || file_output_write(&animation->stream, animation->last_frame, Y4M_FRAME_HEAD + 3 * pixels, error);
 }
 
 /* --- files --- */

@@ -26,9 +26,6 @@ struct animation {
     bool borrowed;             /* the frames are files of the user */
     struct file_lock lock;     /* on the folder of the frames */
     struct file_output stream; /* Y4M on standard output, once its first frame is there */
-    uint8_t *last_frame;       /* of the stream: its bytes, for writing them again; owned */
-    struct digest last_shows;  /* picture_request.shows of it */
-    uint32_t last_number;
 };
 
 void animation_init(struct animation *animation, const struct options *options, const struct picture_files *files);
@@ -46,10 +43,6 @@ bool animation_lock(struct animation *animation, struct error *error);
 bool animation_add(struct animation *animation, const char *name, struct error *error);
 /* Writes a frame of the stream; its rows are those of a PNG file. */
 bool animation_put(struct animation *animation, const struct picture *picture, struct error *error);
-/* Writes the previous frame again if this frame is equal to it. *done: it was written; *number: of the previous frame.
- * */
-bool animation_repeat(struct animation *animation, const struct picture_request *request, bool *done, uint32_t *number,
-                      struct error *error);
 /* Uses these PNG files as the frames; they are not removed. */
 bool animation_take_files(struct animation *animation, const char *const *names, uint32_t count, struct error *error);
 /* When all frames exist: writes the file and the contact sheet, and removes the frames unless they are to be kept. */

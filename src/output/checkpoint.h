@@ -1,10 +1,10 @@
 /* The checkpoint of a run. While pictures are rendered it writes from time to time all finished tiles, and those that
- * are begun, into one file (render/tile_file.h), and with --resume it restores the tiles of an earlier run. */
+ * are begun, into one file (film/tile_file.h), and with --resume it restores the tiles of an earlier run. */
 #ifndef GRAY_OUTPUT_CHECKPOINT_H
 #define GRAY_OUTPUT_CHECKPOINT_H
 
+#include "film/tile_file.h"
 #include "output/picture_files.h"
-#include "render/tile_file.h"
 #include "session/options.h"
 
 /* Zero value: no checkpoint is requested, and every call does nothing. */

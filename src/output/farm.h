@@ -6,7 +6,7 @@
 #ifndef GRAY_OUTPUT_FARM_H
 #define GRAY_OUTPUT_FARM_H
 
-#include "render/tile_file.h"
+#include "film/tile_file.h"
 #include "session/control.h"
 
 enum { FARM_MESSAGE_LIMIT = 2 * sizeof(struct tile_picture) + FILM_PACKED_LIMIT };

@@ -1,10 +1,10 @@
 /* The name of a layer comes before the extension of the picture, which selects the format of both. */
 #include "output/layers_internal.h"
 
+#include "film/aov.h"
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
-#include "render/aov.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 
 #include "base/file_output.h"
 #include "base/list.h"
+#include "film/film.h"
 #include "image/tone.h"
-#include "render/film.h"
 
 /* The formats of pictures, with their extensions. PICTURE_OTHER, the last one, has none: PNG under any other name. */
 #define PICTURE_FORMATS(X)                                                                                             \

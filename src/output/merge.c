@@ -4,8 +4,8 @@
 #include "output/merge.h"
 
 #include "base/mem.h"
+#include "film/path_film.h"
 #include "output/output_session.h"
-#include "render/path_film.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -117,7 +117,7 @@ static bool fill_film(const struct part *parts, size_t count, struct film *film,
 
 /* --denoise needs the features that only renders with --denoise record. */
 static bool check_denoise(const struct options *options, const struct tile_picture *picture, struct error *error) {
-    return options->settings.denoise == DENOISER_NONE || (path_film_parts(picture->record) & PATH_PART_FEATURES) ||
+    return !settings_denoise(&options->settings) || (path_film_parts(picture->record) & PATH_PART_FEATURES) ||
            error_set(error, ERROR_USAGE, "%.400s: its parts cannot be denoised: they were rendered without --denoise",
                      picture->name);
 }
@@ -131,16 +131,7 @@ static bool merge_picture(struct output_session *output, const struct part *part
                                       .width = first->width,
                                       .height = first->height,
                                       .shown = first->shown,
-                                      .exposure = first->tone.exposure,
-                                      .curve = (uint32_t)first->tone.curve,
-                                      .srgb = first->tone.srgb,
-                                      .deep = first->deep,
-                                      .bloom = first->finish.bloom,
-                                      .vignette = first->finish.vignette,
-                                      .gray = first->finish.gray,
-                                      .edges = first->finish.edges,
-                                      .fxaa = first->finish.fxaa,
-                                      .dither = (uint32_t)first->finish.dither,
+                                      .settings = first->settings,
                                       .record = first->record,
                                       .tone_table = first->tone_table};
     memcpy(request.file, first->name, sizeof request.file);

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/file_output.h"
-#include "render/denoise.h"
+#include "denoise/denoise.h"
 
 #include <stdbool.h>
 

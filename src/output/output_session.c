@@ -8,11 +8,11 @@
 #include "base/mem.h"
 #include "base/terminal_text.h"
 #include "base/version.h"
+#include "film/aov.h"
 #include "image/exr.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
 #include "output/statistics_internal.h"
-#include "render/aov.h"
 #include "session/text.h"
 
 #include <string.h>
@@ -145,13 +145,11 @@ static void describe_tiles(const struct output_session *output, struct picture *
     tiles->width = request->width;
     tiles->height = request->height;
     tiles->shown = request->shown;
-    tiles->tone = picture_tone(request);
-    tiles->deep = request->deep != 0;
-    tiles->finish = picture_finish(request);
+    tiles->settings = request->settings;
     tiles->record = request->record;
     tiles->shard = options->shards ? options->shard : 1;
     tiles->shards = options->shards ? options->shards : 1;
-    tiles->tone.table = NULL;
+    tiles->settings.tone.table = NULL;
     tiles->tone_table = request->tone_table;
     memcpy(tiles->name, picture->name, sizeof tiles->name);
 }
@@ -166,10 +164,16 @@ static bool allow_film(const struct output_session *output, size_t bytes, struct
                            size_words(script_picture_memory(&options->script), size));
 }
 
+static void close_picture(struct picture *picture) {
+    share_destroy(&picture->memory);
+    picture->open = false;
+}
+
 static bool make_film(struct output_session *output, struct picture *picture, struct error *error) {
     const struct picture_request *request = &picture->request;
     size_t bytes;
     char notice[256];
+    close_picture(&output->previous); /* no two films of frames in memory */
     if (!picture_film_size(request, &bytes, error) || !allow_film(output, bytes, error))
         return false;
     if (!share_create(&picture->memory, bytes, error))
@@ -247,17 +251,6 @@ static bool count_picture(struct output_session *output, const struct picture_re
     return true;
 }
 
-/* Its files are complete: equal frames can be copied from it. */
-static void remember(struct output_session *output, const struct picture *picture) {
-    const struct picture_request *request = &picture->request;
-    const struct finished_picture finished = {.shows = request->shows,
-                                              .number = frame_number(picture),
-                                              .order = picture->tiles.number,
-                                              .layers = request->layers & AOV_ALL,
-                                              .name = picture->name};
-    picture_copies_add(&output->copies, &output->files, &finished);
-}
-
 static bool write_picture(struct output_session *output, const struct picture *picture, struct error *error) {
     char name[NAME_LIMIT];
     if (animation_streams(&output->animation, &picture->request))
@@ -274,105 +267,50 @@ static bool write_timed(struct output_session *output, struct picture *picture, 
                                   : write_picture(output, picture, error);
     picture->write_seconds = progress_clock() - begun;
     picture->write_processor_seconds = progress_processor_clock() - worked;
-    if (ok)
-        remember(output, picture);
     return ok;
 }
 
-static void report_copy(struct output_session *output, uint32_t from) {
+/* The picture is equal to the previous one, which is written again under the new name. Its own request describes its
+ * film. In a farm the first rank decides. */
+static bool write_again(struct output_session *output, bool *already, struct error *error) {
     const struct picture *picture = &output->current;
+    struct picture *again = &output->previous;
     char line[NAME_LIMIT + 96];
+    if (!picture->request.repeats || !again->open || (output->farm && !farm_is_first(output->farm)))
+        return true;
     (void)snprintf(line, sizeof line, "%s%s: frame %u is a copy of frame %u", scene_mark(picture->name), picture->name,
-                   frame_number(picture), from);
+                   frame_number(picture), frame_number(again));
     output_report(output, LINE_DETAIL, line);
+    memcpy(again->name, picture->name, sizeof again->name);
+    memcpy(again->tiles.name, picture->name, sizeof again->tiles.name);
+    again->tiles.number = picture->tiles.number;
+    again->tiles.key = picture->tiles.key;
+    again->request.frame = picture->request.frame;
+    return *already = write_timed(output, again, error);
 }
 
-static const struct finished_picture *equal_picture(const struct output_session *output) {
-    const struct picture *picture = &output->current;
-    return picture_copies_find(&output->copies, &output->files, picture->request.shows, picture->name,
-                               picture->request.layers & AOV_ALL);
-}
-
-/* *already: the frame is equal to an earlier one, and its files have been copied. In a farm the first rank decides. */
-static bool copy_picture(struct output_session *output, const char *written, bool *already, struct error *error) {
-    const struct picture *picture = &output->current;
-    uint32_t number;
-    if (output->options->shards || (output->farm && !farm_is_first(output->farm)))
-        return true;
-    if (animation_streams(&output->animation, &picture->request)) {
-        if (!animation_repeat(&output->animation, &picture->request, already, &number, error))
-            return false;
-        if (*already)
-            report_copy(output, number);
-        return true;
-    }
-    const struct finished_picture *earlier = equal_picture(output);
-    if (!earlier)
-        return true;
-    if (!picture_copies_write(earlier, &output->files, picture->name, error) ||
-        !checkpoint_note_written(&output->checkpoint, picture->tiles.number, &picture->tiles.key, written, error))
-        return false;
-    report_copy(output, earlier->number);
-    *already = true;
-    return true;
-}
-
-/* With --shard: if an earlier picture is equal, copies the tiles of its part into the film and writes the film. If the
- * part does not fit, this is no error: the frame is rendered. */
-static bool copy_part(struct output_session *output, bool *already, struct error *error) {
-    struct picture *picture = &output->current;
-    const struct finished_picture *earlier = output->options->shards ? equal_picture(output) : NULL;
-    struct error ignored;
-    char part[NAME_LIMIT];
-    uint32_t restored, twice;
-    if (!earlier || !picture_files_written(&output->files, earlier->name, part, &ignored))
-        return true;
-    struct tile_file *file = open_part(part);
-    if (!file)
-        return true;
-    struct tile_picture *have = &file->picture;
-    bool fits =
-        file->has_picture && have->whole && have->shard == picture->tiles.shard && have->number == earlier->order;
-    have->number = picture->tiles.number;
-    fits = fits && !tile_picture_difference(have, &picture->tiles);
-    if (fits)
-        tile_file_restore(file, &picture->film, &restored, &twice);
-    close_part(file);
-    if (!fits)
-        return true;
-    *already = write_timed(output, picture, error);
-    share_destroy(&picture->memory);
-    if (*already)
-        report_copy(output, earlier->number);
-    return *already;
-}
-
-/* Uses existing results for the picture: a part, a file of an earlier run or of an equal picture, tiles of a checkpoint
- * or of the farm. */
+/* Uses existing results for the picture: a part, a file of an earlier run, the film of an equal frame, tiles of a
+ * checkpoint or of the farm. */
 static bool prepare_film(struct output_session *output, const char *written, bool *already, struct error *error) {
     struct picture *picture = &output->current;
     char notice[256];
     *already = part_is_written(output, written);
-    if (*already) {
-        remember(output, picture);
+    if (*already)
         return true;
-    }
     if (!checkpoint_open(&output->checkpoint, picture->name, notice, error))
         return false;
     if (notice[0] != '\0')
         output_report(output, LINE_NOTICE, notice);
     if (!checkpoint_has_written(&output->checkpoint, output->pictures, &picture->tiles.key, written, already, error))
         return false;
-    if (*already)
-        remember(output, picture);
-    else if (!copy_picture(output, written, already, error))
+    bool existed = *already;
+    if (!existed && !write_again(output, already, error))
         return false;
-    if ((!*already && (!make_film(output, picture, error) || !copy_part(output, already, error))) ||
-        !join_farm(output, already, error))
+    if ((!*already && !make_film(output, picture, error)) || !join_farm(output, already, error))
         return false;
     if (*already)
         picture_files_own(&output->files, written);
-    return !*already || output->options->shards || animation_add(&output->animation, written, error);
+    return !existed || output->options->shards || animation_add(&output->animation, written, error);
 }
 
 /* The picture is open from here on: progress and displays show it. */
@@ -432,7 +370,7 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!animation_begin(&output->animation, request, number_of(output, request), error))
         return false;
     picture->request = *request;
-    picture->request.deep = request->deep && output->options->animation == ANIMATION_NONE;
+    picture->request.settings.deep = request->settings.deep && output->options->animation == ANIMATION_NONE;
     picture->written = output->plays;
     picture->write_seconds = picture->write_processor_seconds = 0;
     if (request->check) {
@@ -449,11 +387,6 @@ bool output_begin(struct output_session *output, const struct picture_request *r
     if (!*already)
         start_picture(output);
     return true;
-}
-
-static void close_picture(struct picture *picture) {
-    share_destroy(&picture->memory);
-    picture->open = false;
 }
 
 /* The picture whose tiles a checkpoint would hold, or NULL. */
@@ -612,6 +545,12 @@ static void warn_of_clamped(struct output_session *output, const struct picture_
     output_report(output, LINE_WARNING, line);
 }
 
+/* The progress has pointers into the picture, so it must have ended. */
+static void move_picture(struct picture *to, struct picture *from) {
+    *to = *from;
+    memset(from, 0, sizeof *from);
+}
+
 bool output_done(struct output_session *output, const struct picture_report *report, struct error *error) {
     struct error gone;
     if (leave_to_first_rank(output))
@@ -629,11 +568,9 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         return true;
     }
     if (one_name_for_all(output) && !animation_streams(&output->animation, &output->current.request)) {
-        /* The progress has pointers into the picture, so it must end before the picture moves. */
         progress_end(&output->progress, PROGRESS_WRITTEN);
         output->held_report = *report;
-        output->held = output->current;
-        memset(&output->current, 0, sizeof output->current);
+        move_picture(&output->held, &output->current);
         return true;
     }
     bool ok = write_timed(output, &output->current, error);
@@ -642,6 +579,8 @@ bool output_done(struct output_session *output, const struct picture_report *rep
         report_statistics(output, &output->current, report);
     else
         keep_unwritten(output, &output->current, error);
+    if (ok && (output->current.request.frame.number > 0 || output->options->animation != ANIMATION_NONE))
+        move_picture(&output->previous, &output->current);
     close_picture(&output->current);
     return ok;
 }
@@ -661,8 +600,8 @@ void output_show_progress(struct output_session *output) {
     report_display(output, display_step(&output->display, progress_clock(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
     if (output->current.open && !output->current.request.in_window && progress_wants_writing_time(&output->progress))
-        progress_note_writing_time(&output->progress, picture_writing_time(output->options, &output->current,
-                                                                                output->progress.threads));
+        progress_note_writing_time(&output->progress,
+                                   picture_writing_time(output->options, &output->current, output->progress.threads));
 }
 
 void output_report(struct output_session *output, enum line_kind kind, const char *text) {
@@ -714,6 +653,7 @@ void output_set_interrupt(struct output_session *output, const struct file_inter
 
 bool output_write_held(struct output_session *output, struct error *error) {
     bool ok = true;
+    close_picture(&output->previous); /* it is the end of a run */
     if (output->held.open && !output->several_under_one_name)
         ok = write_timed(output, &output->held, error);
     if (output->held.open && ok)
@@ -729,7 +669,6 @@ void output_restart(struct output_session *output) {
     output->pictures = 0;
     output->plays = false;
     animation_restart(&output->animation);
-    picture_copies_clear(&output->copies);
     output->files.quota.written = 0;
     output->several_under_one_name = output->interrupted = false;
 }
@@ -761,7 +700,6 @@ bool output_finish(struct output_session *output, bool all_well, struct error *e
         output_report(output, LINE_WARNING, line);
     }
     close_animation(output);
-    picture_copies_clear(&output->copies);
     picture_files_destroy(&output->files);
     display_close(&output->display);
     return ok;

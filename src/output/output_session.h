@@ -7,7 +7,6 @@
 #include "output/checkpoint.h"
 #include "output/display.h"
 #include "output/farm.h"
-#include "output/picture_copies.h"
 #include "output/picture_files.h"
 #include "output/picture_write.h"
 #include "output/progress.h"
@@ -29,10 +28,10 @@ struct output_session {
     struct checkpoint checkpoint; /* the checkpoint */
     struct animation animation;   /* of the pictures */
     struct picture_files files;   /* names, and what they may replace */
-    struct picture_copies copies; /* of frames that are finished */
     unsigned pictures;            /* begun so far, those under --check too */
     struct picture current;       /* being made */
     struct picture held;          /* finished under -o without %d: written when no second picture came */
+    struct picture previous;      /* the last frame, for writing it again under the name of an equal next one */
     struct picture_report held_report;
     bool several_under_one_name;
     bool plays;       /* the last picture was a frame in a window */

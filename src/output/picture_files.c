@@ -3,11 +3,11 @@
 #include "output/picture_files.h"
 
 #include "base/error.h"
+#include "film/aov.h"
+#include "film/tile_file.h"
 #include "image/animation.h"
 #include "image/image.h"
 #include "output/layers_internal.h"
-#include "render/aov.h"
-#include "render/tile_file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -253,6 +253,12 @@ bool picture_files_checkpoint(const struct picture_files *files, const char *nam
 
 /* Checks. */
 
+/* A file named after a picture; rules NULL: it is not written. */
+struct picture_file {
+    char path[NAME_LIMIT];
+    const struct file_rules *rules;
+};
+
 /* The file with this number of those that a picture may have. */
 static bool name_file(const struct picture_files *files, const char *name, uint32_t layers, int number,
                       struct picture_file *file, struct error *error) {
@@ -313,16 +319,4 @@ bool picture_files_check(struct picture_files *files, const char *name, uint32_t
             return files->options->output ? error_elsewhere(error) : false;
     }
     return true;
-}
-
-/* The files of a finished picture, so without that of --partial. */
-bool picture_files_before(const struct picture_files *files, const char *name, uint32_t layers, int *number,
-                          struct picture_file *file) {
-    struct error ignored;
-    if (*number > FILES_LIMIT)
-        *number = FILES_LIMIT;
-    while (--*number >= 0)
-        if (*number != PARTIAL_FILE && name_file(files, name, layers, *number, file, &ignored) && file->rules)
-            return true;
-    return false;
 }

@@ -68,15 +68,4 @@ bool picture_files_checkpoint(const struct picture_files *files, const char *nam
 bool picture_files_check(struct picture_files *files, const char *name, uint32_t layers, const char *checkpoint,
                          bool check_checkpoint, struct error *error);
 
-/* A file named after a picture; rules NULL: it is not written. */
-struct picture_file {
-    char path[NAME_LIMIT];
-    const struct file_rules *rules;
-};
-/* Iterates over the files of a finished picture, those beside it first; layers as above. *number is INT_MAX at first.
- * False: there are no more. The same number means the same kind of file for every picture with these layers and this
- * format. */
-bool picture_files_before(const struct picture_files *files, const char *name, uint32_t layers, int *number,
-                          struct picture_file *file);
-
 #endif

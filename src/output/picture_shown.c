@@ -5,16 +5,18 @@
 #include "output/picture_shown_internal.h"
 
 #include "base/mem.h"
+#include "denoise/film_denoise.h"
+#include "film/aov.h"
+#include "film/path_film.h"
 #include "output/oidn_internal.h"
-#include "render/aov.h"
-#include "render/path_film.h"
 
 #include <string.h>
 
 static bool denoise_film(const struct film *film, const struct denoising *by, float (*out)[3], struct error *error) {
     struct film copy = *film;
-    const struct denoise_source source = path_film_denoise_source(&copy);
+    const struct denoise_source source = film_denoise_source(&copy);
     switch (by->denoiser) {
+    case DENOISER_AUTO:
     case DENOISER_NONE:
         return true;
     case DENOISER_GRAY:
@@ -39,7 +41,7 @@ static bool is_whole(const struct film *film, const struct film_rectangle *part)
            part->y1 - part->y0 == film->height;
 }
 
-/* The arrays of the film besides its pixels that the part has: values of marks (render/film.h), and layers. */
+/* The arrays of the film besides its pixels that the part has: values of marks (film/film.h), and layers. */
 static bool cut_film(struct picture_shown *out, const struct film *film, const struct film_rectangle *part) {
     size_t width = part->x1 - part->x0, height = part->y1 - part->y0, count = aov_layers(film->layer_mask);
     size_t floats = film->record.marks ? film->record.floats : 0;
@@ -77,7 +79,7 @@ static struct finish_area area_of(const struct film *film) {
 static bool make_light(const struct picture *picture, const struct denoising *by, float (*out)[3],
                        struct error *error) {
     const struct film *film = &picture->film;
-    const struct finish finish = picture_finish(&picture->request);
+    const struct finish finish = picture->request.settings.finish;
     const struct finish_area area = area_of(film);
     if (by->denoiser == DENOISER_NONE)
         memcpy(out, film->pixels, (size_t)film->width * film->height * sizeof *out);
@@ -85,12 +87,12 @@ static bool make_light(const struct picture *picture, const struct denoising *by
         return false;
     else
         path_film_draw_lines(film, out);
-    return finish_light(&finish, picture->request.exposure, &area, out, error);
+    return finish_light(&finish, picture->request.settings.tone.exposure, &area, out, error);
 }
 
 /* Finishes the numbers of a PNG file. */
 static bool make_display(const struct picture *picture, const float (*light)[3], float (*out)[3], struct error *error) {
-    const struct finish finish = picture_finish(&picture->request);
+    const struct finish finish = picture->request.settings.finish;
     const struct finish_area area = area_of(&picture->film);
     const struct tone tone = picture_tone(&picture->request);
     for (size_t i = 0; i < (size_t)area.width * area.height; i++) {
@@ -117,7 +119,7 @@ static void *cut_away(void *whole, const struct film *film, const struct film_re
 static bool make_shown(struct picture_shown *out, const struct picture *picture, const struct film_rectangle *part,
                        const struct denoising *by, struct error *error) {
     const struct film *film = &picture->film;
-    const struct finish finish = picture_finish(&picture->request);
+    const struct finish finish = picture->request.settings.finish;
     size_t size = (size_t)film->width * film->height * sizeof(struct film_pixel);
     bool displays = finish_changes_display(&finish), whole = is_whole(film, part);
     out->pixels = mem_alloc(size);
@@ -139,7 +141,7 @@ static bool make_shown(struct picture_shown *out, const struct picture *picture,
 
 struct picture_shown *picture_shown_make(const struct picture *picture, struct denoising by, struct error *error) {
     const struct film *film = &picture->film;
-    const struct finish finish = picture_finish(&picture->request);
+    const struct finish finish = picture->request.settings.finish;
     struct film_rectangle part = picture->request.shown;
     if (part.x1 == 0)
         part = (struct film_rectangle){film->x0, film->y0, film->x0 + film->width, film->y0 + film->height};

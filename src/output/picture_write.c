@@ -3,28 +3,19 @@
 
 #include "base/clock.h"
 #include "base/mem.h"
+#include "denoise/denoise.h"
+#include "film/path_film.h"
 #include "image/exr.h"
 #include "image/float_write.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
-#include "render/denoise.h"
-#include "render/path_film.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-
-struct finish picture_finish(const struct picture_request *request) {
-    return (struct finish){.bloom = request->bloom,
-                           .vignette = request->vignette,
-                           .gray = request->gray != 0,
-                           .edges = request->edges != 0,
-                           .fxaa = request->fxaa != 0,
-                           .dither = (enum dither)request->dither};
-}
 
 struct rows {
     const struct film *film;
@@ -110,13 +101,13 @@ static double packing_time(const struct picture *picture) {
     struct png_source source = {FILM_TILE, FILM_TILE * packing_sample.count, packing_sample_row, NULL, &packing_sample,
                                 false};
     double seconds = packing_sample.count > 0 ? png_write_trial(&source) : -1;
-    return (picture->request.deep ? 2 : 1) * seconds / fmax(source.width * source.height, 1);
+    return (picture->request.settings.deep ? 2 : 1) * seconds / fmax(source.width * source.height, 1);
 }
 
 /* Seconds for finishing a pixel, which one thread does: of a picture of finished tiles, one below the other. 0: there
  * is nothing to do, or no memory. */
 static double finishing_time(const struct picture *picture) {
-    const struct finish finish = picture_finish(&picture->request);
+    const struct finish finish = picture->request.settings.finish;
     const struct film *film = &picture->film;
     uint32_t tiles[PACKING_SAMPLE_TILES], count = sample_tiles(film, tiles), pixels = count * FILM_TILE * FILM_TILE;
     struct error ignored;
@@ -187,7 +178,7 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
                         struct pool *pool, struct error *error) {
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
-    struct rows rows = {&picture->film, view, &tone, picture->display, picture_finish(request).dither};
+    struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither};
     switch (picture_format(target->path)) {
     case PICTURE_PFM:
         return pfm_write(target, request->width, request->height, row_linear, &rows, error);
@@ -203,7 +194,7 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     }
     struct png_source source = {
         .width = request->width, .height = request->height, .context = &rows, .srgb = tone.srgb};
-    if (request->deep)
+    if (request->settings.deep)
         source.words = row_16;
     else
         source.bytes = row;
@@ -213,7 +204,7 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
 /* Threads for writing only: there must be none while a process is started. NULL: this thread alone. */
 static struct pool *writing_pool(const struct options *options, const struct picture *picture, bool denoises) {
     const struct picture_request *request = &picture->request;
-    uint32_t parts = png_write_stripes(request->width, request->height, request->deep ? 16 : 8);
+    uint32_t parts = png_write_stripes(request->width, request->height, request->settings.deep ? 16 : 8);
     int threads = options->threads > 0 ? options->threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
     char warning[256];
     if (parts < (uint32_t)threads && !denoises)
@@ -236,7 +227,7 @@ static bool write_prefixed(const struct picture_files *files, const struct pictu
 /* A film with features is there to be denoised; the command line may choose the program that does it. With `gray merge
  * --denoise=none` the features of the parts are not used. */
 static enum denoiser denoiser_of(const struct options *options, const struct picture *picture) {
-    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES) || options->settings.keeps_noise)
+    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES) || options->settings.denoise == DENOISER_NONE)
         return DENOISER_NONE;
     return options->settings.denoise == DENOISER_OIDN ? DENOISER_OIDN : DENOISER_GRAY;
 }
@@ -256,7 +247,7 @@ static bool write_shown(const struct picture_files *files, const struct picture 
     struct tone tone = picture_tone(&picture->request);
     return write_prefixed(files, picture, FILM_TARGETS, pool, error) &&
            write_prefixed(files, picture, FILM_FIRST, pool, error) &&
-           layers_write(&beside, &picture->film, &tone, picture->request.deep != 0, error) &&
+           layers_write(&beside, &picture->film, &tone, picture->request.settings.deep, error) &&
            picture_write_view(picture, &target, FILM_FINAL, pool, error);
 }
 
@@ -310,7 +301,7 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
         struct tone tone = picture_tone(&shown->picture.request);
         const struct film *film = &shown->picture.film;
         struct rows rows = {film, FILM_FINAL, &tone, shown->picture.display,
-                            picture_finish(&shown->picture.request).dither};
+                            shown->picture.request.settings.finish.dither};
         for (uint32_t y = 0; y < film->height; y++)
             row(&rows, y, rgb + (size_t)3 * film->width * y);
     }

@@ -4,9 +4,9 @@
 
 #include "base/pool.h"
 #include "base/share.h"
+#include "film/film.h"
+#include "film/tile_file.h"
 #include "output/picture_files.h"
-#include "render/film.h"
-#include "render/tile_file.h"
 #include "session/messages.h"
 
 #include <stdbool.h>
@@ -24,7 +24,6 @@ struct picture {
     const float (*display)[3]; /* or NULL; for a part: its finished numbers for PNG files; borrowed */
 };
 
-struct finish picture_finish(const struct picture_request *request);
 /* Writes one file. The extension of the target selects the format; every extension except .pfm, .hdr and .exr means
  * PNG. The tone applies only to PNG: the other formats contain light. Views other than FILM_FINAL are not finished.
  * pool: or NULL, for this thread only. */

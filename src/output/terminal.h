@@ -3,8 +3,8 @@
 #ifndef GRAY_OUTPUT_TERMINAL_H
 #define GRAY_OUTPUT_TERMINAL_H
 
+#include "film/film.h"
 #include "image/tone.h"
-#include "render/film.h"
 #include "session/options.h"
 
 #include <stdbool.h>

@@ -7,7 +7,7 @@
 #include "math/box.h"
 #include "math/ray.h"
 #include "math/sampling.h"
-#include "render/settings.h"
+#include "settings/settings.h"
 
 #include <stdbool.h>
 

@@ -6,7 +6,7 @@
 #define GRAY_RENDER_FILTER_INTERNAL_H
 
 #include "math/sampling.h"
-#include "render/settings.h"
+#include "settings/settings.h"
 
 enum { FILTER_CELLS = 256 };
 

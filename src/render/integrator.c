@@ -16,16 +16,6 @@ struct integrator {
 
 static const char *const no_kind = "an integrator of no kind";
 
-struct integrator_traits integrator_traits(enum integrator_kind integrator) {
-    switch (integrator) {
-    case INTEGRATOR_WHITTED:
-        return (struct integrator_traits){0};
-    case INTEGRATOR_PATH:
-        return (struct integrator_traits){.progressive = true, .has_light_parts = true, .is_linear = true};
-    }
-    UNREACHABLE(no_kind);
-}
-
 struct film_record render_record(const struct settings *settings) {
     switch (settings->integrator) {
     case INTEGRATOR_WHITTED:

@@ -3,9 +3,9 @@
 #ifndef GRAY_RENDER_INTEGRATOR_STATE_INTERNAL_H
 #define GRAY_RENDER_INTEGRATOR_STATE_INTERNAL_H
 
+#include "film/path_parts.h"
+#include "photon/photon_map.h"
 #include "render/observer.h"
-#include "render/path_parts.h"
-#include "render/photon_map_internal.h"
 #include "render/render.h"
 #include "render/sampler.h"
 

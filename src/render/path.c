@@ -2,10 +2,10 @@
  * of the renderer takes, or until the noise of the tile is small enough. See path_internal.h. */
 #include "render/path_internal.h"
 
+#include "film/aov.h"
+#include "film/path_film.h"
 #include "math/elementary.h"
-#include "render/aov.h"
 #include "render/integrator_internal.h"
-#include "render/path_film.h"
 #include "render/path_noise_internal.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@
 
 struct film_record path_tracer_record(const struct settings *settings) {
     unsigned parts = 0;
-    if (settings->denoise != DENOISER_NONE)
+    if (settings_denoise(settings))
         parts |= PATH_PART_FEATURES;
     if (settings->aov & AOV_LIGHT)
         parts |= PATH_PART_LIGHT;
@@ -87,7 +87,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
         return tracer->built;
     if (!find_photon_lights(tracer, world))
         return error_no_memory(error, "the lights of the scene");
-    return photons_send(&tracer->caustics, renderer->job, renderer->pool, statistics, error);
+    const struct photon_scene scene = {world, renderer->job->fog, settings};
+    return photons_send(&tracer->caustics, &scene, renderer->pool, statistics, error);
 }
 
 void path_tracer_destroy(struct path_tracer *tracer) {

@@ -8,8 +8,8 @@
 #define GRAY_RENDER_PATH_INTERNAL_H
 
 #include "base/arena.h"
+#include "photon/photon_trace.h"
 #include "render/filter_internal.h"
-#include "render/photon_trace_internal.h"
 #include "render/render_internal.h"
 #include "render/style_internal.h"
 #include "world/world_lights.h"

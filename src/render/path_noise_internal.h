@@ -1,9 +1,9 @@
 /* The noise of path-traced tiles, by which --noise decides: an estimate of the relative error of a tile against the
- * picture of infinitely many samples, from the records of its pixels (render/path_film.h). */
+ * picture of infinitely many samples, from the records of its pixels (film/path_film.h). */
 #ifndef GRAY_RENDER_PATH_NOISE_INTERNAL_H
 #define GRAY_RENDER_PATH_NOISE_INTERNAL_H
 
-#include "render/path_film.h"
+#include "film/path_film.h"
 
 struct path_noise {
     double noise; /* this decides: mostly from the halves of the samples */

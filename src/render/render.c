@@ -4,12 +4,12 @@
 #include "render/integrator_internal.h"
 
 #include "base/mem.h"
-#include "render/aov.h"
-#include "render/film.h"
-#include "render/path_film.h"
+#include "denoise/film_denoise.h"
+#include "film/aov.h"
+#include "film/film.h"
+#include "film/path_film.h"
 #include "render/pixel_trace.h"
-#include "render/settings.h"
-#include "scene/scene_digest.h"
+#include "settings/settings.h"
 
 #include <assert.h>
 #include <math.h>
@@ -428,7 +428,7 @@ static bool show_denoised(struct renderer *renderer) {
     if (!renderer->job->settings.passes || !(path_film_parts(film->record) & PATH_PART_FEATURES) ||
         film_tiles_in(film, FILM_TILE_ELSEWHERE) > 0)
         return true;
-    return path_film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
+    return film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
 }
 
 static bool make_passes(struct renderer *renderer, struct render_statistics *statistics) {
@@ -474,45 +474,6 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     end_rendering(&renderer, workers);
     statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
     return ok;
-}
-
-/* The defaults of docs/language.md 13. */
-
-struct settings settings_default(void) {
-    return (struct settings){.samples = 3,
-                             .aa_pattern = AA_ROTATED,
-                             .reflect_limit = 2,
-                             .refract_limit = 4,
-                             .side_tolerance = 0.005,
-                             .corner_tolerance = 0.01,
-                             .area_samples = 4,
-                             .line_width = -1,
-                             .toon_steps = 3,
-                             .max_depth = DEPTH_DEFAULT,
-                             .roulette_depth = ROULETTE_DEPTH_DEFAULT,
-                             .specular = SPECULAR_PHONG,
-                             .accel = ACCEL_AUTO,
-                             .shutter = {0, 1},
-                             .cutoff = 0.0001,
-                             .lens = {.view_height = 2, .angle = 180, .screen = 1}};
-}
-
-void settings_set_draft(struct settings *settings, enum draft_level draft_level) {
-    if (draft_level == DRAFT_NONE)
-        return;
-    settings->full = false;
-    settings->samples = 1;
-    settings->path_samples = draft_level == DRAFT_PREVIEW ? 1 : 4;
-    settings->side_tolerance = settings->corner_tolerance = HUGE_VAL; /* nothing is sampled again */
-    settings->coarse = true;
-    settings->area_samples = settings->area_samples < COARSE_SIDE ? settings->area_samples : COARSE_SIDE;
-    settings->caustics.photons = 0;
-    settings->lens.aperture = 0;
-    settings->shutter.close = settings->shutter.open;
-    if (draft_level == DRAFT_PREVIEW) {
-        settings->reflect_limit = settings->refract_limit = 0;
-        settings->area_samples = 1;
-    }
 }
 
 /* Passes over the picture: every pass adds samples to all pixels, so that something is to be seen soon, and the time
@@ -580,89 +541,3 @@ bool renderer_make_passes(struct renderer *renderer) {
         renderer->pass.end = done + next_samples(renderer, limit, seconds, now);
     }
 }
-
-/* --- digests --- */
-
-/* A new field of one of these structs changes its size, and the assertions fail: then update these functions. */
-
-static void digest_add(struct digest_sum *sum, int64_t whole) {
-    digest_sum_add(sum, (uint64_t)whole);
-}
-
-static void digest_add_numbers(struct digest_sum *sum, double a, double b, double c) {
-    const double numbers[3] = {a, b, c};
-    digest_sum_add_numbers(sum, numbers, 3);
-}
-
-static void digest_add_camera(struct digest_sum *sum, const struct render_job *job) {
-    const struct camera *camera = &job->camera;
-    const struct camera_motion *motion = &job->settings.motion;
-    const struct lens *lens = &job->settings.lens;
-    digest_sum_add_vector(sum, camera->eye);
-    digest_sum_add_vector(sum, camera->view);
-    digest_sum_add_vector(sum, camera->up);
-    digest_add(sum, motion->moves);
-    digest_sum_add_vector(sum, motion->eye);
-    digest_sum_add_vector(sum, motion->view);
-    digest_sum_add_vector(sum, motion->up);
-    digest_add_numbers(sum, camera->fov, job->settings.shutter.open, job->settings.shutter.close);
-    digest_add(sum, lens->projection);
-    digest_add_numbers(sum, lens->view_height, lens->angle, lens->aperture);
-    digest_add_numbers(sum, lens->shift_x, lens->shift_y, lens->focus);
-    digest_sum_add_vector(sum, lens->focus_point);
-    digest_add(sum, lens->blades);
-    digest_add(sum, lens->stereo);
-    digest_add_numbers(sum, lens->blade_angle, lens->eye_distance, lens->screen);
-}
-static_assert(sizeof(struct camera) == 80 && sizeof(struct camera_motion) == 80 && sizeof(struct lens) == 120,
-              "render.c adds every field");
-
-static void digest_add_display(struct digest_sum *sum, const struct settings *s) {
-    const struct tone *tone = &s->tone;
-    const struct finish *finish = &s->finish;
-    digest_add_numbers(sum, tone->exposure, finish->bloom, finish->vignette);
-    digest_add(sum, tone->curve);
-    if (tone->table)
-        digest_sum_add_digest(sum, digest_bytes(tone->table, sizeof *tone->table, (struct digest){0}));
-    digest_add(sum, tone->srgb | finish->gray << 1 | finish->edges << 2 | finish->fxaa << 3 | s->deep << 4);
-    digest_add(sum, finish->dither);
-    digest_add(sum, s->style);
-    digest_add(sum, s->toon_steps);
-    digest_add_numbers(sum, s->line_width, s->side_tolerance, s->corner_tolerance);
-}
-static_assert(sizeof(struct tone) == 24 && sizeof(struct finish) == 24, "render.c adds every field");
-
-static void digest_add_settings(struct digest_sum *sum, const struct settings *s) {
-    digest_add(sum, (int64_t)s->integrator << 32 | s->colour);
-    digest_add(sum, (int64_t)s->path_strategy << 32 | s->light_choice);
-    digest_add(sum, s->caustics.photons);
-    digest_add_numbers(sum, s->caustics.radius, s->cutoff, s->noise);
-    digest_add_numbers(sum, s->time_limit, s->clamp, 0);
-    digest_add(sum, (int64_t)s->samples << 32 | s->aa_pattern);
-    digest_add(sum, (int64_t)s->reflect_limit << 32 | s->refract_limit);
-    digest_add(sum, (int64_t)s->area_samples << 32 | s->path_samples);
-    digest_add(sum, (int64_t)s->max_depth << 32 | s->roulette_depth);
-    digest_add(sum, (int64_t)s->filter << 32 | s->denoise);
-    digest_add(sum, (int64_t)s->specular << 32 | s->accel);
-    digest_add(sum, (int64_t)s->overlay << 32 | s->order);
-    digest_sum_add(sum, s->seed);
-    digest_add(sum, s->aov);
-    digest_add(sum, s->full | s->use_tir << 1 | s->passes << 2 | s->keeps_noise << 3 | s->view_is_target << 4 |
-                        s->pixel_corner << 5 | s->ambient_plain << 6 | s->keep_first << 7 | s->coarse << 8 |
-                        s->show_refined << 9 | s->cropped << 10 | s->keeps_tone << 11);
-    digest_add(sum, s->crop_x);
-    digest_add(sum, s->crop_y);
-    digest_add(sum, s->crop_width);
-    digest_add(sum, s->crop_height);
-}
-static_assert(sizeof(struct settings) == 504, "render.c adds every field");
-
-void render_digest_add(const struct render_job *job, struct digest_sum *sum) {
-    digest_add(sum, (int64_t)job->width << 32 | job->height);
-    digest_add(sum, job->background_lights);
-    digest_sum_add_vector(sum, job->ambient);
-    digest_add_camera(sum, job);
-    digest_add_display(sum, &job->settings);
-    digest_add_settings(sum, &job->settings);
-}
-static_assert(sizeof(struct render_job) == 696, "render.c adds every field of the picture");

@@ -4,30 +4,15 @@
 #ifndef GRAY_RENDER_RENDER_H
 #define GRAY_RENDER_RENDER_H
 
-#include "base/hash.h"
 #include "base/pool.h"
+#include "film/film.h"
+#include "film/render_statistics.h"
 #include "material/medium.h"
-#include "render/film.h"
-#include "render/settings.h"
 #include "render/time_estimate.h"
+#include "settings/settings.h"
 #include "world/world.h"
 
 struct pixel_trace;
-
-struct render_statistics {
-    uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
-    uint64_t pixels, marked_pixels, samples;
-    uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
-    uint64_t photons, photons_landed, photon_rays;
-    uint64_t passes_samples; /* of each pixel where the samples came in passes, else 0 */
-    bool noisy;              /* with --noise: a tile did not reach it, because of the limit of samples or time */
-    bool out_of_time;        /* noisy because of the time */
-    uint64_t clamped;        /* not 0: light beyond the largest float is clamped to it */
-    /* Photons are part of the render, their map is part of them. */
-    double build_seconds, render_seconds, photon_seconds, photon_map_seconds;
-    double idle_seconds; /* of all threads: no tile was left, and others still made theirs */
-    double build_processor_seconds, render_processor_seconds; /* of all threads of the process */
-};
 
 struct render_job {
     const struct world *world;
@@ -74,7 +59,5 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
 /* The number of samples of a tile that is begun, in a film of a checkpoint (--noise); 0 unless all its pixels have
  * those of one level, below `limit`. */
 uint32_t render_level_samples(const struct film *film, uint32_t tile, uint32_t limit);
-/* Adds all data of a job that its picture depends on, except the scene. */
-void render_digest_add(const struct render_job *job, struct digest_sum *sum);
 
 #endif

@@ -8,8 +8,8 @@
  * level, or more if they take less than a few milliseconds, with its record in the film (struct film_level). */
 #include "base/clock.h"
 #include "base/mem.h"
+#include "film/path_film.h"
 #include "render/integrator_internal.h"
-#include "render/path_film.h"
 
 #include <assert.h>
 #include <math.h>

@@ -209,8 +209,8 @@ static void add_parts(const struct time_estimate *time_estimate, const struct to
     for (int w = 0; w < time_estimate->workers; w++) {
         const struct time_estimate_sums *sums = &time_estimate->sums[w];
         uint32_t tile = atomic_load_explicit(&sums->tile, memory_order_relaxed);
-        double part = sum_load(&sums->share) *
-                      (first * sum_load(&sums->part[0]) + (1 - first) * sum_load(&sums->part[1]));
+        double part =
+            sum_load(&sums->share) * (first * sum_load(&sums->part[0]) + (1 - first) * sum_load(&sums->part[1]));
         for (int i = 0; tile < time_estimate->count && i < TIME_ESTIMATE_TERMS; i++)
             done[i] += part * (double)time_estimate->terms[tile][i];
     }

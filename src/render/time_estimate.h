@@ -5,7 +5,7 @@
 #ifndef GRAY_RENDER_TIME_ESTIMATE_H
 #define GRAY_RENDER_TIME_ESTIMATE_H
 
-#include "render/film.h"
+#include "film/film.h"
 
 #include <stdatomic.h>
 #include <stdbool.h>

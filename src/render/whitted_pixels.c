@@ -5,8 +5,8 @@
 
 #include "base/mem.h"
 #include "math/elementary.h"
+#include "photon/photon_trace.h"
 #include "render/integrator_internal.h"
-#include "render/photon_trace_internal.h"
 
 #include <math.h>
 
@@ -59,7 +59,9 @@ static bool send_photons(struct whitted *whitted, struct renderer *renderer, int
                          struct error *error) {
     if (renderer->job->settings.caustics.photons == 0)
         return true;
-    bool ok = photons_send(&whitted->caustics, renderer->job, renderer->pool, out, error);
+    const struct render_job *job = renderer->job;
+    const struct photon_scene scene = {job->world, job->fog, &job->settings};
+    bool ok = photons_send(&whitted->caustics, &scene, renderer->pool, out, error);
     for (int i = 0; i < workers; i++)
         renderer->workers[i].state.caustics = &whitted->caustics;
     return ok;

@@ -1,7 +1,6 @@
 /* Building the authoring tree. */
 #include "scene/node.h"
 
-#include "base/hash.h"
 #include "material/material_inputs.h"
 
 #include <stddef.h>
@@ -29,6 +28,8 @@ struct scene_snapshot scene_snapshot(struct scene *scene) {
 
 void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot) {
     memset(scene->names, 0, sizeof scene->names);
+    scene_forget_changes(scene); /* nodes that are freed may be among them */
+    scene_note_change(scene);
     scene->node_total = snapshot->node_total;
     scene->warned_room = snapshot->warned_room;
     scene->warned = snapshot->warned;
@@ -142,13 +143,34 @@ static bool compose_separately(struct scene *scene, struct node *node, enum node
     return true;
 }
 
-static void note_pose(struct scene *scene, const struct node *node) {
+static struct digest digest_of_pose(const struct node *node) {
+    return digest_bytes(&node->parent_from_node, sizeof node->parent_from_node, (struct digest){0});
+}
+
+static void note_pose(struct scene *scene, struct node *node) {
     struct scene_changes *changes = &scene->changes;
-    if (changes->other || (changes->posed_count > 0 && changes->posed[changes->posed_count - 1] == node))
+    if (changes->other || node->posed)
         return;
     changes->other = changes->posed_count == SCENE_POSED_MAX;
-    if (!changes->other)
-        changes->posed[changes->posed_count++] = node;
+    if (changes->other)
+        return;
+    node->posed = true;
+    changes->posed[changes->posed_count++] = (struct posed_node){node, digest_of_pose(node)};
+}
+
+bool scene_has_changes(const struct scene *scene) {
+    const struct scene_changes *changes = &scene->changes;
+    for (uint32_t i = 0; !changes->other && i < changes->posed_count; i++)
+        if (!digest_equal(digest_of_pose(changes->posed[i].node), changes->posed[i].before))
+            return true;
+    return changes->other;
+}
+
+void scene_forget_changes(struct scene *scene) {
+    for (uint32_t i = 0; i < scene->changes.posed_count; i++)
+        scene->changes.posed[i].node->posed = false;
+    scene->changes.posed_count = 0;
+    scene->changes.other = false;
 }
 
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by) {

@@ -5,6 +5,7 @@
 #define GRAY_SCENE_NODE_H
 
 #include "base/arena.h"
+#include "base/hash.h"
 #include "base/list.h"
 #include "light/light_edit.h"
 #include "light/sky.h"
@@ -69,6 +70,7 @@ struct node {
     uint32_t index;  /* below the scene's node_total: for tables beside the nodes */
     bool has_parent; /* it was added to a node */
     bool singular;   /* some scale factor was 0: nothing under it is drawn */
+    bool posed;      /* it is in scene_changes.posed */
     uint32_t child_count;
     struct node_child *first_child, *last_child;
     const struct placements *placements; /* or NULL: the children are instantiated once for each of them */
@@ -163,12 +165,16 @@ struct own_material {
     struct own_material *next;
 };
 
-/* What has changed since a world was built from the scene (world/world_cache.h). */
+/* What has changed since a world of an animation was built from the scene (struct world_cache). */
 enum { SCENE_POSED_MAX = 1024 };
+struct posed_node {
+    struct node *node;
+    struct digest before; /* of its transform in that world */
+};
 struct scene_changes {
     bool other; /* something else than transforms of nodes, or transforms of more nodes */
     uint32_t posed_count;
-    const struct node *posed[SCENE_POSED_MAX]; /* nodes with other transforms; a node may be here several times */
+    struct posed_node posed[SCENE_POSED_MAX]; /* nodes whose transforms were set, each once */
 };
 
 enum { SCENE_NAMES = 64 };
@@ -215,6 +221,9 @@ void scene_rewind(struct scene *scene, const struct scene_snapshot *snapshot);
 static inline void scene_note_change(struct scene *scene) {
     scene->changes.other = true;
 }
+/* Whether something has changed since scene_forget_changes; not if transforms were set and are as before. */
+bool scene_has_changes(const struct scene *scene);
+void scene_forget_changes(struct scene *scene);
 /* Must be called when a node gets a reference, or memory of its own. */
 static inline void scene_note_reference(struct scene *scene, uint32_t node_index) {
     scene_note_change(scene);

@@ -113,7 +113,8 @@ static void describe_parameter(const struct script_parameter *p, char out[LINE_S
     if (p->unit)
         used += (size_t)snprintf(out + used, LINE_SIZE - used, ", in %s", p->unit);
     if (p->fallback)
-        used += (size_t)snprintf(out + used, LINE_SIZE - used, "; default %s", p->fallback);
+        used += (size_t)snprintf(out + used, LINE_SIZE - used, "; default %.*s", (int)strcspn(p->fallback, "|"),
+                                 p->fallback);
     else if (p->flags & OPTIONAL)
         used += (size_t)snprintf(out + used, LINE_SIZE - used, "; optional");
     snprintf(out + used, LINE_SIZE - used, "): %s", p->help);

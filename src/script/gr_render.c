@@ -8,6 +8,7 @@
 #include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
 #include "script/script_internal.h"
+#include "settings/setting.h"
 
 enum {
     RENDER_NODE,
@@ -24,41 +25,9 @@ enum {
     RENDER_TARGET,
     RENDER_BACKGROUND,
     RENDER_MIRROR,
-    RENDER_SAMPLES,
-    RENDER_FULL,
-    RENDER_AREA_SAMPLES,
-    RENDER_REFLECT_LIMIT,
-    RENDER_REFRACT_LIMIT,
-    RENDER_SIDE_TOLERANCE,
-    RENDER_CORNER_TOLERANCE,
-    RENDER_USE_TIR,
-    RENDER_SPECULAR,
-    RENDER_SEED,
-    RENDER_ACCEL,
+    RENDER_FIRST_SETTING,
+    RENDER_LAST_SETTING = RENDER_FIRST_SETTING + LIST_COUNT(SETTINGS_WITH_FIELD) - 1,
     RENDER_FOG,
-    RENDER_CAUSTICS,
-    RENDER_CUTOFF,
-    RENDER_INTEGRATOR,
-    RENDER_SPP,
-    RENDER_MAX_DEPTH,
-    RENDER_NOISE,
-    RENDER_CLAMP,
-    RENDER_FILTER,
-    RENDER_DENOISE,
-    RENDER_EXPOSURE,
-    RENDER_TONE,
-    RENDER_SRGB,
-    RENDER_COLOUR,
-    RENDER_DEEP,
-    RENDER_STYLE,
-    RENDER_LINE_WIDTH,
-    RENDER_TOON_STEPS,
-    RENDER_BLOOM,
-    RENDER_VIGNETTE,
-    RENDER_GRAY,
-    RENDER_EDGES,
-    RENDER_FXAA,
-    RENDER_DITHER,
     RENDER_PROJECTION,
     RENDER_VIEW_HEIGHT,
     RENDER_ANGLE,
@@ -79,6 +48,20 @@ enum {
     RENDER_UP_TO,
     RENDER_COUNT
 };
+
+/* The parameter of a setting: its type, range and words by its kind. */
+#define PARAMETER_FLAG(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
+#define PARAMETER_WHOLE(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
+#define PARAMETER_NUMBER(low, high, list) KIND_NUMBER, OPTIONAL, low, high, NULL
+#define PARAMETER_SEED(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
+#define PARAMETER_CHOICE(low, high, list) KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(list)
+#define PARAMETER_TONE(low, high, list) KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(list)
+#define PARAMETER_DENOISE(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
+#define PARAMETER_CAUSTICS(low, high, list) KIND_CAUSTICS, OPTIONAL, 0, 0, NULL
+#define PARAMETER_OF_SETTING(kind, type, member, change, initial, low, high, list, option, value, unit, field, ...)    \
+    {field, PARAMETER_##kind(low, high, list), unit, option, FIRST_HELP(__VA_ARGS__)},
+#define FIRST_HELP(words, group, help) help
+
 _Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
 static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
@@ -101,79 +84,7 @@ static const struct script_parameter render_parameters[] = {
                            "or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form "
                            "gr.render{...} without background, the default is light and neutral."},
     [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
-    [RENDER_SAMPLES] = {"samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-ss",
-                        "N x N samples for a marked pixel."},
-    [RENDER_FULL] = {"full", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-full", "Whether every pixel gets N x N samples."},
-    [RENDER_AREA_SAMPLES] = {"area_samples", KIND_WHOLE, OPTIONAL, IN_RANGE(1, 64), NULL, "-al-samples",
-                             "N x N shadow rays for an area light."},
-    [RENDER_REFLECT_LIMIT] = {"reflect_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-reflect-limit",
-                              "How often a path may reflect."},
-    [RENDER_REFRACT_LIMIT] = {"refract_limit", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1000), NULL, "-refract-limit",
-                              "How often a path may refract."},
-    [RENDER_SIDE_TOLERANCE] = {"side_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-side-tolerance",
-                               "Squared distance of colours between side neighbours that marks a pixel."},
-    [RENDER_CORNER_TOLERANCE] = {"corner_tolerance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "-corner-tolerance",
-                                 "The same between corner neighbours."},
-    [RENDER_USE_TIR] = {"use_tir", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "-use-tir",
-                        "Whether total internal reflection adds the refracted amount to the reflected one."},
-    [RENDER_SPECULAR] = {"specular", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPECULAR_KINDS), NULL, "--specular",
-                         "Formula of highlights."},
-    [RENDER_SEED] = {"seed", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 0x1p53 - 1), NULL, "--seed", "Seed of random numbers."},
-    [RENDER_ACCEL] = {"accel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(ACCEL_KINDS), NULL, "'auto'",
-                      "Acceleration structure; the picture is the same."},
-    [RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
-    [RENDER_CAUSTICS] = {"caustics", KIND_CAUSTICS, OPTIONAL, ANY, NULL, "--caustics",
-                         "Caustics: number of photons (default 200000) and radius of the disc that each one lights "
-                         "(default: from their density)."},
-    [RENDER_CUTOFF] = {"cutoff", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--cutoff",
-                       "gray does not trace rays that can change a pixel by less than this."},
-    [RENDER_INTEGRATOR] =
-        {"integrator", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(INTEGRATORS), NULL, "--integrator",
-         "The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces."},
-    [RENDER_SPP] = {"spp", KIND_WHOLE, OPTIONAL, IN_RANGE(1, PATH_SAMPLES_MAX), NULL, "--spp, else 64",
-                    "Samples per pixel of integrator path; the option has priority."},
-    [RENDER_MAX_DEPTH] = {"max_depth", KIND_WHOLE, OPTIONAL, IN_RANGE(0, DEPTH_MAX), NULL, "--max-depth",
-                          "Scattering events of a path: 0 shows emission only, 1 direct light."},
-    [RENDER_NOISE] =
-        {"noise", KIND_NUMBER, OPTIONAL, IN_RANGE(1e-6, 10), NULL, "--noise, else all samples",
-         "Relative standard error at which a tile of integrator path is finished; the option has priority."},
-    [RENDER_CLAMP] =
-        {"clamp", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "--clamp",
-         "Largest component of a sample of integrator path; 0: no limit. A limit makes the picture darker."},
-    [RENDER_FILTER] = {"filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(FILTERS), NULL, "--filter",
-                       "Reconstruction filter of a pixel."},
-    [RENDER_DENOISE] = {"denoise", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--denoise",
-                        "Whether integrator path removes noise; the option has priority."},
-    [RENDER_EXPOSURE] = {"exposure", KIND_NUMBER, OPTIONAL, IN_RANGE(-100, 100), "stops", "--exposure",
-                         "Light is multiplied by 2^exposure when a PNG file is written."},
-    [RENDER_TONE] =
-        {"tone", KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(TONE_CURVES), NULL, "--tone",
-         "Tone curve that maps bright light into the range of a PNG file, or a function f(x) of the light x "
-         "from 0 on, the same for red, green and blue; the option has priority over a function."},
-    [RENDER_SRGB] = {"srgb", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--srgb",
-                     "Whether PNG files are encoded with the sRGB transfer function."},
-    [RENDER_COLOUR] = {"colour", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(COLOUR_PIPELINES), NULL, "--colour",
-                       "Whether colours are linear light or the numbers of files; auto: linear with integrator path."},
-    [RENDER_DEEP] = {"deep", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--deep",
-                     "Whether PNG files have 16 bits per channel."},
-    [RENDER_STYLE] =
-        {"style", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STYLES), NULL, "--style",
-         "Pictures that look like drawings: lines, levels of light, cool to warm colours; with integrator whitted."},
-    [RENDER_LINE_WIDTH] = {"line_width", KIND_NUMBER, OPTIONAL, IN_RANGE(0, LINE_WIDTH_MAX), "pixels", "--line-width",
-                           "Width of lines where objects, normals and depths change."},
-    [RENDER_TOON_STEPS] = {"toon_steps", KIND_WHOLE, OPTIONAL, IN_RANGE(1, TOON_STEPS_MAX), NULL, "--toon-steps",
-                           "Number of levels of light of style toon, not counting shadow."},
-    [RENDER_BLOOM] = {"bloom", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--bloom",
-                      "Weight of the light above white that spreads around it."},
-    [RENDER_VIGNETTE] = {"vignette", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 1), NULL, "--vignette",
-                         "Darkens the corners; with 1 they have a quarter of their light."},
-    [RENDER_GRAY] = {"gray", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--gray", "Whether the picture is its luminance."},
-    [RENDER_EDGES] = {"edges", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--edges",
-                      "Whether PNG files show the edges of the picture, white on black."},
-    [RENDER_FXAA] = {"fxaa", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "--fxaa",
-                     "Whether the edges in PNG files are smoothed."},
-    [RENDER_DITHER] = {"dither", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(DITHERS), NULL, "--dither",
-                       "Pattern by which PNG files are rounded to 8 bits."},
+    SETTINGS_WITH_FIELD(PARAMETER_OF_SETTING)[RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
     [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
                            "Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude."},
     [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
@@ -233,107 +144,90 @@ static bool choose_sky(struct script_context *context, const struct script_value
     return true;
 }
 
+/* Whether the option has priority over the field. */
+static bool option_wins(const struct setting *row, const struct settings *settings) {
+    bool is_one =
+        row->offset == offsetof(struct settings, path_samples) || row->offset == offsetof(struct settings, noise);
+    return is_one && setting_bits(row, settings) != 0;
+}
+
+static void apply_setting(const struct setting *row, const struct script_value *value, struct settings *settings) {
+    switch (row->kind) {
+    case SETTING_FLAG:
+        setting_store(row, settings, value->boolean);
+        break;
+    case SETTING_WHOLE:
+    case SETTING_NUMBER:
+    case SETTING_SEED:
+        if (!option_wins(row, settings))
+            setting_store(row, settings, value->number);
+        break;
+    case SETTING_CHOICE:
+        setting_store(row, settings, value->choice);
+        break;
+    case SETTING_TONE:
+        if (!value->curve) {
+            settings->tone.curve = (enum tone_curve)value->choice;
+        } else if (!settings->keeps_tone) { /* over functions the option has priority */
+            settings->tone.curve = TONE_FUNCTION;
+            settings->tone.table = value->curve;
+        }
+        break;
+    case SETTING_DENOISE:
+        if (value->boolean && settings->denoise == DENOISER_AUTO)
+            settings->denoise = DENOISER_GRAY;
+        break;
+    case SETTING_CAUSTICS:
+        settings->caustics = (struct caustics){(int)value->number, value->vector.x};
+        break;
+    case SETTING_LAYERS:
+    case SETTING_CROP:
+    case SETTING_STATS:
+    case SETTING_BYTES:
+    case SETTING_TEXT:
+    case SETTING_SIZE:
+    case SETTING_SHARD:
+    case SETTING_FRAMES:
+    case SETTING_ACTION:
+    case SETTING_PIXEL:
+    case SETTING_DEFINE:
+    case SETTING_FOLDER:
+        break; /* options only */
+    }
+}
+
 /* The named fields of the call have priority over the command line. */
 static void apply_settings(const struct script_value *args, struct settings *settings) {
-    if (args[RENDER_SAMPLES].given)
-        settings->samples = (int)args[RENDER_SAMPLES].number;
-    if (args[RENDER_FULL].given)
-        settings->full = args[RENDER_FULL].boolean;
-    if (args[RENDER_AREA_SAMPLES].given)
-        settings->area_samples = (int)args[RENDER_AREA_SAMPLES].number;
-    if (args[RENDER_REFLECT_LIMIT].given)
-        settings->reflect_limit = (int)args[RENDER_REFLECT_LIMIT].number;
-    if (args[RENDER_REFRACT_LIMIT].given)
-        settings->refract_limit = (int)args[RENDER_REFRACT_LIMIT].number;
-    if (args[RENDER_SIDE_TOLERANCE].given)
-        settings->side_tolerance = args[RENDER_SIDE_TOLERANCE].number;
-    if (args[RENDER_CORNER_TOLERANCE].given)
-        settings->corner_tolerance = args[RENDER_CORNER_TOLERANCE].number;
-    if (args[RENDER_USE_TIR].given)
-        settings->use_tir = args[RENDER_USE_TIR].boolean;
-    if (args[RENDER_SPECULAR].given)
-        settings->specular = (enum specular_kind)args[RENDER_SPECULAR].choice;
-    if (args[RENDER_SEED].given)
-        settings->seed = (uint64_t)args[RENDER_SEED].number;
-    if (args[RENDER_ACCEL].given)
-        settings->accel = (enum accel_kind)args[RENDER_ACCEL].choice;
+    for (int i = 0; i < setting_field_count; i++) {
+        if (args[RENDER_FIRST_SETTING + i].given)
+            apply_setting(&setting_table[i], &args[RENDER_FIRST_SETTING + i], settings);
+    }
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
-    if (args[RENDER_EXPOSURE].given)
-        settings->tone.exposure = args[RENDER_EXPOSURE].number;
-    const struct script_value *tone = &args[RENDER_TONE];
-    if (tone->curve && !settings->keeps_tone) { /* here the option has priority */
-        settings->tone.curve = TONE_FUNCTION;
-        settings->tone.table = tone->curve;
-    } else if (tone->given && !tone->curve) {
-        settings->tone.curve = (enum tone_curve)tone->choice;
-    }
-    if (args[RENDER_SRGB].given)
-        settings->tone.srgb = args[RENDER_SRGB].boolean;
-    if (args[RENDER_DEEP].given)
-        settings->deep = args[RENDER_DEEP].boolean;
-    if (args[RENDER_STYLE].given)
-        settings->style = (enum style)args[RENDER_STYLE].choice;
-    if (args[RENDER_LINE_WIDTH].given)
-        settings->line_width = args[RENDER_LINE_WIDTH].number;
-    if (args[RENDER_TOON_STEPS].given)
-        settings->toon_steps = (int)args[RENDER_TOON_STEPS].number;
-    if (args[RENDER_BLOOM].given)
-        settings->finish.bloom = args[RENDER_BLOOM].number;
-    if (args[RENDER_VIGNETTE].given)
-        settings->finish.vignette = args[RENDER_VIGNETTE].number;
-    if (args[RENDER_GRAY].given)
-        settings->finish.gray = args[RENDER_GRAY].boolean;
-    if (args[RENDER_EDGES].given)
-        settings->finish.edges = args[RENDER_EDGES].boolean;
-    if (args[RENDER_FXAA].given)
-        settings->finish.fxaa = args[RENDER_FXAA].boolean;
-    if (args[RENDER_DITHER].given)
-        settings->finish.dither = (enum dither)args[RENDER_DITHER].choice;
-    if (args[RENDER_CAUSTICS].given)
-        settings->caustics = (struct caustics){(int)args[RENDER_CAUSTICS].number, args[RENDER_CAUSTICS].vector.x};
-    if (args[RENDER_CUTOFF].given)
-        settings->cutoff = args[RENDER_CUTOFF].number;
-    if (args[RENDER_INTEGRATOR].given)
-        settings->integrator = (enum integrator_kind)args[RENDER_INTEGRATOR].choice;
-    if (args[RENDER_SPP].given && settings->path_samples == 0) /* here the option wins */
-        settings->path_samples = (int)args[RENDER_SPP].number;
-    if (args[RENDER_MAX_DEPTH].given)
-        settings->max_depth = (int)args[RENDER_MAX_DEPTH].number;
-    if (args[RENDER_NOISE].given && settings->noise == 0) /* so it does here */
-        settings->noise = args[RENDER_NOISE].number;
-    if (args[RENDER_CLAMP].given)
-        settings->clamp = args[RENDER_CLAMP].number;
-    if (args[RENDER_FILTER].given)
-        settings->filter = (enum filter_kind)args[RENDER_FILTER].choice;
-    if (args[RENDER_DENOISE].given && args[RENDER_DENOISE].boolean && settings->denoise == DENOISER_NONE &&
-        !settings->keeps_noise)
-        settings->denoise = DENOISER_GRAY;
-    if (args[RENDER_COLOUR].given)
-        settings->colour = (enum colour_pipeline)args[RENDER_COLOUR].choice;
     /* Linear colours are shown by the sRGB curve. */
-    if (settings_linear(settings) && !args[RENDER_SRGB].given)
+    if (settings_linear(settings) && !args[RENDER_FIRST_SETTING + SETTING_INDEX(tone.srgb)].given)
         settings->tone.srgb = true;
 }
 
-/* One notice for each option of the command line that the call has overridden. */
+/* One notice for each option of the command line that the call has overridden. --seed has none: it also seeds
+ * math.random. */
 static void note_overridden(struct script_context *context, const struct settings *settings) {
-    const struct script_options *options = script_of(context)->options;
-    const char *asked = (const char *)&script_of(context)->host->settings, *used = (const char *)settings;
-    for (int i = 0; i < options->given_count && i < 64 && !script_of(context)->host->repeats; i++) {
-        const struct given_option *given = &options->given[i];
+    struct script *script = script_of(context);
+    const char *const *given = script->options->given;
+    for (int i = 0; i < setting_count && given && !script->host->repeats; i++) {
+        const struct setting *row = &setting_table[i];
         char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
-        if (script_of(context)->overridden >> i & 1 ||
-            memcmp(asked + given->offset, used + given->offset, given->size) == 0)
+        if (!given[i] || row->kind == SETTING_SEED || script->overridden >> i & 1 ||
+            setting_bits(row, &script->host->settings) == setting_bits(row, settings))
             continue;
-        script_of(context)->overridden |= UINT64_C(1) << i;
+        script->overridden |= UINT64_C(1) << i;
         sandbox_where(&context->sandbox, where, sizeof where);
         (void)snprintf(text, sizeof text, "%s%.*s%s%.64s has no effect: a field of gr.render sets it", where,
-                       (int)strcspn(given->name, "|"), given->name, given->value ? " " : "",
-                       given->value ? given->value : "");
+                       (int)strcspn(row->option, "|"), row->option, given[i][0] ? " " : "", given[i]);
         sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
     }
 }
+_Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of overridden");
 
 static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
                        struct error *error) {

@@ -240,35 +240,11 @@ static bool choose_order(struct script *script, struct error *error) {
     return true;
 }
 
-/* --- limits --- */
-
-enum { STANDARD_TIME = 60 };
-static const uint64_t standard_memory = 4 * GIBIBYTE, standard_output = 64 * MEBIBYTE;
-
-double script_time_limit(const struct script_options *options) {
-    return options->time_limit > 0 || options->no_sandbox ? options->time_limit : STANDARD_TIME;
-}
-
-/* 0: no limit. */
-static uint64_t limit_of(uint64_t given, uint64_t standard, bool unlimited) {
-    return given > 0 ? given : unlimited ? 0 : standard;
-}
-
-static uint64_t memory_limit(const struct script_options *options) {
-    return limit_of(options->memory_limit, standard_memory, options->no_sandbox);
-}
-
-uint64_t script_picture_memory(const struct script_options *options) {
-    uint64_t limit = memory_limit(options);
-    return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
-}
-
 static struct sandbox_options sandbox_options_of(const struct script_options *options) {
     return (struct sandbox_options){.is_off = options->no_sandbox,
-                                    .memory_limit = memory_limit(options),
+                                    .memory_limit = script_memory_limit(options),
                                     .time_limit = script_time_limit(options),
-                                    .output_limit =
-                                        limit_of(options->output_limit, standard_output, options->no_sandbox)};
+                                    .output_limit = script_output_limit(options)};
 }
 
 /* --- the run --- */
@@ -286,6 +262,22 @@ bool script_path_policy(const char *path, const struct script_options *options, 
     for (int k = 0; ok && k < options->allow_write_count; k++)
         ok = path_policy_add(path_policy, options->allow_write[k], PATH_POLICY_WRITE, error);
     return ok;
+}
+
+/* What the pointers in it lead to stays the same while the epoch does, but for the lights and the table of the tone. */
+struct digest render_request_digest(const struct render_request *request) {
+    const struct tone_table *table = request->settings.tone.table;
+    struct digest digest = {request->scene->epoch, table != NULL};
+    struct render_request shown;
+    memcpy(&shown, request, sizeof shown);
+    shown.file = shown.where = NULL;
+    shown.frame = (struct frame){0};
+    shown.lights = NULL;
+    shown.settings.tone.table = NULL;
+    digest = digest_bytes(&shown, sizeof shown, digest);
+    if (table)
+        digest = digest_bytes(table, sizeof *table, digest);
+    return digest_bytes(request->lights, request->light_count * sizeof *request->lights, digest);
 }
 
 /* --lenient: a picture of the scene if gr.render made none. `failed`: the script ended with an error. */

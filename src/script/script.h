@@ -5,53 +5,16 @@
 #define GRAY_SCRIPT_SCRIPT_H
 
 #include "base/error.h"
-#include "base/list.h"
+#include "base/hash.h"
 #include "material/medium.h"
-#include "render/frame.h"
-#include "render/settings.h"
 #include "sandbox/message.h"
 #include "scene/node.h"
+#include "settings/script_options.h"
+#include "settings/settings.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-#define SCRIPT_ORDERS(X)                                                                                               \
-    X(SCRIPT_ORDER_AUTO, "auto")                                                                                       \
-    X(SCRIPT_ORDER_NEW, "new")                                                                                         \
-    X(SCRIPT_ORDER_OLD, "old")                                                                                         \
-    X(SCRIPT_ORDER_SEPARATE, "separate")
-enum script_order { SCRIPT_ORDERS(LIST_MEMBER) };
-
-struct script_define {
-    const char *name, *value; /* -D name=value */
-};
-
-/* An option that was given, and the part of struct settings that it sets: fields of gr.render may set it, too. */
-struct given_option {
-    size_t offset, size;
-    const char *name, *value; /* value: NULL without one */
-};
-
-struct script_options {
-    enum script_order transform_order;
-    bool lenient;
-    const char *dialect; /* --dialect: a name or a file, or NULL */
-    uint64_t seed;       /* math.random starts from it */
-    const struct script_define *defines;
-    int define_count;
-    const struct given_option *given;
-    int given_count;
-    /* The sandbox: what a script may read, write and use beyond the defaults (docs/security.md). */
-    bool no_sandbox;
-    const char *const *allow_read, *const *allow_write; /* folders */
-    int allow_read_count, allow_write_count;
-    uint64_t memory_limit; /* bytes; 0: 4 GiB, without the sandbox none */
-    double time_limit;     /* seconds of processor time, rendering not counted; 0: 60, without the sandbox none */
-    uint64_t output_limit; /* bytes printed and written; 0: 64 MiB, without the sandbox none */
-    struct frame_options frames;
-    const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
-};
 
 /* One gr.render call, complete and checked, with all defaults. Pointers live until the call returns. */
 struct render_request {
@@ -74,6 +37,10 @@ struct render_request {
     struct frame frame;       /* of an animation; else its number is 0 */
     const char *where;        /* "scene.lua:12: gr.render", for messages that do not stop the script */
 };
+
+/* Of all that the picture shows except the nodes of the scene, which note their changes (scene/node.h). It is a digest
+ * of the request's bytes, so it includes every field. Different padding only means that an equal frame is rendered. */
+struct digest render_request_digest(const struct render_request *request);
 
 struct script_host {
     void *context;
@@ -103,10 +70,6 @@ struct script_host {
     void (*rewinds)(void *context); /* that frame is before the last drawn one: the script ends, and runs again */
 };
 
-/* The time limit under these options; 0: none. */
-double script_time_limit(const struct script_options *options);
-/* Bytes that a script, its scene and a picture of it may use together; UINT64_MAX: no limit. */
-uint64_t script_picture_memory(const struct script_options *options);
 struct path_policy;
 /* Adds the folders that the script at `path` may read and write. */
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,

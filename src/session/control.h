@@ -24,9 +24,9 @@ struct control {
     _Atomic int drain;                          /* not 0: finish the started tiles, begin no others */
     struct progress_estimate progress_estimate; /* the progress of the picture, if requested */
     _Atomic uint32_t next_frame; /* that the window wants of an animation; 0: the first one, or FRAMES_OVER */
-    _Atomic uint32_t build_step;                /* of building the world, from 1; 0: it is built */
-    _Atomic uint32_t build_done;                /* thousandths of that step */
-    _Atomic uint32_t lost; /* not 0: the render process could not write all of its standard output */
+    _Atomic uint32_t build_step; /* of building the world, from 1; 0: it is built */
+    _Atomic uint32_t build_done; /* thousandths of that step */
+    _Atomic uint32_t lost;       /* not 0: the render process could not write all of its standard output */
     struct error_stream error_stream;
 };
 

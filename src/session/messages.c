@@ -6,7 +6,8 @@
 #include "session/messages.h"
 
 #include "base/fault.h"
-#include "render/aov.h"
+#include "film/aov.h"
+#include "settings/setting.h"
 
 #include <errno.h>
 #include <math.h>
@@ -25,28 +26,14 @@ static bool shown_is_valid(const struct picture_request *request) {
            shown->y0 >= request->y0 && shown->y1 > shown->y0 && shown->y1 <= request->y0 + request->height;
 }
 
-static bool reply_is_valid(const struct preview_reply *reply) {
-    const struct picked *picked = &reply->picked;
-    const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, reply->root_name};
-    bool sound = (unsigned)reply->kind <= REPLY_OVERLAY && ends_with_zero(reply->text, sizeof reply->text) &&
-                 ends_with_zero(picked->path, sizeof picked->path);
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-        sound = sound && ends_with_zero(words[i], PICK_NAME);
-    return sound;
-}
-
 static bool frame_is_valid(const struct frame *frame) {
     return frame->number == 0 || (frame->number <= frame->count && frame->count <= FRAMES_MAX &&
                                   frame->rate >= FRAME_RATE_MIN && frame->rate <= FRAME_RATE_MAX);
 }
 
-static bool is_share(double x) {
-    return x >= 0 && x <= 1;
-}
-
-static bool tone_is_valid(const struct picture_request *request) {
-    bool fine = request->exposure >= -100 && request->exposure <= 100 && request->curve <= TONE_FUNCTION;
-    for (int i = 0; i < TONE_ENTRIES && fine && request->curve == TONE_FUNCTION; i++)
+static bool settings_fit(const struct picture_request *request) {
+    bool fine = settings_are_valid(&request->settings);
+    for (int i = 0; i < TONE_ENTRIES && fine && request->settings.tone.curve == TONE_FUNCTION; i++)
         fine = isfinite(request->tone_table.values[i]);
     return fine;
 }
@@ -65,17 +52,12 @@ bool message_is_valid(const struct message *message) {
                request->full_height <= 1u << 20 && request->width <= request->full_width &&
                request->height <= request->full_height && request->x0 <= request->full_width - request->width &&
                request->y0 <= request->full_height - request->height && shown_is_valid(request) &&
-               tone_is_valid(request) && is_share(request->bloom) && is_share(request->vignette) &&
-               request->dither <= DITHER_BLUE && frame_is_valid(&request->frame) &&
-               film_record_valid(request->record) && request->overlay <= OVERLAY_OF_GRID &&
-               (unsigned)request->lens.projection <= PROJECTION_PANORAMA &&
-               (unsigned)request->lens.stereo <= STEREO_ANAGLYPH;
+               settings_fit(request) && frame_is_valid(&request->frame) && film_record_valid(request->record);
     case MESSAGE_DONE:
         return message->size == sizeof message->body.report;
     case MESSAGE_PREVIEW_REPLY:
-        return message->size == sizeof message->body.reply && reply_is_valid(&message->body.reply);
     case MESSAGE_PREVIEW_COMMAND:
-        return message->size == sizeof message->body.command;
+        return message->size <= sizeof message->body.bytes;
     case MESSAGE_ABANDON:
     case MESSAGE_FRAME:
     case MESSAGE_AGAIN:
@@ -94,8 +76,9 @@ bool message_is_valid(const struct message *message) {
 }
 
 struct tone picture_tone(const struct picture_request *request) {
-    return (struct tone){request->exposure, (enum tone_curve)request->curve, request->srgb != 0,
-                         request->curve == TONE_FUNCTION ? &request->tone_table : NULL};
+    struct tone tone = request->settings.tone;
+    tone.table = tone.curve == TONE_FUNCTION ? &request->tone_table : NULL;
+    return tone;
 }
 
 bool picture_request_enlarge(const struct picture_request *request, uint32_t width, uint32_t height,
@@ -132,28 +115,6 @@ void picture_film_layout(const struct picture_request *request, void *block, str
     film->y0 = request->y0;
     film->full_width = request->full_width;
     film->full_height = request->full_height;
-}
-
-void view_overlay_buffers(const struct picture_request *request, void *block, struct view_overlay_buffers *buffers) {
-    struct film film = {.width = request->width, .height = request->height, .record = request->record};
-    size_t pixels = (size_t)request->width * request->height;
-    film_layout_layers(&film, block, AOV_ALL); /* the offset of the layers is the same for every mask */
-    float *behind = film.layers[0] + pixels * aov_layers(request->layers & AOV_ALL) * 3;
-    buffers->lines = (float(*)[4])(void *)behind;
-    buffers->shows = (uint8_t *)(behind + 4 * pixels);
-}
-
-struct film pass_film(const struct picture_request *request, void *block, uint32_t divide) {
-    struct film film = {.x0 = request->x0 / divide,
-                        .y0 = request->y0 / divide,
-                        .full_width = (request->full_width + divide - 1) / divide,
-                        .full_height = (request->full_height + divide - 1) / divide};
-    uint32_t right = film.x0 + (request->width + divide - 1) / divide;
-    uint32_t bottom = film.y0 + (request->height + divide - 1) / divide;
-    right = right > film.full_width ? film.full_width : right;
-    bottom = bottom > film.full_height ? film.full_height : bottom;
-    film_layout(&film, block, right - film.x0, bottom - film.y0, request->record);
-    return film;
 }
 
 /* Messages over SOCK_SEQPACKET: the kernel delivers each send as one receive, so a message is never read in part, and

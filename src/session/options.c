@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/isa.h"
-#include "render/aov.h"
+#include "film/aov.h"
 
 #include <assert.h>
 #include <ctype.h>
@@ -43,11 +43,16 @@ static bool same_name(struct piece a, struct piece b) {
     return true;
 }
 
-static const struct option *find_option(struct piece name) {
-    for (int i = 0; i < option_count; i++) {
-        for (const char *rest = option_table[i].names; *rest;) {
+/* The spellings of an option; none of a setting without one. */
+static const char *option_names(int index) {
+    return option_at(index)->option ? option_at(index)->option : "";
+}
+
+static const struct setting *find_option(struct piece name) {
+    for (int i = 0; i < option_count(); i++) {
+        for (const char *rest = option_names(i); *rest;) {
             if (same_name(name, without_dashes(option_next_piece(&rest))))
-                return &option_table[i];
+                return option_at(i);
         }
     }
     return NULL;
@@ -89,8 +94,8 @@ static int name_distance(struct piece a, struct piece b) {
 static struct piece nearest_name(struct piece name) {
     struct piece best = {"", 0};
     int best_distance = name.length < 4 ? 2 : 3;
-    for (int i = 0; i < option_count; i++) {
-        for (const char *rest = option_table[i].names; *rest;) {
+    for (int i = 0; i < option_count(); i++) {
+        for (const char *rest = option_names(i); *rest;) {
             struct piece candidate = option_next_piece(&rest), bare = without_dashes(candidate);
             int distance = name_distance(name, bare);
             if (distance < best_distance && bare.length > 1) {
@@ -158,13 +163,13 @@ static bool read_list(const char *text, char separator, int count, const long lo
     return true;
 }
 
-static bool read_size(struct options *options, const char *text) {
+static bool read_size(const char *text, int field[2]) {
     static const long long low[] = {1, 1};
     long long values[2];
     if (!read_list(text, 'x', 2, low, 1 << 20, values))
         return false;
-    options->width = (int)values[0];
-    options->height = (int)values[1];
+    field[0] = (int)values[0];
+    field[1] = (int)values[1];
     return true;
 }
 
@@ -178,16 +183,16 @@ static bool read_pixel(struct options *options, uint32_t (*pixels)[2], const cha
     return true;
 }
 
-static bool read_crop(struct options *options, const char *text) {
+static bool read_crop(struct settings *settings, const char *text) {
     static const long long low[] = {0, 0, 1, 1};
     long long values[4];
-    if (!read_list(text, ',', 4, low, 1 << 20, values))
+    if (!read_list(text, ',', 4, low, CROP_MAX, values))
         return false;
-    options->settings.cropped = true;
-    options->settings.crop_x = values[0];
-    options->settings.crop_y = values[1];
-    options->settings.crop_width = values[2];
-    options->settings.crop_height = values[3];
+    settings->cropped = true;
+    settings->crop_x = (int)values[0];
+    settings->crop_y = (int)values[1];
+    settings->crop_width = (int)values[2];
+    settings->crop_height = (int)values[3];
     return true;
 }
 
@@ -259,83 +264,79 @@ static bool note_define(struct options *options, struct script_define *defines, 
     return true;
 }
 
-static bool read_choice(const struct option *option, void *field, const char *text) {
+static bool read_choice(const struct setting *option, void *base, const char *text) {
     int position = 0;
-    for (const char *rest = option->value; *rest; position++) {
+    for (const char *rest = option->words; *rest; position++) {
         struct piece word = option_next_piece(&rest);
-        if (strlen(text) != word.length || memcmp(text, word.text, word.length) != 0)
-            continue;
-        if (option->size == sizeof(bool))
-            *(bool *)field = position != 0;
-        else
-            memcpy(field, &position, sizeof position);
-        return true;
+        if (strlen(text) == word.length && memcmp(text, word.text, word.length) == 0)
+            return setting_set_bits(option, base, (uint64_t)position);
     }
     return false;
 }
 
-static bool value_error(const struct option *option, const char *text, struct error *error) {
-    const char *rest = option->names;
+static bool value_error(const struct setting *option, const char *text, struct error *error) {
+    const char *rest = option->option;
     int shown = (int)option_next_piece(&rest).length;
     switch (option->kind) {
-    case OPTION_INTEGER:
+    case SETTING_CAUSTICS:
+    case SETTING_WHOLE:
         return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown,
-                         option->names, option->low, option->high, text);
-    case OPTION_NUMBER:
+                         option->option, option->low, option->high, text);
+    case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            return error_set(error, ERROR_USAGE, "%.*s needs a number from %g to %g, not '%s'", shown, option->names,
+            return error_set(error, ERROR_USAGE, "%.*s needs a number from %g to %g, not '%s'", shown, option->option,
                              option->low, option->high, text);
-        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->names,
+        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->option,
                          option->low, text);
-    case OPTION_BYTES:
+    case SETTING_BYTES:
         return error_set(error, ERROR_USAGE,
                          "%.*s needs a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB), not '%s'",
-                         shown, option->names, text);
-    case OPTION_SEED:
+                         shown, option->option, text);
+    case SETTING_SEED:
         return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
-                         shown, option->names, text);
-    case OPTION_CHOICE:
-    case OPTION_TONE:
-    case OPTION_STATS:
-    case OPTION_DENOISE:
-        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->names,
-                         option->value + (option->value[0] == '='), text);
-    case OPTION_LAYERS:
+                         shown, option->option, text);
+    case SETTING_CHOICE:
+    case SETTING_TONE:
+    case SETTING_STATS:
+    case SETTING_DENOISE:
+        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->option, option->words,
+                         text);
+    case SETTING_LAYERS:
         return error_set(
             error, ERROR_USAGE,
             "%.*s needs names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, "
             "lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
             "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not '%s'",
-            shown, option->names, text);
-    case OPTION_TEXT:
-        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, option->names);
-    case OPTION_SIZE:
+            shown, option->option, text);
+    case SETTING_TEXT:
+        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, option->option);
+    case SETTING_SIZE:
         return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
-                         option->names, text);
-    case OPTION_CROP:
+                         option->option, text);
+    case SETTING_CROP:
         return error_set(error, ERROR_USAGE,
                          "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
-                         shown, option->names, text);
-    case OPTION_PIXEL:
-        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown, option->names,
-                         text);
-    case OPTION_SHARD:
+                         shown, option->option, text);
+    case SETTING_PIXEL:
+        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown,
+                         option->option, text);
+    case SETTING_SHARD:
         return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
-                         option->names, text);
-    case OPTION_FRAMES:
+                         option->option, text);
+    case SETTING_FRAMES:
         return error_set(error, ERROR_USAGE,
                          "%.*s needs N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B, not '%s'",
-                         shown, option->names, FRAMES_MAX, text);
-    case OPTION_FOLDER:
-        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->names);
-    case OPTION_DEFINE:
-        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, option->names,
+                         shown, option->option, FRAMES_MAX, text);
+    case SETTING_FOLDER:
+        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->option);
+    case SETTING_DEFINE:
+        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, option->option,
                          text);
-    case OPTION_FLAG:
-    case OPTION_ACTION:
+    case SETTING_FLAG:
+    case SETTING_ACTION:
         break;
     }
-    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->names);
+    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->option);
 }
 
 /* Room for lists that grow with the words of the command line. */
@@ -343,108 +344,83 @@ struct lists {
     struct script_define *defines;
     uint32_t (*pixels)[2];
     const char **folders[2]; /* --allow-read, --allow-write */
-    struct given_option *given;
+    const char **given;      /* by setting: the text of its option */
 };
 
-/* Options that fields of gr.render override are noted for a notice; of several equal ones the last. */
-static void note_given(const struct option *option, const char *text, struct options *options,
-                       struct given_option *given) {
-    const size_t start = offsetof(struct options, settings);
-    bool picture = option->group == OPTION_GROUP_PICTURE || option->group == OPTION_GROUP_SHADING ||
-                   option->group == OPTION_GROUP_FINISH || option->group == OPTION_GROUP_COMPATIBILITY;
-    int at = 0;
-    if (!picture || option->size == 0 || option->offset < start || option->offset >= start + sizeof options->settings)
-        return;
-    while (at < options->script.given_count && given[at].offset != option->offset - start)
-        at++;
-    options->script.given_count += at == options->script.given_count;
-    given[at] = (struct given_option){option->offset - start, option->size, option->names, option->value ? text : NULL};
-}
-
-static bool apply_option(const struct option *option, const char *text, struct options *options,
+static bool apply_option(const struct setting *option, const char *text, struct options *options,
                          const struct lists *lists, struct arena *arena, struct error *error) {
-    void *field = (char *)options + option->offset;
+    void *base = option_base(option, options), *field = (char *)base + option->offset;
     long long integer = 0;
     bool ok = false;
     switch (option->kind) {
-    case OPTION_FLAG:
+    case SETTING_FLAG:
         *(bool *)field = true;
         return true;
-    case OPTION_ACTION:
+    case SETTING_ACTION:
         options->action = (enum options_action)option->low;
         return true;
-    case OPTION_INTEGER:
+    case SETTING_CAUSTICS:
+    case SETTING_WHOLE:
         ok = read_integer(text, strlen(text), (long long)option->low, (long long)option->high, &integer);
         if (ok)
             *(int *)field = (int)integer;
         break;
-    case OPTION_NUMBER:
+    case SETTING_NUMBER:
         ok = read_number(text, option->low, option->high, field);
         break;
-    case OPTION_BYTES:
+    case SETTING_BYTES:
         ok = read_bytes(text, option->low, option->high, field);
         break;
-    case OPTION_CHOICE:
-        ok = read_choice(option, field, text);
-        break;
-    case OPTION_TONE:
-        ok = read_choice(option, field, text);
+    case SETTING_TONE:
         options->settings.keeps_tone = true;
+        ok = read_choice(option, base, text);
         break;
-    case OPTION_TEXT:
+    case SETTING_CHOICE:
+    case SETTING_DENOISE:
+    case SETTING_STATS:
+        ok = read_choice(option, base, text);
+        break;
+    case SETTING_TEXT:
         ok = text[0] != '\0';
         *(const char **)field = text;
         break;
-    case OPTION_SIZE:
-        ok = read_size(options, text);
+    case SETTING_SIZE:
+        ok = read_size(text, field);
         break;
-    case OPTION_CROP:
-        ok = read_crop(options, text);
+    case SETTING_CROP:
+        ok = read_crop(&options->settings, text);
         break;
-    case OPTION_PIXEL:
+    case SETTING_PIXEL:
         ok = read_pixel(options, lists->pixels, text);
         break;
-    case OPTION_SEED:
+    case SETTING_SEED:
         ok = read_seed(options, text);
         break;
-    case OPTION_DEFINE:
+    case SETTING_DEFINE:
         ok = is_define(text);
         if (ok)
             return note_define(options, lists->defines, text, arena, error);
         break;
-    case OPTION_FOLDER:
+    case SETTING_FOLDER:
         ok = text[0] != '\0';
         lists->folders[(int)option->low][option->low == 0 ? options->script.allow_read_count++
                                                           : options->script.allow_write_count++] = text;
         break;
-    case OPTION_SHARD:
+    case SETTING_SHARD:
         ok = read_shard(text, field);
         break;
-    case OPTION_FRAMES:
+    case SETTING_FRAMES:
         ok = read_frames(field, text);
         break;
-    case OPTION_LAYERS:
-        ok = aov_parse(text, &options->settings.aov);
-        break;
-    case OPTION_DENOISE:
-        options->settings.keeps_noise = strcmp(text, "none") == 0;
-        options->settings.denoise = strcmp(text, "oidn") == 0   ? DENOISER_OIDN
-                                    : strcmp(text, "gray") == 0 ? DENOISER_GRAY
-                                                                : DENOISER_NONE;
-        ok = options->settings.keeps_noise || options->settings.denoise != DENOISER_NONE;
-        break;
-    case OPTION_STATS:
-        ok = strcmp(text, "text") == 0 || strcmp(text, "json") == 0;
-        options->statistics = strcmp(text, "json") == 0 ? STATISTICS_JSON : STATISTICS_TEXT;
+    case SETTING_LAYERS:
+        ok = aov_parse(text, field);
         break;
     }
-    if (!ok)
-        return value_error(option, text, error);
-    return true;
+    return ok || value_error(option, text, error);
 }
 
 /* -j4 and -Dname=value: the one-letter options whose value may follow without a blank. */
-static const struct option *find_attached(const char *word, const char **text) {
+static const struct setting *find_attached(const char *word, const char **text) {
     bool threads = word[1] == 'j' && isdigit((unsigned char)word[2]), define = word[1] == 'D' && is_word_start(word[2]);
     if (!threads && !define)
         return NULL;
@@ -452,7 +428,18 @@ static const struct option *find_attached(const char *word, const char **text) {
     return find_option((struct piece){word + 1, 1});
 }
 
+/* Options of the version before, and what replaces them. */
+static const struct {
+    const char *name, *instead;
+} removed_options[] = {
+    {"no-copies", "leave it out; copied frames have the bytes of rendered ones"},
+};
+
 static bool unknown_option(const char *word, struct piece name, struct error *error) {
+    for (size_t i = 0; i < sizeof removed_options / sizeof *removed_options; i++)
+        if (same_name(name, (struct piece){removed_options[i].name, strlen(removed_options[i].name)}))
+            return error_set(error, ERROR_USAGE, "there is no --%s any more: %s", removed_options[i].name,
+                             removed_options[i].instead);
     struct piece near = nearest_name(name);
     if (near.length == 0)
         return error_set(error, ERROR_USAGE, "there is no option '%s'", word);
@@ -461,10 +448,10 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
 }
 
 /* What gray merge uses: the parts contain the results of all other options. */
-static bool serves_merge(const struct option *option) {
+static bool serves_merge(const struct setting *option) {
     static const char names[] = "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
                                 "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress";
-    const char *own = option->names;
+    const char *own = option->option;
     struct piece first = without_dashes(option_next_piece(&own));
     for (const char *rest = names; *rest;) {
         if (same_name(first, option_next_piece(&rest)))
@@ -473,92 +460,31 @@ static bool serves_merge(const struct option *option) {
     return false;
 }
 
-static bool refuse_for_merge(const struct option *option, struct error *error) {
-    const char *rest = option->names;
+static bool refuse_for_merge(const struct setting *option, struct error *error) {
+    const char *rest = option->option;
     return error_set(error, ERROR_USAGE, "merge cannot be combined with %.*s: it only joins parts that are rendered",
-                     (int)option_next_piece(&rest).length, option->names);
+                     (int)option_next_piece(&rest).length, option->option);
 }
 
-/* The meaning of two options does not depend on their order: so the values are hashed. */
-static struct digest digest_option(const struct option *option, const struct options *options, struct digest digest) {
-    assert(option->kind != OPTION_TEXT); /* of strings the pointer would be hashed */
-    return digest_bytes((const char *)options + option->offset, option->size, digest);
-}
-
-static struct digest digest_finish(const struct finish *finish, struct digest digest) {
-    const double shares[] = {finish->bloom, finish->vignette};
-    const uint32_t numbers[] = {finish->gray, finish->edges, finish->fxaa, (uint32_t)finish->dither};
-    if (finish_is_plain(finish))
-        return digest;
-    return digest_bytes(numbers, sizeof numbers, digest_bytes(shares, sizeof shares, digest));
+/* Options that change a picture without being settings. A dialect counts as a file that is read. */
+static struct digest digest_option(const struct setting *option, const struct options *options, struct digest digest) {
+    const char *field = (const char *)options + option->offset;
+    if (option->kind == SETTING_SIZE || option->kind == SETTING_FRAMES) /* numbers without padding */
+        return digest_bytes(field, option->kind == SETTING_SIZE ? 2 * option->size : option->size, digest);
+    assert(option->size <= sizeof(uint64_t) && option->kind != SETTING_TEXT);
+    return setting_digest(option, options, digest);
 }
 
 struct digest options_digest(const struct options *options) {
     struct digest digest = {0};
-    for (int i = 0; i < option_count; i++) {
-        const struct option *option = &option_table[i];
-        bool picture = option->group == OPTION_GROUP_PICTURE || option->group == OPTION_GROUP_SHADING ||
-                       option->group == OPTION_GROUP_COMPATIBILITY;
-        bool search = option->offset == offsetof(struct options, settings.accel) ||
-                      option->offset == offsetof(struct options, isa);
-        bool path = option->offset == offsetof(struct options, settings.integrator) ||
-                    option->offset == offsetof(struct options, settings.path_samples) ||
-                    option->offset == offsetof(struct options, settings.max_depth) ||
-                    option->offset == offsetof(struct options, settings.roulette_depth) ||
-                    option->offset == offsetof(struct options, settings.noise) ||
-                    option->offset == offsetof(struct options, settings.time_limit) ||
-                    option->offset == offsetof(struct options, settings.clamp) ||
-                    option->offset == offsetof(struct options, settings.colour) ||
-                    option->offset == offsetof(struct options, settings.aa_pattern) ||
-                    option->offset == offsetof(struct options, settings.filter);
-        bool text = option->kind == OPTION_TEXT; /* a dialect counts as a file that is read */
-        if (picture && option->size > 0 && !search && !path && !text)
-            digest = digest_option(option, options, digest);
+    for (int i = 0; i < option_count(); i++) {
+        const struct setting *option = option_at(i);
+        if (option->changes == CHANGES_RUN)
+            continue;
+        digest = option_is_setting(option) ? setting_digest(option, &options->settings, digest)
+                                           : digest_option(option, options, digest);
     }
-    const struct settings *settings = &options->settings;
-    /* Files from the time before this option existed have the key of the first choice. */
-    if (settings->integrator != INTEGRATOR_WHITTED)
-        digest = digest_bytes(&settings->integrator, sizeof settings->integrator, digest);
-    if (settings->path_samples != 0)
-        digest = digest_bytes(&settings->path_samples, sizeof settings->path_samples, digest);
-    if (settings->max_depth != DEPTH_DEFAULT)
-        digest = digest_bytes(&settings->max_depth, sizeof settings->max_depth, digest);
-    if (settings->roulette_depth != ROULETTE_DEPTH_DEFAULT)
-        digest = digest_bytes(&settings->roulette_depth, sizeof settings->roulette_depth, digest);
-    if (settings->colour != COLOUR_AUTO)
-        digest = digest_bytes(&settings->colour, sizeof settings->colour, digest);
-    if (settings->aa_pattern != AA_GRID)
-        digest = digest_bytes(&settings->aa_pattern, sizeof settings->aa_pattern, digest);
-    if (settings->filter != FILTER_BOX)
-        digest = digest_bytes(&settings->filter, sizeof settings->filter, digest);
-    if (settings->noise > 0 || settings->clamp > 0) {
-        digest = digest_bytes(&settings->noise, sizeof settings->noise, digest);
-        digest = digest_bytes(&settings->clamp, sizeof settings->clamp, digest);
-    }
-    digest = digest_finish(&settings->finish, digest);
-    if (settings->style != STYLE_NONE || settings_line_width(settings) > 0) {
-        const double numbers[] = {(double)settings->style, settings_line_width(settings), settings->toon_steps};
-        digest = digest_bytes(numbers, sizeof numbers, digest);
-    }
-    const struct frame_options *frames = &options->script.frames;
-    if (frames->selection.step > 0 || frames->rate > 0 || frames->loops || frames->turntable > 0) {
-        const uint32_t numbers[] = {frames->selection.first, frames->selection.last, frames->selection.step,
-                                    frames->loops, (uint32_t)frames->turntable};
-        digest = digest_bytes(numbers, sizeof numbers, digest);
-        digest = digest_bytes(&frames->rate, sizeof frames->rate, digest);
-    }
-    /* Films are the same for all denoisers. */
-    if (settings->denoise != DENOISER_NONE)
-        digest = digest_bytes("denoise", sizeof "denoise", digest);
-    if (settings->keeps_noise)
-        digest = digest_bytes("raw", sizeof "raw", digest);
-    if (settings->keeps_tone && settings->tone.curve == TONE_NONE)
-        digest = digest_bytes("tone", sizeof "tone", digest);
-    const int64_t numbers[] = {options->width,          options->height,
-                               (int64_t)settings->seed, settings->cropped,
-                               settings->crop_x,        settings->crop_y,
-                               settings->crop_width,    settings->crop_height,
-                               options->script_count,   options->script.define_count};
+    const int numbers[] = {SETTINGS_VERSION, options->script_count, options->script.define_count};
     digest = digest_bytes(numbers, sizeof numbers, digest);
     for (int i = 0; i < options->script.define_count; i++) {
         const struct script_define *define = &options->script.defines[i];
@@ -597,7 +523,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
                           .pixels = arena_alloc_array(arena, room, sizeof *lists.pixels),
                           .folders = {arena_alloc_array(arena, room, sizeof *lists.folders[0]),
                                       arena_alloc_array(arena, room, sizeof *lists.folders[1])},
-                          .given = arena_alloc_array(arena, room, sizeof *lists.given)};
+                          .given = arena_alloc_array(arena, (size_t)setting_count, sizeof *lists.given)};
     if (!lists.given || !scripts || !lists.defines || !lists.pixels || !lists.folders[0] || !lists.folders[1])
         return error_no_memory(error, "the command line");
     options->scripts = scripts;
@@ -607,7 +533,7 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
     options->script.allow_read = lists.folders[0];
     options->script.allow_write = lists.folders[1];
     bool only_scripts = false;
-    const struct option *not_of_merge = NULL; /* the first option that gray merge does not use */
+    const struct setting *not_of_merge = NULL; /* the first option that gray merge does not use */
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i];
         /* The first word that is no option; `gray -- merge` is a scene of that name. */
@@ -628,27 +554,27 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         struct piece name = without_dashes((struct piece){word, strcspn(word, "=")});
         const char *text = strchr(word, '=');
         text = text ? text + 1 : NULL;
-        const struct option *option = find_option(name);
+        const struct setting *option = find_option(name);
         if (!option)
             option = find_attached(word, &text);
         if (!option)
             return unknown_option(word, name, error);
         if (!not_of_merge && !serves_merge(option))
             not_of_merge = option;
-        if (!option->value && text)
+        bool has_value = option_value(option) != NULL;
+        if (!has_value && text)
             return value_error(option, text, error);
-        if (option->kind == OPTION_STATS && !text)
-            text = "text";
-        if (option->kind == OPTION_DENOISE && !text)
-            text = "gray";
-        if (option->value && !text) {
+        if (!text && option_may_lack_value(option))
+            text = option->value;
+        if (has_value && !text) {
             if (i + 1 >= argc)
-                return error_set(error, ERROR_USAGE, "%s needs a value: %s", word, option->value);
+                return error_set(error, ERROR_USAGE, "%s needs a value: %s", word, option_value(option));
             text = argv[++i];
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
-        note_given(option, text, options, lists.given);
+        if (option_is_setting(option))
+            lists.given[option - setting_table] = has_value ? text : "";
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     if (options->action == ACTION_MERGE && not_of_merge)

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/list.h"
-#include "render/settings.h"
-#include "script/script.h"
+#include "settings/script_options.h"
+#include "settings/settings.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -65,7 +65,6 @@ struct options {
     enum animation_format animation; /* of `output` */
     bool keep_frames;                /* --keep-frames: the frames of an animation stay beside it */
     bool contact_sheet;              /* --contact-sheet */
-    bool no_copies;                  /* --no-copies: also render frames that are equal to earlier ones */
     bool frame_palettes;             /* --palette frame: GIF files have a palette for each frame */
     bool force;                      /* --force: -o may replace a file that is no picture */
     int width, height;               /* --size, or 0: the sizes that the scripts choose */

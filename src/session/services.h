@@ -3,11 +3,14 @@
 #ifndef GRAY_SESSION_SERVICES_H
 #define GRAY_SESSION_SERVICES_H
 
-#include "render/film.h"
+#include "film/film.h"
 #include "session/control.h"
 #include "session/messages.h"
 
 #include <stdbool.h>
+
+struct preview_reply;
+struct preview_command;
 
 struct host_services {
     void *context;

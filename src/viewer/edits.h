@@ -3,8 +3,8 @@
 #ifndef GRAY_VIEWER_EDITS_H
 #define GRAY_VIEWER_EDITS_H
 
-#include "render/settings.h"
 #include "scene/change.h"
+#include "settings/settings.h"
 
 struct edit {
     struct change before, after; /* of the same target */

@@ -5,7 +5,7 @@
 #define GRAY_VIEWER_FLY_CAMERA_H
 
 #include "math/box.h"
-#include "render/settings.h"
+#include "settings/settings.h"
 
 struct quaternion {
     double w, x, y, z;

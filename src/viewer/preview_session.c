@@ -21,7 +21,7 @@ struct preview_state {
     double build_seconds;
 };
 
-/* Settings of a pass: a coarse pass has one sample per pixel, and few rays for a soft light. */
+/* Settings of a pass: a coarse pass is a draft with one sample per pixel. */
 static void set_pass(struct render_job *job, const struct render_job *own, const struct pass_view *view,
                      struct film *film) {
     *job = *own;
@@ -32,6 +32,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->settings.order = ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
     job->settings.passes = view->divide <= 1 && !view->plain;
+    settings_set_draft(&job->settings, view->plain ? DRAFT_QUICK : DRAFT_NONE);
     if (!job->settings.passes) {
         job->settings.path_samples = 1;
         job->settings.noise = job->settings.time_limit = 0;
@@ -44,14 +45,6 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
         job->camera = view->camera;
         job->settings.view_is_target = false;
         job->settings.motion = (struct camera_motion){0};
-    }
-    if (view->plain) {
-        job->settings.full = false;
-        job->settings.side_tolerance = job->settings.corner_tolerance = HUGE_VAL;
-        job->settings.area_samples = job->settings.area_samples < 2 ? job->settings.area_samples : 2;
-        job->settings.samples = 1;
-        job->settings.lens.aperture = 0;
-        job->settings.caustics.photons = 0;
     }
 }
 

@@ -4,7 +4,7 @@
 #ifndef GRAY_VIEWER_VIEW_OVERLAY_INTERNAL_H
 #define GRAY_VIEWER_VIEW_OVERLAY_INTERNAL_H
 
-#include "session/messages.h"
+#include "viewer/preview_messages.h"
 #include "world/path.h"
 
 struct view_overlay_scene {

@@ -2,7 +2,7 @@
  * about a thirtieth of a second; then finer ones, and finally the picture with the settings of the script. The cost of
  * a pass is proportional to the square of 1 / divide, which gives divide. */
 #include "base/mem.h"
-#include "render/path_film.h"
+#include "film/path_film.h"
 #include "viewer/viewer_internal.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ static bool is_different(double a, double b) {
 static struct pass_view current_view(const struct viewer *viewer, uint32_t divide, bool plain) {
     return (struct pass_view){.camera = viewer->camera_moved ? fly_camera_current(&viewer->fly_camera)
                                                              : viewer->request.camera,
-                              .exposure = viewer->request.exposure,
+                              .exposure = viewer->request.settings.tone.exposure,
                               .divide = divide,
                               .plain = plain,
                               .own = !viewer->camera_moved};
@@ -33,8 +33,8 @@ static void keep_work(struct viewer *viewer, const struct viewer *before) {
         viewer->fly_camera.home = home;
         viewer->camera_moved = true;
     }
-    if (is_different(before->request.exposure, before->script_exposure))
-        viewer->request.exposure = before->request.exposure;
+    if (is_different(before->request.settings.tone.exposure, before->script_exposure))
+        viewer->request.settings.tone.exposure = before->request.settings.tone.exposure;
     viewer->edit.steps = before->edit.steps;
     viewer->edit.pending = before->edit.pending;
     viewer->edit.tool = before->edit.tool;
@@ -145,10 +145,9 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     *viewer = (struct viewer){.driver = driver,
                               .request = *request,
                               .block = picture->block,
-                              .script_exposure = request->exposure,
+                              .script_exposure = request->settings.tone.exposure,
                               .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
-                              .overlay.kind =
-                                  request->overlay <= OVERLAY_OF_GRID ? (enum overlay)request->overlay : OVERLAY_NONE,
+                              .overlay.kind = request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
                               .stepped = now};
     mem_free(before.lights.items);
@@ -315,8 +314,8 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
         viewer_drop_large(viewer);
         viewer->pass.view = current_view(viewer, divide, plain);
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
-        viewer->pass.edited =
-            viewer->edit.steps.now.count > 0 || is_different(viewer->request.exposure, viewer->script_exposure);
+        viewer->pass.edited = viewer->edit.steps.now.count > 0 ||
+                              is_different(viewer->request.settings.tone.exposure, viewer->script_exposure);
         memset(viewer->display.drawn, 0, viewer->display.tiles);
         if (viewer->pass.film.marked)
             memset(viewer->pass.film.marked, 0, (size_t)viewer->pass.film.width * viewer->pass.film.height);
@@ -400,7 +399,8 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
         begin_pass(viewer, divide, true, false, now);
     } else if (viewer->lights.known < viewer->lights.count) {
         viewer->command = (struct preview_command){.kind = COMMAND_LIGHTS, .first_light = viewer->lights.known};
-    } else if (!viewer->pass.view.plain && is_different(viewer->pass.view.exposure, viewer->request.exposure)) {
+    } else if (!viewer->pass.view.plain &&
+               is_different(viewer->pass.view.exposure, viewer->request.settings.tone.exposure)) {
         begin_pass(viewer, 1, false, false, now);
     } else if (viewer->pass.result == RESULT_STOPPED) {
         begin_pass(viewer, 0, false, true, now);
@@ -428,7 +428,8 @@ static enum viewer_action step_running(struct viewer *viewer) {
     }
     bool wanted = viewer->pass.outdated || viewer_large_is_outdated(viewer) || viewer->player.wanted > 0 ||
                   (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits || viewer->trace.wanted ||
-                  viewer->edit.pending.count > 0 || is_different(viewer->pass.view.exposure, viewer->request.exposure);
+                  viewer->edit.pending.count > 0 ||
+                  is_different(viewer->pass.view.exposure, viewer->request.settings.tone.exposure);
     if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)
         return VIEWER_NOTHING;
     viewer->pass.state = PASS_STOPPING;
@@ -437,8 +438,8 @@ static enum viewer_action step_running(struct viewer *viewer) {
 
 /* The picture is written with the overlay lines of the command line, which exist if they are visible. */
 static bool lines_of_script(const struct viewer *viewer) {
-    return viewer->request.overlay == OVERLAY_NONE ||
-           (viewer->overlay.kind == (enum overlay)viewer->request.overlay && viewer->overlay.lines_fresh &&
+    return viewer->request.settings.overlay == OVERLAY_NONE ||
+           (viewer->overlay.kind == viewer->request.settings.overlay && viewer->overlay.lines_fresh &&
             viewer->overlay.has_lines && !viewer->pass.outdated);
 }
 
@@ -466,7 +467,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     if (viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->pass.view.own &&
         !viewer->pass.edited && !viewer->written && lines_of_script(viewer)) {
         viewer->written = true;
-        if (viewer->request.overlay != OVERLAY_NONE)
+        if (viewer->request.settings.overlay != OVERLAY_NONE)
             overlay_lay(&viewer->pass.film, viewer->overlay.lines);
         return VIEWER_WRITE_PICTURE;
     }

@@ -8,12 +8,12 @@
 
 #include "base/file_output.h"
 #include "base/share.h"
-#include "render/film.h"
+#include "film/film.h"
 #include "session/control.h"
-#include "session/messages.h"
 #include "viewer/edits.h"
 #include "viewer/fly_camera.h"
 #include "viewer/panel.h"
+#include "viewer/preview_messages.h"
 #include "viewer/window.h"
 
 /* An edge between a pixel that shows the selected node and one that does not: the left or the upper edge of the pixel

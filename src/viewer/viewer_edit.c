@@ -20,7 +20,7 @@ bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame
     struct settings settings = settings_default();
     struct error ignored;
     char warning[256];
-    settings.lens = viewer->request.lens;
+    settings.lens = viewer->request.settings.lens;
     settings.lens.aperture = 0;
     return camera_prepare(&viewer->pass.view.camera, &settings,
                           (struct picture_size){viewer->request.full_width, viewer->request.full_height}, frame,
@@ -169,7 +169,7 @@ void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
         return;
     struct vec3 at = selection_position(viewer);
     double depth = vec3_dot(vec3_sub(at, frame.eye), frame.forward), pixel = vec3_length(frame.right) / zoom(viewer);
-    if (viewer->request.lens.projection != PROJECTION_ORTHOGRAPHIC)
+    if (viewer->request.settings.lens.projection != PROJECTION_ORTHOGRAPHIC)
         pixel *= fabs(depth);
     if (viewer->edit.tool == TOOL_MOVE) {
         struct vec3 route = vec3_scale(frame.unit_right, dx * pixel);
@@ -443,7 +443,7 @@ void viewer_make_own_material(struct viewer *viewer) {
 }
 
 void viewer_set_exposure(struct viewer *viewer, double stops) {
-    viewer->request.exposure = stops < -100 ? -100 : stops > 100 ? 100 : stops;
+    viewer->request.settings.tone.exposure = stops < -100 ? -100 : stops > 100 ? 100 : stops;
     viewer_redraw(viewer);
     viewer->display.hud_dirty = true;
 }
@@ -476,7 +476,7 @@ bool viewer_save_image(const struct viewer *viewer, const struct file_target *pi
                                       .height = viewer->request.height,
                                       .bytes = image_row,
                                       .context = (void *)(uintptr_t)viewer,
-                                      .srgb = viewer->request.srgb != 0};
+                                      .srgb = viewer->request.settings.tone.srgb};
     return free_name(picture->path, "-view", "png", name, error) && png_write_from(&target, &source, NULL, error);
 }
 
@@ -524,7 +524,7 @@ bool viewer_save_edits(const struct viewer *viewer, const struct file_target *pi
         "-- Edits made in the window. A scene that requires this file (its name without .lua) before gr.render has\n"
         "-- them.\n";
     struct camera camera = fly_camera_current(&viewer->fly_camera);
-    double exposure = viewer->request.exposure;
+    double exposure = viewer->request.settings.tone.exposure;
     bool exposed = exposure < viewer->script_exposure || exposure > viewer->script_exposure;
     struct lua_file lua_file = {.error = error};
     const struct file_target target = {.path = name, .rules = picture->rules};

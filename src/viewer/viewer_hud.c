@@ -135,7 +135,7 @@ static void draw_work(struct viewer *viewer) {
     if (used[WORK_LIGHT])
         viewer_add_light(viewer);
     char text[48];
-    double stops = viewer->request.exposure;
+    double stops = viewer->request.settings.tone.exposure;
     (void)snprintf(text, sizeof text, "%+.2f stops", stops);
     if (x + 2 * wide > panel->canvas.width)
         return;

@@ -124,7 +124,7 @@ static bool handle_plain_key(struct viewer *viewer, int key) {
     case '+':
     case '=':
     case '-':
-        viewer_set_exposure(viewer, viewer->request.exposure + (key == '-' ? -0.25 : 0.25));
+        viewer_set_exposure(viewer, viewer->request.settings.tone.exposure + (key == '-' ? -0.25 : 0.25));
         return true;
     case 'f':
         viewer->driver->full_screen(viewer->driver->context);

@@ -7,7 +7,7 @@
 #include "world/flatten_internal.h"
 #include "world/world_internal.h"
 
-enum { DEPTH_MAX = 64 };
+enum { NODE_DEPTH_MAX = 64 };
 
 struct update {
     struct flattening *f;
@@ -20,7 +20,7 @@ struct update {
 static bool mark_posed(struct update *u, const struct scene_changes *changes, bool *done) {
     const struct flatten_log *log = u->f->log;
     for (uint32_t i = 0; i < changes->posed_count; i++) {
-        const struct node *node = changes->posed[i];
+        const struct node *node = changes->posed[i].node;
         if (node->index >= log->node_total)
             continue; /* newer than the world, so it is not below the root */
         if (node->singular || (log->inside && log->inside[node->index]))
@@ -37,7 +37,7 @@ static const struct transform *known_pose(const struct update *u, uint32_t recor
 /* world_from_node, composed from the nearest node above it whose pose is known. False: the path is too long. */
 static bool find_pose(const struct update *u, uint32_t record, struct transform *out) {
     const struct flatten_record *records = u->f->log->records;
-    uint32_t path[DEPTH_MAX];
+    uint32_t path[NODE_DEPTH_MAX];
     int depth = 0;
     *out = transform_identity();
     for (uint32_t at = record; at != RECORD_NONE; at = records[at].above) {
@@ -46,7 +46,7 @@ static bool find_pose(const struct update *u, uint32_t record, struct transform 
             *out = *known;
             break;
         }
-        if (depth == DEPTH_MAX)
+        if (depth == NODE_DEPTH_MAX)
             return false;
         path[depth++] = at;
     }

@@ -120,8 +120,8 @@ struct world_cache {
     uint64_t taken; /* number of worlds that took over tables */
 };
 
-/* The input of a world; it is only read, except that the scene records which nodes it has warned of, and forgets the
- * changes that a world with kept tables now shows. */
+/* The input of a world; it is only read, except that the scene records which nodes it has warned of, and with a cache
+ * forgets the changes that the world now shows. */
 struct world_input {
     struct scene *scene;
     const struct node *root; /* everything under it in its current state */

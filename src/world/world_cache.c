@@ -63,29 +63,27 @@ bool kept_tables_take(struct flattening *f, const struct world_input *input, boo
     *taken = false;
     if (!cache)
         return true;
-    if (!input->keeps_tables || has_mesh_light(input)) {
+    if (!input->keeps_tables || has_mesh_light(input))
         world_cache_drop_tables(cache);
-        return true;
-    }
-    if (!cache->tables)
+    else if (!cache->tables)
         cache->tables = mem_alloc_zero(1, sizeof *cache->tables);
     struct kept_tables *tables = cache->tables;
-    if (!tables)
+    if (!tables) {
+        scene_forget_changes(input->scene);
         return true;
+    }
     const struct world begun = *f->world;
-    struct scene_changes *changes = &input->scene->changes;
     f->log = &tables->log;
     bool ok = true;
     if (fits(tables, input)) {
         take_world(tables, f->world);
-        ok = flatten_update(f, changes, taken);
+        ok = flatten_update(f, &input->scene->changes, taken);
         if (!*taken || !ok) {
             world_destroy(f->world);
             *f->world = begun;
         }
     }
-    changes->other = false;
-    changes->posed_count = 0;
+    scene_forget_changes(input->scene);
     cache->taken += *taken;
     if (*taken || !ok)
         return ok;

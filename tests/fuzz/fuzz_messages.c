@@ -15,8 +15,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 static size_t whole_size(uint32_t kind, size_t size) {
     if (kind == MESSAGE_BEGIN)
         return sizeof(struct picture_request);
-    if (kind == MESSAGE_PREVIEW_REPLY)
-        return sizeof(struct preview_reply);
     if (kind == MESSAGE_DONE)
         return sizeof(struct picture_report);
     if (kind == MESSAGE_SCRIPT)

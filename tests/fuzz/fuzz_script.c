@@ -3,8 +3,8 @@
  * line. GRAY_FUZZ_PRINT in the environment shows the text. Bytes that begin with "--" are a script as they are. */
 #define _GNU_SOURCE
 #include "base/mem.h"
+#include "film/aov.h"
 #include "image/png_write.h"
-#include "render/aov.h"
 #include "render/render.h"
 #include "script/script.h"
 #include "tests/fuzz/folder.h"

@@ -3,7 +3,7 @@
 #define GRAY_TESTS_SCRIPT_HOST_H
 
 #include "base/fault.h"
-#include "render/settings.h"
+#include "settings/settings.h"
 #include "script/script.h"
 #include "tests/harness.h"
 

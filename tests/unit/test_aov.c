@@ -1,6 +1,6 @@
 /* Render layers (AOVs) against closed forms, and statistics that must agree with one another. */
+#include "film/aov.h"
 #include "output/layers_internal.h"
-#include "render/aov.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

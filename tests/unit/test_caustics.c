@@ -2,7 +2,7 @@
 #include "light/sky.h"
 #include "material/openpbr.h"
 #include "math/elementary.h"
-#include "render/photon_trace_internal.h"
+#include "photon/photon_trace.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
 #include "tests/harness.h"
@@ -74,8 +74,8 @@ static struct photon_statistics send(struct stage *s, int photons, struct photon
     struct photon_statistics statistics = {0};
     s->settings.caustics.photons = photons;
     CHECK(stage_build(s, s->root, ACCEL_AUTO));
-    const struct render_job job = {.world = &s->world, .settings = s->settings, .fog = s->fog};
-    if (!photons_make(map, &job, s->pool, &statistics, &s->error))
+    const struct photon_scene scene = {.world = &s->world, .settings = &s->settings, .fog = s->fog};
+    if (!photons_make(map, &scene, s->pool, &statistics, &s->error))
         test_fail(__FILE__, __LINE__, "%s", s->error.text);
     return statistics;
 }
@@ -773,8 +773,9 @@ TEST(photons_give_paths_the_caustic_of_a_light_without_body) {
     }
 }
 
-/* A highlight of a mirror stands for the light of lamps that no ray can hit. Photons that the mirror throws are the same
- * light: scattered rays must not add the highlight to it. The floor has the light of the lamp and of its mirror image. */
+/* A highlight of a mirror stands for the light of lamps that no ray can hit. Photons that the mirror throws are the
+ * same light: scattered rays must not add the highlight to it. The floor has the light of the lamp and of its mirror
+ * image. */
 TEST(photons_replace_the_highlights_of_mirrors_on_which_scattered_rays_see_lights_without_body) {
     struct vec3 light[2];
     for (int mirrored = 0; mirrored < 2; mirrored++) {

@@ -2,6 +2,7 @@
 #include "base/share.h"
 #include "session/messages.h"
 #include "tests/harness.h"
+#include "viewer/preview_messages.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,12 @@ static enum channel_result receive(struct message *message) {
 }
 
 static struct picture_request sound_request(void) {
-    struct picture_request request = {
-        .full_width = 100, .full_height = 80, .width = 100, .height = 80, .shown = {0, 0, 100, 80}};
+    struct picture_request request = {.full_width = 100,
+                                      .full_height = 80,
+                                      .width = 100,
+                                      .height = 80,
+                                      .shown = {0, 0, 100, 80},
+                                      .settings = settings_default()};
     memcpy(request.file, "a.png", 6);
     return request;
 }
@@ -131,23 +136,23 @@ TEST(requests_for_impossible_pictures_are_refused) {
     }
     for (int side = -1; side <= 1; side += 2) {
         request = sound_request();
-        request.exposure = 101 * side;
+        request.settings.tone.exposure = 101 * side;
         broken_request(request);
     }
     request = sound_request();
-    request.curve = 1000;
+    request.settings.tone.curve = (enum tone_curve)1000;
     broken_request(request);
     for (int i = 0; i < 3; i++) {
         request = sound_request();
-        request.curve = TONE_FUNCTION;
+        request.settings.tone.curve = TONE_FUNCTION;
         request.tone_table.values[i == 0 ? 0 : i == 1 ? 77 : TONE_ENTRIES - 1] = i == 1 ? (float)NAN : (float)INFINITY;
         broken_request(request);
     }
     request = sound_request();
-    request.lens.projection = (enum projection)1000;
+    request.settings.lens.projection = (enum projection)1000;
     broken_request(request);
     request = sound_request();
-    request.lens.stereo = (enum stereo)1000;
+    request.settings.lens.stereo = (enum stereo)1000;
     broken_request(request);
     request = sound_request();
     static struct message message;
@@ -156,27 +161,8 @@ TEST(requests_for_impossible_pictures_are_refused) {
 }
 
 /* Messages that a child under a scene's control might send: texts without terminator, unknown kinds. */
-TEST(replies_answers_and_names_without_an_end_are_refused) {
+TEST(answers_and_names_without_an_end_are_refused) {
     open_channel();
-    static const struct preview_reply sound;
-    struct preview_reply reply = sound;
-    char *const words[] = {reply.picked.name, reply.picked.shape, reply.picked.material, reply.picked.parent_name,
-                           reply.root_name};
-    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
-        reply = sound;
-        memset(words[i], 'x', PICK_NAME);
-        broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
-    }
-    reply = sound;
-    memset(reply.text, 'x', sizeof reply.text);
-    broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
-    reply = sound;
-    memset(reply.picked.path, 'x', sizeof reply.picked.path);
-    broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
-    reply = sound;
-    reply.kind = (enum preview_reply_kind)1000;
-    broken(MESSAGE_PREVIEW_REPLY, &reply, sizeof reply);
-    broken(MESSAGE_PREVIEW_REPLY, &sound, sizeof sound - 1);
     struct message_answer answer;
     memset(&answer, 'x', sizeof answer);
     broken(MESSAGE_ANSWER, &answer, sizeof answer);
@@ -187,8 +173,44 @@ TEST(replies_answers_and_names_without_an_end_are_refused) {
     static const char bytes[MESSAGE_SIZE_LIMIT];
     broken(MESSAGE_READ, bytes, 5);
     broken(MESSAGE_AGAIN, bytes, 1);
-    broken(MESSAGE_PREVIEW_COMMAND, bytes, 1);
     broken(MESSAGE_LINE, bytes, sizeof(struct message_line) + 1);
+}
+
+/* A reply that cannot be read is one that the supervisor does not use. */
+static void unread(const struct preview_reply *reply, size_t size) {
+    static struct message message;
+    struct preview_reply out;
+    message.kind = MESSAGE_PREVIEW_REPLY;
+    message.size = size;
+    memcpy(message.body.bytes, reply, sizeof *reply);
+    CHECK(!preview_reply_read(&message, &out));
+}
+
+TEST(replies_of_a_window_without_an_end_are_refused) {
+    static const struct preview_reply sound;
+    static struct message message;
+    struct preview_reply reply = sound;
+    char *const words[] = {reply.picked.name, reply.picked.shape, reply.picked.material, reply.picked.parent_name,
+                           reply.root_name};
+    message = (struct message){.kind = MESSAGE_PREVIEW_REPLY, .size = sizeof sound};
+    CHECK(preview_reply_read(&message, &reply));
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        reply = sound;
+        memset(words[i], 'x', PICK_NAME);
+        unread(&reply, sizeof reply);
+    }
+    reply = sound;
+    memset(reply.text, 'x', sizeof reply.text);
+    unread(&reply, sizeof reply);
+    reply = sound;
+    memset(reply.picked.path, 'x', sizeof reply.picked.path);
+    unread(&reply, sizeof reply);
+    reply = sound;
+    reply.kind = (enum preview_reply_kind)1000;
+    unread(&reply, sizeof reply);
+    unread(&sound, sizeof sound - 1);
+    struct preview_command command;
+    CHECK(!preview_command_read(&message, &command)); /* of another kind */
 }
 
 TEST(a_channel_that_is_closed_twice_is_closed_once) {

@@ -1,6 +1,6 @@
 /* The denoiser on synthetic films with known noise. */
 #include "base/isa.h"
-#include "render/denoise.h"
+#include "denoise/denoise.h"
 #include "tests/harness.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* --denoise and layers of light: bytes of denoised pictures do not depend on how they were made, and the sum of the
  * light is the picture. */
 #define _GNU_SOURCE
-#include "render/aov.h"
+#include "film/aov.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

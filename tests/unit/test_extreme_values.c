@@ -1,11 +1,11 @@
 /* Numbers at the ends of their range. Every numeric argument of every gr function takes each value of a list of
  * extremes, the scene is rendered with all layers, and the result is one line or a finite picture. */
 #include "base/mem.h"
+#include "film/aov.h"
+#include "film/tile_file.h"
 #include "formats/model.h"
 #include "image/exr.h"
-#include "render/aov.h"
 #include "render/render.h"
-#include "render/tile_file.h"
 #include "tests/stage.h"
 #include "tests/unit/call_makers.h"
 #include "tests/unit/script_host.h"

@@ -1,8 +1,8 @@
 /* Farms with --noise that are interrupted and continued from their checkpoint: two ranks in one process, which render
  * in threads, with messages in queues. The test steps both ranks, so that nothing is handed out while it does not. */
 #include "base/pool.h"
+#include "film/path_film.h"
 #include "output/farm.h"
-#include "render/path_film.h"
 #include "render/render.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

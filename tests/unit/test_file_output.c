@@ -3,8 +3,8 @@
 #define _GNU_SOURCE
 #include "base/file_output.h"
 
+#include "film/tile_file.h"
 #include "image/image.h"
-#include "render/tile_file.h"
 #include "tests/harness.h"
 
 #include <errno.h>

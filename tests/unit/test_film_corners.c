@@ -1,7 +1,7 @@
 /* Corner cases of the film: impossible sizes, parts outside the picture, the contents of each view, tiles whose bytes
  * do not fit; and the light layer for every kind of light. */
 #include "light/light.h"
-#include "render/aov.h"
+#include "render/aov_values_internal.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
@@ -26,8 +26,8 @@ TEST(films_of_impossible_sizes_are_refused) {
 }
 
 TEST(parts_outside_of_the_picture_are_refused) {
-    static const int64_t crops[][4] = {{-1, 0, 5, 5}, {0, -1, 5, 5}, {0, 0, 0, 5},  {0, 0, 5, 0},   {40, 0, 1, 1},
-                                       {0, 30, 1, 1}, {1, 0, 40, 5}, {0, 1, 5, 30}, {39, 29, 2, 1}, {39, 29, 1, 2}};
+    static const int crops[][4] = {{-1, 0, 5, 5}, {0, -1, 5, 5}, {0, 0, 0, 5},  {0, 0, 5, 0},   {40, 0, 1, 1},
+                                   {0, 30, 1, 1}, {1, 0, 40, 5}, {0, 1, 5, 30}, {39, 29, 2, 1}, {39, 29, 1, 2}};
     struct render_area area;
     char warning[256];
     struct error error;

@@ -1,8 +1,8 @@
 /* The record of a pixel has a size that the picture states: any record survives tiles and files, files of the first
  * format keep their bytes, and pixels with different records are never mixed. */
+#include "film/tile_file.h"
 #include "output/checkpoint.h"
 #include "render/render.h"
-#include "render/tile_file.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 

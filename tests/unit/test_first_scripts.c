@@ -101,7 +101,8 @@ TEST(a_warning_about_a_missing_material_names_the_line_of_the_node) {
 }
 
 TEST(a_picture_that_replaces_another_of_the_run_is_a_notice) {
-    notes(RENDER("") " " RENDER(""), "gray: notice: x.png replaces a picture that this run wrote before under the same name");
+    notes(RENDER("") " " RENDER(""),
+          "gray: notice: x.png replaces a picture that this run wrote before under the same name");
     notes_not(RENDER(""), "replaces");
     notes_not(RENDER(""), "replaces"); /* that of an earlier run */
 }

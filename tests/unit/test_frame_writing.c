@@ -1,5 +1,5 @@
-/* While the files of a frame are written, the script and the digest of the next frame run. No script, no reader of the
- * output and no interrupted run can see the difference. */
+/* While the files of a frame are written, the script of the next frame runs. No script, no reader of the output and no
+ * interrupted run can see the difference. */
 #define _GNU_SOURCE
 #include "tests/harness.h"
 

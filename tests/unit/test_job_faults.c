@@ -2,9 +2,9 @@
  * fails while the world is built and the picture is rendered, the job ends with one machine error or with the picture,
  * and the next job succeeds. */
 #include "base/fault.h"
+#include "film/aov.h"
 #include "inspect/inspect.h"
 #include "inspect/pick.h"
-#include "render/aov.h"
 #include "render/overlay.h"
 #include "render/render.h"
 #include "tests/unit/script_host.h"

@@ -3,12 +3,12 @@
  * plus a tenth beyond the memory of an empty script; with a picture, three quarters of the limit more. */
 #include "base/error.h"
 #include "base/mem.h"
+#include "film/tile_file.h"
 #include "formats/font.h"
 #include "formats/model.h"
 #include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "render/render.h"
-#include "render/tile_file.h"
 #include "session/options.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

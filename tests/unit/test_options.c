@@ -161,7 +161,7 @@ TEST(stats_takes_its_form_only_behind_an_equals_sign) {
     parsed = parse("--stats=text s.lua");
     CHECK_EQ_INT(taken(parsed)->statistics, STATISTICS_TEXT);
     forget(parsed);
-    refused("--stats=csv s.lua", "--stats needs one of text|json, not 'csv'");
+    refused("--stats=csv s.lua", "--stats needs one of none|text|json, not 'csv'");
 }
 
 TEST(alsamples_and_attached_thread_counts_are_understood) {
@@ -169,6 +169,11 @@ TEST(alsamples_and_attached_thread_counts_are_understood) {
     CHECK_EQ_INT(taken(parsed)->settings.area_samples, 2);
     CHECK_EQ_INT(parsed->options.threads, 12);
     forget(parsed);
+}
+
+TEST(a_removed_option_is_answered_with_what_replaces_it) {
+    refused("--no-copies s.lua",
+            "there is no --no-copies any more: leave it out; copied frames have the bytes of rendered ones");
 }
 
 TEST(a_misspelt_option_is_answered_with_the_nearest_name) {

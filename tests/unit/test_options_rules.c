@@ -98,12 +98,15 @@ TEST(merge_refuses_every_option_that_it_does_not_use) {
         "--progress none"};
     char line[200], sentence[200];
     int taken = 0;
-    for (int i = 0; i < option_count; i++) {
-        const char *rest = option_table[i].names;
+    for (int i = 0; i < option_count(); i++) {
+        const struct setting *option = option_at(i);
+        if (!option->option)
+            continue;
+        const char *rest = option->option;
         struct piece piece = option_next_piece(&rest);
         char name[32];
         (void)snprintf(name, sizeof name, "%.*s", (int)piece.length, piece.text);
-        if (option_table[i].kind == OPTION_ACTION)
+        if (option->kind == SETTING_ACTION)
             continue;
         const char *with = NULL;
         for (size_t j = 0; j < sizeof used / sizeof used[0]; j++) {
@@ -113,22 +116,21 @@ TEST(merge_refuses_every_option_that_it_does_not_use) {
         }
         taken += with != NULL;
         if (with) {
-            bool animates = option_table[i].group == OPTION_GROUP_FRAMES;
+            bool animates = option->group == OPTION_GROUP_ANIMATION;
             (void)snprintf(line, sizeof line, "merge%s %s a.part", animates ? " -o x.gif" : "", with);
             expect(line, NULL);
             continue;
         }
         static const char *const values[] = {
-            [OPTION_INTEGER] = "1",  [OPTION_NUMBER] = "1",     [OPTION_BYTES] = "1M",  [OPTION_TEXT] = "term",
-            [OPTION_SIZE] = "8x8",   [OPTION_CROP] = "0,0,1,1", [OPTION_PIXEL] = "1,1", [OPTION_SEED] = "1",
-            [OPTION_DEFINE] = "a=1", [OPTION_FOLDER] = "d",     [OPTION_SHARD] = "1/2", [OPTION_FRAMES] = "2",
-            [OPTION_LAYERS] = "all", [OPTION_DENOISE] = NULL};
-        enum option_kind kind = option_table[i].kind;
+            [SETTING_WHOLE] = "1",   [SETTING_NUMBER] = "1",   [SETTING_CAUSTICS] = "1",   [SETTING_BYTES] = "1M",
+            [SETTING_TEXT] = "term", [SETTING_SIZE] = "8x8",   [SETTING_CROP] = "0,0,1,1", [SETTING_PIXEL] = "1,1",
+            [SETTING_SEED] = "1",    [SETTING_DEFINE] = "a=1", [SETTING_FOLDER] = "d",     [SETTING_SHARD] = "1/2",
+            [SETTING_FRAMES] = "2",  [SETTING_LAYERS] = "all", [SETTING_DENOISE] = NULL};
+        enum setting_kind kind = option->kind;
         char choice[64] = "";
-        if (kind == OPTION_CHOICE || kind == OPTION_TONE)
-            (void)snprintf(choice, sizeof choice, "%.*s", (int)strcspn(option_table[i].value, "|"),
-                           option_table[i].value);
-        const char *value = kind == OPTION_STATS || kind == OPTION_FLAG ? "" : choice[0] ? choice : values[kind];
+        if (kind == SETTING_CHOICE || kind == SETTING_TONE)
+            (void)snprintf(choice, sizeof choice, "%.*s", (int)strcspn(option->words, "|"), option->words);
+        const char *value = kind == SETTING_STATS || kind == SETTING_FLAG ? "" : choice[0] ? choice : values[kind];
         (void)snprintf(sentence, sizeof sentence,
                        "merge cannot be combined with %s: it only joins parts that are rendered", name);
         (void)snprintf(line, sizeof line, "merge %s %s a.part", name, value);

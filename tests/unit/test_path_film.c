@@ -1,6 +1,6 @@
 /* The record of path-traced pixels: halves, sums that do not depend on passes, estimates of the error. */
 #include "base/random.h"
-#include "render/path_film.h"
+#include "film/path_film.h"
 #include "render/sampler.h"
 #include "tests/harness.h"
 

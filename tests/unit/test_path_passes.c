@@ -1,4 +1,5 @@
 /* Samples that come in passes, until a time is over or a tile has little enough noise. */
+#include "denoise/film_denoise.h"
 #include "render/path_noise_internal.h"
 #include "render/time_estimate.h"
 #include "tests/harness.h"
@@ -69,7 +70,7 @@ TEST(a_picture_that_is_looked_at_is_shown_denoised_when_it_has_all_samples) {
     s.settings.denoise = DENOISER_GRAY;
     CHECK(stage_render(&s, WIDTH, HEIGHT));
     struct pool *pool = pool_create(1, warning);
-    const struct denoise_source source = path_film_denoise_source(&s.film);
+    const struct denoise_source source = film_denoise_source(&s.film);
     static float denoised[WIDTH * HEIGHT][3];
     CHECK(denoise(&source, pool, denoised, &error));
     pool_destroy(pool);

@@ -1,6 +1,6 @@
 /* Pixel traces: the trace reports what was computed, and its parts add up to the sum. */
+#include "film/aov.h"
 #include "material/material_inputs.h"
-#include "render/aov.h"
 #include "render/pixel_trace.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

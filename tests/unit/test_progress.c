@@ -3,8 +3,8 @@
 
 #include "base/clock.h"
 #include "base/random.h"
+#include "film/film.h"
 #include "output/picture_shown_internal.h"
-#include "render/film.h"
 #include "render/noise_estimate_internal.h"
 #include "render/time_estimate.h"
 #include "tests/stage.h"
@@ -609,8 +609,8 @@ TEST(the_time_of_finishing_a_picture_is_measured_on_some_of_its_tiles) {
     for (uint32_t tile = 0; tile < film_tile_count(&picture->film); tile += 2)
         picture->film.tiles[tile] = FILM_TILE_DONE;
     double plain = picture_writing_time(&options, picture, 1);
-    picture->request.bloom = 0.3;
-    picture->request.fxaa = 1;
+    picture->request.settings.finish.bloom = 0.3;
+    picture->request.settings.finish.fxaa = true;
     double one = picture_writing_time(&options, picture, 1) - plain;
     double four = picture_writing_time(&options, picture, 4) - plain;
     double begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);

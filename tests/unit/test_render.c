@@ -361,7 +361,8 @@ TEST(mirrored_scene_gives_the_mirrored_picture) {
     stage_begin(&b, 2);
     busy_scene(&a, 1, false);
     busy_scene(&b, 1, true);
-    /* Jitter is a function of the pixel, so only hard shadows can be compared, on a grid that is its own mirror image. */
+    /* Jitter is a function of the pixel, so only hard shadows can be compared, on a grid that is its own mirror image.
+     */
     a.light_count = b.light_count = 1;
     a.settings.full = b.settings.full = true;
     a.settings.aa_pattern = b.settings.aa_pattern = AA_GRID;

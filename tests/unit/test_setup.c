@@ -122,7 +122,8 @@ static void make_gallery(const char *plan) {
                  "cat >gray <<'END'\n"
                  "#!/bin/sh\n"
                  "for word in \"$@\"; do case $word in *%%02d.png) out=${word%%%%%%02d*}; esac; done\n"
-                 "case $out in *broken*) exit 1;; *clock*) echo picture >${out}02.png;; *path*) echo printed;; esac\n"
+                 "case $out in *broken*) exit 1;; *sleeper*) sleep 2;; *clock*) echo picture >${out}02.png;; *path*) "
+                 "echo printed;; esac\n"
                  "echo picture >${out}01.png\n"
                  "END\n"
                  "chmod +x gray",
@@ -171,7 +172,21 @@ TEST(a_scene_that_fails_is_named_at_the_end) {
     make_gallery("[A]\ndata/broken.lua 1\ndata/14demo.lua 1\n[B]\ndata/10demo.lua 1\n");
     CHECK_EQ_INT(render_all(), 1);
     char *err = test_read_file(test_path("err.txt"), NULL);
-    CHECK(err && strstr(err, "render_all.sh: failed: data/broken.lua\n"));
+    CHECK(err && strstr(err, "render_all.sh: data/broken.lua failed with status 1\n"));
+    CHECK(err && strstr(err, "render_all.sh: these failed: data/broken.lua; "));
+    free(err);
+}
+
+/* The script `sleeper` takes longer than the limit that the environment sets; the plan alone allows more. */
+TEST(a_scene_that_is_ended_at_its_limit_is_named_with_the_limit) {
+    make_gallery("[A]\ndata/sleeper.lua 1\ndata/14demo.lua 1\n[B]\ndata/10demo.lua 1\n");
+    CHECK_EQ_INT(render_all(), 0);
+    CHECK(setenv("GRAY_SCENE_LIMIT", "1", 1) == 0);
+    CHECK_EQ_INT(render_all(), 1);
+    char *err = test_read_file(test_path("err.txt"), NULL);
+    CHECK(err && strstr(err, "render_all.sh: data/sleeper.lua was ended at its limit of 1 seconds; "
+                             "GRAY_SCENE_LIMIT=SECONDS sets another\n"));
+    CHECK(err && strstr(err, "render_all.sh: these failed: data/sleeper.lua; "));
     free(err);
 }
 

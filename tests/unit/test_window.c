@@ -1014,7 +1014,7 @@ TEST(window_shows_light_through_the_tone_function_of_the_script) {
     struct table t;
     begin(&t);
     struct picture_request *request = &t.viewer.request;
-    request->curve = TONE_FUNCTION;
+    request->settings.tone.curve = TONE_FUNCTION;
     for (int i = 0; i < TONE_ENTRIES; i++)
         request->tone_table.values[i] = (float)fmin(1, tone_table_light(i) / 2);
     finish_pass(&t, 0.02, false);

@@ -1,0 +1,860 @@
+/* Stages over the whole picture. Each stage is one pool_run over blocks or rows and writes planes that the next
+ * stage reads: colours without outliers, their variance, features without noise, then regressions.
+ *
+ * In a window around a centre p, the regression fits the colour of one half of the samples to a linear function of
+ * the features. The weight of each pixel is its similarity to p in the other half (cross-filtering): weights and
+ * colours then have independent errors, so noise does not select pixels that agree with it. Each regression also
+ * predicts the other pixels of its window, and these predictions are averaged (collaborative filtering), so centres
+ * on every second row and column are enough. This is done for several windows and weights, and each pixel prefers
+ * those with the smallest error. A large window in which similar colours count more is for surfaces. Smaller windows
+ * and weights by the similarity of features are for silhouettes, small objects and the rims of glass, where few pixels
+ * are alike; the noisy colour itself is the last candidate.
+ *
+ * A window cannot remove noise that is wider than itself. So the picture is also denoised at half of its width and
+ * height. The result for each mean of four pixels corrects these pixels (M. Delbracio et al., "Boosting Monte Carlo
+ * Rendering by Ray Histogram Fusion", ACM Transactions on Graphics 2014, section 5).
+ *
+ * At silhouettes few pixels are alike, and these estimates lose contrast. The residuals, colours minus estimates, show
+ * it: their weighted means are larger than noise explains, and the two halves agree. There they are added, twice (J.
+ * Tukey, "Exploratory Data Analysis", 1977: twicing).
+ *
+ * Numbers are floats and sums have a fixed order: the result does not depend on blocks, threads or instruction sets. */
+#include "denoise/denoise.h"
+
+#include "base/isa.h"
+#include "base/mem.h"
+#include "denoise/denoise_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    BLOCK = DENOISE_BLOCK,
+    LOCAL = DENOISE_LOCAL,
+    MARGIN = DENOISE_MARGIN,
+    CHOICE = DENOISE_CHOICE,
+    REGRESSIONS = DENOISE_REGRESSIONS,
+    CANDIDATES = DENOISE_CANDIDATES,
+    ALIGNMENT = 4, /* of blocks in the whole picture: steps between centres divide it */
+    LEVELS = 2,
+    STRIP = 128,         /* pixels of a row of which the sums of columns are kept */
+    VARIANCE_WINDOW = 4, /* radius of the mean that compares two estimates of the variance */
+    RESIDUAL_WINDOW = 3, /* radius of the mean of residuals */
+    RESIDUAL_PASSES = 2,
+    EVIDENCE_WINDOW = 6, /* radius of the mean that compares these with their noise */
+};
+/* Two pixels of the coarser level and the pixels that they depend on; levels begin at even pixels of finer ones. */
+_Static_assert((int)LEVELS == 2 && 2 * ((int)MARGIN + 1) + 2 + (int)VARIANCE_WINDOW + 1 +
+                                           (int)RESIDUAL_PASSES * (int)RESIDUAL_WINDOW + (int)EVIDENCE_WINDOW + 1 <=
+                                       (int)DENOISE_RIM,
+               "the rim is less than what a pixel depends on");
+_Static_assert((int)DENOISE_FEATURE_WINDOW + 1 <= (int)DENOISE_PATCH + (int)VARIANCE_WINDOW + 1,
+               "the same of features");
+
+/* Found by measurement (bench/denoise.sh). */
+static const struct denoise_regression regressions[REGRESSIONS] = {
+    {DENOISE_WINDOW, 2, 2.4F, 0}, {4, 2, 5, 0.5F}, {DENOISE_WINDOW, 4, 0, 0.3F}, {2, 2, 0, 0}};
+static const float correction_limit = 0.3F; /* of squared differences to a coarser pixel, in units of its variance */
+static const float support_errors = 2;      /* of pixels that are brighter or darker than all neighbours */
+static const float edge_errors = 1;         /* the same at silhouettes */
+static const float same_depth = 0.03F;      /* relative difference of depths on one surface */
+/* A silhouette has a neighbour with this relative difference of depths and this distance of features. */
+static const float edge_depth = 0.05F, edge_distance = 8;
+/* Residuals count half at these distances of features, and relative squared differences of colours. */
+static const float residual_distance = 10, residual_colour = 0.2F;
+/* How much of the mean residual is added: more than 1, since the mean of 7 x 7 pixels itself is blurred. */
+static const float residual_gain = 2.6F;
+/* The evidence that is necessary, and how fast the share then grows; and the product of the halves, in units of the
+ * evidence, which is negative if the residuals are noise, since estimates contain the noise of both halves. */
+static const float evidence_limit = 0.6F, evidence_slope = 8, agreement_limit = -0.3F;
+static const float choice_slope = 4; /* how strongly the candidate with the smallest error is preferred */
+
+/* A picture as planes of floats. */
+struct level {
+    int width, height;
+    uint32_t x0, y0;     /* position in the whole picture, in pixels of this level */
+    float *colour[2][3]; /* the halves without glow and outliers */
+    float *variance[3];  /* of a half */
+    float *feature[DENOISE_FEATURES];
+    float *estimate[2][3]; /* of the halves */
+};
+
+struct denoiser {
+    const struct denoise_source *source;
+    struct pool *pool;
+    float (*out)[3];
+    struct level levels[LEVELS]; /* each level has half of the width and height of the one before */
+    struct level *level;         /* the one at work */
+    float *loaded[2][3];         /* the colours with outliers */
+    float *sampled[3];           /* the variance of a half, from its samples */
+    float *evidence;             /* of silhouettes: squared mean residual, in units of its variance; others: -1 */
+    float *agreement;            /* the same with the product of the mean residuals of the halves */
+    int pass;                    /* of residuals */
+    float *mean[3], *noise[3];   /* of a group of features: measured values and their variance */
+    int first_feature, group;    /* which, and how many */
+    struct denoise_pixel *rows;  /* three of each worker */
+    struct denoise_scratch *scratch;
+    const struct denoise_kernels *kernels;
+};
+
+static int clamp_int(int x, int low, int high) {
+    return x < low ? low : x > high ? high : x;
+}
+
+static size_t pixel_at(const struct level *d, int x, int y) {
+    return (size_t)y * (size_t)d->width + (size_t)x;
+}
+
+/* The nearest pixel of the picture. */
+static size_t nearest_at(const struct level *d, int x, int y) {
+    return pixel_at(d, clamp_int(x, 0, d->width - 1), clamp_int(y, 0, d->height - 1));
+}
+
+/* Copies a square of a plane; outside of the picture it repeats the nearest pixel. */
+static void copy_plane(const struct level *d, const float *plane, int x0, int y0, int side, float *local) {
+    for (int y = 0; y < side; y++)
+        for (int x = 0; x < side; x++)
+            local[y * side + x] = plane[nearest_at(d, x0 + x, y0 + y)];
+}
+
+/* Limits all numbers so that sums of their squares stay finite. */
+static float bounded(float x) {
+    const float limit = 1e15F;
+    return fabsf(x) <= limit ? x : x > limit ? limit : x < -limit ? -limit : 0;
+}
+
+/* The pixels of a row; slot 0 to 2: of the rows that the worker keeps, the one that is replaced. */
+static const struct denoise_pixel *get_row(struct denoiser *d, uint32_t y, int worker, int slot) {
+    struct denoise_pixel *row = d->rows + (3 * (size_t)worker + (size_t)slot) * (size_t)d->levels[0].width;
+    d->source->row(d->source->context, y, row);
+    return row;
+}
+
+/* --- colours: outliers and variance --- */
+
+static void load_colours(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    const struct denoise_pixel *row = get_row(d, y, worker, 0);
+    for (int x = 0; x < d->level->width; x++)
+        for (int h = 0; h < 2; h++)
+            for (int c = 0; c < 3; c++)
+                d->loaded[h][c][pixel_at(d->level, x, (int)y)] = bounded(row[x].colour[h][c] - row[x].glow[h][c]);
+    for (int x = 0; x < d->level->width; x++)
+        for (int c = 0; c < 3; c++)
+            d->sampled[c][pixel_at(d->level, x, (int)y)] = 2 * fabsf(bounded(row[x].variance[c]));
+}
+
+static float brightness(float *const colour[3], size_t at) {
+    return fabsf(colour[0][at]) + fabsf(colour[1][at]) + fabsf(colour[2][at]);
+}
+
+/* The brightest value that supports the brightness of a pixel of one half: the same pixel of the other half, its
+ * neighbours in the other half, and all neighbours in its own half except the brightest one. */
+static float brightest_support(const struct denoiser *d, int half, int x, int y) {
+    size_t at = pixel_at(d->level, x, y);
+    float first = 0, second = 0, others = brightness(d->loaded[1 - half], at);
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            size_t q = nearest_at(d->level, x + i, y + j);
+            if (q == at)
+                continue;
+            float own = brightness(d->loaded[half], q), other = brightness(d->loaded[1 - half], q);
+            others = other > others ? other : others;
+            second = own > first ? first : own > second ? own : second;
+            first = own > first ? own : first;
+        }
+    }
+    return second > others ? second : others;
+}
+
+/* Scales pixels down that are more than twice as bright as their support: single improbable paths would become
+ * blotches. */
+static void remove_outliers(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    (void)worker;
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        for (int h = 0; h < 2; h++) {
+            float limit = 2 * brightest_support(d, h, x, (int)y), own = brightness(d->loaded[h], at);
+            float scale = own > limit ? limit / own : 1;
+            for (int c = 0; c < 3; c++) {
+                d->level->colour[h][c][at] = scale * d->loaded[h][c][at];
+                d->sampled[c][at] *= scale * scale;
+            }
+        }
+    }
+}
+
+/* For nine rows around row y, from column x0 on, the sums of: half the squared difference of the halves, the
+ * variance of samples, and the latter smoothed over five rows. */
+static void sum_columns(const struct denoiser *d, int c, int x0, int y, float sums[3][STRIP + 2 * VARIANCE_WINDOW]) {
+    static const float kernel[2 * VARIANCE_WINDOW + 1] = {0, 0, 0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F, 0, 0};
+    memset(sums, 0, 3 * sizeof *sums);
+    for (int j = 0; j <= 2 * VARIANCE_WINDOW; j++) {
+        for (int i = 0; i < STRIP + 2 * VARIANCE_WINDOW; i++) {
+            size_t q = nearest_at(d->level, x0 + i, y + j - VARIANCE_WINDOW);
+            float difference = d->level->colour[0][c][q] - d->level->colour[1][c][q], sampled = d->sampled[c][q];
+            sums[0][i] += 0.5F * difference * difference;
+            sums[1][i] += sampled;
+            sums[2][i] += kernel[j] * sampled;
+        }
+    }
+}
+
+/* The variance estimated from samples has little noise, but it treats the samples as independent, while points of
+ * low discrepancy have less error. So it is scaled by the mean of half the squared differences of the halves, which
+ * are unbiased, and smoothed. */
+static void estimate_variance(void *context, uint32_t y, int worker) {
+    const float largest = 1e30F; /* its square may overflow, its sums do not */
+    struct denoiser *d = context;
+    (void)worker;
+    for (int item = 0; item < 3 * ((d->level->width + STRIP - 1) / STRIP); item++) {
+        float sums[3][STRIP + 2 * VARIANCE_WINDOW];
+        int c = item % 3, x0 = item / 3 * STRIP;
+        sum_columns(d, c, x0 - VARIANCE_WINDOW, (int)y, sums);
+        for (int x = 0; x < STRIP && x0 + x < d->level->width; x++) {
+            const float *smooth = sums[2] + x + 2;
+            float halves = 0, samples = 0;
+            for (int i = 0; i <= 2 * VARIANCE_WINDOW; i++) {
+                halves += sums[0][x + i];
+                samples += sums[1][x + i];
+            }
+            float variance = 0.0625F * (smooth[0] + smooth[4]) + 0.25F * (smooth[1] + smooth[3]) + 0.375F * smooth[2];
+            variance = samples > 0 ? variance * (halves / samples) : 0;
+            d->level->variance[c][pixel_at(d->level, x0 + x, (int)y)] = variance < largest ? variance : largest;
+        }
+    }
+}
+
+/* --- features: non-local means by their own variance --- */
+
+static void load_features(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    const struct denoise_pixel *row = get_row(d, y, worker, 0);
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        for (int i = 0; i < d->group; i++) {
+            float a = bounded(row[x].features[0][d->first_feature + i]);
+            float b = bounded(row[x].features[1][d->first_feature + i]);
+            d->mean[i][at] = 0.5F * (a + b);
+            d->noise[i][at] = 0.25F * (a - b) * (a - b);
+        }
+    }
+}
+
+static void filter_features(void *context, uint32_t item, int worker) {
+    enum { WINDOW = DENOISE_FEATURE_WINDOW, SIDE = DENOISE_FEATURE_LOCAL };
+    struct denoiser *d = context;
+    struct denoise_scratch *s = d->scratch + worker;
+    int across = (d->level->width + BLOCK - 1) / BLOCK, bx = (int)item % across * BLOCK,
+        by = (int)item / across * BLOCK;
+    for (int i = 0; i < d->group; i++) {
+        copy_plane(d->level, d->mean[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_mean[i]);
+        copy_plane(d->level, d->noise[i], bx - WINDOW - 1, by - WINDOW - 1, SIDE, s->feature_noise[i]);
+    }
+    d->kernels->filter_features(s, d->group, d->first_feature == DENOISE_DEPTH,
+                                (struct denoise_bounds){-bx, -by, d->level->width - bx, d->level->height - by});
+    for (int y = 0; y < BLOCK && by + y < d->level->height; y++)
+        for (int x = 0; x < BLOCK && bx + x < d->level->width; x++)
+            for (int i = 0; i < d->group; i++)
+                d->level->feature[d->first_feature + i][pixel_at(d->level, bx + x, by + y)] =
+                    s->feature_sums[i][y * BLOCK + x] / s->feature_sums[3][y * BLOCK + x];
+}
+
+/* --- regressions --- */
+
+/* The position of a pixel of the block in the planes of the scratch. */
+static int local_of(int x, int y) {
+    return (y + MARGIN) * LOCAL + x + MARGIN;
+}
+
+/* For one half: the mean of the predictions. A pixel without predictions keeps its colour. */
+static void keep_estimates(struct denoise_scratch *s, int regression, int half) {
+    const float own = 0.01F, few = 2, many = 8;
+    for (int c = 0; c < 3; c++) {
+        for (int y = -CHOICE; y < BLOCK + CHOICE; y++) {
+            for (int at = local_of(-CHOICE, y); at < local_of(BLOCK + CHOICE, y); at++) {
+                float colour = s->colour[half][c][at];
+                float value = (s->sums[c][at] + own * colour) / (s->sums[3][at] + own);
+                s->estimates[regression][half][c][at] = isfinite(value) ? value : colour;
+            }
+        }
+    }
+    for (int at = 0; at < LOCAL * LOCAL; at++)
+        s->support[regression][half][at] = s->sums[3][at] < few     ? DENOISE_FEW
+                                           : s->sums[3][at] <= many ? DENOISE_SOME
+                                                                    : DENOISE_MANY;
+}
+
+/* Denoises one half of the samples in a block; the other half determines the similarity of pixels. */
+static void regress_half(const struct denoiser *d, struct denoise_scratch *s, int half, struct denoise_bounds bounds) {
+    d->kernels->compare(s, 1 - half);
+    for (int b = 0; b < REGRESSIONS; b++) {
+        d->kernels->regress(s, half, regressions[b], bounds);
+        keep_estimates(s, b, half);
+    }
+}
+
+/* --- choice of the candidate --- */
+
+/* The weights of the candidates at the pixels of a row of the block: the larger the score, the smaller the weight. */
+static void choose_candidates(const struct denoiser *d, struct denoise_scratch *s, int y,
+                              float shares[CANDIDATES][BLOCK]) {
+    d->kernels->score_candidates(s, y, shares);
+    for (int x = 0; x < BLOCK; x++) {
+        float smallest = shares[0][x], sum = 0;
+        for (int b = 1; b < CANDIDATES; b++)
+            smallest = shares[b][x] < smallest ? shares[b][x] : smallest;
+        for (int b = 0; b < CANDIDATES; b++) {
+            float share = 1 - choice_slope * (shares[b][x] - smallest);
+            shares[b][x] = share > 0 ? share : 0;
+            sum += shares[b][x];
+        }
+        for (int b = 0; b < CANDIDATES; b++)
+            shares[b][x] = sum > 0 ? shares[b][x] / sum : 1.0F / CANDIDATES;
+    }
+}
+
+/* The half that speaks for a half at a pixel: the other one if few pixels were like it there, since a bright path made
+ * the other one unlike all. */
+static int supported_half(const struct denoise_scratch *s, int regression, int half, int at) {
+    bool unsupported =
+        s->support[regression][half][at] == DENOISE_FEW && s->support[regression][1 - half][at] == DENOISE_MANY;
+    return unsupported ? 1 - half : half;
+}
+
+static void store_pixel(const struct level *level, const struct denoise_scratch *s, int from, size_t to,
+                        float (*shares)[BLOCK], int x) {
+    for (int half = 0; half < 2; half++) {
+        float sum[3] = {0};
+        for (int b = 0; b < REGRESSIONS; b++) {
+            int speaker = supported_half(s, b, half, from);
+            for (int c = 0; c < 3; c++)
+                sum[c] += shares[b][x] * s->estimates[b][speaker][c][from];
+        }
+        for (int c = 0; c < 3; c++)
+            level->estimate[half][c][to] = sum[c] + shares[REGRESSIONS][x] * s->colour[half][c][from];
+    }
+}
+
+/* Blocks begin where coordinates in the whole picture are multiples of ALIGNMENT, and so do centres. */
+static void regress_block(void *context, uint32_t item, int worker) {
+    struct denoiser *d = context;
+    struct denoise_scratch *s = d->scratch + worker;
+    float shares[CANDIDATES][BLOCK];
+    int left = -(int)(d->level->x0 % ALIGNMENT), top = -(int)(d->level->y0 % ALIGNMENT);
+    int across = (d->level->width - left + BLOCK - 1) / BLOCK;
+    int bx = left + (int)item % across * BLOCK, by = top + (int)item / across * BLOCK;
+    int x0 = bx - MARGIN, y0 = by - MARGIN;
+    const struct denoise_bounds bounds = {-x0, -y0, d->level->width - x0, d->level->height - y0};
+    for (int c = 0; c < 3; c++) {
+        copy_plane(d->level, d->level->colour[0][c], x0, y0, LOCAL, s->colour[0][c]);
+        copy_plane(d->level, d->level->colour[1][c], x0, y0, LOCAL, s->colour[1][c]);
+        copy_plane(d->level, d->level->variance[c], x0, y0, LOCAL, s->variance[c]);
+    }
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        copy_plane(d->level, d->level->feature[f], x0, y0, LOCAL, s->feature[f]);
+    for (int half = 0; half < 2 && !pool_cancelled(d->pool); half++)
+        regress_half(d, s, half, bounds);
+    d->kernels->compare_candidates(s);
+    for (int y = by > 0 ? by : 0; y < by + BLOCK && y < d->level->height; y++) {
+        choose_candidates(d, s, y - by, shares);
+        for (int x = bx > 0 ? bx : 0; x < bx + BLOCK && x < d->level->width; x++)
+            store_pixel(d->level, s, local_of(x - bx, y - by), pixel_at(d->level, x, y), shares, x - bx);
+    }
+}
+
+/* --- scales --- */
+
+/* The first pixel of the finer level in a coarse column or row, and the number of its pixels. */
+static int finer_from(int coarse, uint32_t coarse0, uint32_t finer0, int limit, int *count) {
+    int from = (int)(2 * ((int64_t)coarse0 + coarse) - (int64_t)finer0), to = from + 2;
+    from = from > 0 ? from : 0;
+    *count = (to < limit ? to : limit) - from;
+    return from;
+}
+
+/* The mean of a plane over the pixels of the finer level that a coarse pixel covers. */
+static float mean_of(const struct level *level, const float *plane, int x, int y, int across, int down) {
+    float sum = 0;
+    for (int j = 0; j < down; j++)
+        for (int i = 0; i < across; i++)
+            sum += plane[pixel_at(level, x + i, y + j)];
+    return sum / (float)(across * down);
+}
+
+/* Compute a row of the level from the level before. */
+static void shrink_features(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
+    (void)worker;
+    for (int x = 0; x < level->width; x++) {
+        int fx = finer_from(x, level->x0, finer->x0, finer->width, &across);
+        size_t at = pixel_at(level, x, (int)y);
+        for (int f = 0; f < DENOISE_FEATURES; f++)
+            level->feature[f][at] = mean_of(finer, finer->feature[f], fx, fy, across, down);
+    }
+}
+
+static void shrink_colours(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
+    (void)worker;
+    for (int x = 0; x < level->width; x++) {
+        int fx = finer_from(x, level->x0, finer->x0, finer->width, &across);
+        size_t at = pixel_at(level, x, (int)y);
+        for (int c = 0; c < 3; c++) {
+            for (int half = 0; half < 2; half++)
+                level->colour[half][c][at] = mean_of(finer, finer->colour[half][c], fx, fy, across, down);
+            level->variance[c][at] = mean_of(finer, finer->variance[c], fx, fy, across, down) / (float)(across * down);
+        }
+    }
+}
+
+/* Subtracts the finer level: the estimates become differences to its means, and the colours become these means. */
+static void subtract_finer(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    int down, across, fy = finer_from((int)y, level->y0, finer->y0, finer->height, &down);
+    (void)worker;
+    for (int x = 0; x < level->width; x++) {
+        int fx = finer_from(x, level->x0, finer->x0, finer->width, &across);
+        for (int c = 0; c < 3; c++)
+            for (int half = 0; half < 2; half++) {
+                size_t at = pixel_at(level, x, (int)y);
+                float mean = mean_of(finer, finer->estimate[half][c], fx, fy, across, down);
+                level->colour[half][c][at] = mean;
+                level->estimate[half][c][at] -= mean;
+            }
+    }
+}
+
+/* Adds the correction of one pixel of the level, weighted by its similarity to the pixel of the finer level:
+ * corrections from the other side of an edge do not count. */
+static void add_correction(const struct level *level, int half, size_t from, const float own[3], float factor,
+                           float sum[3]) {
+    float above = 0, below = FLT_MIN;
+    for (int c = 0; c < 3; c++) {
+        float difference = own[c] - level->colour[half][c][from];
+        above += difference * difference;
+        below += level->variance[c][from];
+    }
+    float like = 1 - above / (correction_limit * below);
+    for (int c = 0; c < 3 && like > 0; c++)
+        sum[c] += factor * like * level->estimate[half][c][from];
+}
+
+/* Adds the interpolated corrections of the level to a row of the finer level; they at most double or halve a value. */
+static void correct_finer(void *context, uint32_t y, int worker) {
+    const struct denoiser *d = context;
+    const struct level *level = d->level, *finer = level - 1;
+    uint32_t whole_y = finer->y0 + y;
+    int near_y = (int)(whole_y / 2 - level->y0), far_y = near_y + (whole_y % 2 ? 1 : -1);
+    (void)worker;
+    for (int x = 0; x < finer->width; x++) {
+        uint32_t whole_x = finer->x0 + (uint32_t)x;
+        int near_x = (int)(whole_x / 2 - level->x0), far_x = near_x + (whole_x % 2 ? 1 : -1);
+        size_t at = pixel_at(finer, x, (int)y);
+        for (int half = 0; half < 2; half++) {
+            float sum[3] = {0};
+            const float own[3] = {finer->estimate[half][0][at], finer->estimate[half][1][at],
+                                  finer->estimate[half][2][at]};
+            add_correction(level, half, nearest_at(level, near_x, near_y), own, 0.5625F, sum);
+            add_correction(level, half, nearest_at(level, far_x, near_y), own, 0.1875F, sum);
+            add_correction(level, half, nearest_at(level, near_x, far_y), own, 0.1875F, sum);
+            add_correction(level, half, nearest_at(level, far_x, far_y), own, 0.0625F, sum);
+            for (int c = 0; c < 3; c++) {
+                float limit = fabsf(own[c]), value = sum[c] < limit ? sum[c] : limit;
+                finer->estimate[half][c][at] += value > -0.5F * limit ? value : -0.5F * limit;
+            }
+        }
+    }
+}
+
+/* --- silhouettes --- */
+
+static float mean_of_halves(const struct level *level, int c, size_t at) {
+    return 0.5F * (level->estimate[0][c][at] + level->estimate[1][c][at]);
+}
+
+static float surface_distance(const struct level *level, size_t p, size_t q) {
+    float z = level->feature[DENOISE_DEPTH][p], difference = level->feature[DENOISE_DEPTH][q] - z;
+    float sum = difference * difference / (z * z / depth_unit + FLT_MIN);
+    for (int f = 0; f < DENOISE_DEPTH; f++) {
+        difference = level->feature[f][q] - level->feature[f][p];
+        sum += difference * difference * (f < DENOISE_NORMAL ? albedo_unit : normal_unit);
+    }
+    return sum;
+}
+
+static bool is_silhouette(const struct level *level, int x, int y) {
+    size_t at = pixel_at(level, x, y);
+    float z = level->feature[DENOISE_DEPTH][at];
+    for (int i = 0; i < 9; i++) {
+        size_t q = nearest_at(level, x + i % 3 - 1, y + i / 3 - 1);
+        float other = level->feature[DENOISE_DEPTH][q];
+        if (fabsf(z - other) > edge_depth * (z < other ? z : other) && surface_distance(level, at, q) > edge_distance)
+            return true;
+    }
+    return false;
+}
+
+/* The weight of the residual of a pixel for another one. */
+static float residual_weight(const struct level *level, size_t p, size_t q) {
+    float difference = 0, size = 1e-4F;
+    for (int c = 0; c < 3; c++) {
+        float a = mean_of_halves(level, c, p), b = mean_of_halves(level, c, q);
+        difference += (a - b) * (a - b);
+        size += a * a + b * b;
+    }
+    float distance = surface_distance(level, p, q) / residual_distance + difference / size / residual_colour;
+    return 1 / (1 + distance * distance);
+}
+
+/* The mean residual around a pixel, how far it exceeds the noise, and whether both halves have it. */
+struct residual {
+    float mean[3], evidence, agreement;
+};
+
+static struct residual find_residual(const struct level *level, int x, int y) {
+    static const float kernel[RESIDUAL_WINDOW + 1] = {1, 0.8948F, 0.6412F, 0.3679F}; /* exp(-x^2/9) */
+    float sums[2][3] = {{0}}, weights = 0, square = 0, product = 0, noise = FLT_MIN;
+    size_t at = pixel_at(level, x, y);
+    for (int j = -RESIDUAL_WINDOW; j <= RESIDUAL_WINDOW; j++) {
+        for (int i = -RESIDUAL_WINDOW; i <= RESIDUAL_WINDOW; i++) {
+            if (x + i < 0 || y + j < 0 || x + i >= level->width || y + j >= level->height)
+                continue;
+            size_t q = pixel_at(level, x + i, y + j);
+            float weight = kernel[i < 0 ? -i : i] * kernel[j < 0 ? -j : j] * residual_weight(level, at, q);
+            weights += weight;
+            for (int c = 0; c < 3; c++) {
+                for (int half = 0; half < 2; half++)
+                    sums[half][c] += weight * (level->colour[half][c][q] - mean_of_halves(level, c, q));
+                noise += 0.5F * weight * weight * level->variance[c][q];
+            }
+        }
+    }
+    struct residual found;
+    for (int c = 0; c < 3; c++) {
+        float mean = 0.5F * (sums[0][c] + sums[1][c]);
+        found.mean[c] = mean / weights;
+        square += mean * mean;
+        product += sums[0][c] * sums[1][c];
+    }
+    float largest = 100, unit = square < largest * noise ? noise : square / largest;
+    found.evidence = square / unit;
+    found.agreement = product / unit;
+    return found;
+}
+_Static_assert((int)RESIDUAL_WINDOW == 3, "the kernel of find_residual has four numbers");
+
+/* Stores mean residuals in d->out. The first pass finds silhouettes. */
+static void find_residuals(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    (void)worker;
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        if (d->pass == 0)
+            d->evidence[at] = is_silhouette(d->level, x, (int)y) ? 0 : -1;
+        if (d->evidence[at] < 0)
+            continue;
+        struct residual found = find_residual(d->level, x, (int)y);
+        memcpy(d->out[at], found.mean, sizeof found.mean);
+        d->evidence[at] = found.evidence;
+        d->agreement[at] = found.agreement;
+    }
+}
+
+/* The mean of the evidence around a silhouette: that of one pixel would select noise. 0 if the halves disagree. */
+static float mean_evidence(const struct denoiser *d, int x, int y) {
+    float sum = 0, agreement = 0, count = 0;
+    for (int j = -EVIDENCE_WINDOW; j <= EVIDENCE_WINDOW; j++) {
+        for (int i = -EVIDENCE_WINDOW; i <= EVIDENCE_WINDOW; i++) {
+            if (x + i < 0 || y + j < 0 || x + i >= d->level->width || y + j >= d->level->height)
+                continue;
+            size_t q = pixel_at(d->level, x + i, y + j);
+            if (d->evidence[q] < 0)
+                continue;
+            sum += d->evidence[q];
+            agreement += d->agreement[q];
+            count++;
+        }
+    }
+    return agreement < agreement_limit * sum ? 0 : sum / count;
+}
+
+/* Adds the residuals; a value remains at least a quarter of what it was. */
+static void add_residuals(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    (void)worker;
+    for (int x = 0; x < d->level->width; x++) {
+        size_t at = pixel_at(d->level, x, (int)y);
+        float evidence = d->evidence[at] >= 0 ? mean_evidence(d, x, (int)y) : 0;
+        if (!(evidence > evidence_limit))
+            continue;
+        float share = evidence_slope * (1 - evidence_limit / evidence);
+        share = residual_gain * (share < 1 ? share : 1);
+        for (int c = 0; c < 3; c++) {
+            for (int half = 0; half < 2; half++) {
+                float *value = &d->level->estimate[half][c][at], lowest = -0.75F * fabsf(*value);
+                *value += share * d->out[at][c] > lowest ? share * d->out[at][c] : lowest;
+            }
+        }
+    }
+}
+
+/* --- the last step --- */
+
+static float albedo_of(const struct denoise_pixel *pixel, int c) {
+    const float black = 0.02F;
+    float albedo =
+        0.5F * (bounded(pixel->features[0][DENOISE_ALBEDO + c]) + bounded(pixel->features[1][DENOISE_ALBEDO + c]));
+    return albedo > 0 ? albedo + black : black;
+}
+
+/* The mean of the halves. A pixel that is brighter or darker than all of its neighbours is so in both of them, by more
+ * than its samples explain: few bright paths in a pixel bring a mean that is hardly larger than its standard error,
+ * a detail of the scene is found by many. A pixel that no bright path found has a small error itself, so a dark one
+ * must stand out from the errors of its neighbours. A detail of a texture is as bright as its neighbours would be on
+ * average with its albedo; neighbours at another depth are not of its texture. At silhouettes extremes are more
+ * probable. rows: those around the pixel. */
+static float supported_mean(const struct denoiser *d, const struct denoise_pixel *const rows[3], int c, int x, int y) {
+    const struct level *level = d->level;
+    const float *depth = level->feature[DENOISE_DEPTH];
+    size_t at = pixel_at(level, x, y);
+    float a = level->colour[0][c][at], b = level->colour[1][c][at], mean = mean_of_halves(level, c, at);
+    float darkest = mean_of_halves(level, c, nearest_at(level, x > 0 ? x - 1 : x + 1, y)), brightest = darkest;
+    float albedo = albedo_of(&rows[1][x], c), like = 0, variance = 0;
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            int qx = clamp_int(x + i, 0, level->width - 1), qy = clamp_int(y + j, 0, level->height - 1);
+            if (i == 0 && j == 0)
+                continue;
+            size_t q = pixel_at(level, qx, qy);
+            float other = mean_of_halves(level, c, q);
+            const struct denoise_pixel *pixel = &rows[1 + j][qx];
+            bool same = fabsf(depth[at] - depth[q]) <= same_depth * depth[at];
+            like += 0.125F * other * (same ? albedo / albedo_of(pixel, c) : 1);
+            variance += 0.125F * fabsf(bounded(pixel->variance[c]));
+            if (qx == x && qy == y)
+                continue;
+            brightest = other > brightest ? other : brightest;
+            darkest = other < darkest ? other : darkest;
+        }
+    }
+    float own = fabsf(bounded(rows[1][x].variance[c])), others = variance > own ? variance : own;
+    float errors = d->evidence[at] >= 0 ? edge_errors : support_errors;
+    float high = (a < b ? a : b) - errors * sqrtf(own), low = (a < b ? b : a) + errors * sqrtf(others);
+    high = brightest > high ? brightest : high;
+    high = like > high ? like : high;
+    low = darkest < low ? darkest : low;
+    low = like < low ? like : low;
+    return mean > high ? high : mean < low ? low : mean;
+}
+
+/* No sample of the pixel met a surface: it has no noise, and no neighbour knows better. */
+static bool is_empty(const struct denoise_pixel *pixel) {
+    for (int half = 0; half < 2; half++) {
+        for (int f = 0; f < DENOISE_FEATURES; f++)
+            if (pixel->features[half][f] != 0)
+                return false;
+        for (int c = 0; c < 3; c++)
+            if (pixel->colour[half][c] != pixel->glow[half][c])
+                return false;
+    }
+    return true;
+}
+
+/* The mean of the halves, plus glow. */
+static void finish_row(void *context, uint32_t y, int worker) {
+    struct denoiser *d = context;
+    const struct denoise_pixel *rows[3];
+    for (int j = 0; j < 3; j++)
+        rows[j] = get_row(d, (uint32_t)clamp_int((int)y + j - 1, 0, d->level->height - 1), worker, j);
+    for (int x = 0; x < d->level->width; x++) {
+        const struct denoise_pixel *pixel = &rows[1][x];
+        bool empty = is_empty(pixel);
+        for (int c = 0; c < 3; c++) {
+            float value = empty ? 0 : supported_mean(d, rows, c, x, (int)y);
+            d->out[pixel_at(d->level, x, (int)y)][c] =
+                value + (pixel->share * pixel->glow[0][c] + (1 - pixel->share) * pixel->glow[1][c]);
+        }
+    }
+}
+
+/* --- the whole --- */
+
+static bool make_plane(const struct level *level, float **plane) {
+    *plane = mem_alloc((size_t)level->width * (size_t)level->height * sizeof **plane);
+    return *plane != NULL;
+}
+
+static void free_plane(float **plane) {
+    mem_free(*plane);
+    *plane = NULL;
+}
+
+static void free_level(struct level *level) {
+    for (int c = 0; c < 3; c++) {
+        for (int half = 0; half < 2; half++) {
+            free_plane(&level->colour[half][c]);
+            free_plane(&level->estimate[half][c]);
+        }
+        free_plane(&level->variance[c]);
+    }
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        free_plane(&level->feature[f]);
+}
+
+static bool run(struct denoiser *d, uint32_t count, pool_function *fn, struct error *error) {
+    return pool_run(d->pool, count, fn, d) || error_set(error, ERROR_CANCELLED, "stopped while denoising");
+}
+
+static bool no_memory(struct error *error) {
+    return error_no_memory(error, "a picture that is denoised");
+}
+
+static bool denoise_colours(struct denoiser *d, struct error *error) {
+    for (int c = 0; c < 3; c++)
+        if (!make_plane(d->level, &d->loaded[0][c]) || !make_plane(d->level, &d->loaded[1][c]) ||
+            !make_plane(d->level, &d->level->colour[0][c]) || !make_plane(d->level, &d->level->colour[1][c]) ||
+            !make_plane(d->level, &d->sampled[c]) || !make_plane(d->level, &d->level->variance[c]))
+            return no_memory(error);
+    uint32_t rows = d->source->height;
+    if (!run(d, rows, load_colours, error) || !run(d, rows, remove_outliers, error) ||
+        !run(d, rows, estimate_variance, error))
+        return false;
+    for (int c = 0; c < 3; c++) {
+        free_plane(&d->loaded[0][c]);
+        free_plane(&d->loaded[1][c]);
+        free_plane(&d->sampled[c]);
+    }
+    return true;
+}
+
+static bool denoise_features(struct denoiser *d, struct error *error) {
+    static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
+    for (int i = 0; i < 3; i++)
+        if (!make_plane(d->level, &d->mean[i]) || !make_plane(d->level, &d->noise[i]))
+            return no_memory(error);
+    uint32_t blocks = (d->source->width + BLOCK - 1) / BLOCK * ((d->source->height + BLOCK - 1) / BLOCK);
+    for (int g = 0; g < 3; g++) {
+        d->first_feature = groups[g][0];
+        d->group = groups[g][1];
+        for (int i = 0; i < d->group; i++)
+            if (!make_plane(d->level, &d->level->feature[d->first_feature + i]))
+                return no_memory(error);
+        if (!run(d, d->source->height, load_features, error) || !run(d, blocks, filter_features, error))
+            return false;
+    }
+    for (int i = 0; i < 3; i++) {
+        free_plane(&d->mean[i]);
+        free_plane(&d->noise[i]);
+    }
+    return true;
+}
+
+static const struct denoise_kernels *choose_kernels(void) {
+    switch (cpu_isa()) {
+    case CPU_ISA_BASE:
+        break;
+    case CPU_ISA_AVX2:
+        return &denoise_kernels_avx2;
+    case CPU_ISA_AVX512:
+        return &denoise_kernels_avx512;
+    }
+    return &denoise_kernels_base;
+}
+
+static bool make_estimates(struct denoiser *d, struct error *error) {
+    for (int c = 0; c < 3; c++)
+        for (int half = 0; half < 2; half++)
+            if (!make_plane(d->level, &d->level->estimate[half][c]))
+                return no_memory(error);
+    uint32_t width = (uint32_t)d->level->width, height = (uint32_t)d->level->height;
+    uint32_t across = (width + d->level->x0 % ALIGNMENT + BLOCK - 1) / BLOCK;
+    uint32_t down = (height + d->level->y0 % ALIGNMENT + BLOCK - 1) / BLOCK;
+    return run(d, across * down, regress_block, error);
+}
+
+/* The planes that a level computes from the one before. */
+static bool make_coarse(struct denoiser *d, struct error *error) {
+    struct level *level = d->level;
+    for (int f = 0; f < DENOISE_FEATURES; f++)
+        if (!make_plane(level, &level->feature[f]))
+            return no_memory(error);
+    if (!run(d, (uint32_t)level->height, shrink_features, error))
+        return false;
+    for (int c = 0; c < 3; c++)
+        if (!make_plane(level, &level->colour[0][c]) || !make_plane(level, &level->colour[1][c]) ||
+            !make_plane(level, &level->variance[c]))
+            return no_memory(error);
+    return run(d, (uint32_t)level->height, shrink_colours, error);
+}
+
+static bool denoise_all(struct denoiser *d, struct error *error) {
+    const struct denoise_source *source = d->source;
+    size_t workers = (size_t)pool_workers(d->pool);
+    d->rows = mem_alloc_zero(3 * workers * source->width, sizeof *d->rows);
+    d->scratch = mem_alloc_zero(workers, sizeof *d->scratch);
+    if (!d->rows || !d->scratch)
+        return no_memory(error);
+    if (!denoise_colours(d, error) || !denoise_features(d, error) || !make_estimates(d, error))
+        return false;
+    while (d->level < d->levels + LEVELS - 1) {
+        d->level++;
+        if (!make_coarse(d, error) || !make_estimates(d, error))
+            return false;
+    }
+    for (; d->level > d->levels; d->level--) {
+        if (!run(d, (uint32_t)d->level->height, subtract_finer, error) ||
+            !run(d, (uint32_t)d->level[-1].height, correct_finer, error))
+            return false;
+        free_level(d->level);
+    }
+    if (!make_plane(d->level, &d->evidence) || !make_plane(d->level, &d->agreement))
+        return no_memory(error);
+    for (; d->pass < RESIDUAL_PASSES; d->pass++)
+        if (!run(d, source->height, find_residuals, error) || !run(d, source->height, add_residuals, error))
+            return false;
+    return run(d, source->height, finish_row, error);
+}
+
+/* The size and the position of the next level. */
+static struct level coarser(const struct level *level) {
+    struct level next = {0};
+    next.x0 = level->x0 / 2;
+    next.y0 = level->y0 / 2;
+    next.width = (int)((level->x0 + (uint32_t)level->width + 1) / 2 - next.x0);
+    next.height = (int)((level->y0 + (uint32_t)level->height + 1) / 2 - next.y0);
+    return next;
+}
+
+bool denoise(const struct denoise_source *source, struct pool *pool, float (*out)[3], struct error *error) {
+    struct denoiser d = {.source = source, .out = out, .pool = pool, .kernels = choose_kernels()};
+    d.levels[0].width = (int)source->width;
+    d.levels[0].height = (int)source->height;
+    d.levels[0].x0 = source->x0;
+    d.levels[0].y0 = source->y0;
+    for (int i = 1; i < LEVELS; i++)
+        d.levels[i] = coarser(&d.levels[i - 1]);
+    d.level = d.levels;
+    bool ok = denoise_all(&d, error);
+    for (int c = 0; c < 3; c++) {
+        mem_free(d.loaded[0][c]);
+        mem_free(d.loaded[1][c]);
+        mem_free(d.sampled[c]);
+        mem_free(d.mean[c]);
+        mem_free(d.noise[c]);
+    }
+    mem_free(d.evidence);
+    mem_free(d.agreement);
+    for (int i = 0; i < LEVELS; i++)
+        free_level(&d.levels[i]);
+    mem_free(d.rows);
+    mem_free(d.scratch);
+    return ok;
+}

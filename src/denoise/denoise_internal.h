@@ -1,0 +1,93 @@
+/* The parts of the denoiser that are compiled for each instruction set (denoise_kernel_internal.h), and the
+ * declarations that they share with denoise.c. They compute with vectors, but their order of additions does not
+ * depend on the vector width: the bits are the same. */
+#ifndef GRAY_DENOISE_DENOISE_INTERNAL_H
+#define GRAY_DENOISE_DENOISE_INTERNAL_H
+
+#include "denoise/denoise.h"
+
+enum {
+    DENOISE_BLOCK = 96, /* side of the squares that a worker takes */
+    DENOISE_WINDOW = 7, /* radius of a regression */
+    DENOISE_SIDE = 2 * DENOISE_WINDOW + 1,
+    DENOISE_LANES = 16,                                 /* of a row of a window, of which the last does not count */
+    DENOISE_PATCH = 3,                                  /* radius of the patches that are compared */
+    DENOISE_STEP = 2,                                   /* between centres of regressions */
+    DENOISE_CHOICE = 2,                                 /* radius of the mean that chooses between candidates */
+    DENOISE_INNER = DENOISE_BLOCK + 2 * DENOISE_CHOICE, /* side of a block with what this mean reads */
+    DENOISE_MARGIN = DENOISE_CHOICE + 2 * DENOISE_WINDOW + DENOISE_PATCH,
+    DENOISE_LOCAL = DENOISE_BLOCK + 2 * DENOISE_MARGIN, /* side of a block with everything that it reads */
+    /* Centres that a block needs: their first coordinate, and how many are on a side. */
+    DENOISE_EXTENT = DENOISE_CHOICE + DENOISE_WINDOW,
+    DENOISE_FIRST = DENOISE_MARGIN - DENOISE_EXTENT / DENOISE_STEP * DENOISE_STEP,
+    DENOISE_CENTRES = (DENOISE_MARGIN + DENOISE_BLOCK - 1 + DENOISE_EXTENT - DENOISE_FIRST) / DENOISE_STEP + 1,
+    DENOISE_COMPARED = (DENOISE_CENTRES - 1) * DENOISE_STEP + 1 + 2 * DENOISE_PATCH,
+    DENOISE_TERMS = 1 + DENOISE_FEATURES + 2,     /* of the linear function: constant, position, features */
+    DENOISE_COLUMNS = DENOISE_TERMS + 3,          /* and the colour that it explains */
+    DENOISE_FEATURE_WINDOW = 4,                   /* radius of the filter of features */
+    DENOISE_FEATURE_COMPARED = DENOISE_BLOCK + 2, /* for patches of 3 x 3 pixels */
+    DENOISE_FEATURE_LOCAL = DENOISE_FEATURE_COMPARED + 2 * DENOISE_FEATURE_WINDOW,
+    DENOISE_REGRESSIONS = 4,
+    DENOISE_WIDE = 2, /* this one uses a large window and needs no margin where candidates are compared */
+    DENOISE_CANDIDATES = DENOISE_REGRESSIONS + 1, /* the last one is the noisy colour */
+};
+
+/* Factors of squared differences of features: their sum is the distance. That of the depth is a relative one. */
+static const float albedo_unit = 50, normal_unit = 10, depth_unit = 400;
+
+/* A regression: its window, and how it weights the pixels there. */
+struct denoise_regression {
+    int radius;     /* of the window, at most DENOISE_WINDOW */
+    int step;       /* between centres, a multiple of DENOISE_STEP that divides DENOISE_BLOCK */
+    float colours;  /* scale of the distances between patches; 0: they do not count */
+    float features; /* the same of the distances between features */
+};
+
+typedef float denoise_plane[DENOISE_LOCAL * DENOISE_LOCAL];
+typedef float denoise_feature_plane[DENOISE_FEATURE_LOCAL * DENOISE_FEATURE_LOCAL];
+typedef float denoise_window[DENOISE_SIDE][DENOISE_LANES];
+
+/* How many pixels made an estimate: the sum of their weights. */
+enum denoise_support { DENOISE_FEW, DENOISE_SOME, DENOISE_MANY };
+
+/* Memory of a worker. */
+struct denoise_scratch {
+    denoise_plane colour[2][3], variance[3], feature[DENOISE_FEATURES];
+    denoise_plane total_variance, unit; /* of pixels that are compared: sums over the channels */
+    denoise_plane sums[4];              /* of weighted colours, and of weights */
+    denoise_plane estimates[DENOISE_REGRESSIONS][2][3];
+    uint8_t support[DENOISE_REGRESSIONS][2][DENOISE_LOCAL * DENOISE_LOCAL]; /* enum denoise_support */
+    /* Of the candidates: the error minus that of the first one, and the variance of this difference. */
+    float errors[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
+    float doubts[DENOISE_CANDIDATES][DENOISE_INNER][DENOISE_INNER];
+    denoise_window distances[DENOISE_CENTRES * DENOISE_CENTRES]; /* between patches */
+    float unlikeness[DENOISE_COMPARED * DENOISE_COMPARED];
+    float own[DENOISE_CENTRES][DENOISE_COMPARED - 2 * DENOISE_PATCH]; /* unlikeness of rows with centres, unlimited */
+    denoise_feature_plane feature_mean[3], feature_noise[3];
+    float feature_sums[4][DENOISE_BLOCK * DENOISE_BLOCK]; /* of weighted features, and of weights */
+    /* Of one regression. */
+    denoise_window columns[DENOISE_COLUMNS], weights;
+};
+
+/* Squares of a picture or part of one: x0, y0, x1, y1 in coordinates of the scratch. */
+struct denoise_bounds {
+    int x0, y0, x1, y1;
+};
+
+struct denoise_kernels {
+    /* Adds up the features of a block, weighted by the likeness of patches; group: how many there are. */
+    void (*filter_features)(struct denoise_scratch *s, int group, bool depth, struct denoise_bounds bounds);
+    /* The distances of all centres from their windows, in the colours of a half. */
+    void (*compare)(struct denoise_scratch *s, int half);
+    /* Adds up what the regressions of all centres say about the colours of a half. */
+    void (*regress)(struct denoise_scratch *s, int half, struct denoise_regression regression,
+                    struct denoise_bounds bounds);
+    /* Fills errors and doubts from the estimates. */
+    void (*compare_candidates)(struct denoise_scratch *s);
+    /* The scores of the candidates at the pixels of a row of the block: the smallest is the best. */
+    void (*score_candidates)(const struct denoise_scratch *s, int y, float scores[DENOISE_CANDIDATES][DENOISE_BLOCK]);
+};
+
+extern const struct denoise_kernels denoise_kernels_base, denoise_kernels_avx2, denoise_kernels_avx512;
+
+#endif

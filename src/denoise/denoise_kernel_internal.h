@@ -1,0 +1,624 @@
+/* The loops of the denoiser over vectors of floats, for the instruction set of the file that includes this one. The
+ * window of a centre has DENOISE_SIDE rows of DENOISE_LANES pixels. Sums over it are first sums of columns, which
+ * are then added in a fixed order. */
+#include "denoise/denoise_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    LOCAL = DENOISE_LOCAL,
+    COMPARED = DENOISE_COMPARED,
+    LANES = DENOISE_LANES,
+    TERMS = DENOISE_TERMS,
+    COLUMNS = DENOISE_COLUMNS,
+    FIRST_FEATURE = 3, /* terms before the features: constant, x, y */
+#if defined(__AVX512F__)
+    WIDTH = 16
+#elif defined(__AVX2__)
+    WIDTH = 8
+#else
+    WIDTH = 4
+#endif
+};
+typedef float vector __attribute__((vector_size(WIDTH * sizeof(float))));
+
+/* Found by measurement (bench/denoise.sh). */
+static const float noise_scale = 1.44F;  /* factor of the variance in distances of patches: k^2 */
+static const float colour_noise = 1e-3F; /* the same for the square of colours */
+/* A patch beside an edge resembles patches without one, but a pixel that differs strongly itself is not similar. */
+static const float unlikeness_limit = 4; /* of each pixel of a patch */
+static const float own_limit = 4,
+                   own_share = 0.5F;       /* of the pixel itself: the threshold of its distance, and its weight */
+static const double ridge = 5e-4;          /* of the sum of weights */
+static const float feature_change = 1e-4F; /* the ridge suppresses albedo and normals that change less */
+/* Two pixels count half for each other if their features have this distance. */
+static const float similar_limit = 10;
+/* Half of `detail_margin` remains where the largest distance between the features around a pixel is this. */
+static const float change_limit = 0.22F;
+static const float detail_margin = 1;   /* added to the error of candidates that use few pixels */
+static const float colour_margin = 1;   /* added to that of the noisy colour */
+static const float doubt_errors = 1.4F; /* standard errors that are added to the error of a candidate */
+
+typedef int32_t mask __attribute__((vector_size(WIDTH * sizeof(int32_t)))); /* -1 for true, 0 */
+
+static inline vector load(const float *from) {
+    vector v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+static inline void store(float *to, vector v) {
+    memcpy(to, &v, sizeof v);
+}
+
+static inline vector all(float x) {
+    return (vector){0} + x;
+}
+
+static inline vector choose(mask m, vector yes, vector no) {
+    return (vector)((m & (mask)yes) | (~m & (mask)no));
+}
+
+static inline vector smaller(vector a, vector b) {
+    return choose(a < b, a, b);
+}
+
+static inline vector larger(vector a, vector b) {
+    return choose(a > b, a, b);
+}
+
+/* An approximation of exp(-x) for a distance x; 0 from 8 on. */
+static inline float weight_of(float distance) {
+    float x = 1 - (distance > 0 ? distance : 0) * 0.125F;
+    x = x > 0 ? x : 0;
+    x *= x;
+    x *= x;
+    return x * x;
+}
+
+/* --- features --- */
+
+/* Squared differences between the block and the pixels at an offset of (dx, dy), minus the part that noise explains,
+ * in units of the noise. The noise is at least 0.003 of the range of albedo and normals, and 0.001 of a depth. */
+static void compare_features(struct denoise_scratch *s, int group, bool depth, int dx, int dy) {
+    enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW, STRIDE = DENOISE_FEATURE_LOCAL };
+    float relative = depth ? 1e-6F : 0;
+    for (int y = 0; y < SIDE; y++) {
+        int p = (FIRST + y) * STRIDE + FIRST, q = p + dy * STRIDE + dx;
+        float above[SIDE] = {0}, below[SIDE] = {0}, *out = s->unlikeness + y * SIDE;
+        for (int i = 0; i < group; i++) {
+            const float *mean = s->feature_mean[i], *noise = s->feature_noise[i];
+            for (int x = 0; x < SIDE; x++) {
+                float vp = noise[p + x], vq = noise[q + x], u = mean[p + x], delta = u - mean[q + x];
+                above[x] += delta * delta - (vp + (vp < vq ? vp : vq));
+                below[x] += vp + vq + relative * u * u;
+            }
+        }
+        for (int x = 0; x < SIDE; x++)
+            out[x] = above[x] / (below[x] + 1e-5F);
+    }
+}
+
+/* Adds the pixels at an offset of (dx, dy), weighted by the similarity of patches of 3 x 3 pixels. */
+static void add_features(struct denoise_scratch *s, int group, int dx, int dy, struct denoise_bounds bounds) {
+    enum { SIDE = DENOISE_FEATURE_COMPARED, FIRST = DENOISE_FEATURE_WINDOW + 1, STRIDE = DENOISE_FEATURE_LOCAL };
+    int x0 = bounds.x0 - dx > 0 ? bounds.x0 - dx : 0;
+    int x1 = bounds.x1 - dx < DENOISE_BLOCK ? bounds.x1 - dx : DENOISE_BLOCK;
+    for (int y = 0; y < DENOISE_BLOCK; y++) {
+        const float *above = s->unlikeness + y * SIDE, *row = above + SIDE, *under = row + SIDE;
+        int q = (FIRST + y + dy) * STRIDE + FIRST + dx, at = y * DENOISE_BLOCK;
+        float columns[SIDE], weights[DENOISE_BLOCK];
+        if (y + dy < bounds.y0 || y + dy >= bounds.y1)
+            continue;
+        for (int x = 0; x < SIDE; x++)
+            columns[x] = above[x] + row[x] + under[x];
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float w = weight_of((columns[x] + columns[x + 1] + columns[x + 2]) / 9);
+            weights[x] = x >= x0 && x < x1 ? w : 0;
+        }
+        for (int x = 0; x < DENOISE_BLOCK; x++)
+            s->feature_sums[3][at + x] += weights[x];
+        for (int i = 0; i < group; i++)
+            for (int x = 0; x < DENOISE_BLOCK; x++)
+                s->feature_sums[i][at + x] += weights[x] * s->feature_mean[i][q + x];
+    }
+}
+
+static void filter_features(struct denoise_scratch *s, int group, bool depth, struct denoise_bounds bounds) {
+    enum { WINDOW = DENOISE_FEATURE_WINDOW };
+    memset(s->feature_sums, 0, sizeof s->feature_sums);
+    for (int dy = -WINDOW; dy <= WINDOW; dy++) {
+        for (int dx = -WINDOW; dx <= WINDOW; dx++) {
+            compare_features(s, group, depth, dx, dy);
+            add_features(s, group, dx, dy, bounds);
+        }
+    }
+}
+
+/* --- distances of patches --- */
+
+/* The sums over the channels that distances need of each pixel: its variance, and its part of their unit. */
+static void sum_channels(struct denoise_scratch *s, int half) {
+    for (int x = 0; x < LOCAL * LOCAL; x++) {
+        float total = 0, unit = 0;
+        for (int c = 0; c < 3; c++) {
+            float u = s->colour[half][c][x], v = s->variance[c][x];
+            total += v;
+            unit += noise_scale * v + colour_noise * (u * u);
+        }
+        s->total_variance[x] = total;
+        s->unit[x] = unit;
+    }
+}
+
+/* The dissimilarity between the pixels of the block and those at an offset of (dx, dy): squared difference of
+ * colours minus the part that variance explains, in units of the variance (Rousselle et al. 2012, equation 9). */
+static void compare_pixels(struct denoise_scratch *s, int half, int dx, int dy) {
+    enum { FIRST = DENOISE_FIRST - DENOISE_PATCH };
+    for (int y = 0; y < COMPARED; y++) {
+        int p = (FIRST + y) * LOCAL + FIRST, q = p + dy * LOCAL + dx;
+        float own[COMPARED], *out = s->unlikeness + y * COMPARED;
+        const float *r = s->colour[half][0], *g = s->colour[half][1], *b = s->colour[half][2];
+        const float *vr = s->variance[0], *vg = s->variance[1], *vb = s->variance[2];
+        const float *total = s->total_variance + p, *up = s->unit + p, *uq = s->unit + q;
+        for (int x = 0; x < COMPARED; x++) {
+            float dr = r[p + x] - r[q + x], dg = g[p + x] - g[q + x], db = b[p + x] - b[q + x];
+            float lr = vr[p + x] < vr[q + x] ? vr[p + x] : vr[q + x];
+            float lg = vg[p + x] < vg[q + x] ? vg[p + x] : vg[q + x];
+            float lb = vb[p + x] < vb[q + x] ? vb[p + x] : vb[q + x];
+            float above = ((dr * dr - lr) + (dg * dg - lg)) + ((db * db - lb) - total[x]);
+            own[x] = above / (up[x] + uq[x] + FLT_MIN);
+        }
+        for (int x = 0; x < COMPARED; x++)
+            out[x] = own[x] < unlikeness_limit ? own[x] : unlikeness_limit;
+        int row = y - DENOISE_PATCH;
+        if (row >= 0 && row % DENOISE_STEP == 0 && row / DENOISE_STEP < DENOISE_CENTRES)
+            memcpy(s->own[row / DENOISE_STEP], own + DENOISE_PATCH, sizeof s->own[0]);
+    }
+}
+
+/* Sums over the patches around all centres, for the pixel at (row, lane) of their windows. */
+static void average_patches(struct denoise_scratch *s, int row, int lane) {
+    enum { SIDE = 2 * DENOISE_PATCH + 1 };
+    for (int j = 0; j < DENOISE_CENTRES; j++) {
+        const float *at = s->unlikeness + j * DENOISE_STEP * COMPARED;
+        denoise_window *to = s->distances + j * DENOISE_CENTRES;
+        float columns[COMPARED];
+        for (int x = 0; x < COMPARED; x++)
+            columns[x] = ((at[x] + at[COMPARED + x]) + (at[2 * COMPARED + x] + at[3 * COMPARED + x])) +
+                         ((at[4 * COMPARED + x] + at[5 * COMPARED + x]) + at[6 * COMPARED + x]);
+        for (int i = 0; i < DENOISE_CENTRES; i++) {
+            const float *c = columns + i * DENOISE_STEP;
+            float own = s->own[j][i * DENOISE_STEP] - own_limit;
+            to[i][row][lane] = (((c[0] + c[1]) + (c[2] + c[3])) + ((c[4] + c[5]) + c[6])) / (SIDE * SIDE) +
+                               own_share * (own > 0 ? own : 0);
+        }
+    }
+}
+_Static_assert((int)DENOISE_PATCH == 3, "the sums of average_patches are of seven numbers");
+
+static void compare(struct denoise_scratch *s, int half) {
+    sum_channels(s, half);
+    for (int row = 0; row < DENOISE_SIDE; row++) {
+        for (int lane = 0; lane < DENOISE_SIDE; lane++) {
+            compare_pixels(s, half, lane - DENOISE_WINDOW, row - DENOISE_WINDOW);
+            average_patches(s, row, lane);
+        }
+    }
+}
+
+/* --- regressions --- */
+
+/* The rows of a window that are in the picture, and the lanes in these rows. */
+struct window {
+    int x, y; /* the centre */
+    int row0, row1;
+    float inside[LANES]; /* 1 or 0 */
+};
+
+static struct window find_window(int cx, int cy, int radius, struct denoise_bounds bounds) {
+    struct window w = {.x = cx, .y = cy};
+    int low = cy - radius > bounds.y0 ? cy - radius : bounds.y0;
+    int high = cy + radius + 1 < bounds.y1 ? cy + radius + 1 : bounds.y1;
+    w.row0 = low - cy + DENOISE_WINDOW;
+    w.row1 = high - cy + DENOISE_WINDOW;
+    for (int l = 0; l < LANES; l++) {
+        int dx = l - DENOISE_WINDOW, x = cx + dx;
+        w.inside[l] = dx >= -radius && dx <= radius && x >= bounds.x0 && x < bounds.x1 ? 1 : 0;
+    }
+    return w;
+}
+
+/* The start of a row of a window in a plane. */
+static inline int row_at(const struct window *w, int row) {
+    return (w->y + row - DENOISE_WINDOW) * LOCAL + w->x - DENOISE_WINDOW;
+}
+
+/* Weights below a thousandth count as zero. */
+static void weigh(struct denoise_scratch *s, const struct window *w, denoise_window *distances, float scale) {
+    const vector none = {0};
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector inside = load(w->inside + at);
+        for (int r = w->row0; r < w->row1; r++) {
+            vector x = 1 - larger(scale * load((*distances)[r] + at), none) * 0.125F;
+            x = larger(x, none);
+            x *= x;
+            x *= x;
+            x *= x * inside;
+            store(s->weights[r] + at, choose(x > 1e-3F, x, none));
+        }
+    }
+}
+
+/* The smaller one of the differences to the pixels before and after. */
+static float slope_of(const float *plane, int at, int step) {
+    float before = fabsf(plane[at] - plane[at - step]), after = fabsf(plane[at + step] - plane[at]);
+    return before < after ? before : after;
+}
+
+/* Multiplies the weights by the similarity of features. A plane is similar to itself at any angle: the depth at a
+ * distance of some pixels may differ by as much as the slope explains. */
+static void weigh_features(struct denoise_scratch *s, const struct window *w, float scale) {
+    const vector none = {0};
+    int centre = w->y * LOCAL + w->x;
+    const float *depth = s->feature[DENOISE_DEPTH];
+    float z = depth[centre], across = 2 * slope_of(depth, centre, 1), down = 2 * slope_of(depth, centre, LOCAL);
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector dx = load(s->columns[1][0] + at) * (DENOISE_WINDOW * across);
+        for (int r = w->row0; r < w->row1; r++) {
+            float dy = (float)(r - DENOISE_WINDOW) * down;
+            vector sum = none;
+            for (int f = 0; f < DENOISE_DEPTH; f++) {
+                vector difference = load(s->feature[f] + row_at(w, r) + at) - s->feature[f][centre];
+                sum += difference * difference * (f < DENOISE_NORMAL ? albedo_unit : normal_unit);
+            }
+            vector difference = load(depth + row_at(w, r) + at) - z;
+            sum += difference * difference / (dx * dx + (dy * dy + z * z / depth_unit + FLT_MIN));
+            vector x = larger(1 - scale * sum * 0.125F, none);
+            x *= x;
+            x *= x;
+            x *= x * load(s->weights[r] + at);
+            store(s->weights[r] + at, choose(x > 1e-3F, x, none));
+        }
+    }
+}
+
+/* Differences of a feature to the centre; returns the largest one among the pixels with a weight. */
+static float fill_feature(struct denoise_scratch *s, const struct window *w, int feature, int column) {
+    const float *plane = s->feature[feature];
+    float middle = plane[w->y * LOCAL + w->x], result = 0, lanes[LANES];
+    vector found[LANES / WIDTH];
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector largest = {0};
+        for (int r = w->row0; r < w->row1; r++) {
+            vector difference = load(plane + row_at(w, r) + at) - middle;
+            vector size = larger(difference, -difference);
+            store(s->columns[column][r] + at, difference);
+            largest = larger(choose(load(s->weights[r] + at) > 0, size, largest), largest);
+        }
+        found[at / WIDTH] = largest;
+    }
+    memcpy(lanes, found, sizeof lanes);
+    for (int l = 0; l < LANES; l++)
+        result = lanes[l] > result ? lanes[l] : result;
+    return result;
+}
+
+/* The colours, and their range among the pixels with a weight. */
+static void fill_colour(struct denoise_scratch *s, const struct window *w, int half, int channel, float range[2]) {
+    const float *plane = s->colour[half][channel];
+    float middle = plane[w->y * LOCAL + w->x], lowest[LANES], highest[LANES];
+    vector lows[LANES / WIDTH], highs[LANES / WIDTH];
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector low = all(middle), high = low;
+        for (int r = w->row0; r < w->row1; r++) {
+            vector value = load(plane + row_at(w, r) + at);
+            vector counting = choose(load(s->weights[r] + at) > 0, value, low);
+            store(s->columns[TERMS + channel][r] + at, value);
+            low = smaller(counting, low);
+            high = larger(counting, high);
+        }
+        lows[at / WIDTH] = low;
+        highs[at / WIDTH] = high;
+    }
+    memcpy(lowest, lows, sizeof lowest);
+    memcpy(highest, highs, sizeof highest);
+    range[0] = range[1] = middle;
+    for (int l = 0; l < LANES; l++) {
+        range[0] = lowest[l] < range[0] ? lowest[l] : range[0];
+        range[1] = highest[l] > range[1] ? highest[l] : range[1];
+    }
+}
+
+/* The sums over the window of weight * column i * column j, by lane, for terms j from i to below `terms` and for the
+ * colours. */
+static inline __attribute__((always_inline)) void multiply(const struct denoise_scratch *s, int row0, int row1, int i,
+                                                           int terms, float sums[COLUMNS][LANES]) {
+    for (int at = 0; at < LANES; at += WIDTH) {
+        vector sum[COLUMNS];
+        for (int j = i; j < COLUMNS; j++)
+            sum[j] = (vector){0};
+        for (int r = row0; r < row1; r++) {
+            vector weighted = load(s->weights[r] + at) * load(s->columns[i][r] + at);
+            for (int j = i; j < terms; j++)
+                sum[j] += weighted * load(s->columns[j][r] + at);
+            for (int j = TERMS; j < COLUMNS; j++)
+                sum[j] += weighted * load(s->columns[j][r] + at);
+        }
+        for (int j = i; j < COLUMNS; j++)
+            store(sums[j] + at, sum[j]);
+    }
+}
+
+typedef float four __attribute__((vector_size(16)));
+
+static inline float sum_lanes(const float lanes[LANES]) {
+    four a[4];
+    memcpy(a, lanes, sizeof a);
+    four sum = (a[0] + a[2]) + (a[1] + a[3]);
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+/* The normal equations, with terms in units of `scale`: the lower triangle of the matrix, and three right sides. */
+static inline __attribute__((always_inline)) void build_equations(const struct denoise_scratch *s,
+                                                                  const struct window *w, int terms,
+                                                                  const double scale[TERMS],
+                                                                  double matrix[TERMS][TERMS], double right[TERMS][3]) {
+    float sums[TERMS][COLUMNS][LANES];
+#define MULTIPLY(i)                                                                                                    \
+    if (i < terms)                                                                                                     \
+    multiply(s, w->row0, w->row1, i, terms, sums[i])
+    MULTIPLY(0);
+    MULTIPLY(1);
+    MULTIPLY(2);
+    MULTIPLY(3);
+    MULTIPLY(4);
+    MULTIPLY(5);
+    MULTIPLY(6);
+    MULTIPLY(7);
+    MULTIPLY(8);
+    MULTIPLY(9);
+#undef MULTIPLY
+    _Static_assert((int)TERMS == 10, "a line for each term");
+    for (int i = 0; i < terms; i++) {
+        for (int j = i; j < terms; j++)
+            matrix[j][i] = (double)sum_lanes(sums[i][j]) * scale[i] * scale[j];
+        for (int c = 0; c < 3; c++)
+            right[i][c] = (double)sum_lanes(sums[i][TERMS + c]) * scale[i];
+    }
+}
+
+/* Cholesky; the matrix is symmetric and positive, and its lower triangle is replaced. Solves for three right sides in
+ * place. */
+static bool solve(int terms, double m[TERMS][TERMS], double r[TERMS][3]) {
+    double inverse[TERMS]; /* of the diagonal */
+    for (int i = 0; i < terms; i++) {
+        for (int j = 0; j < i; j++) {
+            double sum = m[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= m[i][k] * m[j][k];
+            m[i][j] = sum * inverse[j];
+        }
+        double sum = m[i][i];
+        for (int k = 0; k < i; k++)
+            sum -= m[i][k] * m[i][k];
+        if (!(sum > 0))
+            return false;
+        inverse[i] = 1 / sqrt(sum);
+    }
+    for (int i = 0; i < terms; i++)
+        for (int c = 0; c < 3; c++) {
+            double sum = r[i][c];
+            for (int k = 0; k < i; k++)
+                sum -= m[i][k] * r[k][c];
+            r[i][c] = sum * inverse[i];
+        }
+    for (int i = terms - 1; i >= 0; i--)
+        for (int c = 0; c < 3; c++) {
+            double sum = r[i][c];
+            for (int k = i + 1; k < terms; k++)
+                sum -= m[k][i] * r[k][c];
+            r[i][c] = sum * inverse[i];
+        }
+    return true;
+}
+
+/* Adds the predictions of a regression for the pixels of its window. They are limited to the range of the pixels
+ * that it used, because regressions overshoot beside lights. */
+static inline __attribute__((always_inline)) void predict(struct denoise_scratch *s, const struct window *w, int terms,
+                                                          int channel, double right[TERMS][3], const float range[2]) {
+    vector factor[TERMS], low = all(range[0]), high = all(range[1]);
+    for (int i = 0; i < terms; i++)
+        factor[i] = all((float)right[i][channel]);
+    for (int r = w->row0; r < w->row1; r++) {
+        float *to = s->sums[channel] + row_at(w, r);
+        for (int at = 0; at < LANES; at += WIDTH) {
+            vector value = factor[0];
+            for (int i = 1; i < terms; i++)
+                value += factor[i] * load(s->columns[i][r] + at);
+            store(to + at, load(to + at) + load(s->weights[r] + at) * smaller(larger(value, low), high));
+        }
+    }
+}
+
+/* Fills the columns of features that change in the window: albedo, normal, depth. Returns the number of terms. */
+static int fill_features(struct denoise_scratch *s, const struct window *w, double scale[TERMS]) {
+    static const int groups[][2] = {{DENOISE_ALBEDO, 3}, {DENOISE_NORMAL, 3}, {DENOISE_DEPTH, 1}};
+    int terms = FIRST_FEATURE;
+    for (int g = 0; g < 3; g++) {
+        float change = 0;
+        for (int i = 0; i < groups[g][1]; i++) {
+            /* In units of the largest difference, or of a minimum if that is larger: 0.02 for albedo and normals, 1/200
+             * of a depth. */
+            int f = groups[g][0] + i;
+            float middle = s->feature[f][w->y * LOCAL + w->x], largest = fill_feature(s, w, f, terms + i);
+            float smallest = f == DENOISE_DEPTH ? 0.005F * fabsf(middle) + FLT_MIN : 0.02F;
+            scale[terms + i] = 1 / (double)(largest > smallest ? largest : smallest);
+            change = largest > change ? largest : change;
+        }
+        if (g == 2 || change > feature_change)
+            terms += groups[g][1];
+    }
+    return terms;
+}
+
+/* The regression with a number of terms that the compiler knows. */
+static inline __attribute__((always_inline)) void fit(struct denoise_scratch *s, int half, const struct window *w,
+                                                      int terms, const double scale[TERMS]) {
+    double matrix[TERMS][TERMS], right[TERMS][3];
+    float range[3][2];
+    for (int c = 0; c < 3; c++)
+        fill_colour(s, w, half, c, range[c]);
+    build_equations(s, w, terms, scale, matrix, right);
+    for (int i = 1; i < terms; i++)
+        matrix[i][i] += ridge * matrix[0][0]; /* keeps terms small that the window does not determine */
+    if (!solve(terms, matrix, right))
+        return;
+    for (int i = 0; i < terms; i++)
+        for (int c = 0; c < 3; c++)
+            right[i][c] *= scale[i];
+    for (int c = 0; c < 3; c++)
+        predict(s, w, terms, c, right, range[c]);
+    for (int r = w->row0; r < w->row1; r++) {
+        float *to = s->sums[3] + row_at(w, r);
+        for (int at = 0; at < LANES; at += WIDTH)
+            store(to + at, load(to + at) + load(s->weights[r] + at));
+    }
+}
+
+/* Most windows are on one surface, where only the depth changes, and need a fifth of the multiplications. */
+static void regress_centre(struct denoise_scratch *s, int half, const struct window *w) {
+    double scale[TERMS] = {1, 1, 1};
+    int terms = fill_features(s, w, scale);
+    if (terms == TERMS)
+        fit(s, half, w, TERMS, scale);
+    else if (terms == TERMS - 3)
+        fit(s, half, w, TERMS - 3, scale);
+    else
+        fit(s, half, w, TERMS - 6, scale);
+}
+
+static void regress(struct denoise_scratch *s, int half, struct denoise_regression regression,
+                    struct denoise_bounds bounds) {
+    memset(s->sums, 0, sizeof s->sums);
+    for (int r = 0; r < DENOISE_SIDE; r++) {
+        for (int l = 0; l < LANES; l++) {
+            s->columns[0][r][l] = 1;
+            s->columns[1][r][l] = (float)(l - DENOISE_WINDOW) / DENOISE_WINDOW;
+            s->columns[2][r][l] = (float)(r - DENOISE_WINDOW) / DENOISE_WINDOW;
+        }
+    }
+    for (int i = 0; i < DENOISE_CENTRES * DENOISE_CENTRES; i++) {
+        int cx = DENOISE_FIRST + i % DENOISE_CENTRES * DENOISE_STEP;
+        int cy = DENOISE_FIRST + i / DENOISE_CENTRES * DENOISE_STEP;
+        if ((cx - DENOISE_MARGIN) % regression.step != 0 || (cy - DENOISE_MARGIN) % regression.step != 0)
+            continue;
+        if (cx < bounds.x0 || cy < bounds.y0 || cx >= bounds.x1 || cy >= bounds.y1)
+            continue;
+        struct window w = find_window(cx, cy, regression.radius, bounds);
+        weigh(s, &w, &s->distances[i], regression.colours);
+        if (regression.features > 0)
+            weigh_features(s, &w, regression.features);
+        regress_centre(s, half, &w);
+    }
+}
+
+/* --- choice of the candidate --- */
+
+/* The position of a pixel of the inner part in the planes of the scratch. */
+static int local_of(int x, int y) {
+    return (y + DENOISE_MARGIN - DENOISE_CHOICE) * LOCAL + x + DENOISE_MARGIN - DENOISE_CHOICE;
+}
+
+/* The difference between an estimate of one half and the values of the other half contains the errors of both. So
+ * the difference of two such squares is the difference of the squared errors of two estimates (Bitterli et al. 2016,
+ * section 5.4). Here they are those of each candidate and of the first one, in units of the variance. Its noise is that
+ * of the other half times twice the difference of the estimates. */
+static void compare_candidates(struct denoise_scratch *s) {
+    enum { SIDE = DENOISE_INNER };
+    for (int y = 0; y < SIDE; y++) {
+        int from = local_of(0, y);
+        float scale[SIDE];
+        for (int x = 0; x < SIDE; x++)
+            scale[x] = FLT_MIN;
+        for (int c = 0; c < 3; c++)
+            for (int h = 0; h < 2; h++)
+                for (int x = 0; x < SIDE; x++) {
+                    float other = s->colour[1 - h][c][from + x];
+                    scale[x] += s->variance[c][from + x] + colour_noise * other * other;
+                }
+        for (int b = 0; b < DENOISE_CANDIDATES; b++) {
+            float *errors = s->errors[b][y], *doubts = s->doubts[b][y];
+            memset(errors, 0, SIDE * sizeof *errors);
+            memset(doubts, 0, SIDE * sizeof *doubts);
+            for (int c = 0; c < 3; c++) {
+                for (int h = 0; h < 2; h++) {
+                    const float *own = b < DENOISE_REGRESSIONS ? s->estimates[b][h][c] : s->colour[h][c];
+                    const float *first = s->estimates[0][h][c], *other = s->colour[1 - h][c];
+                    for (int x = 0; x < SIDE; x++) {
+                        float a = own[from + x] - other[from + x], e = first[from + x] - other[from + x];
+                        errors[x] += (a * a - e * e) / scale[x];
+                        doubts[x] += 4 * (a - e) * (a - e) / scale[x] * (s->variance[c][from + x] / scale[x]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/* The distances between the features of the pixels of a row of the block and those at an offset. */
+static void compare_surfaces(const struct denoise_scratch *s, int y, int dx, int dy, float distances[DENOISE_BLOCK]) {
+    int p = local_of(DENOISE_CHOICE, y + DENOISE_CHOICE), q = p + dy * LOCAL + dx;
+    for (int x = 0; x < DENOISE_BLOCK; x++) {
+        float z = s->feature[DENOISE_DEPTH][p + x], difference = s->feature[DENOISE_DEPTH][q + x] - z;
+        distances[x] = difference * difference / (z * z / depth_unit + FLT_MIN);
+    }
+    for (int f = 0; f < DENOISE_DEPTH; f++) {
+        float unit = f < DENOISE_NORMAL ? albedo_unit : normal_unit;
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float difference = s->feature[f][q + x] - s->feature[f][p + x];
+            distances[x] += difference * difference * unit;
+        }
+    }
+}
+
+/* Means of errors over 5 x 5 pixels, in which pixels with other features count less. Two additions prevent that noise
+ * chooses: the standard error of the mean, and a margin for candidates that use few pixels where the features do not
+ * change, since such candidates are for silhouettes and small objects. */
+static void score_candidates(const struct denoise_scratch *s, int y, float scores[DENOISE_CANDIDATES][DENOISE_BLOCK]) {
+    enum { SIDE = 2 * DENOISE_CHOICE + 1 };
+    static const float kernel[SIDE] = {1, 4, 6, 4, 1};
+    float sums[DENOISE_BLOCK] = {0}, squares[DENOISE_CANDIDATES][DENOISE_BLOCK] = {0}, largest[DENOISE_BLOCK] = {0};
+    memset(scores, 0, DENOISE_CANDIDATES * sizeof *scores);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        int dx = i % SIDE, dy = i / SIDE;
+        float distances[DENOISE_BLOCK], weights[DENOISE_BLOCK];
+        compare_surfaces(s, y, dx - DENOISE_CHOICE, dy - DENOISE_CHOICE, distances);
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float distance = distances[x] / similar_limit;
+            weights[x] = kernel[dx] * kernel[dy] / (1 + distance * distance);
+            largest[x] = distances[x] > largest[x] ? distances[x] : largest[x];
+            sums[x] += weights[x];
+        }
+        for (int b = 1; b < DENOISE_CANDIDATES; b++) {
+            const float *errors = s->errors[b][y + dy] + dx, *doubts = s->doubts[b][y + dy] + dx;
+            for (int x = 0; x < DENOISE_BLOCK; x++) {
+                scores[b][x] += weights[x] * errors[x];
+                squares[b][x] += weights[x] * weights[x] * doubts[x];
+            }
+        }
+    }
+    for (int b = 1; b < DENOISE_CANDIDATES; b++) {
+        float margin = b == DENOISE_WIDE ? 0 : detail_margin, always = b == DENOISE_REGRESSIONS ? colour_margin : 0;
+        for (int x = 0; x < DENOISE_BLOCK; x++) {
+            float change = largest[x] / change_limit;
+            scores[b][x] = (scores[b][x] + doubt_errors * sqrtf(squares[b][x])) / sums[x] +
+                           margin / (1 + change * change) + always;
+        }
+    }
+}
+_Static_assert((int)DENOISE_CHOICE == 2, "the kernel of score_candidates has five numbers");
+
+const struct denoise_kernels KERNELS = {filter_features, compare, regress, compare_candidates, score_candidates};

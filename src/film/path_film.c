@@ -1,0 +1,198 @@
+/* The record of a path-traced pixel. Each sum is stored as two floats, the nearest float and the remainder. That is
+ * 48 bits, so 2^24 samples can be added without a visible loss. See path_film.h. */
+#include "film/path_film.h"
+
+#include "base/mem.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+    RECORD_SUMS,                         /* three channels of each half */
+    RECORD_RESTS = RECORD_SUMS + 6,      /* the remainders of the floats of RECORD_SUMS */
+    RECORD_WEIGHTS = RECORD_RESTS + 6,   /* of each half */
+    RECORD_SAMPLES = RECORD_WEIGHTS + 2, /* at most PATH_SAMPLES_MAX = 2^24, which a float represents exactly */
+    RECORD_SQUARES = RECORD_SAMPLES + 1, /* three channels */
+    RECORD_FLOATS = RECORD_SQUARES + 3,
+    FEATURE_FLOATS = 2 * PATH_FEATURES,
+    LIGHT_FLOATS = 2 * 3 * PATH_LIGHT_GROUPS, /* first all sums, then all remainders */
+};
+/* After RECORD_FLOATS: the features, then the layers of light, then the line. */
+_Static_assert((int)RECORD_FLOATS + (int)FEATURE_FLOATS + (int)LIGHT_FLOATS + 1 <= (int)FILM_RECORD_FLOATS,
+               "a tile cannot carry the record of a path-traced pixel");
+
+struct film_record path_film_record(unsigned parts) {
+    uint32_t floats = RECORD_FLOATS;
+    floats += parts & PATH_PART_FEATURES ? FEATURE_FLOATS : 0;
+    floats += parts & PATH_PART_LIGHT ? LIGHT_FLOATS : 0;
+    floats += parts & PATH_PART_LINE ? 1 : 0;
+    return (struct film_record){.floats = floats, .marks = 0};
+}
+
+unsigned path_film_parts(struct film_record record) {
+    for (unsigned parts = 0; parts <= PATH_PARTS; parts++)
+        if (film_record_equal(record, path_film_record(parts)))
+            return parts;
+    return 0;
+}
+
+/* --- what a record can hold --- */
+
+static double in_range(double x) {
+    return x > (double)FLT_MAX ? (double)FLT_MAX : x < -(double)FLT_MAX ? -(double)FLT_MAX : x;
+}
+
+/* Rounds to the nearest number that two floats can represent, as path_film_store does. */
+static double rounded_sum(double x) {
+    double near = (double)(float)in_range(x), rest = in_range(x) - near;
+    return near + (double)(float)rest;
+}
+
+static double rounded_float(double x) {
+    return (double)(float)in_range(x);
+}
+
+static struct vec3 nearest_floats(struct vec3 c) {
+    return vec3_make(rounded_float(c.x), rounded_float(c.y), rounded_float(c.z));
+}
+
+/* --- in the film --- */
+
+static struct vec3 load_sum(const float *sum, const float *rest) {
+    return vec3_make((double)sum[0] + (double)rest[0], (double)sum[1] + (double)rest[1],
+                     (double)sum[2] + (double)rest[2]);
+}
+
+struct path_pixel path_film_load(const struct film *film, size_t at) {
+    const float *record = &film->floats[at * film->record.floats], *squares = record + RECORD_SQUARES;
+    struct path_pixel pixel = {.samples = (uint32_t)record[RECORD_SAMPLES]};
+    for (int half = 0; half < 2; half++) {
+        pixel.sums[half] = load_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half);
+        pixel.weights[half] = (double)record[RECORD_WEIGHTS + half];
+    }
+    pixel.squares = vec3_make((double)squares[0], (double)squares[1], (double)squares[2]);
+    unsigned parts = path_film_parts(film->record);
+    const float *more = record + RECORD_FLOATS;
+    if (parts & PATH_PART_FEATURES) {
+        memcpy(pixel.features, more, sizeof pixel.features);
+        more += FEATURE_FLOATS;
+    }
+    for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
+        pixel.light[i] = load_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i);
+    if (parts & PATH_PART_LINE)
+        pixel.line = record[film->record.floats - 1];
+    return pixel;
+}
+
+static void store_colour(float out[3], struct vec3 colour) {
+    out[0] = (float)colour.x;
+    out[1] = (float)colour.y;
+    out[2] = (float)colour.z;
+}
+
+/* A sum and what it leaves. */
+static void store_sum(float *sum, float *rest, struct vec3 value) {
+    struct vec3 near = nearest_floats(value);
+    store_colour(sum, near);
+    store_colour(rest, vec3_sub(value, near));
+}
+
+void path_film_store(struct film *film, size_t at, const struct path_pixel *pixel) {
+    float *record = &film->floats[at * film->record.floats];
+    for (int half = 0; half < 2; half++) {
+        store_sum(record + RECORD_SUMS + 3 * half, record + RECORD_RESTS + 3 * half, pixel->sums[half]);
+        record[RECORD_WEIGHTS + half] = (float)pixel->weights[half];
+    }
+    record[RECORD_SAMPLES] = (float)pixel->samples;
+    store_colour(record + RECORD_SQUARES, pixel->squares);
+    unsigned parts = path_film_parts(film->record);
+    float *more = record + RECORD_FLOATS;
+    if (parts & PATH_PART_FEATURES) {
+        memcpy(more, pixel->features, sizeof pixel->features);
+        more += FEATURE_FLOATS;
+    }
+    for (int i = 0; i < PATH_LIGHT_GROUPS && parts & PATH_PART_LIGHT; i++)
+        store_sum(more + 3 * i, more + LIGHT_FLOATS / 2 + 3 * i, pixel->light[i]);
+    if (parts & PATH_PART_LINE)
+        record[film->record.floats - 1] = pixel->line;
+    store_colour(film->pixels[at].rgb, path_pixel_below_line(pixel, path_pixel_mean(pixel)));
+}
+
+/* --- sums --- */
+
+static struct vec3 rounded_sums(struct vec3 sum) {
+    return vec3_make(rounded_sum(sum.x), rounded_sum(sum.y), rounded_sum(sum.z));
+}
+
+void path_pixel_add_parts(struct path_pixel *pixel, const struct path_parts *parts, double weight) {
+    float *features = pixel->features[pixel->samples % 2];
+    for (int i = 0; i < PATH_FEATURES; i++)
+        features[i] = (float)in_range((double)features[i] + weight * (double)parts->features[i]);
+    for (int i = 0; i < PATH_LIGHT_GROUPS; i++)
+        pixel->light[i] = rounded_sums(vec3_add(pixel->light[i], vec3_scale(parts->light[i], weight)));
+}
+
+void path_pixel_add(struct path_pixel *pixel, struct vec3 radiance, double weight) {
+    unsigned half = pixel->samples % 2;
+    struct vec3 value = vec3_scale(radiance, weight), sum = vec3_add(pixel->sums[half], value);
+    pixel->sums[half] = rounded_sums(sum);
+    pixel->squares = nearest_floats(vec3_add(pixel->squares, vec3_mul(value, value)));
+    pixel->weights[half] += weight;
+    pixel->samples++;
+}
+
+/* --- means and variances --- */
+
+static struct vec3 over(struct vec3 sum, double weight) {
+    return weight == 0 ? vec3_all(0) : vec3_scale(sum, 1 / weight);
+}
+
+struct vec3 path_pixel_mean(const struct path_pixel *pixel) {
+    struct vec3 mean = over(vec3_add(pixel->sums[0], pixel->sums[1]), pixel->weights[0] + pixel->weights[1]);
+    return vec3_make(in_range(mean.x), in_range(mean.y), in_range(mean.z));
+}
+
+struct vec3 path_pixel_half(const struct path_pixel *pixel, int half) {
+    return over(pixel->sums[half], pixel->weights[half]);
+}
+
+struct vec3 path_pixel_below_line(const struct path_pixel *pixel, struct vec3 colour) {
+    return pixel->line > 0 ? vec3_scale(colour, 1 - (double)pixel->line) : colour;
+}
+
+double path_pixel_feature(const struct path_pixel *pixel, int half, int feature) {
+    double weight = pixel->weights[half];
+    return weight == 0 ? 0 : (double)pixel->features[half][feature] / weight;
+}
+
+struct vec3 path_pixel_light(const struct path_pixel *pixel, enum path_light_group group) {
+    return over(pixel->light[group], pixel->weights[0] + pixel->weights[1]);
+}
+
+/* The mean of both halves has half of the variance of one half; their difference has twice that variance. */
+struct vec3 path_pixel_variance_of_halves(const struct path_pixel *pixel) {
+    if (pixel->samples < 2)
+        return vec3_all(0);
+    struct vec3 difference = vec3_sub(path_pixel_half(pixel, 0), path_pixel_half(pixel, 1));
+    return vec3_scale(vec3_mul(difference, difference), 0.25);
+}
+
+struct vec3 path_pixel_variance_of_samples(const struct path_pixel *pixel) {
+    if (pixel->samples < 2)
+        return vec3_all(0);
+    double count = (double)pixel->samples;
+    struct vec3 mean = path_pixel_mean(pixel);
+    struct vec3 variance = vec3_sub(vec3_scale(pixel->squares, 1 / count), vec3_mul(mean, mean));
+    return vec3_scale(vec3_max(variance, vec3_all(0)), 1 / (count - 1));
+}
+
+void path_film_draw_lines(const struct film *film, float (*colours)[3]) {
+    if (!(path_film_parts(film->record) & PATH_PART_LINE))
+        return;
+    for (size_t i = 0; i < (size_t)film->width * film->height; i++) {
+        float line = film->floats[i * film->record.floats + film->record.floats - 1];
+        for (int c = 0; c < 3 && line > 0; c++)
+            colours[i][c] *= 1 - line;
+    }
+}

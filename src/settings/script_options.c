@@ -1,0 +1,28 @@
+/* The limits of scripts that no option sets. Without the sandbox there are none. */
+#include "settings/script_options.h"
+
+#include "base/error.h"
+
+static const double usual_time = 60;
+static const uint64_t usual_memory = 4 * GIBIBYTE, usual_output = 64 * MEBIBYTE;
+
+double script_time_limit(const struct script_options *options) {
+    return options->time_limit > 0 || options->no_sandbox ? options->time_limit : usual_time;
+}
+
+static uint64_t limit_of(uint64_t given, uint64_t usual, const struct script_options *options) {
+    return given > 0 ? given : options->no_sandbox ? 0 : usual;
+}
+
+uint64_t script_memory_limit(const struct script_options *options) {
+    return limit_of(options->memory_limit, usual_memory, options);
+}
+
+uint64_t script_output_limit(const struct script_options *options) {
+    return limit_of(options->output_limit, usual_output, options);
+}
+
+uint64_t script_picture_memory(const struct script_options *options) {
+    uint64_t limit = script_memory_limit(options);
+    return limit > 0 ? limit + limit / 4 * 3 : UINT64_MAX;
+}

@@ -1,0 +1,41 @@
+/* The settings of a picture: defaults, drafts, and what they mean together. */
+#include "settings/setting.h"
+
+#include "base/unreachable.h"
+
+#include <math.h>
+
+struct integrator_traits integrator_traits(enum integrator_kind integrator) {
+    switch (integrator) {
+    case INTEGRATOR_WHITTED:
+        return (struct integrator_traits){0};
+    case INTEGRATOR_PATH:
+        return (struct integrator_traits){.progressive = true, .has_light_parts = true, .is_linear = true};
+    }
+    UNREACHABLE("an integrator of no kind");
+}
+
+struct settings settings_default(void) {
+    struct settings settings = {.shutter = {0, 1}, .lens = {.view_height = 2, .angle = 180, .screen = 1}};
+    for (int i = 0; i < setting_count; i++)
+        setting_store(&setting_table[i], &settings, setting_table[i].initial);
+    return settings;
+}
+
+void settings_set_draft(struct settings *settings, enum draft_level draft_level) {
+    if (draft_level == DRAFT_NONE)
+        return;
+    settings->full = false;
+    settings->samples = 1;
+    settings->path_samples = draft_level == DRAFT_PREVIEW ? 1 : 4;
+    settings->side_tolerance = settings->corner_tolerance = HUGE_VAL; /* nothing is sampled again */
+    settings->coarse = true;
+    settings->area_samples = settings->area_samples < COARSE_SIDE ? settings->area_samples : COARSE_SIDE;
+    settings->caustics.photons = 0;
+    settings->lens.aperture = 0;
+    settings->shutter.close = settings->shutter.open;
+    if (draft_level == DRAFT_PREVIEW) {
+        settings->reflect_limit = settings->refract_limit = 0;
+        settings->area_samples = 1;
+    }
+}
