@@ -3,6 +3,7 @@
 #include "compat/compat.h"
 
 #include "math/elementary.h"
+#include "sandbox/sandbox.h"
 
 #include <lauxlib.h>
 #include <math.h>
@@ -105,9 +106,9 @@ static int math_ldexp(lua_State *L) {
 }
 
 /* math.randomseed without arguments would use the time: here it restarts the sequence. Floats are truncated, as in
- * Lua 5.1. Upvalues: Lua's own function, the seed of the command line. */
+ * Lua 5.1. Upvalue 1: Lua's own function. */
 static int math_seed(lua_State *L) {
-    lua_Integer seed = lua_tointeger(L, lua_upvalueindex(2)), second = 0;
+    lua_Integer seed = (lua_Integer)sandbox_of(L)->options->seed, second = 0;
     if (!lua_isnoneornil(L, 1)) {
         lua_Number x = luaL_checknumber(L, 1);
         if (lua_isinteger(L, 1))
@@ -331,7 +332,7 @@ static void set_functions(lua_State *L, const char *library, const luaL_Reg *fun
     lua_pop(L, 1);
 }
 
-void compat_open(lua_State *L, uint64_t seed) {
+void compat_open(lua_State *L) {
     static const luaL_Reg tables[] = {{"getn", table_length},
                                       {"setn", table_set_length},
                                       {"maxn", table_largest},
@@ -364,8 +365,7 @@ void compat_open(lua_State *L, uint64_t seed) {
 
     lua_getglobal(L, "math");
     lua_getfield(L, -1, "randomseed");
-    lua_pushinteger(L, (lua_Integer)seed);
-    lua_pushcclosure(L, math_seed, 2);
+    lua_pushcclosure(L, math_seed, 1);
     lua_pushvalue(L, -1);
     lua_setfield(L, -3, "randomseed");
     lua_call(L, 0, 0); /* random numbers start from the seed of the command line */

@@ -3,9 +3,8 @@
 #define GRAY_COMPAT_COMPAT_H
 
 #include <lua.h>
-#include <stdint.h>
 
-/* Adds it; math.random starts from the seed. Runs protected and may raise. */
-void compat_open(lua_State *L, uint64_t seed);
+/* Runs protected and may raise. */
+void compat_open(lua_State *L);
 
 #endif

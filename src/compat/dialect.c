@@ -17,7 +17,8 @@ static bool is_file_name(const char *dialect) {
     return strchr(dialect, '/') || (length > 4 && strcmp(dialect + length - 4, ".lua") == 0);
 }
 
-bool dialect_file(const char *dialect, const char *library, char *out, size_t size) {
+bool dialect_file(const struct script_options *options, char *out, size_t size) {
+    const char *dialect = options->dialect, *library = options->library_folder;
     if (!dialect)
         return false;
     int length = is_file_name(dialect) ? snprintf(out, size, "%s", dialect)
@@ -26,10 +27,9 @@ bool dialect_file(const char *dialect, const char *library, char *out, size_t si
     return length >= 0 && (size_t)length < size;
 }
 
-bool dialect_add_folder(const char *dialect, const char *library, struct path_policy *path_policy,
-                        struct error *error) {
+bool dialect_add_folder(const struct script_options *options, struct path_policy *path_policy, struct error *error) {
     char file[PATH_SIZE];
-    if (!dialect_file(dialect, library, file, sizeof file))
+    if (!dialect_file(options, file, sizeof file))
         return true;
     char *slash = strrchr(file, '/');
     if (slash)
@@ -38,8 +38,8 @@ bool dialect_add_folder(const char *dialect, const char *library, struct path_po
 }
 
 /* The error of a dialect that the library does not have. */
-static bool unknown_dialect(struct sandbox *sandbox, const char *name, struct error *error) {
-    const char *library = sandbox->files.library_folder;
+static bool unknown_dialect(struct sandbox *sandbox, struct error *error) {
+    const char *library = sandbox->options->library_folder, *name = sandbox->options->dialect;
     struct path_policy_entry *entries;
     char folder[PATH_SIZE], names[1024] = "";
     struct suggestion suggestion;
@@ -63,14 +63,15 @@ static bool unknown_dialect(struct sandbox *sandbox, const char *name, struct er
                      meant ? "; did you mean '" : "", meant ? meant : "", meant ? "'?" : "", names[0] ? names : "none");
 }
 
-bool dialect_find(struct sandbox *sandbox, const char *dialect, struct error *error) {
+bool dialect_find(struct sandbox *sandbox, struct error *error) {
+    const char *dialect = sandbox->options->dialect;
     char file[PATH_SIZE];
     struct file_bytes bytes;
     if (!dialect)
         return true;
-    bool found = dialect_file(dialect, sandbox->files.library_folder, file, sizeof file);
+    bool found = dialect_file(sandbox->options, file, sizeof file);
     if (!is_file_name(dialect) && !(found && file_is_regular(file)))
-        return unknown_dialect(sandbox, dialect, error);
+        return unknown_dialect(sandbox, error);
     if (!found)
         return error_set(error, ERROR_USAGE, "--dialect: %.100s...: the path is too long", dialect);
     if (!file_map(file, FILE_LIMIT, &bytes, error)) /* reported like a scene that cannot be read */

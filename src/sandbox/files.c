@@ -191,7 +191,7 @@ static const char key = 0; /* the globals that our own modules see are in the re
 
 /* The chunk on top of the stack, from the file `path`, sees these globals if it is one of ours. */
 static void adopt_library(lua_State *L, const char *path) {
-    const char *folder = sandbox_of(L)->files.library_folder;
+    const char *folder = sandbox_of(L)->options->library_folder;
     char library[PATH_SIZE], file[PATH_SIZE];
     if (!folder || !folder[0] || !file_canonical(folder, library, sizeof library) ||
         !file_canonical(path, file, sizeof file))
@@ -238,7 +238,7 @@ int files_load(lua_State *L, const char *path) {
         size -= end ? (size_t)(end - text) : size;
         text = end ? end : text;
     }
-    int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, sandbox->options.is_off ? "bt" : "t");
+    int status = luaL_loadbufferx(L, size > 0 ? text : "", size, name, sandbox->options->no_sandbox ? "bt" : "t");
     file_unmap(&bytes);
     if (status == LUA_OK && !is_dialect(sandbox, path)) /* a dialect has the globals of the scene */
         adopt_library(L, path);
@@ -272,7 +272,7 @@ bool files_on_path(const struct sandbox *sandbox, const char *templates, const c
 /* Raises the error of a module that is nowhere, with the name of one that is spelt like it: a module of the library, or
  * a Lua file of the scene. */
 _Noreturn static void no_module(struct sandbox *sandbox, const char *module) {
-    const char *library = sandbox->files.library_folder;
+    const char *library = sandbox->options->library_folder;
     struct path_policy_entry *entries;
     struct suggestion suggestion;
     suggest_begin(&suggestion, module);
@@ -411,7 +411,7 @@ void files_open(lua_State *L) {
     lua_rawseti(L, -2, 2);
     lua_setfield(L, -2, "searchers");
 
-    const char *f = sandbox->files.folder, *library = sandbox->files.library_folder;
+    const char *f = sandbox->files.folder, *library = sandbox->options->library_folder;
     lua_pushfstring(L, "%s?.lua;%s?/init.lua;./?.lua;%slua/?.lua;%s../lua/?.lua", f, f, f, f);
     if (library) {
         lua_pushfstring(L, "%s;%s/?.lua", lua_tostring(L, -1), library);
@@ -445,7 +445,7 @@ static const char hidden = 0; /* likewise: our modules whose names files of the 
 /* The file of one of our modules, if `require` of the script would find another file first. */
 static bool is_hidden(lua_State *L, const char *name, char file[PATH_SIZE]) {
     const struct sandbox *sandbox = sandbox_of(L);
-    const char *folder = sandbox->files.library_folder;
+    const char *folder = sandbox->options->library_folder;
     char found[PATH_SIZE], other[PATH_SIZE], own[PATH_SIZE];
     assert(folder); /* no other code has this `require` */
     if (strpbrk(name, "./\\"))

@@ -18,10 +18,9 @@ struct source_name {
 };
 
 struct files {
-    const char *path;           /* the scene as the user named it */
-    char folder[PATH_SIZE];     /* its folder with a final slash, or "" */
-    const char *library_folder; /* of our own modules, on package.path last; or NULL */
-    const char *dialect;        /* a file that runs before the scene, or NULL; the user named it, too */
+    const char *path;       /* the scene as the user named it */
+    char folder[PATH_SIZE]; /* its folder with a final slash, or "" */
+    const char *dialect;    /* a file that runs before the scene, or NULL; the user named it, too */
     struct source_name *sources;
     struct file_search search;       /* for files that are not at the path in the script */
     struct source_name *found_names; /* the names of those that were found, with a notice for each */

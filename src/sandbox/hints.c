@@ -325,7 +325,7 @@ static const char *field_words(struct sandbox *sandbox, const struct running *ru
         return "";
     push_variable(running, access.table, &is_global);
     const char *words = "", *meant = NULL;
-    if (lua_istable(L, -1) && is_global && !sandbox->options.is_off && libraries_lack(access.table, field))
+    if (lua_istable(L, -1) && is_global && !sandbox->options->no_sandbox && libraries_lack(access.table, field))
         words = arena_format(&sandbox->call, "; the sandbox has no %s.%s (docs/security.md)", access.table, field);
     else if (lua_istable(L, -1) && begin_names(sandbox, &names)) {
         add_keys(sandbox, L, &names);
@@ -355,7 +355,7 @@ static const char *alias_words(struct sandbox *sandbox, const struct running *ru
     struct running file = {.L = running->L, .at = {.currentline = 1}};
     struct token w[5] = {{0}};
     char library[NAME_SIZE], field[NAME_SIZE];
-    if (sandbox->options.is_off || !read_text(sandbox, &file, running->at.source + 1))
+    if (sandbox->options->no_sandbox || !read_text(sandbox, &file, running->at.source + 1))
         return "";
     struct lexer lexer = {file.text, file.text + file.size, 1};
     do {

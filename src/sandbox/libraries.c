@@ -160,7 +160,7 @@ void libraries_open(lua_State *L) {
         lua_pop(L, 1);
     }
     set_function(L, "os", "exit", end_script);
-    if (sandbox_of(L)->options.is_off)
+    if (sandbox_of(L)->options->no_sandbox)
         return;
     for (size_t k = 0; k < sizeof allowed_names / sizeof allowed_names[0]; k++)
         keep_allowed(L, &allowed_names[k]);

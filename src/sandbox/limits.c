@@ -16,11 +16,11 @@
 
 enum { HOOK_STEPS = 10000 }; /* some tenths of a millisecond */
 
-void limits_begin(struct limits *limits, const struct sandbox_options *options) {
+void limits_begin(struct limits *limits, const struct script_options *options) {
     *limits = (struct limits){
-        .account = {.limit = options->memory_limit, .option = "--script-memory", .words = limits->memory_words},
-        .output_limit = options->output_limit,
-        .time_limit = options->time_limit,
+        .account = {.limit = script_memory_limit(options), .option = "--script-memory", .words = limits->memory_words},
+        .output_limit = script_output_limit(options),
+        .time_limit = script_time_limit(options),
         .time_begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
     };
     char size[SIZE_WORDS];

@@ -3,18 +3,11 @@
 #define GRAY_SANDBOX_LIMITS_H
 
 #include "base/mem.h"
+#include "settings/script_options.h"
 
 #include <lua.h>
 
 struct sandbox;
-
-/* What a script may use; 0: no limit. */
-struct sandbox_options {
-    bool is_off;           /* --no-sandbox: nothing is removed from the language */
-    uint64_t memory_limit; /* bytes */
-    double time_limit;     /* seconds of processor time */
-    uint64_t output_limit; /* bytes printed and written */
-};
 
 /* How much of its limits the script has used. */
 struct limits {
@@ -29,7 +22,7 @@ struct limits {
     uint64_t output, output_limit; /* bytes printed and written */
 };
 
-void limits_begin(struct limits *limits, const struct sandbox_options *options);
+void limits_begin(struct limits *limits, const struct script_options *options);
 /* Returns the bytes that are still allocated. */
 uint64_t limits_end(struct limits *limits);
 void *limits_allocate(void *limits, void *block, size_t old_size, size_t size); /* a lua_Alloc */

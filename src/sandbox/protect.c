@@ -141,7 +141,7 @@ void protect_open(lua_State *L) {
     wrap_function(L, "coroutine", "resume", use_coroutine);
     wrap_function(L, "coroutine", "close", use_coroutine);
     wrap_function(L, "coroutine", "wrap", wrap_coroutine);
-    if (sandbox_of(L)->options.is_off) {
+    if (sandbox_of(L)->options->no_sandbox) {
         wrap_function(L, LUA_GNAME, "load", call_and_pass_on);
         return;
     }

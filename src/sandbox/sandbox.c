@@ -22,7 +22,7 @@ struct sandbox *sandbox_of(lua_State *L) {
 
 bool sandbox_begin(struct sandbox *sandbox, struct error *error) {
     struct files *files = &sandbox->files;
-    limits_begin(&sandbox->limits, &sandbox->options);
+    limits_begin(&sandbox->limits, sandbox->options);
     const char *slash = strrchr(files->path, '/');
     size_t length = slash ? (size_t)(slash - files->path) + 1 : 0;
     if (strlen(files->path) >= PATH_SIZE - 64)

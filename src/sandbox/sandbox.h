@@ -44,10 +44,10 @@ enum { SUFFIX_SIZE = 32 };
 
 struct recorder;
 
-/* Lua's extra space points to it. The owner sets options, host, path_policy, files.path and files.library_folder. */
+/* Lua's extra space points to it. The owner sets options, host, path_policy and files.path. */
 struct sandbox {
     lua_State *lua; /* the thread that called last */
-    struct sandbox_options options;
+    const struct script_options *options;
     struct sandbox_host host;
     const struct path_policy *path_policy; /* what may be read and written; NULL: everything */
     struct arena keep;                     /* lives as long as the sandbox */

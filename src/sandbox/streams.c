@@ -248,7 +248,7 @@ void streams_close(struct sandbox *sandbox) {
 void streams_open(lua_State *L) {
     struct sandbox *sandbox = sandbox_of(L);
     lua_getglobal(L, "io");
-    if (sandbox->host.error_text && !sandbox->options.is_off)
+    if (sandbox->host.error_text && !sandbox->options->no_sandbox)
         sandbox->errors = redirect(L, "stderr");
     if (sandbox->host.error_text && sandbox->host.output_is_error)
         sandbox->output = redirect(L, "stdout");
@@ -263,7 +263,7 @@ void streams_open(lua_State *L) {
     lua_pop(L, 3);
     lua_pushcfunction(L, print);
     lua_setglobal(L, "print");
-    if (sandbox->options.is_off)
+    if (sandbox->options->no_sandbox)
         return;
     lua_getglobal(L, "os");
     lua_pushcfunction(L, os_remove);

@@ -40,7 +40,7 @@ struct frame_plan {
 
 static bool count_frames(struct script_context *context, const struct script_value *args, struct frame_plan *plan,
                          struct error *error) {
-    const struct frame_options *options = &script_of(context)->options->frames;
+    const struct frame_options *options = &context->sandbox.options->frames;
     const struct frame_selection *selection = &options->selection;
     double limit = script_of(context)->host->frame_limit > 0 ? script_of(context)->host->frame_limit : FRAMES_MAX;
     double rate = args[FRAMES_FPS].given ? args[FRAMES_FPS].number : FRAME_RATE_DEFAULT;
@@ -65,7 +65,7 @@ static bool gr_frames(struct script_context *context, const struct script_value 
                       struct error *error) {
     if (script_of(context)->animation.runs)
         return error_set(error, ERROR_SCENE, "it is called while another gr.frames draws its frames");
-    if (script_of(context)->options->frames.turntable > 0)
+    if (context->sandbox.options->frames.turntable > 0)
         return error_set(error, ERROR_SCENE, "--turntable is for scripts without gr.frames");
     if (script_of(context)->host->animates)
         script_of(context)->host->animates(script_of(context)->host->context);
@@ -73,7 +73,7 @@ static bool gr_frames(struct script_context *context, const struct script_value 
     if (!plan)
         return error_no_memory(error, "an animation");
     *plan = (struct frame_plan){.pure = args[FRAMES_PURE].boolean};
-    plan->frame.loops = args[FRAMES_LOOP].boolean || script_of(context)->options->frames.loops;
+    plan->frame.loops = args[FRAMES_LOOP].boolean || context->sandbox.options->frames.loops;
     if (!count_frames(context, args, plan, error))
         return false;
     script_of(context)->animation.shutter =
@@ -114,7 +114,7 @@ static void set_frame(lua_State *L, const struct frame *frame) {
 
 static void seed_frame(lua_State *L, uint32_t number) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &seed_key);
-    lua_pushinteger(L, (lua_Integer)script_of(context_of(L))->options->seed);
+    lua_pushinteger(L, (lua_Integer)sandbox_of(L)->options->seed);
     lua_pushinteger(L, number);
     lua_call(L, 2, 0);
 }
@@ -234,7 +234,7 @@ static void free_frames(lua_State *L, struct scene_snapshot *snapshot) {
 /* --- all frames --- */
 
 static void draw_selected(lua_State *L, int draw, const struct frame_plan *plan) {
-    const struct frame_selection *selection = &script_of(context_of(L))->options->frames.selection;
+    const struct frame_selection *selection = &sandbox_of(L)->options->frames.selection;
     struct frame frame = plan->frame;
     uint32_t last = selection->step > 0 ? selection->last : frame.count;
     struct scene_snapshot snapshot = begin_list(L);

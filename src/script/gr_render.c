@@ -213,7 +213,7 @@ static void apply_settings(const struct script_value *args, struct settings *set
  * math.random. */
 static void note_overridden(struct script_context *context, const struct settings *settings) {
     struct script *script = script_of(context);
-    const char *const *given = script->options->given;
+    const char *const *given = context->sandbox.options->given;
     for (int i = 0; i < setting_count && given && !script->host->repeats; i++) {
         const struct setting *row = &setting_table[i];
         char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
@@ -333,7 +333,7 @@ static void turn_camera(struct render_request *request, const struct render_requ
 
 /* --turntable: renders the pictures of one call. Without it, `render` renders one picture. */
 static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
-    const struct frame_options *options = &script_of(context)->options->frames;
+    const struct frame_options *options = &context->sandbox.options->frames;
     struct render_request request = *first;
     struct vec3 middle = turntable_middle(first, first->camera.view);
     uint32_t count = (uint32_t)options->turntable;
@@ -420,7 +420,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         return false;
     request.changed = script_of(context)->changes.count > 0;
     limits_pause(&context->sandbox.limits);
-    bool turns = script_of(context)->options->frames.turntable > 0;
+    bool turns = context->sandbox.options->frames.turntable > 0;
     bool done = turns ? render_turntable(context, &request, error)
                       : script_of(context)->host->render(script_of(context)->host->context, &request, error);
     limits_resume(&context->sandbox.limits);

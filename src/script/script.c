@@ -72,7 +72,7 @@ static void push_value(lua_State *L, const char *value) {
 }
 
 static void define_open(lua_State *L) {
-    const struct script_options *options = script_of(context_of(L))->options;
+    const struct script_options *options = sandbox_of(L)->options;
     for (int k = 0; k < options->define_count; k++) {
         push_value(L, options->defines[k].value);
         lua_setglobal(L, options->defines[k].name);
@@ -171,7 +171,7 @@ static int run_scene(lua_State *L) {
     const struct script *script = script_of(context_of(L));
     sandbox_open(L);
     traverse_open(L);
-    compat_open(L, script->options->seed);
+    compat_open(L);
     handles_open(L);
     dispatch_open(L);
     if (script->context.lenient)
@@ -213,10 +213,10 @@ static bool choose_order(struct script *script, struct error *error) {
     struct scene *scene = &script->context.scene;
     const char *path = sandbox->files.path;
     struct order_finding finding;
-    if (!order_detect(path, sandbox->files.library_folder, sandbox->path_policy, &finding, error))
+    if (!order_detect(path, sandbox->options->library_folder, sandbox->path_policy, &finding, error))
         return false;
     script->only_named_pictures = finding.only_named_pictures;
-    switch (script->options->transform_order) {
+    switch (sandbox->options->transform_order) {
     case SCRIPT_ORDER_NEW:
         scene->order = ORDER_NEW;
         return true;
@@ -240,23 +240,10 @@ static bool choose_order(struct script *script, struct error *error) {
     return true;
 }
 
-static struct sandbox_options sandbox_options_of(const struct script_options *options) {
-    return (struct sandbox_options){.is_off = options->no_sandbox,
-                                    .memory_limit = script_memory_limit(options),
-                                    .time_limit = script_time_limit(options),
-                                    .output_limit = script_output_limit(options)};
-}
-
-/* --- the run --- */
-
-bool script_dialect_file(const struct script_options *options, char *out, size_t size) {
-    return dialect_file(options->dialect, options->library_folder, out, size);
-}
-
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error) {
     bool ok = path_policy_add_scene(path_policy, path, options->library_folder, error) &&
-              dialect_add_folder(options->dialect, options->library_folder, path_policy, error);
+              dialect_add_folder(options, path_policy, error);
     for (int k = 0; ok && k < options->allow_read_count; k++)
         ok = path_policy_add(path_policy, options->allow_read[k], PATH_POLICY_READ, error);
     for (int k = 0; ok && k < options->allow_write_count; k++)
@@ -335,35 +322,35 @@ static bool prepare(struct script *script, struct path_policy *path_policy, stru
     struct sandbox *sandbox = &script->context.sandbox;
     if (!sandbox_begin(sandbox, error))
         return false;
-    if (script->options->lenient && !lenient_begin(&script->context))
+    if (sandbox->options->lenient && !lenient_begin(&script->context))
         return error_no_memory(error, "the script");
     struct file_bytes bytes; /* an unreadable file is reported before anything else, in one line */
     if (!file_map(sandbox->files.path, FILE_LIMIT, &bytes, error))
         return false;
     file_unmap(&bytes);
-    if (!sandbox->options.is_off) {
-        if (!script_path_policy(sandbox->files.path, script->options, path_policy, error))
+    if (!sandbox->options->no_sandbox) {
+        if (!script_path_policy(sandbox->files.path, sandbox->options, path_policy, error))
             return false;
         sandbox->path_policy = path_policy;
     }
-    return dialect_find(sandbox, script->options->dialect, error) && choose_order(script, error);
+    return dialect_find(sandbox, error) && choose_order(script, error);
 }
 
 static struct sandbox sandbox_of_script(const char *path, const struct script_options *options,
                                         const struct script_host *host) {
-    return (struct sandbox){.options = sandbox_options_of(options),
+    return (struct sandbox){.options = options,
                             .host = {.context = host->context,
                                      .message = host->message,
                                      .cancelled = host->cancelled,
                                      .error_text = host->error_text,
                                      .output_is_error = host->output_is_error,
                                      .prints = host->prints},
-                            .files = {.path = path, .library_folder = options->library_folder}};
+                            .files = {.path = path}};
 }
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct arena *arena, const char **traceback, struct error *error) {
-    struct script script = {.options = options, .host = host, .out = arena};
+    struct script script = {.host = host, .out = arena};
     struct sandbox *sandbox = &script.context.sandbox;
     *traceback = NULL;
     *sandbox = sandbox_of_script(path, options, host);

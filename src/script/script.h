@@ -75,10 +75,6 @@ struct path_policy;
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error);
 
-/* The file of --dialect: the one it names, or that of the name in the library. False: no dialect, or the path is too
- * long. */
-bool script_dialect_file(const struct script_options *options, char *out, size_t size);
-
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,

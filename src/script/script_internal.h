@@ -9,7 +9,6 @@
 
 struct script {
     struct script_context context; /* the first member: Lua's extra space points to both */
-    const struct script_options *options;
     const struct script_host *host;
     struct arena *out; /* the caller's arena, for the traceback */
     const char *traceback;
