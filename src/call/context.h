@@ -25,8 +25,8 @@ struct script_context *context_of(lua_State *L);
 /* A function of the table begins. */
 void context_begin_call(struct script_context *context, const struct script_function *function);
 
-/* The functions of gr, even if the script has replaced them: keeps the table on top, which is popped; pushes one of
- * them. */
+/* The functions of gr, even if the script has replaced them, with --lenient: keeps the table on top, which is popped;
+ * pushes one of them. */
 void context_keep_functions(lua_State *L);
 void context_push_function(lua_State *L, const char *name);
 

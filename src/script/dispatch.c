@@ -310,8 +310,10 @@ void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_NODE);
     set_index(L, handle_key(HANDLE_NODE), node_index, 1);
 
-    push_functions(L, OWNER_GR);
-    context_keep_functions(L);
+    if (context_of(L)->lenient) {
+        push_functions(L, OWNER_GR);
+        context_keep_functions(L);
+    }
     push_functions(L, OWNER_GR);
     for (size_t k = 0; value_function_at(k); k++) {
         lua_pushcfunction(L, value_function_at(k)->run);
