@@ -7,6 +7,7 @@
 #include "render/aov.h"
 #include "render/film.h"
 #include "render/path_film.h"
+#include "render/path_noise_internal.h"
 #include "render/pixel_trace.h"
 #include "render/settings.h"
 #include "scene/scene_digest.h"
@@ -60,30 +61,30 @@ bool renderer_is_done(const struct renderer *renderer) {
     return renderer->job->drain && atomic_load_explicit(renderer->job->drain, memory_order_relaxed) != 0;
 }
 
-/* A cancelled ray leaves a wrong colour: a tile that ends after a request to stop counts as not done. */
-bool renderer_make_samples(struct renderer *renderer, struct worker *worker, struct rectangle part) {
+/* Makes a tile or a part of it. False: stopped. A cancelled ray leaves a wrong colour, so a tile that ends after a
+ * request to stop counts as not done. */
+static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
+                      double share) {
+    renderer_tile_begins(renderer, worker, tile, share);
     bool whole = integrator_render(renderer, worker, &part) && !renderer_stopped(renderer, worker);
     if (worker->scratch.failed) {
         atomic_store(&renderer->failed, true);
         pool_cancel(renderer->pool);
     }
     worker->tile_ended = clock_seconds(CLOCK_MONOTONIC);
-    return whole;
-}
-
-/* Makes a tile or a part of it; false: stopped. */
-static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
-                      double share) {
-    renderer_tile_begins(renderer, worker, tile, share);
-    bool whole = renderer_make_samples(renderer, worker, part);
     if (whole)
         renderer_tile_ends(renderer, worker);
     return whole;
 }
 
-void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
+/* The tile is done, and is reported; or it is not whole and still wanted, unless it has samples that are kept. */
+static void end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
     struct film *film = renderer->job->film;
-    atomic_store_explicit(&film->tiles[tile], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
+    uint8_t taken = FILM_TILE_TAKEN;
+    if (whole)
+        atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
+    else
+        (void)atomic_compare_exchange_strong(&film->tiles[tile], &taken, FILM_TILE_WANTED);
     if (whole && renderer->job->tile_done) {
         uint32_t done = atomic_fetch_add(&renderer->done, 1) + 1;
         renderer->job->tile_done(renderer->job->context, tile, done, renderer->tiles_wanted);
@@ -92,19 +93,16 @@ void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
 
 static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
     struct film *film = renderer->job->film;
-    uint8_t wanted = FILM_TILE_WANTED;
+    uint8_t state = FILM_TILE_WANTED;
     struct worker *worker = &renderer->workers[index];
-    if (renderer_is_done(renderer) || !atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_TAKEN))
+    if (renderer_is_done(renderer) ||
+        (!atomic_compare_exchange_strong(&film->tiles[tile], &state, FILM_TILE_TAKEN) && !film_tile_is_begun(state)))
         return;
-    if (renderer->levels.wanted) {
-        renderer_make_farm_levels(renderer, worker, tile);
-        return;
-    }
     struct film_rectangle r = film_tile_rectangle(film, tile);
+    worker->tile_state = &film->tiles[tile];
     bool whole = make_part(renderer, worker, tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
-    if (whole)
-        renderer_measure_layers(renderer, worker, tile);
-    renderer_end_tile(renderer, tile, whole);
+    worker->tile_state = NULL;
+    end_tile(renderer, tile, whole);
 }
 
 void renderer_pass_item(void *context, uint32_t position, int index) {
@@ -117,11 +115,7 @@ void renderer_pass_item(void *context, uint32_t position, int index) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
     struct worker *worker = &renderer->workers[index];
     struct rectangle part = {r.x0, r.y0, r.x1, r.y1};
-    const struct sample_pass *pass = &renderer->pass;
-    renderer_level_begins(renderer, worker, tile, pass->end);
-    bool whole = renderer_make_samples(renderer, worker, part);
-    if (whole)
-        renderer_level_ends(renderer, worker, tile, worker->quiet || pass->end == pass->limit);
+    bool whole = make_part(renderer, worker, tile, part, 1);
     uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
     atomic_store_explicit(&film->tiles[tile], whole ? after : before, memory_order_release);
 }
@@ -131,7 +125,7 @@ static void end_passes(struct renderer *renderer) {
     struct film *film = renderer->job->film;
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         if (atomic_load(&film->tiles[tile]) >= FILM_TILE_PASSED)
-            renderer_end_tile(renderer, tile, true);
+            end_tile(renderer, tile, true);
     }
 }
 
@@ -162,10 +156,7 @@ static void make_quarter(struct renderer *renderer, uint32_t number, int index) 
     uint8_t before = atomic_fetch_add(count, 1);
     if ((before & ~QUARTER_FAILED) + 1 != QUARTERS)
         return;
-    bool whole = !(before & QUARTER_FAILED);
-    if (whole)
-        renderer_measure_layers(renderer, &renderer->workers[index], tile);
-    renderer_end_tile(renderer, tile, whole);
+    end_tile(renderer, tile, !(before & QUARTER_FAILED));
 }
 
 static void tile_item(void *context, uint32_t position, int index) {
@@ -176,13 +167,16 @@ static void tile_item(void *context, uint32_t position, int index) {
         make_quarter(renderer, position - renderer->whole_tiles, index);
 }
 
-/* Renders tiles that become wanted until no more can. */
+/* Renders a tile that has samples, or tiles that become wanted until no more can. */
 static void handout_item(void *context, uint32_t item, int index) {
     struct renderer *renderer = context;
     const struct film *film = renderer->job->film;
     const struct timespec pause = {0, 500000};
     uint32_t count = film_tile_count(film);
-    (void)item;
+    if (item < renderer->whole_tiles) {
+        make_tile(renderer, renderer->order[item], index);
+        return;
+    }
     while (!renderer_stopped(renderer, &renderer->workers[index]) && !renderer_is_done(renderer)) {
         uint32_t tile = 0;
         while (tile < count && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
@@ -193,8 +187,6 @@ static void handout_item(void *context, uint32_t item, int index) {
             return;
         else
             (void)nanosleep(&pause, NULL);
-        if (renderer->estimated)
-            renderer_report_estimate(renderer);
     }
 }
 
@@ -203,10 +195,9 @@ static bool render_tiles(struct renderer *renderer, struct render_statistics *st
     double begun = clock_seconds(CLOCK_MONOTONIC);
     for (int i = 0; i < workers; i++)
         renderer->workers[i].tile_ended = begun;
-    uint32_t tail = film_tile_count(renderer->job->film) - renderer->whole_tiles;
-    bool whole = renderer->job->handout ? pool_run(renderer->pool, (uint32_t)workers, handout_item, renderer)
-                 : renderer->levels.wanted
-                     ? renderer_make_levels(renderer)
+    uint32_t tail = renderer->job->handout ? 0 : film_tile_count(renderer->job->film) - renderer->whole_tiles;
+    bool whole = renderer->job->handout
+                     ? pool_run(renderer->pool, renderer->whole_tiles + (uint32_t)workers, handout_item, renderer)
                      : pool_run(renderer->pool, renderer->whole_tiles + QUARTERS * tail, tile_item, renderer);
     double ended = clock_seconds(CLOCK_MONOTONIC);
     for (uint32_t i = 0; i < tail && !whole; i++) { /* those of which quarters are missing */
@@ -343,10 +334,7 @@ static void end_rendering(struct renderer *renderer, int workers) {
     mem_free(renderer->closed);
     mem_free(renderer->order);
     mem_free(renderer->quarters);
-    time_estimate_destroy(&renderer->time_estimate);
-    noise_estimate_destroy(&renderer->noise_estimate);
-    mem_free(renderer->levels.samples);
-    mem_free(renderer->levels.waiting);
+    mem_free(renderer->time_estimate.tiles);
 }
 
 /* The part is one pixel. */
@@ -393,16 +381,29 @@ bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel
     return ok;
 }
 
-/* In a farm tiles are made as they are handed out. */
+/* Tiles of a checkpoint that have samples (--noise): they go on if these are of use, else they begin again. */
+static void find_begun_tiles(const struct renderer *renderer) {
+    struct film *film = renderer->job->film;
+    bool keeps = renderer->job->settings.noise > 0 && renderer->pass.end > 0 && !renderer_makes_passes(renderer);
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        if (film_tile_is_begun(atomic_load_explicit(&film->tiles[tile], memory_order_relaxed)) &&
+            !(keeps && path_samples_kept(film, film_tile_rectangle(film, tile), renderer->pass.end)))
+            atomic_store_explicit(&film->tiles[tile], FILM_TILE_WANTED, memory_order_relaxed);
+    }
+}
+
+/* In a farm tiles are made as they are handed out, but for those that are begun. */
 static bool order_tiles(struct renderer *renderer) {
     const struct film *film = renderer->job->film;
     uint32_t count = film_tile_count(film);
-    if (!renderer_order_levels(renderer))
+    renderer->order = mem_alloc_zero(count, sizeof *renderer->order);
+    if (!renderer->order)
         return false;
-    if (renderer->job->progress_estimate && !renderer->levels.wanted &&
-        !time_estimate_create(&renderer->time_estimate, count, film_tiles_across(film), pool_workers(renderer->pool)))
-        return false;
-    renderer->whole_tiles = count;
+    find_begun_tiles(renderer);
+    for (uint32_t tile = 0; tile < count && renderer->job->handout; tile++) {
+        if (film_tile_is_begun(atomic_load(&film->tiles[tile])))
+            renderer->order[renderer->whole_tiles++] = tile;
+    }
     if (renderer->job->handout)
         return true;
     uint32_t tail = (count + TAIL_SHARE - 1) / TAIL_SHARE;
@@ -410,9 +411,8 @@ static bool order_tiles(struct renderer *renderer) {
     if (renderer->job->settings.noise > 0) /* the noise of the whole tile decides */
         tail = 0;
     renderer->whole_tiles = count - tail;
-    renderer->order = mem_alloc_zero(count, sizeof *renderer->order);
     renderer->quarters = mem_alloc_zero((size_t)tail + 1, sizeof *renderer->quarters);
-    return renderer->order && renderer->quarters && tile_order(film, renderer->job->settings.order, renderer->order);
+    return renderer->quarters && tile_order(film, renderer->job->settings.order, renderer->order);
 }
 
 static bool is_unfinished(const struct renderer *renderer) {
@@ -442,13 +442,12 @@ static bool make_passes(struct renderer *renderer, struct render_statistics *sta
 }
 
 static bool make_tiles(struct renderer *renderer, struct render_statistics *statistics, struct error *error) {
-    if (!order_tiles(renderer))
+    if (!order_tiles(renderer) || !renderer_begin_estimate(renderer))
         return error_no_memory(error, "the order of the tiles");
     count_tiles(renderer);
     bool whole = renderer_makes_passes(renderer)
                      ? make_passes(renderer, statistics)
-                     : renderer_cost_prepass(renderer) && render_tiles(renderer, statistics) &&
-                           !(renderer_is_done(renderer) && is_unfinished(renderer));
+                     : render_tiles(renderer, statistics) && !(renderer_is_done(renderer) && is_unfinished(renderer));
     if (!atomic_load(&renderer->failed))
         return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (!whole)
@@ -468,7 +467,7 @@ bool render_run(const struct render_job *job, struct pool *pool, struct render_s
     if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), renderer_layer_item, &renderer))
         ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
     if (ok && job->progress_estimate)
-        renderer_report_end(&renderer);
+        progress_estimate_report(job->progress_estimate, 1, 0, clock_seconds(CLOCK_MONOTONIC));
     for (int i = 0; renderer.workers && i < workers; i++)
         statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
     end_rendering(&renderer, workers);
@@ -545,26 +544,9 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
     return fitting < (double)count ? (uint32_t)fmax(fitting, 1) : count;
 }
 
-/* If there is no memory, there is no time estimate. */
-static void begin_progress(struct renderer *renderer) {
-    struct progress_estimate *estimate = renderer->job->progress_estimate;
-    if (!estimate)
-        return;
-    uint32_t count = film_tile_count(renderer->job->film);
-    struct noise_limits limits = noise_limits_for(renderer->job->settings.noise, renderer->pass.end);
-    if (noise_estimate_create(&renderer->noise_estimate, count, limits, pool_workers(renderer->pool)))
-        renderer_expect_levels(renderer);
-    else
-        noise_estimate_destroy(&renderer->noise_estimate);
-    renderer->estimated = renderer->noise_estimate.count > 0;
-    renderer->worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID);
-    atomic_store(&estimate->begun, clock_nanoseconds(CLOCK_MONOTONIC));
-}
-
 bool renderer_make_passes(struct renderer *renderer) {
     uint32_t limit = renderer->pass.end, count = film_tile_count(renderer->job->film);
     double begun = clock_seconds(CLOCK_MONOTONIC), now = begun;
-    begin_progress(renderer);
     renderer->pass = (struct sample_pass){.limit = limit, .begin = 0, .end = 1, .open = true};
     for (;;) {
         atomic_store(&renderer->unsatisfied, false);

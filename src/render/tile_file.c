@@ -574,8 +574,7 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
     for (size_t i = 0; i < file->tiles; i++) {
         struct record record;
         struct error changed;
-        if (!next_record(&reader, &record, &changed) ||
-            (record.kind != RECORD_TILE && record.kind != RECORD_BEGUN) ||
+        if (!next_record(&reader, &record, &changed) || (record.kind != RECORD_TILE && record.kind != RECORD_BEGUN) ||
             !check_tile(&reader, file, &record, &last, &changed))
             return;
         struct byte_reader input = {record.payload};
@@ -585,7 +584,7 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
         else if (record.kind == RECORD_TILE)
             *restored += film_tile_unpack(film, tile, input.at, record.size - 4);
         else if (film_tile_unpack(film, tile, input.at, record.size - 4))
-            atomic_store_explicit(&film->tiles[tile], FILM_TILE_LEVEL, memory_order_release);
+            atomic_store_explicit(&film->tiles[tile], FILM_TILE_BEGUN, memory_order_release);
     }
 }
 
