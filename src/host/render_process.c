@@ -457,6 +457,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     if (atomic_load(&control->progress_estimate.wanted))
         work.job.progress_estimate = &control->progress_estimate;
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
+    work.job.handed = &control->handed;
     const struct options *options = process->options;
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);

@@ -156,6 +156,17 @@ static void set_state(struct film *film, uint32_t tile, enum film_tile state) {
     atomic_store_explicit(&film->tiles[tile], (uint8_t)state, memory_order_release);
 }
 
+/* To the workers of this process, which may wait. */
+static void hand_out(const struct farm *farm, uint32_t tile) {
+    set_state(farm->film, tile, FILM_TILE_WANTED);
+    pool_signal(&farm->control->handed);
+}
+
+static void close_handout(const struct farm *farm) {
+    atomic_store(&farm->control->handout, HANDOUT_CLOSED);
+    pool_signal(&farm->control->handed);
+}
+
 /* The first rank. */
 
 static void add_note(struct farm *farm, int rank, const char *text, int length) {
@@ -177,7 +188,10 @@ static bool assign(struct farm *farm, int rank) {
     if (tile == UINT32_MAX)
         return false;
     farm->owner[tile] = (uint16_t)rank;
-    set_state(farm->film, tile, rank == 0 ? FILM_TILE_WANTED : FILM_TILE_TAKEN);
+    if (rank == 0)
+        hand_out(farm, tile);
+    else
+        set_state(farm->film, tile, FILM_TILE_TAKEN);
     if (rank > 0)
         send_pair(farm, rank, FARM_ASSIGN, tile);
     return true;
@@ -262,7 +276,7 @@ static void close_picture(struct farm *farm) {
             send_pair(farm, rank, FARM_CLOSE, 0);
         farm->peers[rank].joined = false;
     }
-    atomic_store(&farm->control->handout, HANDOUT_CLOSED);
+    close_handout(farm);
     farm->film = NULL;
 }
 
@@ -386,10 +400,11 @@ bool farm_is_abandoned(const struct farm *farm) {
 }
 
 /* After a silence a tile may be assigned that is still being rendered here: it is sent when it is finished. */
-static void want_tile(struct film *film, uint32_t tile) {
+static void want_tile(const struct farm *farm, uint32_t tile) {
+    const struct film *film = farm->film;
     enum film_tile state = state_of(film, tile);
     if (state != FILM_TILE_TAKEN && state != FILM_TILE_DONE && !film_tile_is_begun((uint8_t)state))
-        set_state(film, tile, FILM_TILE_WANTED);
+        hand_out(farm, tile);
 }
 
 static void step_other(struct farm *farm) {
@@ -399,9 +414,9 @@ static void step_other(struct farm *farm) {
         if (!farm->film || pair.number != farm->number)
             continue;
         if (kind == FARM_ASSIGN && pair.value < film_tile_count(farm->film))
-            want_tile(farm->film, pair.value);
+            want_tile(farm, pair.value);
         if (kind == FARM_CLOSE)
-            atomic_store(&farm->control->handout, HANDOUT_CLOSED);
+            close_handout(farm);
     }
     if (farm->ended) /* without this rank, which was silent: its work is of no use */
         atomic_store(&farm->control->cancel, CANCEL_ALL);

@@ -7,6 +7,7 @@
 #include "render/integrator_state_internal.h"
 #include "render/render.h"
 #include "render/time_estimate.h"
+#include "render/work_queue_internal.h"
 #include "world/packet.h"
 #include "world/world.h"
 
@@ -76,11 +77,11 @@ struct renderer {
     uint32_t closed_count;
     struct integrator *integrator;
     struct worker *workers;
-    uint32_t tiles_wanted;              /* of this process, those that were there before too */
-    uint64_t *cost;                     /* of each tile while shards are chosen */
-    uint32_t *order;                    /* of the tiles; NULL: as they are numbered */
-    uint32_t whole_tiles;               /* so many are made as a whole, the others of the order in quarters */
-    _Atomic uint8_t *quarters;          /* of each of the others, how many are done; and QUARTER_FAILED */
+    uint32_t tiles_wanted; /* of this process, those that were there before too */
+    uint64_t *cost;        /* of each tile while shards are chosen */
+    uint32_t *order;       /* tiles of the queue */
+    struct work_queue queue;
+    double passes_begun;                /* seconds, as `begun` */
     struct time_estimate time_estimate; /* without tiles if none is requested */
     _Atomic double reported;            /* seconds, of the last report */
     _Atomic uint32_t done;
@@ -113,12 +114,9 @@ void renderer_tile_begins(struct renderer *renderer, struct worker *worker, uint
 void renderer_tile_goes_on(struct renderer *renderer, struct worker *worker, double part);
 void renderer_tile_ends(struct renderer *renderer, struct worker *worker);
 
-/* Makes the tiles pass by pass (render.c), until they have all samples, little enough noise, or the time is over.
- * False: stopped. */
+/* Whether the tiles are made pass by pass (render.c), until they have all samples, little enough noise, or the time is
+ * over. */
 bool renderer_makes_passes(const struct renderer *renderer);
-bool renderer_make_passes(struct renderer *renderer);
-/* A pool_function of passes: the tile of that place in the order. */
-void renderer_pass_item(void *context, uint32_t position, int worker);
 
 /* No further tile is to be begun. */
 bool renderer_is_done(const struct renderer *renderer);
