@@ -1,6 +1,7 @@
 # gray: make [TARGET] [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang] [WERROR=1] [V=1]
 #   all (default)  ./gray and the link ./rt        help        this list
 #   test, check    the tests, at most 8 minutes    test-long   the rest, restartable by name (ONLY="name ...")
+#   test-fast      the tests that start no program, below a minute
 #   check-clang    clang reads all sources; its warnings are errors
 #   layers         includes against the order of modules; names (tools/names.list); sizes of files, parameters
 #   format         clang-format over all sources
@@ -23,6 +24,7 @@ $(error BUILD is the folder of the sources)
 endif
 PKG_CONFIG ?= pkg-config
 
+comma := ,
 # A recipe that begins with $(call say,WORD,NAME) prints one line, and its command with V=1 only; make -s prints nothing.
 V ?=
 Q = $(if $(V),,@)
@@ -149,6 +151,8 @@ $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
 $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/test_animation.o: override CPPFLAGS += $(WEBP_CFLAGS)
 $(BUILD)/tests/run: override LDLIBS += $(if $(WEBP_LIBS),-lwebpdemux)
+# The harness knows when a test starts a program.
+$(BUILD)/tests/run: override LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,system execv execl posix_spawnp)
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -224,6 +228,9 @@ help:
 
 test check:
 	@tools/test.sh
+test-fast: check-libraries
+	@$(MAKE) -s $(JOBS) $(BUILD)/tests/run
+	@$(BUILD)/tests/run --fast -j $(shell nproc 2>/dev/null || echo 2)
 test-long:
 	@tools/test.sh --long $(ONLY)
 coverage:
@@ -293,5 +300,5 @@ else
 endif
 
 force:
-.PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
+.PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)
