@@ -264,8 +264,7 @@ TEST(paths_to_instances_name_every_node_and_index_on_them) {
 /* --- the program --- */
 
 static void release(struct test_result result) {
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Compares "x":X,"y":Y ... "bytes":[R,G,B] of the first `count` traces with the picture; lines printed by the scene and

@@ -445,15 +445,7 @@ TEST(window_keys_fly_only_while_the_mouse_turns_the_camera) {
 /* The program in a real window. */
 
 static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && gray='%s' && export gray && { %s; } >out.txt 2>err.txt", test_folder(), binary,
-                 line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    return test_run_shell(line, ">out.txt 2>err.txt");
 }
 
 static void need_display(void) {
@@ -466,7 +458,7 @@ static void need_display(void) {
                     "gr.render(r, 'out.png', 200, 150, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"
                     "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n");
     (void)snprintf(path, sizeof path, "%s/wait.sh", test_folder());
-    test_write_text(path, "for i in $(seq 300); do eval \"$1\" && exit 0; sleep 0.05; done; exit 1\n");
+    test_write_text(path, "for i in $(seq 3000); do eval \"$1\" && exit 0; sleep 0.05; done; exit 1\n");
 }
 
 static void gives(const char *line, int status) {
