@@ -558,7 +558,7 @@ TEST(a_picture_that_needs_more_memory_than_allowed_is_one_line) {
 TEST(files_of_tiles_of_any_size_take_the_memory_of_one_record) {
     static const char text[] = "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}}";
     static const char *const names[] = {"o.png.checkpoint", "o.png.1-of-2.part"};
-    static const uint8_t head[16] = {'G', 'R', 'A', 'Y', 'T', 'I', 'L', 'E', 1, 0, 0, 0, FILM_TILE};
+    static const uint8_t head[16] = {'G', 'R', 'A', 'Y', 'T', 'I', 'L', 'E', TILE_FILE_FORMAT, 0, 0, 0, FILM_TILE};
     guard();
     long without = memory_of_nothing();
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
