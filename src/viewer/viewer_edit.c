@@ -312,8 +312,8 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
     pick_copy_name(picked.name, added_kind_name(change->added));
     pick_copy_name(picked.shape, added_kind_name(change->added));
     pick_copy_name(picked.material, "phong");
-    (void)snprintf(picked.path, sizeof picked.path, "%s#%u / added %s#%u", viewer->scene.root_name, change->serial,
-                   picked.name, added_number(picked.serial));
+    (void)snprintf(picked.node_path, sizeof picked.node_path, "%s#%u / added %s#%u", viewer->scene.root_name,
+                   change->serial, picked.name, added_number(picked.serial));
     for (int i = 0; i < 8; i++)
         picked.corners[i] =
             vec3_add(layout, vec3_make(i & 1 ? size : -size, i & 2 ? size : -size, i & 4 ? size : -size));

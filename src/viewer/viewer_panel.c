@@ -327,7 +327,7 @@ static void draw_node(struct viewer *viewer, struct column *column) {
     const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 layout = viewer_moved_point(viewer, picked->position);
     char row[256];
-    draw_text(viewer, column, picked->path);
+    draw_text(viewer, column, picked->node_path);
     (void)snprintf(row, sizeof row, "%s, %s", picked->shape, picked->material);
     draw_text(viewer, column, row);
     draw_point(viewer, column, "at", layout);

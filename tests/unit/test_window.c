@@ -685,7 +685,7 @@ TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
 
 static const struct picked a_ball = {
     .hit = true,
-    .path = "root#0 / ball#2",
+    .node_path = "root#0 / ball#2",
     .name = "ball",
     .shape = "sphere",
     .material = "phong",
