@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints every include that violates the order of modules (docs/architecture.md), every cycle of headers that
+# Prints every include that violates the order of modules (docs/design/architecture.md), every cycle of headers that
 # include one another, and every use of files or memory outside the module that owns them; fails if there is any.
 cd "$(dirname "$0")/.." || exit 1
 modules=$(sed -n 's/^MODULES = //p' Makefile) # in their order
