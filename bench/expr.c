@@ -274,7 +274,7 @@ int main(int argc, char **argv) {
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < POINTS; i++)
             points[k][i] = 4 * random_unit(random_combine((uint64_t)k, (uint64_t)i)) - 2;
-    printf("instruction set: %s\n\n", cpu_isa_name());
+    printf("instruction set: %s\n\n", argc > 2 ? argv[2] : "auto");
     printf("ns an operation, arithmetic    one point    batch of %d\n", EXPR_BATCH);
     static const uint32_t lengths[] = {10, 50, 200};
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {

@@ -59,7 +59,6 @@ struct prospero {
     uint8_t *image; /* size * size: 255 where the function is negative */
     double *at;     /* positions of the pixels */
     struct expr_choice *choices[PROSPERO_LEVELS];
-    uint64_t *needed[PROSPERO_LEVELS];
     struct expr_stack stack;
     void *rows, *scratch;
 };
@@ -72,8 +71,7 @@ static bool prospero_init(struct prospero *p, const struct expr_program *program
     bool fine = p->image && p->at;
     for (int i = 0; i < PROSPERO_LEVELS; i++) {
         p->choices[i] = mem_alloc_zero((size_t)program->count + 1, sizeof *p->choices[i]);
-        p->needed[i] = mem_alloc_zero((size_t)program->count + 1, sizeof *p->needed[i]);
-        fine = fine && p->choices[i] && p->needed[i];
+        fine = fine && p->choices[i];
     }
     p->stack.code = mem_alloc_zero(PROSPERO_CODE, sizeof *p->stack.code);
     p->stack.free = PROSPERO_CODE;
@@ -87,10 +85,8 @@ static bool prospero_init(struct prospero *p, const struct expr_program *program
 static void prospero_destroy(struct prospero *p) {
     mem_free(p->image);
     mem_free(p->at);
-    for (int i = 0; i < PROSPERO_LEVELS; i++) {
+    for (int i = 0; i < PROSPERO_LEVELS; i++)
         mem_free(p->choices[i]);
-        mem_free(p->needed[i]);
-    }
     mem_free(p->stack.code);
     mem_free(p->rows);
     mem_free(p->scratch);
@@ -130,7 +126,6 @@ static void prospero_tile(struct prospero *p, const struct expr_program *program
         for (int i = 0; i < count; i++)
             if (bounds->may_be_nan >> i & 1 || !(bounds->high[i] < 0 || bounds->low[i] >= 0))
                 open |= (uint64_t)1 << i;
-        expr_find_needed(program, p->choices[level], open, p->needed[level], p->scratch);
         for (int i = 0; i < count; i++) {
             int x = x0 + (first + i) % across * child, y = y0 + (first + i) / across * child;
             for (int row = 0; row < child && !(open >> i & 1); row++)
@@ -140,8 +135,7 @@ static void prospero_tile(struct prospero *p, const struct expr_program *program
                 continue;
             size_t used = p->stack.free;
             struct expr_program shorter;
-            const struct expr_decisions decisions = {p->choices[level], p->needed[level], (uint32_t)i};
-            if (!expr_shorten_decided(program, &decisions, &p->stack, p->scratch, &shorter))
+            if (!expr_shorten(program, p->choices[level], (uint32_t)i, &p->stack, p->scratch, &shorter))
                 shorter = *program;
             if (level == PROSPERO_LEVELS - 1)
                 prospero_leaf(p, &shorter, x, y);

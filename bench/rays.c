@@ -1,9 +1,8 @@
 /* The same rays through gray's mesh kernel and through Embree, interleaved in one process, on one thread or more:
  * camera rays 1024 x 1024, shadow rays from their hits to a point light, cosine-distributed bounces from there (fixed
- * seed). The bounces are also traced through a world with the mesh, including the description of their hits: one by one
- * and as batches (world_nearest_batch). Every number is thread CPU time, the median of the repetitions; ratios are
- * gray's speed divided by Embree's, each from two interleaved runs. Camera rays are also traced in gray's packets of 64
- * and Embree's of 16 (coherent flag). Embree is optional: build with -DHAVE_EMBREE and -lembree3.
+ * seed). Every number is thread CPU time, the median of the repetitions; ratios are gray's speed divided by Embree's,
+ * each from two interleaved runs. Camera rays are also traced in gray's packets of 64 and Embree's of 16 (coherent
+ * flag). Embree is optional: build with -DHAVE_EMBREE and -lembree3.
  *
  *   rays [--models FOLDER] [--seed N] [--reps N] [--size N] [--threads N] [--json] [--isa NAME] [SCENE ...]
  *
@@ -15,9 +14,9 @@
  * size; both test in different precision, so rays past edges may differ: --explain lists the first few with the
  * distance to the nearest edge of the triangle in barycentric units. */
 #include "base/isa.h"
+#include "base/pool.h"
 #include "bench/rays_scenes.h"
 #include "mesh/mesh.h"
-#include "world/world.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -59,7 +58,6 @@ struct timing {
     uint32_t triangles;
     double build[2], memory[2]; /* gray, Embree: seconds and bytes */
     double speed[2][KINDS], packet_speed[2], ratio[KINDS], packet_ratio;
-    double world_speed[2], batch_ratio; /* for bounces, one by one and in batches */
     uint64_t rays[KINDS], disagreements[KINDS];
 };
 
@@ -435,102 +433,6 @@ static double trace(const struct work *work, struct share *shares, int threads) 
     return longest;
 }
 
-/* A world of one mesh */
-
-struct batches {
-    struct assets assets;
-    struct scene scene;
-    struct arena arena;
-    struct world world;
-    struct world_scratch scratch;
-    struct pool *pool;
-};
-
-static void batches_begin(struct batches *b, struct mesh *mesh) {
-    struct error error = {0};
-    struct sky sky = {0};
-    char warning[256];
-    *b = (struct batches){.pool = pool_create(1, warning)};
-    scene_init(&b->scene, &b->assets);
-    struct node *node = scene_node(&b->scene, NODE_GEOMETRY, "mesh", &error);
-    if (!node || !b->pool)
-        exit(3);
-    node->shape = (struct shape){.kind = SHAPE_MESH, .mesh = mesh};
-    const struct world_input input = {.scene = &b->scene, .root = node, .sky = &sky, .accel = ACCEL_AUTO};
-    if (!world_build(&b->world, &input, &b->arena, b->pool, &error) || !world_scratch_init(&b->scratch, &b->world)) {
-        fprintf(stderr, "rays: %s\n", error.text);
-        exit(3);
-    }
-}
-
-static void batches_end(struct batches *b) {
-    world_scratch_destroy(&b->scratch);
-    world_destroy(&b->world);
-    arena_destroy(&b->arena);
-    scene_destroy(&b->scene);
-    assets_destroy(&b->assets);
-    pool_destroy(b->pool);
-}
-
-static double trace_one_by_one(struct batches *b, const struct ray *rays, uint32_t count, struct hit *hits) {
-    double start = cpu_seconds();
-    for (uint32_t i = 0; i < count; i++)
-        if (!world_nearest(&b->world, &rays[i], &b->scratch, &hits[i]))
-            hits[i].primitive = WORLD_NOTHING;
-    return cpu_seconds() - start;
-}
-
-static double trace_together(struct batches *b, const struct ray *rays, uint32_t count, struct hit *hits) {
-    double start = cpu_seconds();
-    world_nearest_batch(&b->world, rays, count, &b->scratch, hits);
-    return cpu_seconds() - start;
-}
-
-/* Seconds of all rays one by one and in batches, in turns the one and the other first (what the first has read, the
- * second finds in the caches); the results must be the same to the bit. */
-static void trace_batches(struct batches *b, const struct bench_ray *source, uint64_t total, double seconds[2]) {
-    enum { BATCH = 1 << 12 };
-    static struct ray rays[BATCH];
-    static struct hit hits[2][BATCH];
-    seconds[0] = seconds[1] = 0;
-    for (uint64_t first = 0; first < total; first += BATCH) {
-        uint32_t count = total - first < BATCH ? (uint32_t)(total - first) : BATCH;
-        for (uint32_t i = 0; i < count; i++)
-            rays[i] = gray_ray(&source[first + i]);
-        for (uint32_t k = 0; k < 2; k++) {
-            if ((first / BATCH + k) % 2 == 0)
-                seconds[0] += trace_one_by_one(b, rays, count, hits[0]);
-            else
-                seconds[1] += trace_together(b, rays, count, hits[1]);
-        }
-        for (uint32_t i = 0; i < count; i++)
-            if (hits[0][i].primitive != hits[1][i].primitive ||
-                (hits[0][i].primitive != WORLD_NOTHING &&
-                 memcmp(&hits[0][i].t, &hits[1][i].t, sizeof hits[0][i].t) != 0)) {
-                fprintf(stderr, "rays: ray %u of a batch has another answer than alone\n", i);
-                exit(3);
-            }
-    }
-}
-
-static void measure_batches(struct mesh *mesh, const struct bench_ray *rays, uint64_t count, int reps,
-                            struct timing *result) {
-    double seconds[2][MAX_REPS], ratio[MAX_REPS];
-    struct batches batches;
-    batches_begin(&batches, mesh);
-    for (int rep = 0; rep < reps; rep++) {
-        double both[2];
-        trace_batches(&batches, rays, count, both);
-        ratio[rep] = both[0] / both[1];
-        for (int k = 0; k < 2; k++)
-            seconds[k][rep] = both[k];
-    }
-    batches_end(&batches);
-    result->batch_ratio = median(ratio, reps);
-    for (int k = 0; k < 2; k++)
-        result->world_speed[k] = 1e-6 * (double)count / median(seconds[k], reps);
-}
-
 static void measure(const struct bench_scene *scene, const struct options *options, struct timing *result) {
     *result = (struct timing){.triangles = scene->triangle_count};
     snprintf(result->name, sizeof result->name, "%s", scene->name);
@@ -606,8 +508,6 @@ static void measure(const struct bench_scene *scene, const struct options *optio
                 result->packet_speed[k] = 1e-6 * (double)count / median(packet[k], options->reps);
         }
     }
-    if (result->rays[2] > 0)
-        measure_batches(mesh, rays[2], result->rays[2], options->reps, result);
     for (int i = 0; i < KINDS; i++)
         free(rays[i]);
     free(hits[0]);
@@ -629,7 +529,6 @@ static void print_row(const struct timing *r) {
         printf(" %6.2f", r->speed[0][k]);
     printf(" | %5.2f %5.2f %5.2f | %6.2f %6.2f %5.2f |", r->ratio[0], r->ratio[1], r->ratio[2], r->packet_speed[0],
            r->packet_speed[1], r->packet_ratio);
-    printf(" %6.2f %6.2f %5.2f |", r->world_speed[0], r->world_speed[1], r->batch_ratio);
     for (int k = 0; k < KINDS; k++)
         printf(" %llu", (unsigned long long)r->disagreements[k]);
     printf("\n");
@@ -646,10 +545,8 @@ static void print_json(const struct timing *results, int count) {
             printf(", \"%s\": {\"rays\": %llu, \"mrays\": [%.3f, %.3f], \"ratio\": %.4f, \"disagreements\": %llu}",
                    kind_names[k], (unsigned long long)r->rays[k], r->speed[0][k], r->speed[1][k], r->ratio[k],
                    (unsigned long long)r->disagreements[k]);
-        printf(", \"packets\": {\"mrays\": [%.3f, %.3f], \"ratio\": %.4f}", r->packet_speed[0], r->packet_speed[1],
-               r->packet_ratio);
-        printf(", \"bounce batches\": {\"mrays\": [%.3f, %.3f], \"ratio\": %.4f}}%s\n", r->world_speed[0],
-               r->world_speed[1], r->batch_ratio, i + 1 < count ? "," : "");
+        printf(", \"packets\": {\"mrays\": [%.3f, %.3f], \"ratio\": %.4f}}%s\n", r->packet_speed[0], r->packet_speed[1],
+               r->packet_ratio, i + 1 < count ? "," : "");
     }
     printf("]\n");
 }
@@ -755,9 +652,8 @@ static void run_all(struct bench *bench) {
     static const char *const models[] = {"teapot", "cow", "spot", "fandisk", "cessna", "stanford-bunny", "nefertiti"};
     struct bench_scene scene = {0};
     if (!bench->options.json)
-        printf("%-18s %8s | %7s %5s | %6s %5s | %-20s | %-17s | %-19s | %-20s | %s\n", "scene", "tris", "build",
-               "ratio", "B/tri", "ratio", "camera shadow bounce", "ratio to Embree", "packets, 16, ratio",
-               "bounce batch ratio", "disagreements");
+        printf("%-18s %8s | %7s %5s | %6s %5s | %-20s | %-17s | %-19s | %s\n", "scene", "tris", "build", "ratio",
+               "B/tri", "ratio", "camera shadow bounce", "ratio to Embree", "packets, 16, ratio", "disagreements");
     for (size_t i = 0; i < sizeof models / sizeof *models; i++)
         if (wanted(bench, models[i]) && load_model(bench, models[i], &scene)) {
             run_scene(bench, &scene);

@@ -1,6 +1,8 @@
 #!/bin/sh
-# Prints every include that violates the order of modules (docs/design/architecture.md), every cycle of headers that
-# include one another, and every use of files or memory outside the module that owns them; fails if there is any.
+# Prints every include that violates the order of modules (docs/design/architecture.md), every include by which session or
+# output reach scene, world or script through any number of headers, every cycle of headers that include one another,
+# every use of files or memory outside the module that owns them, and every module that has more than a tenth of the
+# lines; fails if there is any. tools/layers.allow has the exceptions; one that is not needed is also a failure.
 cd "$(dirname "$0")/.." || exit 1
 modules=$(sed -n 's/^MODULES = //p' Makefile) # in their order
 bad=$(mktemp) || exit 1
@@ -17,14 +19,15 @@ BEGIN {
     owner[1] = "^src/base/mem[.]c$"
     rule[1] = "memory outside base/mem"
     calls[2] = "fopen|freopen|open|openat|creat|rename|renameat|unlink|mkdir|opendir|tmpfile|mkstemp"
-    owner[2] = "^src/base/(file|file_output|system|path_policy|mem)[.]c$"
+    owner[2] = "^src/base/(fault|file|file_output|path_policy|process)[.]c$"
     rule[2] = "files outside base/file and base/path_policy"
     calls[3] = "mmap|munmap"
-    owner[3] = "^src/base/(mem|file|system)[.]c$"
+    owner[3] = "^src/base/(fault|file|mem|share)[.]c$"
     rule[3] = "mappings outside base/"
     calls[4] = "sin|cos|tan|asin|acos|atan|atan2|exp|exp2|log|log2|log10|pow|cbrt|hypot|sincos|fma"
     owner[4] = "^src/script/sandbox[.]c$"
     rule[4] = "elementary functions come from math/elementary"
+    apart["session"] = apart["output"] = " scene world script "
     for (i = 1; i <= kinds; i++)
         calls[i] = "(^|[^A-Za-z0-9_.>])(" calls[i] ")[ \t]*[(]"
 }
@@ -32,7 +35,15 @@ FNR == 1 {
     split(FILENAME, path, "/")
     for (i = 1; i <= kinds; i++)
         applies[i] = FILENAME !~ owner[i]
+    if (path[2] in apart)
+        start[++starts] = substr(FILENAME, 5)
 }
+FILENAME == "tools/layers.allow" {
+    if (/^[^#]/)
+        allowed[$1 == "include" ? $2 " " $3 : $2] = FNR
+    next
+}
+{ lines[path[2]]++; total++ }
 /^[ \t]*#[ \t]*include[ \t]*"/ {
     split($0, quoted, "\"")
     where = FILENAME ":" FNR ":" $0
@@ -40,8 +51,10 @@ FNR == 1 {
         print where ": an include names its module: \"" path[2] "/" quoted[2] "\""
         next
     }
-    to = quoted[2]
-    sub(/\/.*/, "", to)
+    from = substr(FILENAME, 5)
+    included[from, ++includes[from]] = quoted[2]
+    line_of[from, includes[from]] = where
+    to = module(quoted[2])
     if (!(to in rank))
         print where ": no such module"
     else if (rank[to] > rank[path[2]])
@@ -56,7 +69,44 @@ FNR == 1 {
     for (i = 1; i <= kinds; i++)
         if (applies[i] && line ~ calls[i])
             print FILENAME ":" FNR ":" line "   <- " rule[i]
-}' src/*/*.c src/*/*.h >"$bad" || echo "layers: awk failed" >>"$bad"
+}
+function module(path) {
+    return substr(path, 1, index(path, "/") - 1)
+}
+# Follows the includes of a file of session or output, as the compiler does; an include that is reported or allowed is
+# not followed. The direct includes of all files keep the order of modules, so what they reach keeps it too.
+function follow(file, apart_from,    seen, queue, first, last, k, at, next_one) {
+    queue[last = 1] = file
+    for (first = 1; first <= last; first++) {
+        at = queue[first]
+        for (k = 1; k <= includes[at]; k++) {
+            next_one = included[at, k]
+            if (index(apart_from, " " module(next_one) " ") == 0) {
+                if (!(next_one in seen))
+                    seen[queue[++last] = next_one] = 1
+            } else if ((at " " next_one) in allowed)
+                used[at " " next_one] = 1
+            else if (!((at, k) in reported)) {
+                reported[at, k] = 1
+                print line_of[at, k] ": src/" file " must not reach " module(next_one)
+            }
+        }
+    }
+}
+END {
+    for (i = 1; i <= starts; i++)
+        follow(start[i], apart[module(start[i])])
+    for (i = 1; i <= count; i++)
+        if (lines[names[i]] > total / 10) {
+            if (names[i] in allowed)
+                used[names[i]] = 1
+            else
+                print "src/" names[i] ": " lines[names[i]] " of " total " lines: at most a tenth"
+        }
+    for (exception in allowed)
+        if (!(exception in used))
+            print "tools/layers.allow:" allowed[exception] ": allows nothing that exists"
+}' tools/layers.allow src/*/*.c src/*/*.h >"$bad" || echo "layers: awk failed" >>"$bad"
 
 # Headers in an order in which each precedes those that it includes; tsort prints the cycles.
 grep -HE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' src/*/*.h 2>/dev/null |
@@ -68,4 +118,4 @@ if [ -s "$bad" ]; then
     echo "layers: $(wc -l <"$bad") lines against the order of modules" >&2
     exit 1
 fi
-echo "layers: every include points the right way; memory, files and elementary functions stay in their modules"
+echo "layers: every include points the right way, no module is too large; memory, files and elementary functions stay in their modules"

@@ -66,8 +66,8 @@ else
     by_awk || exit 1
 fi
 # Files, by their names without the ending; data of tests is named after what it holds.
-find src tests/unit tests/fuzz tests/*.[ch] bench tools lua -name '*.*' -type f ! -path 'tests/fuzz/*/*' \
-    ! -path 'tools/renames/*' | sed 's|^\(.*/\)\([^./]*\)\(\..*\)$|\2 \1\2\3 file|' >>"$work/identifiers"
+find src tests/unit tests/fuzz tests/*.[ch] bench tools lua -name '*.*' -type f ! -path 'tests/fuzz/*/*' |
+    sed 's|^\(.*/\)\([^./]*\)\(\..*\)$|\2 \1\2\3 file|' >>"$work/identifiers"
 [ "$(wc -l <"$work/identifiers")" -gt 10000 ] || { echo "names: $by found no identifiers" >&2; exit 1; }
 
 awk '

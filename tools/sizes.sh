@@ -1,11 +1,12 @@
 #!/bin/sh
-# Prints every file and function of src with a wrong size, and every header whose name should mark it as private; fails
-# if there is any.
-#   - A .c file has 100 to 900 lines. Files for one instruction set (_base, _avx2, _avx512) may be shorter.
+# Prints every file and function of src with a wrong size, and every header with a wrong name; fails if there is any.
+#   - A .c file has at most 900 lines.
 #   - A function has at most six parameters; more belong in a struct. Nine of ten functions have at most 27 lines.
 #   - If no other module includes a header, directly or through another header, its name ends in _internal.h. No other
 #     module includes a header with such a name; tests may. The rule does not apply to the last module.
-# tools/sizes.allow has the exceptions, each with its reason.
+#   - The functions of a header are defined in the .c of its name: of x.h and x_internal.h, at least one in x.c (or in
+#     x_base.c and its like, for one instruction set each).
+# tools/sizes.allow has the exceptions, each with its reason; one that is not needed is also a failure.
 # tools/sizes.sh --count: the median and the 90th percentile of lines of files and of functions.
 cd "$(dirname "$0")/.." || exit 1
 work=$(mktemp -d) || exit 1
@@ -57,13 +58,12 @@ if [ "$1" = --count ]; then
     awk '{ print $1 }' "$work/files" | percentiles "files"
     awk '{ print $2 }' "$work/functions" | percentiles "functions"
     awk '{ n[$1 > 6 ? 7 : $1]++ } END { printf "functions of more than six parameters: %d\n", n[7] }' "$work/functions"
-    awk '$1 < 100 { few++ } $1 > 900 { many++ } END { printf "files below 100 lines: %d, above 900: %d\n", few, many }' "$work/files"
+    awk '$1 > 900 { many++ } END { printf "files above 900 lines: %d\n", many }' "$work/files"
     exit
 fi
 
 {
-    awk '$1 < 100 && $2 !~ /_(base|avx2|avx512)\.c$/ { print $2 ": " $1 " lines: it belongs into the file of its family" }
-        $1 > 900 { print $2 ": " $1 " lines: split it by subject" }' "$work/files"
+    awk '$1 > 900 { print $2 ": " $1 " lines: split it by subject" }' "$work/files"
     awk '{ print $2 }' "$work/functions" | sort -n | awk '{ x[NR] = $1 } END {
         if (x[int(0.9 * NR + 0.5)] > 27) print "src: the 90th percentile of functions is " x[int(0.9 * NR + 0.5)] " lines: at most 27" }'
     sort -u "$work/functions" | awk '$1 > 6 { print $4 ": " $3 " has " $1 " parameters: at most six, or a struct" }'
@@ -82,17 +82,43 @@ fi
             while (("ls src/*/*.h" | getline path) > 0) {
                 path = substr(path, 5)
                 if (!(path in seen) && module(path) != last && path !~ /_internal\.h$/)
-                    print "src/" path ": no other module sees it, so its name ends in _internal.h (tools/rename.sh)"
+                    print "src/" path ": no other module sees it, so its name ends in _internal.h"
             }
         }'
+    # Declarations of functions begin in the first column of a header: "name header".
+    awk '
+    FNR == 1 { head = "" }
+    head == "" && /^[a-z_]/ && !/^(static|typedef|enum [a-z_]* *\{|struct [a-z_]* *\{|union [a-z_]* *\{)/ { head = $0 }
+    head != "" && FNR > 1 && $0 != head && !/^[a-z_]/ { head = head " " $0 }
+    head ~ /[;{]/ {
+        sub(/;.*/, ";", head)
+        if (head ~ /^[^={]*\(.*\);$/) { sub(/\(.*/, "", head); sub(/.*[ *]/, "", head); print head, FILENAME }
+        head = ""
+    }' src/*/*.h >"$work/declared"
+    awk '
+    FILENAME ~ /functions$/ { if ($4 ~ /\.c$/) where[$3] = where[$3] " " $4; next }
+    {
+        stem = $2
+        sub(/(_internal)?\.h$/, "", stem)
+        headers[$2] = stem
+        if (index(where[$1] " ", " " stem ".c ") || (getline line <(stem "_base.c")) >= 0) named[$2] = 1
+        else if (where[$1] != "") elsewhere[$2] = where[$1]
+    }
+    END {
+        for (header in headers)
+            if (!(header in named) && header in elsewhere)
+                print header ": its functions are defined in" elsewhere[header] ": the two have one name"
+    }' "$work/functions" "$work/declared"
 } | sort -u >"$work/bad"
 # A line of tools/sizes.allow: the file, or the function; then the reason.
 sed -n 's/^\([^# ][^ ]*\) .*/\1/p' tools/sizes.allow >"$work/allow"
-awk 'NR == FNR { allow[$1] = 1; next } { file = $1; sub(/:$/, "", file); if (!(file in allow) && !($2 in allow)) print }' \
+awk 'NR == FNR { allow[$1] = 1; next }
+    { file = $1; sub(/:$/, "", file); if (file in allow) used[file] = 1; else if ($2 in allow) used[$2] = 1; else print }
+    END { for (name in allow) if (!(name in used)) print "tools/sizes.allow: " name ": allows nothing that exists" }' \
     "$work/allow" "$work/bad" >"$work/left"
 if [ -s "$work/left" ]; then
     cat "$work/left"
     echo "sizes: $(wc -l <"$work/left") files, functions or headers out of measure" >&2
     exit 1
 fi
-echo "sizes: files have 100 to 900 lines, functions at most six parameters, nine of ten at most 27 lines; private headers are named so"
+echo "sizes: files have at most 900 lines, functions six parameters, nine of ten at most 27 lines; headers have the names of their files"

@@ -150,7 +150,7 @@ struct shaft shaft_make(struct vec3 from, struct vec3 corner, struct vec3 edge1,
     return shaft;
 }
 
-bool shaft_meets(const struct shaft *shaft, const struct box *box) {
+static bool shaft_meets(const struct shaft *shaft, const struct box *box) {
     if (box->min.x > shaft->bounds.max.x || box->max.x < shaft->bounds.min.x || box->min.y > shaft->bounds.max.y ||
         box->max.y < shaft->bounds.min.y || box->min.z > shaft->bounds.max.z || box->max.z < shaft->bounds.min.z)
         return false;

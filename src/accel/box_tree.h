@@ -103,7 +103,6 @@ struct shaft {
     int planes;
 };
 struct shaft shaft_make(struct vec3 from, struct vec3 corner, struct vec3 edge1, struct vec3 edge2);
-bool shaft_meets(const struct shaft *shaft, const struct box *box);
 /* Items whose box meets the shaft, at most `limit`; returns the count, or limit + 1 when there are more. */
 uint32_t box_tree_in_shaft(const struct box_tree *tree, const struct shaft *shaft, uint32_t *items, uint32_t limit);
 

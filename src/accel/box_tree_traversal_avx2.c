@@ -1,4 +1,4 @@
-/* The traversal with vectors of four doubles. This file is compiled for AVX2, and nothing in it runs before system.c
+/* The traversal with vectors of four doubles. This file is compiled for AVX2, and nothing in it runs before isa.c
  * has detected AVX2. */
 #if defined(__AVX2__)
 #define TRAVERSAL(name) box_tree_traversal_##name##_avx2

@@ -87,7 +87,8 @@ bool tree_build(struct tree *tree, struct reference *references, const struct ra
     return true;
 }
 
-void tree_refit(struct tree *tree, uint32_t number) {
+/* Boxes, counts and heights of a branch whose children are known, and of all above it. */
+static void tree_refit(struct tree *tree, uint32_t number) {
     while (number != NO_BRANCH) {
         struct branch *branch = &tree->branches[number];
         const struct branch *a = &tree->branches[branch->child[0]], *b = &tree->branches[branch->child[1]];

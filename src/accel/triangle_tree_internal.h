@@ -50,8 +50,6 @@ void tree_part(struct reference *references, const struct range *range, uint32_t
  */
 bool tree_build(struct tree *tree, struct reference *references, const struct range *range, uint32_t depth,
                 const struct pool *pool, uint32_t *root);
-/* Boxes, counts and heights of a branch whose children are known, and of all above it. */
-void tree_refit(struct tree *tree, uint32_t number);
 
 /* Moves branches to where they cost less. False: no memory, or cancelled. */
 bool tree_improve(struct tree *tree, const struct pool *pool);

@@ -15,7 +15,6 @@ enum cpu_isa { CPU_ISAS(LIST_MEMBER) };
 /* "auto", "base", "avx2" or "avx512"; false when the name is unknown or the processor lacks it (nothing changes then).
  * Call before the first search and from one thread. */
 bool cpu_select_isa(const char *name);
-const char *cpu_isa_name(void);
 /* Written by cpu_select_isa alone. */
 extern enum cpu_isa cpu_isa_chosen;
 static inline enum cpu_isa cpu_isa(void) {

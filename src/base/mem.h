@@ -50,5 +50,9 @@ void mem_unshare(void *block, size_t size);
  * without GRAY_FAULTS. mem_allocations counts the requested allocations so far (0 without GRAY_FAULTS). */
 void mem_fail_at(uint64_t number);
 uint64_t mem_allocations(void);
+/* For tests, bytes of all blocks together: now, from where the peak is counted from now on, and at most since then. 0
+ * in builds without GRAY_FAULTS. A block that is resized counts once. */
+uint64_t mem_peak_begin(void);
+uint64_t mem_peak(void);
 
 #endif

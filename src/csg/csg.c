@@ -397,8 +397,8 @@ static bool add_leaf(struct sweep *s, uint32_t leaf, double enter) {
 }
 
 /* Finds the leaves that matter where the ray is inside of the bounds; everything on the scratch above `used` is the
- * sweep's until the caller pops it. The caller lends leaf_ray, a copy of the ray, and `pending`; without that all
- * crossings are collected at once. False: nothing can be there, or scratch overflow. */
+ * sweep's until the caller pops it. The caller lends leaf_ray, a copy of the ray, and `pending`. False: nothing can be
+ * there, or scratch overflow. */
 static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray *ray, struct ray *leaf_ray,
                         struct pending_leaves *pending, struct geom_scratch *scratch) {
     const struct csg_plan *plan = csg->plan;
@@ -439,8 +439,7 @@ static bool sweep_begin(struct sweep *s, const struct csg *csg, const struct ray
         s->counts[i] = plan->start_counts[i];
     for (uint32_t i = 0; i < (csg->leaf_count + 31) / 32; i++)
         s->inside[i] = 0;
-    if (pending)
-        pending->count = 0;
+    pending->count = 0;
     for (uint32_t i = 0; i < plan->needed_count; i++) {
         if (!ask_leaf(s, plan->needed[i]) || !(s->from <= s->to))
             return false;
@@ -488,58 +487,6 @@ bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scrat
 bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch) {
     struct crossing ignored;
     return csg_nearest(csg, ray, scratch, &ignored);
-}
-
-/* The whole line is inside an unbounded solid without crossing it. */
-static bool cross_nothing(const struct csg *csg, struct geom_scratch *scratch, struct crossing_list *out) {
-    if (!csg->inside_out || csg->clipped)
-        return true;
-    if (!geom_scratch_push(scratch, (struct crossing){.t = -INFINITY, .enter = true, .flip = true}) ||
-        !geom_scratch_push(scratch, (struct crossing){.t = INFINITY, .enter = false, .flip = true})) {
-        scratch->used = out->first;
-        return false;
-    }
-    out->count = 2;
-    return true;
-}
-
-bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
-                   struct crossing_list *out) {
-    *out = (struct crossing_list){scratch->used, 0};
-    struct ray line = *ray;
-    line.t_min = -INFINITY;
-    line.t_max = INFINITY;
-    struct sweep s;
-    struct ray leaf_ray = line;
-    bool any = sweep_begin(&s, csg, &line, &leaf_ray, NULL, scratch);
-    scratch->overflow = scratch->overflow || (any && scratch->capacity - scratch->used < 2);
-    if (!any || scratch->overflow) {
-        scratch->used = out->first;
-        return !scratch->overflow && cross_nothing(csg, scratch, out);
-    }
-    /* The result is never longer than the part already swept, so it overwrites that part; then the crossings at
-     * infinity are added, for which there is room, and all is moved down over the state. */
-    bool endless = s.in && !csg->clipped;
-    struct crossing surface, first = s.count ? s.items[0] : (struct crossing){0};
-    uint32_t count = 0;
-    while (sweep_next(&s, &surface))
-        s.items[count++] = surface;
-    bool ends_inside = s.in && !csg->clipped;
-    for (uint32_t i = count; i-- > 0 && endless;)
-        s.items[i + 1] = s.items[i];
-    first.t = -INFINITY, first.enter = true;
-    if (endless) {
-        s.items[0] = first;
-        count++;
-    }
-    first.t = INFINITY, first.enter = false;
-    if (ends_inside)
-        s.items[count++] = first;
-    for (uint32_t i = 0; i < count; i++)
-        scratch->items[out->first + i] = s.items[i];
-    out->count = count;
-    scratch->used = out->first + out->count;
-    return true;
 }
 
 /* The postfix program itself, on a stack of bits: independent of the plan but for the leaves' own boxes. */

@@ -66,8 +66,6 @@ const struct csg *csg_build_clipped(struct arena *arena, const struct csg_progra
                                     struct error *error);
 bool csg_nearest(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch, struct crossing *out);
 bool csg_any(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch);
-bool csg_crossings(const struct csg *csg, const struct ray *ray, struct geom_scratch *scratch,
-                   struct crossing_list *out);
 /* A clipped surface contains no point. */
 bool csg_contains(const struct csg *csg, struct vec3 point, struct geom_scratch *scratch);
 void csg_describe(const struct csg *csg, const struct ray *ray, const struct crossing *crossing, struct surface *out);

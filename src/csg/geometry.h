@@ -55,11 +55,6 @@ static inline bool geometry_nearest(const struct geometry *geometry, const struc
 static inline bool geometry_any(const struct geometry *geometry, const struct ray *ray, struct geom_scratch *scratch) {
     return geometry->csg ? csg_any(geometry->csg, ray, scratch) : shape_any(&geometry->shape, ray, scratch);
 }
-static inline bool geometry_crossings(const struct geometry *geometry, const struct ray *ray,
-                                      struct geom_scratch *scratch, struct crossing_list *out) {
-    return geometry->csg ? csg_crossings(geometry->csg, ray, scratch, out)
-                         : shape_crossings(&geometry->shape, ray, scratch, out);
-}
 static inline bool geometry_contains(const struct geometry *geometry, struct vec3 point, struct geom_scratch *scratch) {
     return geometry->csg ? csg_contains(geometry->csg, point, scratch)
                          : shape_contains(&geometry->shape, point, scratch);

@@ -532,10 +532,6 @@ struct expr_interval expr_interval_of_integer(int64_t i) {
     return integers((double)i, (double)i);
 }
 
-size_t expr_interval_size(const struct expr_program *program) {
-    return ((size_t)program->constant_count + program->row_count) * sizeof(struct expr_interval);
-}
-
 #define OPERAND_F(value)                                                                                               \
     ((value) < program->constant_count ? expr_interval_of_float(program->constants[value].f) : values[value])
 #define OPERAND_I(value)                                                                                               \

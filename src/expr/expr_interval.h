@@ -31,11 +31,9 @@ struct expr_choice {
 struct expr_interval expr_interval_apply(enum expr_operation operation, struct expr_interval a, struct expr_interval b,
                                          struct expr_interval c);
 
-/* The size in bytes of the memory that expr_evaluate_interval needs. */
-size_t expr_interval_size(const struct expr_program *program);
 /* Bounds of the outputs over one box. inputs: by enum expr_input; the program ignores those that it does not read.
- * choices: one for each instruction, of which lane 0 is written, or NULL. rows: expr_interval_size bytes, aligned to
- * 64, with any contents. */
+ * choices: one for each instruction, of which lane 0 is written, or NULL. rows: an interval for each constant and row,
+ * at most EXPR_VALUES, with any contents. */
 void expr_evaluate_interval(const struct expr_program *program, const struct expr_interval inputs[EXPR_INPUT_COUNT],
                             struct expr_interval outputs[EXPR_OUTPUTS], struct expr_choice *choices, void *rows);
 

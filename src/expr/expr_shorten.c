@@ -32,8 +32,7 @@ static inline uint16_t want(struct renaming *r, uint16_t value) {
 }
 
 size_t expr_shorten_size(const struct expr_program *program) {
-    size_t registers = (size_t)program->register_count + 1;
-    return registers * (2 * sizeof(uint16_t) + sizeof(uint64_t)) + ((size_t)program->count + 1) * sizeof(uint32_t);
+    return ((size_t)program->register_count + 1) * 2 * sizeof(uint16_t);
 }
 
 static bool is_selection(uint16_t operation) {
@@ -57,68 +56,17 @@ static struct expr_instruction copy_of(const struct expr_instruction *in, uint16
     return (struct expr_instruction){EXPR_COPY, in->out, from, in->out, in->out, 0};
 }
 
-void expr_find_needed(const struct expr_program *program, const struct expr_choice *choices, uint64_t lanes,
-                      uint64_t *needed, void *scratch) {
-    uint64_t *wanted = scratch; /* of registers; the last one is for operands that are none */
-    const uint32_t first = program->constant_count, none = program->register_count;
-    memset(wanted, 0, ((size_t)none + 1) * sizeof *wanted);
-    for (int i = 0; i < program->output_count; i++)
-        if (program->outputs[i] >= first)
-            wanted[program->outputs[i] - first] = lanes;
-    for (uint32_t n = program->count; n-- > 0;) {
-        const struct expr_instruction *in = &program->code[n];
-        const uint8_t *reading = reads[in->operation];
-        const struct expr_choice choice = choices[n];
-        uint64_t by = wanted[in->out - first], by_a = by, by_b = by, by_c = by;
-        needed[n] = by;
-        wanted[in->out - first] = 0;
-        if (is_selection(in->operation)) {
-            by_a &= ~(choice.first | choice.second);
-            by_b &= ~choice.second;
-            by_c &= ~choice.first;
-        } else {
-            by_a &= ~choice.second;
-            by_b &= ~choice.first;
-        }
-        wanted[reading[0] && in->a >= first ? in->a - first : none] |= by_a;
-        wanted[reading[1] && in->b >= first ? in->b - first : none] |= by_b;
-        wanted[reading[2] && in->c >= first ? in->c - first : none] |= by_c;
-    }
-}
-
 bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
                   struct expr_stack *stack, void *scratch, struct expr_program *out) {
-    const struct expr_decisions decisions = {choices, NULL, lane};
-    return expr_shorten_decided(program, &decisions, stack, scratch, out);
-}
-
-/* The instructions that a lane needs, in order; returns their number. */
-static uint32_t list_needed(const struct expr_program *program, const struct expr_decisions *decisions,
-                            uint32_t *list) {
-    uint32_t count = 0;
-    for (uint32_t n = 0; n < program->count; n++) {
-        list[count] = n;
-        count += !decisions->needed || (decisions->needed[n] >> decisions->lane & 1);
-    }
-    return count;
-}
-
-bool expr_shorten_decided(const struct expr_program *program, const struct expr_decisions *decisions,
-                          struct expr_stack *stack, void *scratch, struct expr_program *out) {
-    const size_t registers = (size_t)program->register_count + 1;
-    const struct expr_choice *choices = decisions->choices;
-    const uint32_t lane = decisions->lane;
-    uint32_t *list = scratch;
-    struct renaming r = {.renamed = (uint16_t *)(list + program->count + 1), .first = program->constant_count};
-    r.unused = r.renamed + registers;
+    struct renaming r = {.renamed = scratch, .first = program->constant_count};
+    r.unused = r.renamed + program->register_count;
     memset(r.renamed, 0xff, program->register_count * sizeof *r.renamed); /* UNWANTED */
     struct expr_program shorter = *program;
     for (int i = 0; i < program->output_count; i++)
         shorter.outputs[i] = want(&r, program->outputs[i]);
     struct expr_instruction *end = stack->code + stack->free, *to = end;
     struct expr_linker linker = {.constant_count = program->constant_count};
-    for (uint32_t listed = list_needed(program, decisions, list); listed-- > 0;) {
-        const uint32_t n = list[listed];
+    for (uint32_t n = program->count; n-- > 0;) {
         struct expr_instruction in = program->code[n];
         uint16_t *renamed = &r.renamed[in.out - r.first], result = *renamed;
         if (result == UNWANTED)

@@ -20,22 +20,6 @@ size_t expr_shorten_size(const struct expr_program *program);
 bool expr_shorten(const struct expr_program *program, const struct expr_choice *choices, uint32_t lane,
                   struct expr_stack *stack, void *scratch, struct expr_program *out);
 
-/* Which instructions each of the boxes in `lanes` needs: one mask for each instruction. The work of one box is then
- * proportional to what it needs. scratch: expr_shorten_size bytes, aligned to 64. */
-void expr_find_needed(const struct expr_program *program, const struct expr_choice *choices, uint64_t lanes,
-                      uint64_t *needed, void *scratch);
-
-/* What one box decides. needed: of expr_find_needed, or NULL. */
-struct expr_decisions {
-    const struct expr_choice *choices;
-    const uint64_t *needed;
-    uint32_t lane;
-};
-
-/* The same as expr_shorten. */
-bool expr_shorten_decided(const struct expr_program *program, const struct expr_decisions *decisions,
-                          struct expr_stack *stack, void *scratch, struct expr_program *out);
-
 /* A copy with its code and the constants that it reads in the arena, which outlives the stack. False: no memory. */
 bool expr_keep(const struct expr_program *program, struct arena *arena, struct expr_program *out);
 

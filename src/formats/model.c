@@ -65,7 +65,10 @@ static bool member(z_stream *stream, const char *path, struct file_bytes from, s
     }
 }
 
-bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t **out, size_t *out_size, struct error *error) {
+/* Unpacks gzip (RFC 1952) in memory; the result is from mem.h. It is refused if it grows more than 64 times beyond
+ * 16 MB. */
+static bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t **out, size_t *out_size,
+                   struct error *error) {
     z_stream stream = {.zalloc = zlib_alloc, .zfree = zlib_free};
     struct list bytes = {0};
     *out = NULL;
@@ -335,7 +338,8 @@ static bool check_numbers(const struct model *model, struct error *error) {
     return true;
 }
 
-bool model_finish(struct model *model, struct error *error) {
+/* Makes meshes from the tables, and one node for files without nodes. */
+static bool model_finish(struct model *model, struct error *error) {
     size_t faces = 0;
     for (size_t i = 0; i < model->meshes.count; i++)
         faces += model_meshes(model)[i].starts.count;

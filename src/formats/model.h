@@ -134,9 +134,6 @@ void model_warn(struct model *model, const char *format, ...) __attribute__((for
 bool model_find(struct model *model, const char *name, size_t length, const char **path, struct error *error);
 const char *model_why_missing(const struct model *model);
 
-/* Makes meshes from the tables, and one node for files without nodes. */
-bool model_finish(struct model *model, struct error *error);
-
 bool ply_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
 bool stl_load(struct model *model, const uint8_t *data, size_t size, bool binary, struct error *error);
 bool gltf_load(struct model *model, const uint8_t *data, size_t size, struct error *error);
@@ -145,9 +142,5 @@ const char *gltf_library(void);
 bool obj_load(struct model *model, const char *text, size_t size, struct error *error);
 /* Reads a library of materials; `line` of the model names it. */
 bool mtl_load(struct model *model, const char *path, const char *text, size_t size, struct error *error);
-
-/* Unpacks gzip (RFC 1952) in memory; the result is from mem.h. It is refused if it grows more than 64 times beyond
- * 16 MB. */
-bool gunzip(const char *path, const uint8_t *data, size_t size, uint8_t **out, size_t *out_size, struct error *error);
 
 #endif

@@ -34,8 +34,6 @@ struct image;
  * mips. */
 struct image *image_create(const char *name, uint32_t width, uint32_t height, int bits, const void *rgba,
                            struct error *error);
-/* What the file states about its numbers; TRANSFER_UNSTATED: nothing, as in JPEG files and pictures of light. */
-struct transfer_function image_transfer(const struct image *image);
 /* How numbers of the picture that are colours become light: as the file states it, else 8 bits by sRGB, else as they
  * are. */
 struct transfer_function image_colour_transfer(const struct image *image);

@@ -53,7 +53,7 @@ bool image_build_levels(struct image *image, struct error *error);
 /* Sets what the file states about its colours: `transfer` and `colours`. False: no memory. */
 bool png_colour_read(struct image *image, const uint8_t *data, size_t size);
 /* A PNG file in memory: every colour type, bit depth and interlace; texels are not changed by cICP, iCCP, sRGB and gAMA
- * (image_transfer); tRNS gives alpha. Errors name `path` and what libpng said; sizes over 2^15 per side or 2^28 pixels
+ * (transfer); tRNS gives alpha. Errors name `path` and what libpng said; sizes over 2^15 per side or 2^28 pixels
  * are errors before memory is allocated. */
 struct image *image_parse_png(const char *path, const uint8_t *data, size_t size, struct error *error);
 

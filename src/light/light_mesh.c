@@ -2,9 +2,9 @@
 #include "light/light_mesh.h"
 
 #include "base/arena.h"
-#include "light/light_internal.h"
+#include "light/light_shapes_internal.h"
 #include "math/frame.h"
-#include "math/spherical_triangle.h"
+#include "math/sampling.h"
 
 #include <math.h>
 
@@ -87,8 +87,14 @@ static struct vec3 triangle_point(const struct light_triangle *t, double x, doub
     return vec3_add_scaled(point, t->edge2, root * y);
 }
 
+/* A point of the mesh for a point of the unit square: uniform on the triangle selected by xi.x. */
+struct light_point {
+    const struct light_triangle *triangle;
+    struct vec3 xi;
+};
+
 /* xi.x, rescaled to the unit interval within the share of its triangle. */
-struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi) {
+static struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi) {
     uint32_t low = 0, high = mesh->count - 1;
     while (low < high) {
         uint32_t middle = low + (high - low) / 2;

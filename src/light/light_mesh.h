@@ -46,12 +46,6 @@ void light_mesh_end(struct light_mesh_builder *builder, struct vec3 colour, stru
 /* The triangle made from that part of a primitive; LIGHT_NONE: it emits no light. */
 uint32_t light_mesh_find(const struct light_mesh *mesh, uint32_t primitive, uint32_t part);
 
-/* A point of it for a point of the unit square: uniform on the triangle selected by xi.x. */
-struct light_point {
-    const struct light_triangle *triangle;
-    struct vec3 xi;
-};
-struct light_point light_mesh_point(const struct light_mesh *mesh, struct sample2 xi);
 /* The cases of LIGHT_MESH, for light.c. */
 void light_mesh_context(const struct light_mesh *mesh, struct light_context *out);
 struct light_sample light_mesh_sample(const struct light_mesh *mesh, const struct light_context *context,

@@ -1,5 +1,5 @@
 /* Parallelograms and discs: hits of rays, samples, photons, bounds. */
-#include "light/light_internal.h"
+#include "light/light_shapes_internal.h"
 #include "math/elementary.h"
 #include "math/frame.h"
 

@@ -6,7 +6,7 @@
  * found and no sample has a very large weight. */
 #include "light/sky_light_internal.h"
 
-#include "light/light_internal.h"
+#include "light/light_shapes_internal.h"
 #include "math/elementary.h"
 
 enum { MIN_COLUMNS = 128, MAX_COLUMNS = 512, PROBES = 2 };

@@ -79,8 +79,9 @@ void material_inputs_at(const struct material *material, const struct hit *hit, 
     bump_turn_normal(material, hit, &out->normal);
 }
 
-void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
-                             material_observer *observer, void *context) {
+/* material_inputs_at; `observer` (or NULL) is called for every material of the chain. */
+static void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
+                                    material_observer *observer, void *context) {
     const struct material *chain[MATERIAL_DEPTH];
     int depth = 0;
     for (const struct material *link = observer ? material : NULL; link && depth < MATERIAL_DEPTH; link = link->base)

@@ -108,10 +108,8 @@ static inline const struct texture *material_texture(const struct material *mate
     return texture_at(material->textures, material->inputs[input]);
 }
 void material_inputs_at(const struct material *material, const struct hit *hit, struct surface_inputs *out);
-/* The same; `observer` (or NULL) is called for every material of the chain, from the base on, with its inputs. */
+/* Is called for every material of a chain, from the base on, with its inputs. */
 typedef void material_observer(void *context, const struct material *link, const struct surface_inputs *inputs);
-void material_inputs_observe(const struct material *material, const struct hit *hit, struct surface_inputs *out,
-                             material_observer *observer, void *context);
 /* The original base at the end of its chain: the world's copies (material_mapping.h) have the numbers of that. */
 const struct material *material_origin(const struct material *material);
 /* What a material of a chain does, in a word for descriptions: "wood", "image on ks". */

@@ -16,7 +16,8 @@ void material_derive(struct material *material, enum material_kind kind, const s
     material->fresnel = material->fresnel || kind == MATERIAL_FRESNEL;
 }
 
-const struct texture *material_input(const struct material *material, enum material_input input) {
+/* The texture of an input; where it is a number, the texture of that number. */
+static const struct texture *material_input(const struct material *material, enum material_input input) {
     return material->inputs[input].authored ? material->inputs[input].authored : texture_parameter(input);
 }
 

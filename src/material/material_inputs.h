@@ -8,8 +8,6 @@
 /* All of the base, which may be NULL: then the material is a base with the numbers 0. Name, serial and `older` are the
  * caller's. */
 void material_derive(struct material *material, enum material_kind kind, const struct material *base);
-/* The texture of an input; where it is a number, the texture of that number. */
-const struct texture *material_input(const struct material *material, enum material_input input);
 
 /* The input times the texture. */
 bool material_multiply(struct material *material, enum material_input input, const struct texture *by,

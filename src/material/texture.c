@@ -217,7 +217,9 @@ static double parameter_number(enum material_input input, const struct phong *nu
     return has_colour ? mean(colour) : colour.x;
 }
 
-bool texture_image_colour(const struct texture_image *image, const struct hit *hit, struct vec3 *colour, double *rest) {
+/* The colour of an image alone. False: the surface has no coordinates for it. */
+static bool texture_image_colour(const struct texture_image *image, const struct hit *hit, struct vec3 *colour,
+                                 double *rest) {
     struct texcoord at;
     if (!texture_coordinates(image, hit, &at))
         return false;

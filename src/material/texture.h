@@ -281,7 +281,5 @@ static inline void texture_reader_init(struct texture_reader *reader, const stru
 }
 struct vec3 texture_read_colour(const struct texture *texture, struct texture_reader *reader);
 double texture_read_scalar(const struct texture *texture, struct texture_reader *reader);
-/* The same of the image alone. False: the surface has no coordinates for it. */
-bool texture_image_colour(const struct texture_image *image, const struct hit *hit, struct vec3 *colour, double *rest);
 
 #endif

@@ -15,7 +15,7 @@
  * no fma.
  *
  * The steps without branches, which functions of many arguments share, are in elementary_lanes.h; the algebraic ones
- * (cube root, hypotenuse, remainder) are at the end.
+ * (cube root, remainder) are at the end.
  *
  * Invariant: no operation here depends on the processor, the compiler or the library. The build must keep
  * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in elementary_tables_internal.h.
@@ -158,7 +158,7 @@ double el_log2(double x) {
     if (!log_is_plain(x))
         return log_special(x);
     struct split s = log_split(x);
-    struct pair m = log_pair(s, 0.0, 0.0);
+    struct pair m = log_pair(s, 0.0);
     struct pair p = exact_product(m.hi, log2_e_hi);
     struct pair sum = exact_sum(s.exponent, p.hi);
     return sum.hi + (sum.lo + (p.lo + (m.hi * log2_e_lo + m.lo * log2_e_hi)));
@@ -168,26 +168,9 @@ double el_log10(double x) {
     if (!log_is_plain(x))
         return log_special(x);
     struct split s = log_split(x);
-    struct pair m = log_pair(s, s.exponent, 0.0);
+    struct pair m = log_pair(s, s.exponent);
     struct pair p = exact_product(m.hi, log10_e_hi);
     return p.hi + (p.lo + (m.hi * log10_e_lo + m.lo * log10_e_hi));
-}
-
-double el_log1p(double x) {
-    if (isnan(x))
-        return x + x;
-    if (x == -1.0)
-        return -INFINITY;
-    if (x < -1.0)
-        return invalid();
-    if (x == INFINITY || fabs(x) < 0x1.0p-54)
-        return x;
-    struct pair u = exact_sum(1.0, x);
-    struct split s = log_split(u.hi);
-    /* u.lo is less than half a last bit of u.hi, so scaled by the same power it only shifts m c - 1 a little. */
-    double extra = s.exponent < 1000 ? u.lo * two_to(-s.exponent) * s.entry->inverse : 0.0;
-    struct pair l = log_pair(s, s.exponent, extra);
-    return l.hi + l.lo;
 }
 
 /* ---- power ------------------------------------------------------------------------------------------------------- */
@@ -241,7 +224,7 @@ double el_pow(double x, double y) {
     if (fabs(y) < 0x1.0p-66)
         return sign;
     struct split s = log_split(x);
-    struct pair l = log_pair(s, s.exponent, 0.0);
+    struct pair l = log_pair(s, s.exponent);
     double lh = leading(l.hi), yh = leading(y);
     double hi = yh * lh;
     double lo = (y - yh) * lh + y * ((l.hi - lh) + l.lo);
@@ -499,21 +482,6 @@ static inline struct pair atan_ratio(double over, double under) {
     return (struct pair){atan_table[i].hi, atan_table[i].lo + rest};
 }
 
-double el_atan(double x) {
-    double a = fabs(x);
-    if (!(a < 0x1.0p60))
-        return isnan(x) ? x + x : copysign(half_pi_hi, x);
-    if (a < 0x1.0p-27)
-        return x;
-    if (a <= 1.0) {
-        struct pair t = atan_ratio(a, 1.0);
-        return copysign(t.hi + t.lo, x);
-    }
-    struct pair t = atan_ratio(1.0, a);
-    struct pair d = exact_fast_sum(half_pi_hi, -t.hi);
-    return copysign(d.hi + (d.lo + (half_pi_lo - t.lo)), x);
-}
-
 /* y or x zero or infinite, neither NaN. */
 static double atan2_special(double y, double x) {
     double angle;
@@ -561,12 +529,11 @@ double el_atan2(double y, double x) {
     return copysign(d.hi + (d.lo + (whole_pi_lo - t.lo)), y);
 }
 
-/* Cube root, hypotenuse and remainder: the elementary functions that need no tables.
+/* Cube root and remainder: the elementary functions that need no tables.
  *
- * Both roots end with one correction step whose residual is computed without error, so the answer is within 0.67 (cube
- * root: Halley's iteration, the argument's bit pattern divided by three as first guess, as in fdlibm) and 0.51 last
- * places (hypotenuse). Powers of two keep intermediate squares inside the range. Only + - * / sqrt; see elementary.c.
- */
+ * The root ends with one correction step whose residual is computed without error, so the answer is within 0.67 last
+ * places (Halley's iteration, the argument's bit pattern divided by three as first guess, as in fdlibm). Only + - * /;
+ * see above. */
 
 double el_cbrt(double x) {
     double a = fabs(x);
@@ -587,33 +554,6 @@ double el_cbrt(double x) {
     t = from_bits((to_bits(t) + 0x4000000u) & 0xfffffffff8000000u);
     double quotient = a / (t * t);
     return copysign((t + t * (quotient - t) / (2.0 * t + quotient)) * down, x);
-}
-
-double el_hypot(double x, double y) {
-    double a = fabs(x), b = fabs(y);
-    if (isinf(a) || isinf(b))
-        return INFINITY;
-    if (isnan(a) || isnan(b))
-        return a + b;
-    double big = a > b ? a : b, small = a > b ? b : a;
-    if (small <= big * 0x1.0p-54)
-        return big + small;
-    double back = 1.0;
-    if (big > 0x1.0p450) {
-        back = 0x1.0p600;
-        big *= 0x1.0p-600;
-        small *= 0x1.0p-600;
-    } else if (small < 0x1.0p-400) {
-        back = 0x1.0p-600;
-        big *= 0x1.0p600;
-        small *= 0x1.0p600;
-    }
-    struct pair bb = exact_product(big, big), ss = exact_product(small, small);
-    struct pair sum = exact_fast_sum(bb.hi, ss.hi);
-    double h = sqrt(sum.hi);
-    struct pair hh = exact_product(h, h);
-    double rest = (sum.hi - hh.hi) + ((sum.lo + (bb.lo + ss.lo)) - hh.lo);
-    return (h + rest / (2.0 * h)) * back;
 }
 
 /* The library's fmod is exact, so every implementation agrees; only its error reporting is kept away. */

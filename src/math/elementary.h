@@ -20,7 +20,6 @@ void el_sincos(double x, double *sine, double *cosine);
 double el_tan(double x);
 double el_asin(double x);
 double el_acos(double x);
-double el_atan(double x);
 double el_atan2(double y, double x);
 
 double el_exp(double x);
@@ -29,7 +28,6 @@ double el_expm1(double x);
 double el_log(double x);
 double el_log2(double x);
 double el_log10(double x);
-double el_log1p(double x);
 double el_pow(double x, double y);
 
 double el_sinh(double x);
@@ -37,8 +35,6 @@ double el_cosh(double x);
 double el_tanh(double x);
 
 double el_cbrt(double x);
-/* sqrt(x^2 + y^2) without needless overflow or underflow. */
-double el_hypot(double x, double y);
 /* x - trunc(x / y) * y, exact. */
 double el_fmod(double x, double y);
 

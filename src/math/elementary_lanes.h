@@ -70,13 +70,9 @@ static inline double log_tail(double r) {
     return (c[0] + r * c[1]) + r2 * ((c[2] + r * c[3]) + r2 * ((c[4] + r * c[5]) + r2 * (c[6] + r * c[7])));
 }
 
-/* log(2^k m) as a pair with relative error near 2^-67; extra is added to m c - 1. */
-static inline struct pair log_pair(struct split s, double k, double extra) {
+/* log(2^k m) as a pair with relative error near 2^-67. */
+static inline struct pair log_pair(struct split s, double k) {
     struct pair r = log_remainder(s);
-    if (extra != 0.0) {
-        struct pair sum = exact_sum(r.hi, extra);
-        r = exact_fast_sum(sum.hi, sum.lo + r.lo);
-    }
     double rh = leading(r.hi);
     struct pair a = exact_fast_sum(k * log_ln2_hi + s.entry->log_hi, r.hi);
     struct pair b = exact_fast_sum(a.hi, -0.5 * rh * rh);
@@ -171,7 +167,7 @@ static inline bool el_pow_fits(double x, double y) {
 
 static inline double el_pow_lane(double x, double y) {
     struct split s = log_split_normal(x);
-    struct pair l = log_pair(s, s.exponent, 0.0);
+    struct pair l = log_pair(s, s.exponent);
     double lh = leading(l.hi), yh = leading(y);
     struct scaled e = exp_scaled(yh * lh, (y - yh) * lh + y * ((l.hi - lh) + l.lo));
     return (e.value.hi + e.value.lo) * scaled_power(e);

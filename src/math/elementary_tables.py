@@ -212,12 +212,11 @@ def reference():
     wide = [abs(v) for v in spread(-1060, 1020, 60)] + spread(-6, 6, 130) + [5e-324, 1e308, 0.125, 27.0, 1000.0, -8.0]
     one = {
         'sin': (mp.sin, angles), 'cos': (mp.cos, angles), 'tan': (mp.tan, angles), 'asin': (mp.asin, units),
-        'acos': (mp.acos, units), 'atan': (mp.atan, wide + spread(-40, 60, 40)), 'exp': (mp.exp, exps),
+        'acos': (mp.acos, units), 'exp': (mp.exp, exps),
         'exp2': (lambda v: mpf(2) ** v, [e for e in ([-1074.0, -1074.5, -1022.0, -1022.5, 1023.9999999, 0.5] +
                  [rng.uniform(-1074, 1023) for _ in range(150)] + spread(-40, 3, 40))]),
         'expm1': (mp.expm1, [e for e in exps if e != 0.0] + spread(-10, 1, 60)), 'log': (mp.log, logs),
         'log2': (lambda v: mp.log(v) / mp.log(2), logs), 'log10': (mp.log10, logs),
-        'log1p': (mp.log1p, [v for v in logs] + [v for v in spread(-60, -1, 80)]),
         'cbrt': (lambda v: mp.cbrt(v) if v >= 0 else -mp.cbrt(-v), wide),
         'sinh': (mp.sinh, spread(-30, 8, 190) + [710.4, 0.35, 1e-300]), 'cosh': (mp.cosh, spread(-30, 8, 190) + [710.4]),
         'tanh': (mp.tanh, spread(-30, 5, 190) + [19.0, 22.5, 0.35, 1e-300]),
@@ -232,9 +231,7 @@ def reference():
     atans = [(1.0, 1.0), (-1.0, -1.0), (1.0, -1e-300), (1e-300, 1e300), (-1e300, 1e-300), (5e-324, 5e-324), (5e-324, 1.0),
              (1e308, 1e308), (1.0, 64.0), (1e-310, -1e-308)] + list(zip(spread(-8, 8, 150), spread(-8, 8, 150)))
     atans += list(zip(spread(-1070, 1022, 40), spread(-1070, 1022, 40)))
-    hypots = [(3.0, 4.0), (1e308, 1e307), (5e-324, 5e-324), (1e-310, 3e-310), (1e200, 1e-200), (1.0, 2.0 ** -27)]
-    hypots += list(zip(spread(-8, 8, 130), spread(-8, 8, 130))) + [(a, a * b) for a, b in zip(spread(-1040, 1010, 60), spread(-12, 5, 60))]
-    two = {'pow': (lambda b, e: mp.power(b, e), pows), 'atan2': (mp.atan2, atans), 'hypot': (mp.hypot, hypots)}
+    two = {'pow': (lambda b, e: mp.power(b, e), pows), 'atan2': (mp.atan2, atans)}
 
     print('/* Arguments and correctly rounded results, written by src/math/elementary_tables.py with 400 bits (1600 where')
     print(' * an angle is huge). */\n/* clang-format off */')

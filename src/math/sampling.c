@@ -6,7 +6,6 @@
 #include "math/sampling.h"
 
 #include "math/elementary.h"
-#include "math/spherical_triangle.h"
 
 #include <math.h>
 

@@ -2,6 +2,7 @@
  * dropped at once (their neighbours then share the edge). Some closed meshes are closed only by triangles without area
  * but with three different corners, so these are dropped only from open meshes. */
 #include "mesh/mesh_internal.h"
+#include "mesh/mesh_topology.h"
 
 #include "base/hash.h"
 #include "base/mem.h"

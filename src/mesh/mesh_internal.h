@@ -43,7 +43,4 @@ static inline struct vec3 mesh_normal_of_edges(struct vec3 e, struct vec3 f) {
                      triangle_edge(e.x, e.y, f.x, f.y));
 }
 
-/* Fills closed, outward and open_edge. False: no memory. */
-bool mesh_find_topology(struct mesh *mesh);
-
 #endif

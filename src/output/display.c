@@ -44,7 +44,8 @@ static size_t finish_packet(uint8_t *out, const uint8_t *end) {
 
 static const char channels[] = "R\0G\0B"; /* with the final zero byte: three texts */
 
-size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uint32_t height) {
+/* The packets: each returns its size. name is cut at 4096 bytes. */
+static size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uint32_t height) {
     uint8_t *at = out + 4;
     *at++ = 4;
     *at++ = 1; /* it is shown at once */
@@ -56,7 +57,7 @@ size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uin
     return finish_packet(out, at);
 }
 
-size_t display_update_packet(uint8_t *out, const char *name, const struct film *film, uint32_t tile) {
+static size_t display_update_packet(uint8_t *out, const char *name, const struct film *film, uint32_t tile) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint8_t *at = out + 4;
     *at++ = 6;

@@ -43,8 +43,4 @@ bool display_step(struct display *display, double now, struct error *error);
 bool display_end(struct display *display, struct error *error);
 void display_forget(struct display *display); /* the picture will not be finished */
 
-/* The packets, for tests: each returns its size. name is cut at 4096 bytes. */
-size_t display_create_packet(uint8_t *out, const char *name, uint32_t width, uint32_t height);
-size_t display_update_packet(uint8_t *out, const char *name, const struct film *film, uint32_t tile);
-
 #endif

@@ -4,6 +4,7 @@
 #define GRAY_RENDER_INTEGRATOR_STATE_INTERNAL_H
 
 #include "film/path_parts.h"
+#include "math/range.h"
 #include "photon/photon_map.h"
 #include "render/observer.h"
 #include "render/render.h"
@@ -40,6 +41,14 @@ struct integrator_state {
  * whether to stop. */
 static inline bool integrator_cancelled(const struct integrator_state *state) {
     return state->pool && pool_cancelled(state->pool);
+}
+
+/* The colour with channels up to the limit, and a note if that changes it. */
+static inline struct vec3 integrator_clamp_light(struct integrator_state *state, struct vec3 colour, double limit) {
+    if (vec3_within(colour, limit))
+        return colour;
+    state->clamped = true;
+    return vec3_clamped(colour, limit);
 }
 
 #endif

@@ -397,17 +397,10 @@ static struct vec3 limited(struct vec3 colour, double limit) {
     return limit > 0 && largest > limit ? vec3_scale(colour, limit / largest) : colour;
 }
 
-static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colour) {
-    if (vec3_within(colour, (double)FLT_MAX))
-        return colour;
-    state->clamped = true;
-    return vec3_clamped(colour, (double)FLT_MAX);
-}
-
 /* If the radiance was limited, each group of light is scaled by the same factor. */
 static void finish_parts(struct integrator_state *state, struct path_parts *parts, double found, double left) {
     for (int i = 0; i < PATH_LIGHT_GROUPS; i++) {
-        struct vec3 light = clamp_light(state, parts->light[i]);
+        struct vec3 light = integrator_clamp_light(state, parts->light[i], (double)FLT_MAX);
         parts->light[i] = left < found ? vec3_scale(light, left / found) : light;
     }
     const struct vec3 *glow = &parts->light[PATH_LIGHT_EMISSION];
@@ -507,7 +500,8 @@ static struct vec3 follow(const struct path_tracer *tracer, struct integrator_st
             break;
         met = world_nearest(state->job->world, &path->ray, state->scratch, hit);
     }
-    struct vec3 found = clamp_light(state, path->light), light = limited(found, tracer->clamp);
+    struct vec3 found = integrator_clamp_light(state, path->light, (double)FLT_MAX);
+    struct vec3 light = limited(found, tracer->clamp);
     if (path->parts)
         finish_parts(state, path->parts, vec3_max_abs(found), vec3_max_abs(light));
     if (state->observer)

@@ -3,7 +3,6 @@
 #include "render/whitted_internal.h"
 
 #include "material/medium.h"
-#include "math/range.h"
 #include "render/style_internal.h"
 
 /* Limits the colour of a secondary ray: no filter makes it infinite, so infinity times 0 cannot occur. */
@@ -179,13 +178,6 @@ static struct vec3 shade_hit(struct integrator_state *state, const struct ray *r
     return vec3_add_scaled(behind, shade(state, &at, &covered), bsdf.opacity);
 }
 
-static struct vec3 clamp_light(struct integrator_state *state, struct vec3 colour, double limit) {
-    if (vec3_within(colour, limit))
-        return colour;
-    state->clamped = true;
-    return vec3_clamped(colour, limit);
-}
-
 /* The radiance of a ray with its hit, or NULL. */
 static struct vec3 incident_radiance(struct integrator_state *state, const struct ray *ray, const struct hit *hit,
                                      const struct path *path) {
@@ -222,7 +214,7 @@ static struct vec3 incident_radiance(struct integrator_state *state, const struc
         in_scattered = vec3_mul(air.source, vec3_sub(vec3_all(1), left));
         colour = vec3_add(vec3_mul(colour, left), in_scattered);
     }
-    colour = clamp_light(state, colour, light_limit);
+    colour = integrator_clamp_light(state, colour, light_limit);
     observe_ray_end(state->observer, &(struct observed_end){looked, seen, left, in_scattered, colour});
     return colour;
 }
@@ -261,7 +253,7 @@ static struct vec3 camera_light(const struct whitted *whitted, struct integrator
     if (hit && state->camera_hit)
         record_hit(state->job->world, hit, state->camera_hit);
     const struct path path = {.key = key, .weight = 1, .cutoff = whitted->cutoff};
-    return clamp_light(state, incident_radiance(state, from_eye, hit, &path), (double)FLT_MAX);
+    return integrator_clamp_light(state, incident_radiance(state, from_eye, hit, &path), (double)FLT_MAX);
 }
 
 struct vec3 whitted_trace(const struct whitted *whitted, struct integrator_state *state, const struct ray *ray,

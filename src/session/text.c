@@ -61,7 +61,8 @@ void text_print_lines(FILE *stream, const char *text) {
     print_cleaned(stream, text, true);
 }
 
-size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
+/* The beginning of a JSON string: the bytes for the next *taken bytes of a text; returns how many. */
+static size_t text_json_piece(const char *text, char piece[8], size_t *taken) {
     const unsigned char *at = (const unsigned char *)text;
     size_t length = utf8_length(at);
     *taken = length ? length : 1;

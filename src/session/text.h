@@ -21,10 +21,8 @@ void text_print_lines(FILE *stream, const char *text);
 /* The text as a JSON string with its quotes; bytes that are no UTF-8 become U+FFFD, the characters above escapes. */
 void text_print_json(FILE *stream, const char *text);
 
-/* The beginning of such a string: the bytes for the next *taken bytes of a text that has not ended; returns how many.
- */
-size_t text_json_piece(const char *text, char piece[8], size_t *taken);
-/* The same for a terminal: '?' for the same characters. */
+/* The beginning of such a text for a terminal: the bytes for the next *taken bytes of a text that has not ended, with
+ * '?' for the same characters; returns how many. */
 size_t text_clean_piece(const char *text, char piece[8], size_t *taken);
 /* A text of our own with several lines, in the same way but with its line ends. */
 void text_print(FILE *stream, const char *text);

@@ -53,8 +53,6 @@ static inline double implicit_accuracy(const struct implicit *solid) {
 }
 
 struct vec3 implicit_middle(const struct implicit *solid);
-/* The function at a point, and its gradient. program: one of the solid's. */
-double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient);
 /* The operations that the search for all crossings of a line needs, beyond `limit` about that number. */
 uint64_t implicit_line_work(const struct implicit *solid, const struct ray *ray, uint64_t limit,
                             struct geom_scratch *scratch);

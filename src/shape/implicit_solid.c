@@ -38,7 +38,8 @@ bool implicit_contains(const struct implicit *solid, struct vec3 point) {
     return is_below_zero(solid->in.program, point);
 }
 
-double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
+/* The function at a point, and its gradient. program: one of the solid's. */
+static double implicit_gradient(const struct expr_program *program, struct vec3 point, struct vec3 *gradient) {
     unsigned char memory[expr_gradient_size(program) + IMPLICIT_ALIGNMENT];
     double inputs[EXPR_INPUT_COUNT], outputs[EXPR_OUTPUTS], gradients[EXPR_OUTPUTS][EXPR_DIRECTIONS];
     inputs[EXPR_POINT_X] = point.x;

@@ -291,7 +291,8 @@ void flatten_log_clear(struct flatten_log *log) {
     *log = (struct flatten_log){.on = false};
 }
 
-void flatten_log_begin(struct flatten_log *log, uint32_t node_total) {
+/* Empty, but it keeps room for records. */
+static void flatten_log_begin(struct flatten_log *log, uint32_t node_total) {
     struct flatten_record *records = log->records;
     uint32_t capacity = log->capacity;
     log->records = NULL;

@@ -49,7 +49,6 @@ struct flatten_log {
     uint32_t linear_capacity, linear_count; /* linear_count: when it was flattened */
 };
 void flatten_log_clear(struct flatten_log *log);
-void flatten_log_begin(struct flatten_log *log, uint32_t node_total); /* empty, but it keeps room for records */
 
 struct flattening {
     struct arena *arena; /* of the job: owns all results */

@@ -1,5 +1,5 @@
 /* The accelerator over the primitives of a world: one value of one kind. It only contains boxes and numbers of
- * primitives; the traversals that test primitives are in world_search.c and packet.c. */
+ * primitives; the traversals that test primitives are in world.c and packet.c. */
 #ifndef GRAY_WORLD_SCENE_ACCEL_H
 #define GRAY_WORLD_SCENE_ACCEL_H
 
@@ -9,7 +9,7 @@
 #include "mesh/mesh.h"
 
 /* Zero-initialised: nothing to destroy. Owns what it holds; the structures of other kinds stay zero.
- * What differs between the kinds is a switch of each operation: build, cells, and the search (world_search.c). */
+ * What differs between the kinds is a switch of each operation: build, cells, and the search (world.c). */
 struct scene_accel {
     enum accel_kind kind; /* once built never ACCEL_AUTO */
     struct grid grid;

@@ -203,14 +203,6 @@ bool world_any(const struct world *world, const struct ray *ray, struct world_sc
 static inline uint32_t world_blocker(const struct world_scratch *scratch) {
     return scratch->shadow_cache[scratch->light];
 }
-/* The same for many rays: of any origin, interval, time and primitive to skip, in any order. hits[i] is the result of
- * world_nearest for rays[i], to the bit; without a hit, its primitive is WORLD_NOTHING and the rest is undefined.
- */
-void world_nearest_batch(const struct world *world, const struct ray *rays, uint32_t count,
-                         struct world_scratch *scratch, struct hit *hits);
-/* met[i] is the result of world_any for rays[i]. */
-void world_any_batch(const struct world *world, const struct ray *rays, uint32_t count, struct world_scratch *scratch,
-                     bool *met);
 /* Describes a result of world_nearest_crossing. */
 void world_describe(const struct world *world, const struct ray *ray, uint32_t primitive,
                     const struct crossing *crossing, struct hit *hit);

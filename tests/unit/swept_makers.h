@@ -16,6 +16,7 @@
 #include "shape/prism.h"
 #include "shape/sweep.h"
 #include "tests/harness.h"
+#include "tests/unit/csg_crossings.h"
 #include "tests/unit/random_makers.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "accel/box_tree.h"
 #include "accel/grid.h"
 #include "accel/triangle_index.h"
-#include "base/mem_peak_internal.h"
+#include "base/mem.h"
 #include "tests/stage.h"
 
 #include <stdlib.h>

@@ -81,8 +81,8 @@ static uint64_t check_packet(const struct triangle_index *index, const struct tr
             same = memcmp(&hits.t[i], &hit.t, 8) == 0 && memcmp(&hits.u[i], &hit.u, 8) == 0 &&
                    memcmp(&hits.v[i], &hit.v, 8) == 0 && hits.triangle[i] == hit.triangle && hits.enter[i] == hit.enter;
         if (!same)
-            test_fail(__FILE__, __LINE__, "%s, %s: ray %u of %u differs from the same ray alone", what, cpu_isa_name(),
-                      i, packet->count);
+            test_fail(__FILE__, __LINE__, "%s, instruction set %d: ray %u of %u differs from the same ray alone", what,
+                      (int)cpu_isa(), i, packet->count);
     }
     CHECK((found & ~active) == 0 && (any & ~active) == 0);
     return found;

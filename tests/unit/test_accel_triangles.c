@@ -57,8 +57,9 @@ static void check_searches(const struct maker *m, uint32_t voxels, int rays, str
         triangle_brute_all(&set, &ray, count_hit, &every, &cost);
         same = same && memcmp(all.once, every.once, sizeof all.once) == 0;
         if (!same)
-            test_fail(__FILE__, __LINE__, "%s, %u voxels, %s: ray %d differs from trying every triangle", what, voxels,
-                      cpu_isa_name(), i);
+            test_fail(__FILE__, __LINE__,
+                      "%s, %u voxels, instruction set %d: ray %d differs from trying every triangle", what, voxels,
+                      (int)cpu_isa(), i);
     }
     mesh_release(mesh);
     triangle_index_destroy(index);

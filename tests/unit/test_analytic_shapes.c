@@ -6,6 +6,7 @@
 #include "shape/revolved_quadric.h"
 #include "shape/shape.h"
 #include "tests/harness.h"
+#include "tests/unit/csg_crossings.h"
 #include "tests/unit/random_makers.h"
 
 #include <math.h>

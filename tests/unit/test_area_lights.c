@@ -4,7 +4,6 @@
 #include "light/light_mesh.h"
 #include "light/sky_light_internal.h"
 #include "math/sampling.h"
-#include "math/spherical_triangle.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/mesh_makers.h"

@@ -301,7 +301,7 @@ TEST(total_reflection_loses_nothing_whatever_use_tir_says) {
     double distance = 1.5, half = 1;
     inverse_square(&s, vec3_make(0, 0, half + distance), 1);
     box(&s, vec3_all(-half), vec3_all(half), stage_glass(&s, 0, 1, 1.5));
-    double solid_angle = 4 * el_atan(half * half / (distance * sqrt(distance * distance + 2 * half * half)));
+    double solid_angle = 4 * el_atan2(half * half, distance * sqrt(distance * distance + 2 * half * half));
     arrives("a glass cube", &s, solid_angle, 0.01);
 }
 

@@ -202,7 +202,7 @@ TEST(a_png_file_states_its_transfer_function) {
         write_stated(path, (uint8_t[]){192, 128, 64}, rows[i].kind, rows[i].bytes, rows[i].size);
         struct image *image = image_read(path, &error);
         CHECK(image != NULL);
-        CHECK(transfer_same(image_transfer(image), rows[i].transfer));
+        CHECK(transfer_same(image->transfer, rows[i].transfer));
         CHECK((image_colours(image) != NULL) == (rows[i].warning != NULL));
         CHECK(!rows[i].warning || strstr(image_colours(image), rows[i].warning));
         image_release(image);

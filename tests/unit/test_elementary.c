@@ -119,7 +119,6 @@ TEST(elementary_angles_agree_with_400_bit_values) {
     REFERENCE_ONE(tan);
     REFERENCE_ONE(asin);
     REFERENCE_ONE(acos);
-    REFERENCE_ONE(atan);
     REFERENCE_TWO(atan2);
 }
 
@@ -130,7 +129,6 @@ TEST(elementary_exponentials_and_logarithms_agree_with_400_bit_values) {
     REFERENCE_ONE(log);
     REFERENCE_ONE(log2);
     REFERENCE_ONE(log10);
-    REFERENCE_ONE(log1p);
     REFERENCE_TWO(pow);
 }
 
@@ -139,7 +137,6 @@ TEST(elementary_hyperbolics_and_roots_agree_with_400_bit_values) {
     REFERENCE_ONE(cosh);
     REFERENCE_ONE(tanh);
     REFERENCE_ONE(cbrt);
-    REFERENCE_TWO(hypot);
 }
 
 TEST(elementary_angles_err_by_less_than_1_05_last_places) {
@@ -156,8 +153,6 @@ TEST(elementary_angles_err_by_less_than_1_05_last_places) {
     CHECK_ONE(asin, 0.7, EXPONENTS, -40, -1);
     CHECK_ONE(acos, 0.7, UNIFORM, -1.0, 1.0);
     CHECK_ONE(acos, 0.7, EXPONENTS, -40, -1);
-    CHECK_ONE(atan, 0.7, UNIFORM, -2.0, 2.0);
-    CHECK_ONE(atan, 0.7, EXPONENTS, -60, 80);
     CHECK_TWO(atan2, 0.7, EXPONENTS, -8, 8, EXPONENTS, -8, 8);
     CHECK_TWO(atan2, 0.7, EXPONENTS, -1000, 1022, EXPONENTS, -1000, 1022);
 }
@@ -175,8 +170,6 @@ TEST(elementary_exponentials_and_logarithms_err_by_less_than_0_6_last_places) {
     CHECK_ONE(log2, 0.52, EXPONENTS_POSITIVE, -1074, 1023);
     CHECK_ONE(log10, 0.52, UNIFORM, 0.5, 2.0);
     CHECK_ONE(log10, 0.52, EXPONENTS_POSITIVE, -1074, 1023);
-    CHECK_ONE(log1p, 0.52, UNIFORM, -0.99, 1.0);
-    CHECK_ONE(log1p, 0.52, EXPONENTS_POSITIVE, -60, 1023);
     CHECK_TWO(pow, 0.55, UNIFORM, 0.0, 1.0, UNIFORM, 0.0, 60.0);
     CHECK_TWO(pow, 0.55, UNIFORM, 0.0, 10.0, UNIFORM, -20.0, 20.0);
     CHECK_TWO(pow, 0.55, UNIFORM, 0.9, 1.1, UNIFORM, -7000.0, 7000.0);
@@ -192,8 +185,6 @@ TEST(elementary_hyperbolics_and_roots_err_by_less_than_0_7_last_places) {
     CHECK_ONE(tanh, 0.6, UNIFORM, -1.0, 1.0);
     CHECK_ONE(tanh, 0.6, EXPONENTS, -40, 5);
     CHECK_ONE(cbrt, 0.7, EXPONENTS, -1074, 1023);
-    CHECK_TWO(hypot, 0.6, EXPONENTS, -8, 8, EXPONENTS, -8, 8);
-    CHECK_TWO(hypot, 0.6, EXPONENTS, -1000, 1022, EXPONENTS, -1000, 1022);
 }
 
 static bool same(double a, double b) {
@@ -219,28 +210,23 @@ TEST(elementary_special_arguments_follow_annex_f) {
                 if (!same(el_atan2(x, y), want))
                     test_fail(__FILE__, __LINE__, "atan2(%g, %g) is not %g", x, y, want);
             }
-            if (!isfinite(x) || !isfinite(y) || x == 0.0 || y == 0.0)
-                CHECK(same(el_hypot(x, y), (double)hypotl(x, y)));
             CHECK(same(el_fmod(x, y), fmod(x, y)));
         }
     }
     CHECK(isnan(el_sin(INFINITY)) && isnan(el_cos(-INFINITY)) && isnan(el_tan(INFINITY)) && isnan(el_sin(NAN)));
     CHECK(same(el_sin(-0.0), -0.0) && same(el_tan(-0.0), -0.0) && el_cos(-0.0) == 1.0);
-    CHECK(same(el_asin(-0.0), -0.0) && same(el_atan(-0.0), -0.0) && same(el_acos(1.0), 0.0));
+    CHECK(same(el_asin(-0.0), -0.0) && same(el_acos(1.0), 0.0));
     CHECK(isnan(el_asin(1.0000000000000002)) && isnan(el_acos(-INFINITY)) && isnan(el_acos(NAN)));
-    CHECK(same(el_atan(INFINITY), 0x1.921fb54442d18p+0) && same(el_atan(-INFINITY), -0x1.921fb54442d18p+0));
     CHECK(el_exp(-INFINITY) == 0.0 && el_exp(INFINITY) == INFINITY && isnan(el_exp(NAN)) && el_exp(0.0) == 1.0);
     CHECK(el_exp(1e300) == INFINITY && el_exp(-1e300) == 0.0 && el_exp2(1024.0) == INFINITY && el_exp2(-2e9) == 0.0);
     CHECK(el_exp2(-INFINITY) == 0.0 && isnan(el_exp2(NAN)) && el_exp2(INFINITY) == INFINITY);
     CHECK(el_expm1(-INFINITY) == -1.0 && same(el_expm1(-0.0), -0.0) && el_expm1(INFINITY) == INFINITY);
     CHECK(el_log(0.0) == -INFINITY && el_log2(-0.0) == -INFINITY && isnan(el_log10(-1.0)) && isnan(el_log(-INFINITY)));
     CHECK(same(el_log(1.0), 0.0) && same(el_log2(1.0), 0.0) && same(el_log10(1.0), 0.0) && isnan(el_log(NAN)));
-    CHECK(el_log(INFINITY) == INFINITY && el_log1p(INFINITY) == INFINITY && el_log1p(-1.0) == -INFINITY);
-    CHECK(isnan(el_log1p(-2.0)) && same(el_log1p(-0.0), -0.0));
+    CHECK(el_log(INFINITY) == INFINITY);
     CHECK(same(el_sinh(-0.0), -0.0) && el_sinh(-INFINITY) == -INFINITY && el_cosh(-INFINITY) == INFINITY);
     CHECK(same(el_tanh(-0.0), -0.0) && el_tanh(-INFINITY) == -1.0 && isnan(el_tanh(NAN)) && el_sinh(800.0) == INFINITY);
     CHECK(same(el_cbrt(-0.0), -0.0) && el_cbrt(-INFINITY) == -INFINITY && isnan(el_cbrt(NAN)));
-    CHECK(el_hypot(NAN, -INFINITY) == INFINITY && el_hypot(0.0, -3.0) == 3.0);
 }
 
 TEST(elementary_functions_are_exact_where_the_answer_is) {
@@ -262,7 +248,6 @@ TEST(elementary_functions_are_exact_where_the_answer_is) {
         CHECK(el_pow(x, 2.0) == x * x);
         CHECK(el_pow(-x, 3.0) == -x * x * x);
         CHECK(el_pow(x * x, 0.5) == x);
-        CHECK(el_hypot(3.0 * x, -4.0 * x) == 5.0 * x);
     }
 }
 
@@ -297,11 +282,11 @@ TEST(elementary_functions_do_not_change_errno) {
     volatile double sum = 0.0;
     for (int i = 0; i < COUNT(odd); i++) {
         double x = odd[i];
-        sum = sum + el_sin(x) + el_cos(x) + el_tan(x) + el_asin(x) + el_acos(x) + el_atan(x) + el_exp(x) + el_exp2(x);
-        sum = sum + el_expm1(x) + el_log(x) + el_log2(x) + el_log10(x) + el_log1p(x) + el_sinh(x) + el_cosh(x);
+        sum = sum + el_sin(x) + el_cos(x) + el_tan(x) + el_asin(x) + el_acos(x) + el_exp(x) + el_exp2(x);
+        sum = sum + el_expm1(x) + el_log(x) + el_log2(x) + el_log10(x) + el_sinh(x) + el_cosh(x);
         sum = sum + el_tanh(x) + el_cbrt(x);
         for (int j = 0; j < COUNT(odd); j++)
-            sum = sum + el_pow(x, odd[j]) + el_atan2(x, odd[j]) + el_hypot(x, odd[j]) + el_fmod(x, odd[j]);
+            sum = sum + el_pow(x, odd[j]) + el_atan2(x, odd[j]) + el_fmod(x, odd[j]);
     }
     CHECK_EQ_INT(errno, 0);
 }
@@ -322,7 +307,6 @@ TEST(elementary_bits_are_the_same_on_every_machine) {
         hash = stir(hash, el_tan(x));
         hash = stir(hash, el_asin(unit));
         hash = stir(hash, el_acos(unit));
-        hash = stir(hash, el_atan(y));
         hash = stir(hash, el_atan2(y, unit));
         hash = stir(hash, el_exp(y * 70));
         hash = stir(hash, el_exp2(y));
@@ -330,14 +314,12 @@ TEST(elementary_bits_are_the_same_on_every_machine) {
         hash = stir(hash, el_log(x));
         hash = stir(hash, el_log2(x));
         hash = stir(hash, el_log10(x));
-        hash = stir(hash, el_log1p(x));
         hash = stir(hash, el_pow(x, y));
         hash = stir(hash, el_sinh(y));
         hash = stir(hash, el_cosh(y));
         hash = stir(hash, el_tanh(unit));
         hash = stir(hash, el_cbrt(y));
-        hash = stir(hash, el_hypot(x, y));
     }
-    if (hash != 0xe206d29f7d5ee1c1u)
+    if (hash != 0x84cae62922a68d15u)
         test_fail(__FILE__, __LINE__, "the fingerprint is 0x%016llx", (unsigned long long)hash);
 }

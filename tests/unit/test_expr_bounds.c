@@ -187,6 +187,9 @@ static bool same(double a, double b) {
     return to_bits(a) == to_bits(b) || (isnan(a) && isnan(b));
 }
 
+/* For expr_evaluate_interval of any program. */
+static _Alignas(64) struct expr_interval single_rows[EXPR_VALUES];
+
 /* Of one program and box: bounds, choices, the shortened program. */
 static void check_box(const struct expr_program *program, uint64_t key, int points, size_t *before, size_t *after) {
     struct expr_interval box[EXPR_INPUT_COUNT], bounds[EXPR_OUTPUTS], again[EXPR_OUTPUTS];
@@ -194,13 +197,12 @@ static void check_box(const struct expr_program *program, uint64_t key, int poin
     struct expr_instruction code[512];
     struct expr_stack stack = {code, 512};
     struct expr_program shorter;
-    void *rows = mem_alloc_aligned(64, expr_interval_size(program));
     void *scratch = mem_alloc_aligned(64, expr_shorten_size(program));
     random_box(key, box);
-    expr_evaluate_interval(program, box, bounds, choices, rows);
+    expr_evaluate_interval(program, box, bounds, choices, single_rows);
     CHECK(expr_shorten(program, choices, 0, &stack, scratch, &shorter));
     CHECK(shorter.count <= program->count && shorter.register_count <= program->register_count);
-    expr_evaluate_interval(&shorter, box, again, NULL, rows);
+    expr_evaluate_interval(&shorter, box, again, NULL, single_rows);
     *before += program->count;
     *after += shorter.count;
     for (int i = 0; i < points; i++) {
@@ -217,7 +219,6 @@ static void check_box(const struct expr_program *program, uint64_t key, int poin
         }
     }
     mem_free(scratch);
-    mem_free(rows);
     mem_free(choices);
 }
 
@@ -249,7 +250,6 @@ static void check_lanes(const struct expr_program *program, uint64_t key, uint32
     struct expr_interval all[EXPR_BOXES][EXPR_INPUT_COUNT], single[EXPR_OUTPUTS];
     struct expr_choice choices[256], of_one[256];
     void *rows = mem_alloc_aligned(64, expr_intervals_size(program));
-    void *one_row = mem_alloc_aligned(64, expr_interval_size(program));
     for (uint32_t i = 0; i < count; i++) {
         random_box(random_combine(key, i), all[i]);
         for (int k = 0; k < 3; k++) {
@@ -265,7 +265,7 @@ static void check_lanes(const struct expr_program *program, uint64_t key, uint32
     }
     expr_evaluate_intervals(program, &boxes, bounds, choices, rows);
     for (uint32_t i = 0; i < count; i++) {
-        expr_evaluate_interval(program, all[i], single, of_one, one_row);
+        expr_evaluate_interval(program, all[i], single, of_one, single_rows);
         for (int o = 0; o < program->output_count; o++)
             if (single[o].low != bounds[o].low[i] || single[o].high != bounds[o].high[i] ||
                 single[o].may_be_nan != (bounds[o].may_be_nan >> i & 1))
@@ -275,7 +275,6 @@ static void check_lanes(const struct expr_program *program, uint64_t key, uint32
             CHECK((choices[n].first >> i & 1) == (of_one[n].first & 1) &&
                   (choices[n].second >> i & 1) == (of_one[n].second & 1));
     }
-    mem_free(one_row);
     mem_free(rows);
 }
 
@@ -301,14 +300,12 @@ TEST(shortening_without_room_changes_nothing) {
     struct expr_stack stack = {code, 3};
     struct expr_program shorter = {.count = 77};
     random_program_init(&p, 5, 60, true);
-    void *rows = mem_alloc_aligned(64, expr_interval_size(&p.program));
     void *scratch = mem_alloc_aligned(64, expr_shorten_size(&p.program));
     random_box(1, box);
     CHECK(p.program.count < 256);
-    expr_evaluate_interval(&p.program, box, bounds, choices, rows);
+    expr_evaluate_interval(&p.program, box, bounds, choices, single_rows);
     CHECK(!expr_shorten(&p.program, choices, 0, &stack, scratch, &shorter));
     CHECK(stack.free == 3 && shorter.count == 77);
-    mem_free(rows);
     mem_free(scratch);
     random_program_destroy(&p);
 }

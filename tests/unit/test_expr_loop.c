@@ -291,7 +291,8 @@ static void check_many_boxes(const struct expr_program *program, uint64_t key, c
     struct expr_interval box[EXPR_BOXES][EXPR_INPUT_COUNT], single[EXPR_OUTPUTS];
     double ends[2][3][EXPR_BOXES];
     struct expr_boxes boxes = {.count = 1 + (uint32_t)(key % EXPR_BOXES)};
-    void *rows = mem_alloc_aligned(64, expr_intervals_size(program) + expr_interval_size(program));
+    static _Alignas(64) struct expr_interval single_rows[EXPR_VALUES];
+    void *rows = mem_alloc_aligned(64, expr_intervals_size(program));
     for (uint32_t i = 0; i < boxes.count; i++) {
         random_box(random_combine(key, i), box[i]);
         for (int k = 0; k < 3; k++) {
@@ -305,7 +306,7 @@ static void check_many_boxes(const struct expr_program *program, uint64_t key, c
     }
     expr_evaluate_intervals(program, &boxes, bounds, NULL, rows);
     for (uint32_t i = 0; i < boxes.count; i++) {
-        expr_evaluate_interval(program, box[i], single, NULL, rows);
+        expr_evaluate_interval(program, box[i], single, NULL, single_rows);
         for (int k = 0; k < program->output_count; k++)
             if (!same_bounds(single[k], bounds[k].low[i], bounds[k].high[i], bounds[k].may_be_nan >> i & 1))
                 test_fail(__FILE__, __LINE__, "%s: %a..%a, not %a..%a", name, bounds[k].low[i], bounds[k].high[i],

@@ -92,24 +92,6 @@ static struct ray random_ray(struct test_random *random, double spread) {
     return ray;
 }
 
-enum { BATCH = 64 };
-
-/* How many rays of a batch meet something else than single. */
-static int batch_failures(const struct world *world, const struct ray rays[BATCH], struct world_scratch *scratch) {
-    struct hit hits[BATCH], single;
-    bool met[BATCH];
-    int wrong = 0;
-    world_nearest_batch(world, rays, BATCH, scratch, hits);
-    world_any_batch(world, rays, BATCH, scratch, met);
-    for (int i = 0; i < BATCH; i++) {
-        bool hit = world_nearest(world, &rays[i], scratch, &single);
-        bool same = hit == (hits[i].primitive != WORLD_NOTHING) && hit == met[i];
-        wrong += !same || (hit && !(single.primitive == hits[i].primitive && single.t == hits[i].t &&
-                                    memcmp(&single.normal, &hits[i].normal, sizeof single.normal) == 0));
-    }
-    return wrong;
-}
-
 static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays, uint64_t seed) {
     struct test_random random = {seed};
     for (int w = 0; w < worlds; w++) {
@@ -132,14 +114,8 @@ static void compare_with_brute_force(enum accel_kind accel, int worlds, int rays
         struct world_scratch scratch;
         CHECK(world_scratch_init(&scratch, &s.world));
         int wrong = 0;
-        struct ray batch[BATCH];
         for (int i = 0; i < rays; i++) {
             struct ray ray = random_ray(&random, spread);
-            batch[i % BATCH] = ray;
-            if (i / BATCH % 2 == 0) /* from one point: a packet */
-                batch[i % BATCH].origin = batch[0].origin;
-            if (i % BATCH == BATCH - 1 && i / BATCH % 8 < 2)
-                wrong += batch_failures(&s.world, batch, &scratch);
             uint32_t a = 0, b = 0;
             struct crossing x = {0}, y = {0};
             bool hit_a = world_nearest_crossing(&s.world, &ray, &scratch, &a, &x);

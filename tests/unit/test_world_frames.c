@@ -21,28 +21,20 @@ static struct ray random_ray(struct test_random *random) {
     return (struct ray){.origin = from, .direction = vec3_sub(to, from), .t_min = 0, .t_max = INFINITY};
 }
 
-/* How many of the rays meet something else. */
+/* How many rays meet something else. */
 static int differences(const struct world *a, const struct world *b, struct test_random *random) {
     enum { RAYS = 40 };
-    struct ray rays[RAYS];
-    struct hit of_a[RAYS], of_b[RAYS];
-    bool met_a[RAYS], met_b[RAYS];
     struct world_scratch scratch_a, scratch_b;
     int wrong = 0;
     CHECK(world_scratch_init(&scratch_a, a) && world_scratch_init(&scratch_b, b));
-    for (int i = 0; i < RAYS; i++)
-        rays[i] = random_ray(random);
-    world_nearest_batch(a, rays, RAYS, &scratch_a, of_a);
-    world_nearest_batch(b, rays, RAYS, &scratch_b, of_b);
-    world_any_batch(a, rays, RAYS, &scratch_a, met_a);
-    world_any_batch(b, rays, RAYS, &scratch_b, met_b);
     for (int i = 0; i < RAYS; i++) {
-        struct hit single;
-        bool hit = of_b[i].primitive != WORLD_NOTHING;
-        bool same = of_a[i].primitive == of_b[i].primitive && met_a[i] == met_b[i] && met_a[i] == hit &&
-                    world_nearest(a, &rays[i], &scratch_a, &single) == hit;
-        wrong += !same || (hit && (of_a[i].t != of_b[i].t || single.t != of_b[i].t ||
-                                   memcmp(&of_a[i].normal, &of_b[i].normal, sizeof of_a[i].normal) != 0));
+        struct ray ray = random_ray(random);
+        struct hit of_a, of_b;
+        bool hit = world_nearest(b, &ray, &scratch_b, &of_b);
+        bool same = world_nearest(a, &ray, &scratch_a, &of_a) == hit && world_any(a, &ray, &scratch_a) == hit &&
+                    world_any(b, &ray, &scratch_b) == hit;
+        wrong += !same || (hit && (of_a.primitive != of_b.primitive || of_a.t != of_b.t ||
+                                   memcmp(&of_a.normal, &of_b.normal, sizeof of_a.normal) != 0));
     }
     world_scratch_destroy(&scratch_a);
     world_scratch_destroy(&scratch_b);

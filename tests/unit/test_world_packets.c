@@ -1,8 +1,9 @@
-/* Batches of rays beside single ones, to the bit: over a scene with every kind of shape at rest, moving, in instances,
+/* Packets of rays beside single ones, to the bit: over a scene with every kind of shape at rest, moving, in instances,
  * combined, clipped and with holes, through every accelerator. */
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/script_host.h"
+#include "world/packet.h"
 #include "world/path.h"
 
 #include <string.h>
@@ -53,62 +54,65 @@ static const char scene[] =
 enum { RAYS = 3000 };
 static const enum accel_kind accels[] = {ACCEL_AUTO, ACCEL_GRID, ACCEL_BVH, ACCEL_KDTREE, ACCEL_NONE};
 
-/* Rays as after a scattering, mixed with bundles from one origin and rays at unusual places. */
-static void make_rays(struct test_random *random, const struct world *world, struct ray *rays) {
-    uint32_t fan = 0;
-    for (uint32_t i = 0; i < RAYS; i++) {
+/* Rays of one origin, time and begin, in any direction: count of them. */
+static void make_rays(struct test_random *random, struct ray *rays, uint32_t count) {
+    const struct ray first = {
+        .origin = {test_uniform(random, -9, 9), test_uniform(random, -9, 9), test_uniform(random, -9, 9)},
+        .t_min = test_uniform(random, 0, 1) < 0.2 ? test_uniform(random, 0, 2) : 0,
+        .time = test_uniform(random, 0, 1)};
+    for (uint32_t i = 0; i < count; i++) {
         struct ray *ray = &rays[i];
-        if (fan == 0) {
-            struct vec3 at = {test_uniform(random, -9, 9), test_uniform(random, -9, 9), test_uniform(random, -9, 9)};
-            double kind = test_uniform(random, 0, 1);
-            *ray = (struct ray){.origin = at, .t_max = INFINITY};
-            ray->time = test_uniform(random, 0, 1);
-            ray->t_min = kind < 0.2 ? test_uniform(random, 0, 2) : 0;
-            fan = kind < 0.85 ? 1 : 1 + (uint32_t)test_uniform(random, 0, 90);
-        } else {
-            *ray = rays[i - 1];
-        }
-        fan--;
+        *ray = first;
         ray->direction =
             vec3_make(test_uniform(random, -1, 1), test_uniform(random, -1, 1), test_uniform(random, -1, 1));
         if (test_uniform(random, 0, 1) < 0.1)
             ray->direction.y = 0;
         ray->t_max = test_uniform(random, 0, 1) < 0.3 ? test_uniform(random, 0, 12) : INFINITY;
-        ray->skip_primitive =
-            test_uniform(random, 0, 1) < 0.1 ? 1 + (uint32_t)test_uniform(random, 0, world->primitive_count) : 0;
         ray->footprint = (struct footprint){test_uniform(random, 0, 0.1), 0.01};
     }
 }
 
-/* In batches of any length, including 0, so that they begin and end anywhere. */
-static void check_batches(const struct world *world, const char *what) {
-    static struct ray rays[RAYS];
-    static struct hit hits[RAYS], single;
-    static bool met[RAYS];
+static uint64_t trace_packet(const struct world *world, const struct ray *rays, uint32_t count,
+                             struct world_scratch *scratch, struct packet_answer *answers) {
+    struct ray_packet packet = {.origin = rays->origin, .t_min = rays->t_min, .time = rays->time, .count = count};
+    for (uint32_t i = 0; i < count; i++) {
+        packet.direction[0][i] = rays[i].direction.x;
+        packet.direction[1][i] = rays[i].direction.y;
+        packet.direction[2][i] = rays[i].direction.z;
+        packet.t_max[i] = rays[i].t_max;
+    }
+    ray_packet_pad(&packet);
+    return world_nearest_packet(world, &packet, scratch, answers);
+}
+
+/* Packets of 1 to 64 rays, and the complete hits of all. */
+static void check_packets(const struct world *world, const char *what) {
     struct test_random random = {world->accel.kind + UINT64_C(1)};
     struct world_scratch scratch;
-    uint32_t wrong = 0, found = 0, blocked = 0;
-    make_rays(&random, world, rays);
+    uint32_t wrong = 0, found = 0, rays_traced = 0;
     CHECK(world_scratch_init(&scratch, world));
-    memset(hits, 0, sizeof hits);
-    for (uint32_t first = 0, count; first < RAYS; first += count) {
-        count = (uint32_t)test_uniform(&random, 0, first % 3 ? 40 : 900);
-        count = count > RAYS - first ? RAYS - first : count;
-        world_nearest_batch(world, rays + first, count, &scratch, hits + first);
-        world_any_batch(world, rays + first, count, &scratch, met + first);
-    }
-    for (uint32_t i = 0; i < RAYS; i++) {
-        memset(&single, 0, sizeof single);
-        bool hit = world_nearest(world, &rays[i], &scratch, &single);
-        bool same = hit == (hits[i].primitive != WORLD_NOTHING) && world_any(world, &rays[i], &scratch) == met[i];
-        found += hit;
-        blocked += met[i];
-        wrong += !same || (hit && memcmp(&single, &hits[i], sizeof single) != 0);
+    while (rays_traced < RAYS) {
+        struct ray rays[PACKET_RAYS];
+        struct packet_answer answers[PACKET_RAYS];
+        struct hit hit, single;
+        uint32_t count = 1 + (uint32_t)test_uniform(&random, 0, PACKET_RAYS);
+        make_rays(&random, rays, count);
+        uint64_t met = trace_packet(world, rays, count, &scratch, answers);
+        for (uint32_t i = 0; i < count; i++) {
+            memset(&hit, 0, sizeof hit);
+            memset(&single, 0, sizeof single);
+            bool is_hit = world_nearest(world, &rays[i], &scratch, &single);
+            if (met >> i & 1)
+                world_describe(world, &rays[i], answers[i].primitive, &answers[i].crossing, &hit);
+            found += is_hit;
+            wrong += is_hit != (met >> i & 1) || (is_hit && memcmp(&single, &hit, sizeof single) != 0);
+        }
+        rays_traced += count;
     }
     if (wrong > 0)
-        test_fail(__FILE__, __LINE__, "%s: %u of %d rays differ from the same rays alone", what, wrong, RAYS);
-    if (found < RAYS / 10 || blocked < RAYS / 10 || found == RAYS)
-        test_fail(__FILE__, __LINE__, "%s: %u rays meet something, %u are stopped", what, found, blocked);
+        test_fail(__FILE__, __LINE__, "%s: %u of %u rays differ from the same rays alone", what, wrong, rays_traced);
+    if (found < RAYS / 10 || found == rays_traced)
+        test_fail(__FILE__, __LINE__, "%s: %u rays meet something", what, found);
     world_scratch_destroy(&scratch);
 }
 
@@ -136,7 +140,7 @@ static void check_scene(struct listener *listener, const struct render_request *
                                           .warn = hear_of_scene};
         if (world_build(&world, &input, &arena, pool, &error)) {
             (void)snprintf(what, sizeof what, "accelerator %d", (int)accels[k]);
-            check_batches(&world, what);
+            check_packets(&world, what);
             world_destroy(&world);
         } else {
             test_fail(__FILE__, __LINE__, "%s", error.text);
@@ -147,7 +151,7 @@ static void check_scene(struct listener *listener, const struct render_request *
 }
 
 /* Shapes of every kind by construction: test_world.c. */
-TEST(batches_of_rays_meet_what_single_rays_meet_with_every_accelerator) {
+TEST(packets_of_rays_meet_what_single_rays_meet_with_every_accelerator) {
     static struct listener listener = {.seen = check_scene};
     static const float holes[12] = {0, 0, 0, 1, 1, 1, 0.7F, 0.7F, 0.7F, 0.25F, 0.25F, 0.25F};
     char path[600], bytes[64];

@@ -1,6 +1,6 @@
 /* Shared by the files of this module. */
-#ifndef GRAY_LIGHT_LIGHT_INTERNAL_H
-#define GRAY_LIGHT_LIGHT_INTERNAL_H
+#ifndef GRAY_LIGHT_LIGHT_SHAPES_INTERNAL_H
+#define GRAY_LIGHT_LIGHT_SHAPES_INTERNAL_H
 
 #include "light/light.h"
 #include "light/light_sampler.h"

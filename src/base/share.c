@@ -1,0 +1,78 @@
+/* Sharing through memfd: a file without a name in memory. Its pages are allocated when it is created (fallocate), since
+ * a missing page would later kill the process that touches it. */
+#define _GNU_SOURCE
+#include "base/share.h"
+
+#include "base/fault.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool no_memory(struct error *error, size_t size, const char *why) {
+    return error_set(error, ERROR_MACHINE, "out of memory: the picture needs %.1f MB: %s", 1e-6 * (double)size, why);
+}
+
+/* A size above the machine's memory would not fail in time: the kernel hands out pages until it has to kill a process.
+ */
+static bool fits_machine(size_t size) {
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    return pages <= 0 || page <= 0 || size / (size_t)page < (size_t)pages;
+}
+
+static bool map_block(struct share *share, struct error *error) {
+    void *block = fault_now(FAULT_OF_CALL)
+                      ? MAP_FAILED
+                      : mmap(NULL, share->size, PROT_READ | PROT_WRITE, MAP_SHARED, share->descriptor, 0);
+    if (block == MAP_FAILED) {
+        no_memory(error, share->size, strerror(errno));
+        (void)close(share->descriptor);
+        *share = (struct share){0};
+        return false;
+    }
+    /* Shared only through the descriptor, not with processes forked later. */
+    (void)madvise(block, share->size, MADV_DONTFORK);
+    share->block = block;
+    return true;
+}
+
+bool share_create(struct share *share, size_t size, struct error *error) {
+    *share = (struct share){.size = size ? size : 1};
+    if (!fits_machine(share->size))
+        return no_memory(error, size, "this machine has less in all");
+    share->descriptor = MAY_FAIL(memfd_create("gray-film", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (share->descriptor < 0)
+        return error_set(error, ERROR_MACHINE, "the memory of the picture cannot be shared: %s", strerror(errno));
+    int failed;
+    do {
+        failed = MAY_FAIL(fallocate(share->descriptor, 0, 0, (off_t)share->size));
+    } while (failed != 0 && errno == EINTR);
+    if (failed != 0 || fcntl(share->descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
+        no_memory(error, size, strerror(errno));
+        (void)close(share->descriptor);
+        return false;
+    }
+    return map_block(share, error);
+}
+
+bool share_attach(struct share *share, int descriptor, size_t size, struct error *error) {
+    *share = (struct share){.size = size ? size : 1, .descriptor = descriptor};
+    struct stat status;
+    if (fstat(descriptor, &status) != 0 || (uint64_t)status.st_size < share->size) {
+        (void)close(descriptor);
+        return error_set(error, ERROR_MACHINE, "the shared picture has the wrong size");
+    }
+    return map_block(share, error);
+}
+
+void share_destroy(struct share *share) {
+    if (!share->block)
+        return;
+    (void)munmap(share->block, share->size);
+    (void)close(share->descriptor);
+    *share = (struct share){0};
+}
