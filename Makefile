@@ -22,7 +22,7 @@ Q = $(if $(V),,@)
 SILENT := $(findstring s,$(firstword -$(MAKEFLAGS)))
 say = $(if $(V)$(SILENT),,@printf '  %-6s %s\n' '$(1)' '$(2)')
 
-MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world photon render script session inspect output viewer host
+MODULES = base math image settings film denoise expr accel geometry mesh shape csg material light scene formats world photon render sandbox record call compat script session inspect output viewer host
 
 # -Wswitch-enum: a switch over a closed set names every member, also where it has a default.
 WARNINGS = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wswitch-enum -Wcast-qual
@@ -159,7 +159,7 @@ $(BUILD)/src/expr/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq
 $(BUILD)/src/denoise/%_avx2.o: override CFLAGS += -mavx2 -fno-trapping-math
 $(BUILD)/src/denoise/%_avx512.o: override CFLAGS += -mavx512f -mavx512vl -mavx512dq -mavx512bw -fno-trapping-math
 # Its functions are the C library's own names: the compiler must not see calls of itself in them.
-$(BUILD)/src/script/sandbox.o: override CFLAGS += -fno-builtin
+$(BUILD)/src/sandbox/libraries.o: override CFLAGS += -fno-builtin
 
 # Tests of the release build are optimized less: they compile in half the time, and what they test is optimized as ever.
 $(TEST_OBJECTS): private override CFLAGS := $(CFLAGS:-O3=-O1)

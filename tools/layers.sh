@@ -25,9 +25,9 @@ BEGIN {
     owner[3] = "^src/base/(fault|file|mem|share)[.]c$"
     rule[3] = "mappings outside base/"
     calls[4] = "sin|cos|tan|asin|acos|atan|atan2|exp|exp2|log|log2|log10|pow|cbrt|hypot|sincos|fma"
-    owner[4] = "^src/script/sandbox[.]c$"
+    owner[4] = "^src/sandbox/libraries[.]c$"
     rule[4] = "elementary functions come from math/elementary"
-    apart["session"] = apart["output"] = " scene world script "
+    apart["session"] = apart["output"] = " scene world sandbox record call compat script "
     for (i = 1; i <= kinds; i++)
         calls[i] = "(^|[^A-Za-z0-9_.>])(" calls[i] ")[ \t]*[(]"
 }

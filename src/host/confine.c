@@ -8,6 +8,7 @@
 #define _GNU_SOURCE
 #include "host/confine.h"
 
+#include "compat/dialect.h"
 #include "script/script.h"
 
 #include "base/fault.h"
@@ -100,7 +101,7 @@ static bool add_rules(int ruleset, const struct options *options, const struct p
     }
     /* A scene, or a dialect, that is a link to somewhere else. */
     char dialect[4096];
-    if (script_dialect_file(&options->script, dialect, sizeof dialect) && file_is_regular(dialect))
+    if (dialect_file(&options->script, dialect, sizeof dialect) && file_is_regular(dialect))
         ok = ok && add_path(ruleset, dialect, LANDLOCK_ACCESS_FS_READ_FILE);
     for (int i = 0; i < options->script_count; i++) {
         if (file_is_regular(options->scripts[i]))

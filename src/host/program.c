@@ -15,7 +15,7 @@
 #include "image/exr.h"
 #include "image/jpeg_read.h"
 #include "output/merge.h"
-#include "script/script.h"
+#include "script/document.h"
 #include "session/options.h"
 #include "session/text.h"
 

@@ -1,11 +1,17 @@
 /* The one C function behind every gr function and node method: reads the arguments that the table's row describes, runs
  * the row's plain C function, and returns its result. Names that do not exist are errors with a suggestion, or with
  * --lenient ghosts. */
-#include "script/lenient_internal.h"
+#include "script/dispatch_internal.h"
 
 #include "base/version.h"
+#include "call/arguments.h"
+#include "compat/lenient.h"
+#include "compat/lenient_handles.h"
 #include "formats/font.h"
-#include "script/record_internal.h"
+#include "record/record.h"
+#include "sandbox/suggestion.h"
+#include "script/gr_frames_internal.h"
+#include "script/table_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -89,9 +95,9 @@ static int answer_glyphs(lua_State *L, const struct font_text *text) {
     lua_setfield(L, -2, "line");
     return 1;
 }
-_Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in dispatch_answer()");
+_Static_assert(RESULT_FRAMES == 11, "a new result kind needs its line in answer()");
 
-int dispatch_answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
+static int answer(lua_State *L, const struct script_function *function, const struct script_result *result) {
     switch (function->result) {
     case RESULT_NOTHING:
         return 0;
@@ -130,12 +136,12 @@ int dispatch_answer(lua_State *L, const struct script_function *function, const 
 
 /* The node before the colon. */
 static struct node *self_of(struct script_context *c, const struct script_function *function) {
-    const struct handle *handle = handle_at(c->lua, 1);
+    const struct handle *handle = handle_at(c->sandbox.lua, 1);
     if (!handle || handle->type != HANDLE_NODE) {
-        const char *given = value_words(c->lua, 1);
+        const char *given = value_words(c->sandbox.lua, 1);
         char title[96];
-        c->function = NULL;
-        context_raise(c, "%s must be called with a colon on a node, as in n:%s(...), not on %s",
+        (void)sandbox_enter(c->sandbox.lua);
+        sandbox_raise(&c->sandbox, "%s must be called with a colon on a node, as in n:%s(...), not on %s",
                       function_title(function, title), function->name, given);
     }
     return handle->pointer;
@@ -153,37 +159,37 @@ static int dispatch(lua_State *L) {
     const struct script_function *function = lua_touserdata(L, lua_upvalueindex(1));
     struct script_context *c = context_of(L);
     struct script_value args[PARAMETER_LIMIT];
-    if (c->ended || c->fatal.kind != ERROR_NONE) /* a finalizer of the script that runs after its end */
-        context_raise_fatal(L);
-    c->lua = L;
-    if (c->recorder->busy) {
+    if (c->sandbox.ended || c->sandbox.fatal.kind != ERROR_NONE) /* a finalizer of the script that runs after its end */
+        sandbox_raise_fatal(L);
+    c->sandbox.lua = L;
+    const char *activity = record_activity(L);
+    if (activity) {
         char title[96];
-        luaL_error(L, "%s cannot be called by a %s", function_title(function, title),
-                   c->recorder->samples ? "tone curve" : "function that is recorded");
+        luaL_error(L, "%s cannot be called by a %s", function_title(function, title), activity);
     }
     memset(args, 0, (size_t)function->parameter_count * sizeof *args);
-    c->function = function;
-    c->subject = NULL;
-    arena_reset(&c->call);
+    context_begin_call(c, function);
     c->scene.line = 0;
-    if (c->lenient)
-        return lenient_call(L, c, function);
+    struct script_result result = {0};
+    if (c->lenient) {
+        int substitutes = lenient_call(c, function, &result);
+        return substitutes >= 0 ? substitutes : answer(L, function, &result);
+    }
     int first = 1;
     if (function->owner == OWNER_NODE) {
         struct node *node = self_of(c, function);
         args[0] = (struct script_value){.given = true, .node = node};
-        c->subject = node->name;
+        c->sandbox.running.subject = node->name;
         first = 2;
     }
     (void)arguments_read(c, function, first, args); /* there are no ghosts */
     if (lacks_material(function, args))
         context_note_line(c);
 
-    struct script_result result = {0};
     struct error error = {0};
     if (!function->run(c, args, &result, &error))
-        context_raise_error(c, &error);
-    return dispatch_answer(L, function, &result);
+        sandbox_raise_error(&c->sandbox, &error);
+    return answer(L, function, &result);
 }
 
 /* Pushes the function of that owner whose name has the same letters, as in addChild; false: there is none. */
@@ -206,19 +212,19 @@ static bool push_alike(lua_State *L, enum owner owner, const char *name) {
 
 /* With --lenient: pushes a function of almost that name, or a ghost, with a warning. */
 static void push_substitute(struct script_context *c, enum owner owner, const char *name) {
-    const char *before = owner == OWNER_GR ? "gr." : "node:";
-    c->function = NULL;
-    if (push_alike(c->lua, owner, name)) {
-        context_warn(c, "%s%.100s exists only in another spelling", before, name);
+    const char *before = owner_words(owner);
+    c->sandbox.running.name = NULL;
+    if (push_alike(c->sandbox.lua, owner, name)) {
+        sandbox_warn(&c->sandbox, "%s%.100s exists only in another spelling", before, name);
         return;
     }
-    context_warn(c, "%s%.100s does not exist and is ignored", before, name);
-    lenient_push_ghost(c->lua, name, owner == OWNER_NODE);
+    sandbox_warn(&c->sandbox, "%s%.100s does not exist and is ignored", before, name);
+    lenient_push_ghost(c->sandbox.lua, name, owner == OWNER_NODE);
 }
 
 _Noreturn static void no_such_name(struct script_context *c, enum owner owner, const char *name) {
-    const char *before = owner == OWNER_GR ? "gr." : "node:";
-    c->function = NULL;
+    const char *before = owner_words(owner);
+    c->sandbox.running.name = NULL;
     struct suggestion suggestion;
     suggest_begin(&suggestion, name);
     for (int k = 0; k < function_count(); k++)
@@ -227,15 +233,16 @@ _Noreturn static void no_such_name(struct script_context *c, enum owner owner, c
     for (size_t k = 0; owner == OWNER_GR && value_function_at(k); k++)
         suggest_offer(&suggestion, value_function_at(k)->name);
     if (suggestion.best)
-        context_raise(c, "%s%.100s does not exist; did you mean %s%s?", before, name, before, suggestion.best);
-    context_raise(c, "%s%.100s does not exist", before, name);
+        sandbox_raise(&c->sandbox, "%s%.100s does not exist; did you mean %s%s?", before, name, before,
+                      suggestion.best);
+    sandbox_raise(&c->sandbox, "%s%.100s does not exist", before, name);
 }
 
 /* gr.NAME for a name that does not exist. With --lenient the ghost is stored in the table, so there is one warning. */
 static int missing_function(lua_State *L) {
     struct script_context *c = context_of(L);
-    c->lua = L;
-    c->subject = NULL;
+    c->sandbox.lua = L;
+    c->sandbox.running.subject = NULL;
     if (lua_type(L, 2) != LUA_TSTRING) {
         lua_pushnil(L);
         return 1;
@@ -257,10 +264,10 @@ static int node_index(lua_State *L) {
     if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
         return 1;
     struct script_context *c = context_of(L);
-    c->lua = L;
+    c->sandbox.lua = L;
     const struct handle *handle = handle_at(L, 1);
     assert(handle && handle->type == HANDLE_NODE); /* scripts cannot reach the metatable */
-    c->subject = ((const struct node *)handle->pointer)->name;
+    c->sandbox.running.subject = ((const struct node *)handle->pointer)->name;
     if (lua_type(L, 2) != LUA_TSTRING)
         return 1;
     if (!c->lenient)
@@ -279,16 +286,6 @@ static int node_index(lua_State *L) {
 void dispatch_push(lua_State *L, const struct script_function *function) {
     lua_pushlightuserdata(L, (void *)(uintptr_t)function);
     lua_pushcclosure(L, dispatch, 1);
-}
-
-void dispatch_push_methods(lua_State *L) {
-    lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key(HANDLE_NODE));
-    lua_getfield(L, -1, "__index");
-    const char *methods = lua_getupvalue(L, -1, 1);
-    assert(methods); /* of node_index */
-    (void)methods;
-    lua_replace(L, -3);
-    lua_pop(L, 1);
 }
 
 static void push_functions(lua_State *L, enum owner owner) {
@@ -313,7 +310,15 @@ void dispatch_open(lua_State *L) {
     push_functions(L, OWNER_NODE);
     set_index(L, handle_key(HANDLE_NODE), node_index, 1);
 
+    if (context_of(L)->lenient) {
+        push_functions(L, OWNER_GR);
+        context_keep_functions(L);
+    }
     push_functions(L, OWNER_GR);
+    for (size_t k = 0; value_function_at(k); k++) {
+        lua_pushcfunction(L, value_function_at(k)->run);
+        lua_setfield(L, -2, value_function_at(k)->name);
+    }
     lua_pushstring(L, GRAY_VERSION);
     lua_setfield(L, -2, "version");
     lua_createtable(L, 0, 2);

@@ -1,7 +1,10 @@
 /* The table as documents: the manual page's list of functions (plain text, 100 columns) and the annotation file for
  * editors (LuaLS, `---@meta`). Text grows in the caller's arena; NULL without memory. */
+#include "script/document.h"
+
+#include "base/arena.h"
 #include "base/unreachable.h"
-#include "script/context_internal.h"
+#include "script/table_internal.h"
 
 #include <assert.h>
 #include <math.h>

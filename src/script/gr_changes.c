@@ -1,17 +1,35 @@
 /* Edits of the window, as calls: they are recorded, and applied to every picture that is rendered afterwards. The
  * script's own tree is not changed permanently. */
-#include "script/bindings_internal.h"
-#include "script/context_internal.h"
+#include "script/gr_changes_internal.h"
+
+#include "script/rows_internal.h"
+#include "script/script_internal.h"
 
 #include <math.h>
 #include <string.h>
 
+#define SERIAL_HELP "Its number in order of creation, from 0; nodes added in the window count down from 4294967295."
+#define CHANGED_NAME "Name of the node; gray ignores a node with another name."
+#define SERIALS IN_RANGE(0, 4294967295.0)
+#define PICTURE_HELP "The file name that gr.render has for the picture."
+
+/* gr.change_view and gr.change_exposure: of the picture of that file name. */
+struct changed_view {
+    const char *picture;
+    bool has_camera, has_exposure;
+    struct camera camera;
+    double exposure;
+    struct changed_view *next;
+};
+
 /* Adds an entry, set to zero. */
 static struct change *note(struct script_context *context, enum change_kind kind, const char *name, double serial,
                            struct error *error) {
-    if (context->change_count == context->change_room) {
-        uint32_t room = context->change_room ? 2 * context->change_room : 16;
-        struct change *more = room <= CHANGE_LIMIT ? arena_alloc_array(&context->keep, room, sizeof *more) : NULL;
+    struct script_changes *changes = &script_of(context)->changes;
+    if (changes->count == changes->room) {
+        uint32_t room = changes->room ? 2 * changes->room : 16;
+        struct change *more =
+            room <= CHANGE_LIMIT ? arena_alloc_array(&context->sandbox.keep, room, sizeof *more) : NULL;
         if (!more) {
             if (room > CHANGE_LIMIT)
                 error_set(error, ERROR_SCENE, "a script makes more than %d changes", CHANGE_LIMIT);
@@ -19,12 +37,12 @@ static struct change *note(struct script_context *context, enum change_kind kind
                 error_no_memory(error, "the changes of the scene");
             return NULL;
         }
-        if (context->change_count > 0)
-            memcpy(more, context->changes, context->change_count * sizeof *more);
-        context->changes = more;
-        context->change_room = room;
+        if (changes->count > 0)
+            memcpy(more, changes->list, changes->count * sizeof *more);
+        changes->list = more;
+        changes->room = room;
     }
-    struct change *change = &context->changes[context->change_count++];
+    struct change *change = &changes->list[changes->count++];
     *change = (struct change){.kind = kind, .serial = (uint32_t)serial};
     size_t length = name ? strlen(name) : 0;
     memcpy(change->name, name ? name : "", length < sizeof change->name ? length : sizeof change->name - 1);
@@ -37,8 +55,17 @@ static void put(double *numbers, struct vec3 v) {
     numbers[2] = v.z;
 }
 
-bool gr_change_node(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+enum { CHANGENODE_NAME, CHANGENODE_SERIAL, CHANGENODE_MATRIX };
+static const struct script_parameter change_node_parameters[] = {
+    [CHANGENODE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGENODE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGENODE_MATRIX] =
+        {"matrix", KIND_NUMBERS, 0, ANY, NULL, NULL,
+         "Three rows of a matrix, 12 numbers, applied after its own transforms, in the space of its parent."},
+};
+
+static bool gr_change_node(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     (void)result;
     const struct script_value *matrix = &args[CHANGENODE_MATRIX];
     struct affine map;
@@ -55,27 +82,51 @@ bool gr_change_node(struct script_context *context, const struct script_value *a
     return change != NULL;
 }
 
-bool gr_change_delete(struct script_context *context, const struct script_value *args, struct script_result *result,
-                      struct error *error) {
+enum { CHANGEGONE_NAME, CHANGEGONE_SERIAL };
+static const struct script_parameter change_delete_parameters[] = {
+    [CHANGEGONE_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGEGONE_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+};
+
+static bool gr_change_delete(struct script_context *context, const struct script_value *args,
+                             struct script_result *result, struct error *error) {
     (void)result;
     return note(context, CHANGE_GONE, args[CHANGEGONE_NAME].text, args[CHANGEGONE_SERIAL].number, error) != NULL;
 }
 
-bool gr_change_add(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+enum { CHANGEADD_NAME, CHANGEADD_SERIAL, CHANGEADD_SHAPE, CHANGEADD_COLOUR, CHANGEADD_SOURCE };
+static const struct script_parameter change_add_parameters[] = {
+    [CHANGEADD_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, "Name of the parent node."},
+    [CHANGEADD_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGEADD_SHAPE] = {"shape", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(ADDED), NULL, NULL,
+                         "Shape of the new node, about the size of a unit sphere, or a copy of a node."},
+    [CHANGEADD_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "{0.7, 0.7, 0.7}", "Its colour."},
+    [CHANGEADD_SOURCE] = {"source", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
+                          "For a copy: the number of the node to copy."},
+};
+
+static bool gr_change_add(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_ADD, args[CHANGEADD_NAME].text, args[CHANGEADD_SERIAL].number, error);
     if (!change)
         return false;
     change->added = (enum added_kind)args[CHANGEADD_SHAPE].choice;
-    change->number = context->added++;
+    change->number = script_of(context)->changes.added++;
     change->source = (uint32_t)args[CHANGEADD_SOURCE].number;
     put(change->numbers, args[CHANGEADD_COLOUR].given ? args[CHANGEADD_COLOUR].vector : vec3_all(0.7));
     return true;
 }
 
-bool gr_change_material(struct script_context *context, const struct script_value *args, struct script_result *result,
-                        struct error *error) {
+enum { CHANGEMATERIAL_SERIAL, CHANGEMATERIAL_COLOUR };
+static const struct script_parameter change_material_parameters[] = {
+    [CHANGEMATERIAL_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                               "Number of the material in order of creation, from 1."},
+    [CHANGEMATERIAL_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "New kd of its base material."},
+};
+
+static bool gr_change_material(struct script_context *context, const struct script_value *args,
+                               struct script_result *result, struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_MATERIAL, NULL, args[CHANGEMATERIAL_SERIAL].number, error);
     if (change)
@@ -83,8 +134,18 @@ bool gr_change_material(struct script_context *context, const struct script_valu
     return change != NULL;
 }
 
-bool gr_change_look(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+enum { CHANGELOOK_SERIAL, CHANGELOOK_PART, CHANGELOOK_VALUE };
+static const struct script_parameter change_look_parameters[] = {
+    [CHANGELOOK_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL,
+                           "Number of the material in order of creation, from 1."},
+    [CHANGELOOK_PART] = {"part", KIND_CHOICE, 0, 0, 0, LIST_BLANKS(MATERIAL_PART_LIST), NULL, NULL,
+                         "Argument of gr.material to change in its base material."},
+    [CHANGELOOK_VALUE] = {"value", KIND_NUMBERS, 0, ANY, NULL, NULL,
+                          "New value: three numbers for a colour, else one."},
+};
+
+static bool gr_change_look(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     (void)result;
     enum material_part part = (enum material_part)args[CHANGELOOK_PART].choice;
     const struct script_value *value = &args[CHANGELOOK_VALUE];
@@ -107,19 +168,38 @@ bool gr_change_look(struct script_context *context, const struct script_value *a
     return true;
 }
 
-bool gr_change_own(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+enum { CHANGEOWN_NAME, CHANGEOWN_SERIAL, CHANGEOWN_LIKE };
+static const struct script_parameter change_own_parameters[] = {
+    [CHANGEOWN_NAME] = {"name", KIND_TEXT, 0, ANY, NULL, NULL, CHANGED_NAME},
+    [CHANGEOWN_SERIAL] = {"serial", KIND_WHOLE, 0, SERIALS, NULL, NULL, SERIAL_HELP},
+    [CHANGEOWN_LIKE] = {"like", KIND_WHOLE, OPTIONAL, SERIALS, NULL, "0",
+                        "For a shape without a material: number of the material to copy; 0: plain gray."},
+};
+
+static bool gr_change_own(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_OWN, args[CHANGEOWN_NAME].text, args[CHANGEOWN_SERIAL].number, error);
     if (!change)
         return false;
-    change->number = context->owned++;
+    change->number = script_of(context)->changes.owned++;
     change->source = (uint32_t)args[CHANGEOWN_LIKE].number;
     return true;
 }
 
-bool gr_change_light(struct script_context *context, const struct script_value *args, struct script_result *result,
-                     struct error *error) {
+enum { CHANGELIGHT_NUMBER, CHANGELIGHT_MOVE, CHANGELIGHT_FACTOR, CHANGELIGHT_TURN, CHANGELIGHT_COLOUR };
+static const struct script_parameter change_light_parameters[] = {
+    [CHANGELIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                            "Index in the list of lights of gr.render, from 1."},
+    [CHANGELIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "Translation."},
+    [CHANGELIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}", "Factor of its colour."},
+    [CHANGELIGHT_TURN] = {"linear", KIND_NUMBERS, OPTIONAL, ANY, NULL, "none",
+                          "Three rows of a matrix, 9 numbers: rotation and scale about its position."},
+    [CHANGELIGHT_COLOUR] = {"colour", KIND_COLOUR, OPTIONAL, ANY, NULL, "its own", "New colour, before the factor."},
+};
+
+static bool gr_change_light(struct script_context *context, const struct script_value *args,
+                            struct script_result *result, struct error *error) {
     (void)result;
     const struct script_value *turn = &args[CHANGELIGHT_TURN], *colour = &args[CHANGELIGHT_COLOUR];
     if (turn->given && turn->count != TURN_NUMBERS)
@@ -140,14 +220,26 @@ bool gr_change_light(struct script_context *context, const struct script_value *
     return true;
 }
 
-bool gr_change_delete_light(struct script_context *context, const struct script_value *args,
-                            struct script_result *result, struct error *error) {
+enum { CHANGEDARK_NUMBER };
+static const struct script_parameter change_delete_light_parameters[] = {
+    [CHANGEDARK_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                           "Index in the list of lights of gr.render, from 1."},
+};
+
+static bool gr_change_delete_light(struct script_context *context, const struct script_value *args,
+                                   struct script_result *result, struct error *error) {
     (void)result;
     return note(context, CHANGE_DARK, NULL, args[CHANGEDARK_NUMBER].number, error) != NULL;
 }
 
-bool gr_change_add_light(struct script_context *context, const struct script_value *args, struct script_result *result,
-                         struct error *error) {
+enum { CHANGENEWLIGHT_POSITION, CHANGENEWLIGHT_COLOUR };
+static const struct script_parameter change_add_light_parameters[] = {
+    [CHANGENEWLIGHT_POSITION] = {"position", KIND_POINT, 0, ANY, NULL, NULL, "Where it is."},
+    [CHANGENEWLIGHT_COLOUR] = {"colour", KIND_COLOUR, 0, ANY, NULL, NULL, "Its colour."},
+};
+
+static bool gr_change_add_light(struct script_context *context, const struct script_value *args,
+                                struct script_result *result, struct error *error) {
     (void)result;
     struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
     if (!change)
@@ -157,8 +249,17 @@ bool gr_change_add_light(struct script_context *context, const struct script_val
     return true;
 }
 
-bool gr_change_copy_light(struct script_context *context, const struct script_value *args, struct script_result *result,
-                          struct error *error) {
+enum { CHANGECOPYLIGHT_NUMBER, CHANGECOPYLIGHT_MOVE, CHANGECOPYLIGHT_FACTOR };
+static const struct script_parameter change_copy_light_parameters[] = {
+    [CHANGECOPYLIGHT_NUMBER] = {"number", KIND_WHOLE, 0, 1, 4294967295.0, NULL, NULL, NULL,
+                                "Index in the list of lights of gr.render, from 1."},
+    [CHANGECOPYLIGHT_MOVE] = {"move", KIND_TRIPLE, 0, ANY, NULL, NULL, "Translation of the copy."},
+    [CHANGECOPYLIGHT_FACTOR] = {"factor", KIND_TRIPLE, OPTIONAL, ANY, NULL, "{1, 1, 1}",
+                                "Factor of the colour of the copy."},
+};
+
+static bool gr_change_copy_light(struct script_context *context, const struct script_value *args,
+                                 struct script_result *result, struct error *error) {
     const struct script_value *factor = &args[CHANGECOPYLIGHT_FACTOR];
     (void)result;
     struct change *change = note(context, CHANGE_ADD_LIGHT, NULL, 0, error);
@@ -171,19 +272,29 @@ bool gr_change_copy_light(struct script_context *context, const struct script_va
 }
 
 static struct changed_view *note_view(struct script_context *context, const char *picture, struct error *error) {
-    struct changed_view *view = arena_alloc(&context->keep, sizeof *view);
-    const char *name = arena_copy_text(&context->keep, picture, strlen(picture));
+    struct changed_view *view = arena_alloc(&context->sandbox.keep, sizeof *view);
+    const char *name = arena_copy_text(&context->sandbox.keep, picture, strlen(picture));
     if (!view || !name) {
         error_no_memory(error, "the changes of the scene");
         return NULL;
     }
-    *view = (struct changed_view){.picture = name, .next = context->views};
-    context->views = view;
+    *view = (struct changed_view){.picture = name, .next = script_of(context)->changes.views};
+    script_of(context)->changes.views = view;
     return view;
 }
 
-bool gr_change_view(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+enum { CHANGEVIEW_PICTURE, CHANGEVIEW_EYE, CHANGEVIEW_VIEW, CHANGEVIEW_UP, CHANGEVIEW_FOV };
+static const struct script_parameter change_view_parameters[] = {
+    [CHANGEVIEW_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
+    [CHANGEVIEW_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
+    [CHANGEVIEW_VIEW] = {"view", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction of view."},
+    [CHANGEVIEW_UP] = {"up", KIND_DIRECTION, 0, ANY, NULL, NULL, "Direction that is up in the picture."},
+    [CHANGEVIEW_FOV] = {"fov", KIND_NUMBER, LOW_OPEN | HIGH_OPEN, IN_RANGE(0, 180), "degrees", NULL,
+                        "Full vertical angle of view."},
+};
+
+static bool gr_change_view(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     (void)result;
     struct changed_view *view = note_view(context, args[CHANGEVIEW_PICTURE].text, error);
     if (!view)
@@ -194,8 +305,14 @@ bool gr_change_view(struct script_context *context, const struct script_value *a
     return true;
 }
 
-bool gr_change_exposure(struct script_context *context, const struct script_value *args, struct script_result *result,
-                        struct error *error) {
+enum { CHANGEEXPOSURE_PICTURE, CHANGEEXPOSURE_STOPS };
+static const struct script_parameter change_exposure_parameters[] = {
+    [CHANGEEXPOSURE_PICTURE] = {"picture", KIND_TEXT, 0, ANY, NULL, NULL, PICTURE_HELP},
+    [CHANGEEXPOSURE_STOPS] = {"stops", KIND_NUMBER, 0, IN_RANGE(-100, 100), "stops", NULL, "New exposure."},
+};
+
+static bool gr_change_exposure(struct script_context *context, const struct script_value *args,
+                               struct script_result *result, struct error *error) {
     (void)result;
     struct changed_view *view = note_view(context, args[CHANGEEXPOSURE_PICTURE].text, error);
     if (!view)
@@ -208,7 +325,7 @@ bool gr_change_exposure(struct script_context *context, const struct script_valu
 /* The latest of each kind is used. */
 static void change_views(const struct script_context *context, struct render_request *request) {
     bool camera = false, exposure = false;
-    for (const struct changed_view *view = context->views; view; view = view->next) {
+    for (const struct changed_view *view = script_of(context)->changes.views; view; view = view->next) {
         if (strcmp(view->picture, request->file) != 0)
             continue;
         if (view->has_camera && !camera) {
@@ -225,24 +342,56 @@ static void change_views(const struct script_context *context, struct render_req
 
 static void warn_once(void *user, const char *text) {
     struct script_context *context = user;
-    if (!context->changes_reported)
-        context_warn(context, "%s", text);
+    if (!script_of(context)->changes.reported)
+        sandbox_warn(&context->sandbox, "%s", text);
 }
 
 bool changes_begin(struct script_context *context, struct render_request *request, struct changed_scene *changed,
                    struct error *error) {
+    struct script_changes *changes = &script_of(context)->changes;
     *changed = (struct changed_scene){0};
-    request->added = context->added;
-    request->owned = context->owned;
+    request->added = changes->added;
+    request->owned = changes->owned;
     change_views(context, request);
-    if (context->change_count == 0)
+    if (changes->count == 0)
         return true;
-    if (!changes_lay_over((struct change_range){context->changes, context->change_count},
+    if (!changes_lay_over((struct change_range){changes->list, changes->count},
                           &(struct change_target){request->scene, request->root, request->lights, request->light_count},
                           warn_once, context, changed, error))
         return false;
-    context->changes_reported = true;
+    changes->reported = true;
     request->lights = changed->lights;
     request->light_count = changed->light_count;
     return true;
 }
+
+static const struct script_function change_rows[] = {
+    GR("change_node", change_node_parameters, RESULT_NOTHING, gr_change_node,
+       "Transforms a node in all later pictures. The window saves edits as a file of such calls; require loads it.",
+       "name serial matrix"),
+    GR("change_delete", change_delete_parameters, RESULT_NOTHING, gr_change_delete,
+       "Removes a node and its children from all later pictures.", "name serial"),
+    GR("change_add", change_add_parameters, RESULT_NOTHING, gr_change_add,
+       "Adds a node to all later pictures; gr.change_node places it.", "name serial shape colour? source?"),
+    GR("change_material", change_material_parameters, RESULT_NOTHING, gr_change_material,
+       "Changes the colour of a material in all later pictures.", "serial colour"),
+    GR("change_look", change_look_parameters, RESULT_NOTHING, gr_change_look,
+       "Changes an input of a base material in all later pictures.", "serial part value"),
+    GR("change_own", change_own_parameters, RESULT_NOTHING, gr_change_own,
+       "Gives a shape its own copy of its material in all later pictures. The copies are numbered 2147483647, "
+       "2147483646 and so on.",
+       "name serial like?"),
+    GR("change_light", change_light_parameters, RESULT_NOTHING, gr_change_light,
+       "Moves, rotates, scales or recolours a light in all later pictures.", "number move factor? linear? colour?"),
+    GR("change_delete_light", change_delete_light_parameters, RESULT_NOTHING, gr_change_delete_light,
+       "Removes a light from all later pictures.", "number"),
+    GR("change_add_light", change_add_light_parameters, RESULT_NOTHING, gr_change_add_light,
+       "Adds a point light to all later pictures.", "position colour"),
+    GR("change_copy_light", change_copy_light_parameters, RESULT_NOTHING, gr_change_copy_light,
+       "Adds a copy of a light to all later pictures.", "number move factor?"),
+    GR("change_view", change_view_parameters, RESULT_NOTHING, gr_change_view, "Changes the camera of a picture.",
+       "picture eye view up fov"),
+    GR("change_exposure", change_exposure_parameters, RESULT_NOTHING, gr_change_exposure,
+       "Changes the exposure of a picture.", "picture stops"),
+};
+const struct function_rows change_functions = {change_rows, COUNT(change_rows)};

@@ -1,10 +1,13 @@
 /* Displacement by recorded functions: node:displace of meshes and height fields. */
-#include "script/context_internal.h"
-#include "script/table_rows_internal.h"
+#include "script/gr_displace_internal.h"
 
+#include "call/context.h"
 #include "expr/expr_field.h"
 #include "mesh/mesh_displace.h"
+#include "record/record_bounds.h"
 #include "scene/traversal.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
 #include "shape/height_field.h"
 
 #include <math.h>
@@ -24,7 +27,7 @@ static bool displace_mesh(const struct displacing *d, struct node *node, struct 
     struct mesh_tables own = {0};
     struct mesh *mesh = NULL;
     const struct box bounds = mesh_bounds(node->shape.mesh);
-    record_use(d->context, d->by.program, &bounds);
+    record_use(&d->context->sandbox, d->by.program, &bounds);
     if (mesh_input_displace(node->shape.mesh, &d->by, &input, &own, error)) {
         input.name = node->name;
         if (mesh_input_smooth(&input, &own, d->smooth, error))
@@ -64,8 +67,8 @@ const double *gr_function_heights(struct script_context *context, const struct h
         return NULL;
     }
     const struct box square = {{0, 0, 0}, {1, 0, 1}};
-    record_use(context, program, &square);
-    double *heights = arena_alloc_array(&context->call, count, sizeof *heights);
+    record_use(&context->sandbox, program, &square);
+    double *heights = arena_alloc_array(&context->sandbox.call, count, sizeof *heights);
     if (!heights) {
         (void)error_no_memory(error, "a height field");
         return NULL;
@@ -85,7 +88,7 @@ static bool displace_field(const struct displacing *d, struct node *node, struct
         double steps = ceil(height_field_step(node->shape.height_field) / d->by.edge);
         n = steps < 1 ? 1 : steps < 40000 ? (uint32_t)steps : 40000;
     }
-    if (!height_field_refine(node->shape.height_field, n, &d->context->call, &grid, error))
+    if (!height_field_refine(node->shape.height_field, n, &d->context->sandbox.call, &grid, error))
         return false;
     grid.heights = gr_function_heights(d->context, &grid, d->by.program, error);
     if (!grid.heights)
@@ -116,7 +119,7 @@ static bool displace_node(const struct displacing *d, struct node *node, struct 
 static bool displace_all(const struct displacing *d, const struct node *root, struct error *error) {
     struct scene_traversal t = {.operands = OPERANDS_ALL, .distinct = true};
     struct scene *scene = &d->context->scene;
-    uint8_t *done = arena_alloc_array(&d->context->call, (size_t)scene->node_total + 1, sizeof *done);
+    uint8_t *done = arena_alloc_array(&d->context->sandbox.call, (size_t)scene->node_total + 1, sizeof *done);
     uint32_t count = 0;
     enum scene_event event;
     bool ok = done || error_no_memory(error, "a displacement");
@@ -142,7 +145,7 @@ static bool displace_all(const struct displacing *d, const struct node *root, st
 
 enum { DISPLACE_F = SELF + 1, DISPLACE_EDGE, DISPLACE_LEVEL, DISPLACE_SMOOTH };
 static const struct script_parameter displace_parameters[] = {
-    [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."},
+    SELF_PARAMETER,
     [DISPLACE_F] = {"f", KIND_FUNCTION, OPTIONAL, ANY, NULL, NULL,
                     "A function f(p, s) of a vertex: the distance along its normal, or an offset {x, y, z}."},
     [DISPLACE_EDGE] = {"edge", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "level",

@@ -1,9 +1,12 @@
 /* gr.frames: an animation in one script. The frames are rendered one after the other inside the call, so only one of
  * them is in memory. `draw` is called for every frame from the first one on, also for frames that this run does not
  * render, so that a script may move its nodes a little in each call; math.random starts from a seed of the frame. */
-#include "script/context_internal.h"
+#include "script/gr_frames_internal.h"
 
-#include "script/table_rows_internal.h"
+#include "script/dispatch_internal.h"
+#include "script/rows_internal.h"
+#include "script/script_internal.h"
+#include "script/table_internal.h"
 
 #include <lauxlib.h>
 #include <math.h>
@@ -37,9 +40,9 @@ struct frame_plan {
 
 static bool count_frames(struct script_context *context, const struct script_value *args, struct frame_plan *plan,
                          struct error *error) {
-    const struct frame_options *options = &context->options->frames;
+    const struct frame_options *options = &context->sandbox.options->frames;
     const struct frame_selection *selection = &options->selection;
-    double limit = context->host->frame_limit > 0 ? context->host->frame_limit : FRAMES_MAX;
+    double limit = script_of(context)->host->frame_limit > 0 ? script_of(context)->host->frame_limit : FRAMES_MAX;
     double rate = args[FRAMES_FPS].given ? args[FRAMES_FPS].number : FRAME_RATE_DEFAULT;
     plan->frame.rate = options->rate > 0 ? options->rate : rate;
     if (args[FRAMES_COUNT].given == args[FRAMES_SECONDS].given)
@@ -60,20 +63,21 @@ static bool count_frames(struct script_context *context, const struct script_val
 
 static bool gr_frames(struct script_context *context, const struct script_value *args, struct script_result *result,
                       struct error *error) {
-    if (context->animates)
+    if (script_of(context)->animation.runs)
         return error_set(error, ERROR_SCENE, "it is called while another gr.frames draws its frames");
-    if (context->options->frames.turntable > 0)
+    if (context->sandbox.options->frames.turntable > 0)
         return error_set(error, ERROR_SCENE, "--turntable is for scripts without gr.frames");
-    if (context->host->animates)
-        context->host->animates(context->host->context);
-    struct frame_plan *plan = arena_alloc(&context->keep, sizeof *plan);
+    if (script_of(context)->host->animates)
+        script_of(context)->host->animates(script_of(context)->host->context);
+    struct frame_plan *plan = arena_alloc(&context->sandbox.keep, sizeof *plan);
     if (!plan)
         return error_no_memory(error, "an animation");
     *plan = (struct frame_plan){.pure = args[FRAMES_PURE].boolean};
-    plan->frame.loops = args[FRAMES_LOOP].boolean || context->options->frames.loops;
+    plan->frame.loops = args[FRAMES_LOOP].boolean || context->sandbox.options->frames.loops;
     if (!count_frames(context, args, plan, error))
         return false;
-    context->frame_shutter = (struct shutter){args[FRAMES_SHUTTER].vector.x, args[FRAMES_SHUTTER].vector.y};
+    script_of(context)->animation.shutter =
+        (struct shutter){args[FRAMES_SHUTTER].vector.x, args[FRAMES_SHUTTER].vector.y};
     result->pointer = plan;
     return true;
 }
@@ -90,7 +94,14 @@ const struct function_rows frame_functions = {rows, COUNT(rows)};
 static const char gr_key, seed_key;
 
 static void set_frame(lua_State *L, const struct frame *frame) {
-    context_of(L)->frame = *frame;
+    struct script *script = script_of(context_of(L));
+    script->animation.frame = *frame;
+    /* With --frames, the first run of a script is a frame only if the script does not call gr.frames. An error before
+     * or after the frames of gr.frames belongs to no frame. */
+    char *suffix = script->context.sandbox.error_suffix;
+    suffix[0] = '\0';
+    if (script->animation.runs || script->host->repeats)
+        (void)snprintf(suffix, SUFFIX_SIZE, " (frame %u)", frame->number);
     lua_rawgetp(L, LUA_REGISTRYINDEX, &gr_key);
     lua_pushinteger(L, frame->number);
     lua_setfield(L, -2, "frame");
@@ -103,7 +114,7 @@ static void set_frame(lua_State *L, const struct frame *frame) {
 
 static void seed_frame(lua_State *L, uint32_t number) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &seed_key);
-    lua_pushinteger(L, (lua_Integer)context_of(L)->options->seed);
+    lua_pushinteger(L, (lua_Integer)sandbox_of(L)->options->seed);
     lua_pushinteger(L, number);
     lua_call(L, 2, 0);
 }
@@ -111,9 +122,10 @@ static void seed_frame(lua_State *L, uint32_t number) {
 /* Restores the state outside the animation, also after an error that the script has caught. */
 static int leave_frames(lua_State *L) {
     struct script_context *context = context_of(L);
-    context->animates = context->lists_handles = false;
+    script_of(context)->animation.runs = false;
+    context->handles.made = NULL;
     context->scene.kept_nodes = 0;
-    set_frame(L, &context->host->frame);
+    set_frame(L, &script_of(context)->host->frame);
     return 0;
 }
 
@@ -124,7 +136,8 @@ static void push_fields(lua_State *L) {
     lua_newtable(L);
     lua_pushliteral(L, "file");
     if (lua_rawget(L, given) == LUA_TNIL) {
-        const char *slash = strrchr(context->path, '/'), *name = slash ? slash + 1 : context->path;
+        const char *slash = strrchr(context->sandbox.files.path, '/'),
+                   *name = slash ? slash + 1 : context->sandbox.files.path;
         const char *dot = strrchr(name, '.');
         lua_pushlstring(L, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
         lua_pushliteral(L, ".####.png");
@@ -142,20 +155,19 @@ static void push_fields(lua_State *L) {
 static void draw_frame(lua_State *L, int draw, const struct frame *frame, bool renders) {
     struct script_context *context = context_of(L);
     int top = lua_gettop(L);
-    if (context->host->frame_begins)
-        context->host->frame_begins(context->host->context);
-    limits_restart_time(context);
+    if (script_of(context)->host->frame_begins)
+        script_of(context)->host->frame_begins(script_of(context)->host->context);
+    limits_restart_time(&context->sandbox.limits);
     set_frame(L, frame);
     seed_frame(L, frame->number);
     lua_pushvalue(L, draw);
     lua_pushnumber(L, frame_clock(frame));
     lua_pushinteger(L, frame->number);
     lua_call(L, 2, 1);
-    context->lua = L;
-    context->function = function_find(OWNER_GR, "frames");
-    context->subject = NULL;
+    context->sandbox.lua = L;
+    context->sandbox.running = (struct running_function){.owner = "gr.", .name = "frames"};
     if (!lua_istable(L, -1))
-        context_raise(context, "draw returned %s, not the table of fields for gr.render", value_words(L, -1));
+        sandbox_raise(&context->sandbox, "draw returned %s, not the table of fields for gr.render", value_words(L, -1));
     if (renders) {
         push_fields(L);
         dispatch_push(L, function_find(OWNER_GR, "render"));
@@ -176,7 +188,7 @@ static const char handles_key; /* of the weak table, in the registry */
 
 enum { GROWTH_MIN = 1 << 20 };
 
-void frames_list_handle(lua_State *L, uint32_t serial) {
+static void list_handle(lua_State *L, uint32_t serial) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &handles_key);
     lua_pushvalue(L, -2);
     lua_rawseti(L, -2, (lua_Integer)serial + 1);
@@ -191,7 +203,7 @@ static struct scene_snapshot begin_list(lua_State *L) {
     lua_setfield(L, -2, "__mode");
     lua_setmetatable(L, -2);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &handles_key);
-    context->lists_handles = true;
+    context->handles.made = list_handle;
     return scene_snapshot(&context->scene);
 }
 
@@ -211,10 +223,10 @@ static void free_frames(lua_State *L, struct scene_snapshot *snapshot) {
     size_t grown = scene->arena.total - snapshot->arena.total;
     if (grown < GROWTH_MIN || grown < snapshot->arena.total / 2)
         return;
-    bool edited = context->change_count > 0 || scene->added || scene->own;
+    bool edited = script_of(context)->changes.count > 0 || scene->added || scene->own;
     if (!scene->escaped && !edited && !context->lenient && !holds_handles(L))
         scene_rewind(scene, snapshot);
-    context->subject = NULL; /* it may be the name of a node that is freed */
+    context->sandbox.running.subject = NULL; /* it may be the name of a node that is freed */
     context->line_source = NULL;
     *snapshot = begin_list(L);
 }
@@ -222,7 +234,7 @@ static void free_frames(lua_State *L, struct scene_snapshot *snapshot) {
 /* --- all frames --- */
 
 static void draw_selected(lua_State *L, int draw, const struct frame_plan *plan) {
-    const struct frame_selection *selection = &context_of(L)->options->frames.selection;
+    const struct frame_selection *selection = &sandbox_of(L)->options->frames.selection;
     struct frame frame = plan->frame;
     uint32_t last = selection->step > 0 ? selection->last : frame.count;
     struct scene_snapshot snapshot = begin_list(L);
@@ -237,13 +249,13 @@ static void draw_selected(lua_State *L, int draw, const struct frame_plan *plan)
 /* Draws frames in the order that a window requests. The request may change while earlier frames are drawn. */
 static void draw_wanted(lua_State *L, int draw, const struct frame_plan *plan) {
     struct script_context *context = context_of(L);
-    const struct script_host *host = context->host;
+    const struct script_host *host = script_of(context)->host;
     struct frame frame = plan->frame;
     for (uint32_t wanted; (wanted = host->next_frame(host->context, &frame)) > 0;) {
         if (!plan->pure && wanted <= frame.number) {
             host->rewinds(host->context);
-            context->ended = true;
-            context_raise_fatal(L);
+            context->sandbox.ended = true;
+            sandbox_raise_fatal(L);
         }
         frame.number = plan->pure ? wanted : frame.number + 1;
         draw_frame(L, draw, &frame, frame.number == wanted);
@@ -260,25 +272,18 @@ int frames_run(lua_State *L, const struct script_result *result) {
         lua_pushvalue(L, 2);
     }
     int draw = lua_gettop(L);
-    context->animates = true;
+    script_of(context)->animation.runs = true;
     lua_newtable(L);
     lua_newtable(L);
     lua_pushcfunction(L, leave_frames);
     lua_setfield(L, -2, "__close");
     lua_setmetatable(L, -2);
     lua_toclose(L, -1);
-    if (context->host->next_frame)
+    if (script_of(context)->host->next_frame)
         draw_wanted(L, draw, plan);
     else
         draw_selected(L, draw, plan);
     return 0;
-}
-
-/* With --frames, the first run of a script is a frame only if the script does not call gr.frames. */
-void frames_name_frame(const struct script_context *context, char out[FRAME_WORDS]) {
-    out[0] = '\0';
-    if (context->animates || context->host->repeats)
-        (void)snprintf(out, FRAME_WORDS, " (frame %u)", context->frame.number);
 }
 
 void frames_open(lua_State *L) {
@@ -288,7 +293,7 @@ void frames_open(lua_State *L) {
     lua_getfield(L, -1, "randomseed");
     lua_rawsetp(L, LUA_REGISTRYINDEX, &seed_key);
     lua_pop(L, 1);
-    const struct frame *frame = &context_of(L)->host->frame;
+    const struct frame *frame = &script_of(context_of(L))->host->frame;
     set_frame(L, frame);
     if (frame->number > 0)
         seed_frame(L, frame->number);

@@ -1,13 +1,16 @@
 /* Lights of the language: the parameters, the function and the table row of each. */
-#include "math/elementary.h"
-#include "script/context_internal.h"
-#include "script/table_rows_internal.h"
+#include "script/gr_lights_internal.h"
 
-enum { POINT_POSITION = LIGHT_INTENSITY + 1, POINT_COUNT };
-enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER, SPOT_COUNT };
-enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED, AREA_COUNT };
-enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS, BALL_COUNT };
-enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED, PANEL_COUNT };
+#include "call/context.h"
+#include "math/elementary.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
+
+enum { POINT_POSITION = LIGHT_INTENSITY + 1 };
+enum { SPOT_POSITION = LIGHT_INTENSITY + 1, SPOT_DIRECTION, SPOT_TARGET, SPOT_INNER, SPOT_OUTER };
+enum { AREA_CORNER = LIGHT_OWN, AREA_V1, AREA_V2, AREA_ONE_SIDED };
+enum { BALL_POSITION = LIGHT_OWN, BALL_RADIUS };
+enum { PANEL_POSITION = LIGHT_OWN, PANEL_NORMAL, PANEL_RADIUS, PANEL_ONE_SIDED };
 enum { MESHLIGHT_EMISSION = LIGHT_EXCLUDE + 1, MESHLIGHT_SAMPLES, MESHLIGHT_MESH, MESHLIGHT_COUNT };
 enum { SKYLIGHT_SKY = LIGHT_EXCLUDE + 1, SKYLIGHT_SAMPLES, SKYLIGHT_COUNT };
 

@@ -1,13 +1,64 @@
 /* Materials, their decorators, and textures. */
-#include "script/bindings_internal.h"
-#include "script/lenient_internal.h"
+#include "script/gr_materials_internal.h"
 
 #include "base/file.h"
+#include "compat/lenient.h"
+#include "compat/lenient_picture.h"
 #include "material/bump.h"
 #include "material/material_inputs.h"
+#include "script/gr_textures_internal.h"
+#include "script/rows_internal.h"
 
 #include <math.h>
 #include <string.h>
+
+/* The choices of parameters. */
+#define HIGHLIGHTS(X) X(HIGHLIGHT_PHONG, "phong") X(HIGHLIGHT_BLINN, "blinn")
+#define SPHERE_MAPPINGS(X) X(SPHERE_MAPPING_CLASSIC, "classic") X(SPHERE_MAPPING_OUTSIDE, "outside")
+enum { SPHERE_MAPPINGS(LIST_MEMBER) };
+#define IMAGE_CHANNELS(X) X(INPUT_KD, "kd") X(INPUT_KS, "ks") X(INPUT_EMISSION, "emission") X(INPUT_OPACITY, "opacity")
+#define BUMP_KINDS(X) X(MATERIAL_BUMP, "bump") X(MATERIAL_NORMAL, "normal")
+
+#define BASE                                                                                                           \
+    { "material", KIND_MATERIAL, 0, ANY, NULL, NULL, "The base material." }
+
+/* How an image is looked up: these fields always follow one another. */
+enum {
+    LOOKUP_FILTER,
+    LOOKUP_WRAP,
+    LOOKUP_FLIP_U,
+    LOOKUP_TILES,
+    LOOKUP_OFFSET,
+    LOOKUP_ENCODING,
+    LOOKUP_MAPPING,
+    LOOKUP_COUNT
+};
+#define FILTER                                                                                                         \
+    { "filter", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_FILTERS), NULL, "'mipmap'", "Filter of the lookup." }
+#define WRAP_PARAMETER                                                                                                 \
+    { "wrap", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_WRAPS), NULL, "'repeat'", "Lookup outside of the image." }
+#define FLIP_U                                                                                                         \
+    { "flip_u", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the image is mirrored from left to right." }
+#define SPHERE_MAPPING                                                                                                 \
+    {                                                                                                                  \
+        "mapping", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(SPHERE_MAPPINGS), NULL, "'classic'",                       \
+            "On spheres: classic is mirrored, seen from outside; outside is not."                                      \
+    }
+#define TILES                                                                                                          \
+    { "tiles", KIND_PAIR, OPTIONAL, ANY, NULL, "1", "Number of repetitions: one number, or {across, up}." }
+#define OFFSET                                                                                                         \
+    { "offset", KIND_PAIR, OPTIONAL, ANY, NULL, "0", "Shift in units of the image: one number, or {across, up}." }
+#define ENCODING                                                                                                       \
+    {                                                                                                                  \
+        "encoding", KIND_CHOICE, OPTIONAL | OR_NUMBER | LOW_OPEN, 0, 10, LIST_BLANKS(TEXTURE_ENCODINGS), NULL,         \
+            "'auto'",                                                                                                  \
+            "Meaning of its numbers for linear colours; auto: as the file states, otherwise sRGB for colours of 8 "    \
+            "bits; a number is a gamma."                                                                               \
+    }
+#define LOOKUP_FIELDS(first)                                                                                           \
+    [first + LOOKUP_FILTER] = FILTER, [first + LOOKUP_WRAP] = WRAP_PARAMETER, [first + LOOKUP_FLIP_U] = FLIP_U,        \
+             [first + LOOKUP_TILES] = TILES, [first + LOOKUP_OFFSET] = OFFSET, [first + LOOKUP_ENCODING] = ENCODING,   \
+             [first + LOOKUP_MAPPING] = SPHERE_MAPPING
 
 static bool give(struct script_result *result, struct material *material) {
     result->pointer = material;
@@ -20,6 +71,123 @@ static const struct texture *number_or_texture(struct script_context *context, c
     own.vector = vec3_all(value->number);
     return gr_texture_of(context, &own, error);
 }
+
+enum {
+    PHONG_KD,
+    PHONG_KS,
+    PHONG_SHININESS,
+    PHONG_REFLECT,
+    PHONG_REFRACT,
+    PHONG_IOR,
+    PHONG_TWO_SIDED,
+    PHONG_HIGHLIGHT,
+    PHONG_LIT,
+    PHONG_EMISSION,
+    PHONG_ROUGHNESS,
+    PHONG_GLOSSY_SAMPLES,
+    PHONG_ABSORPTION,
+    PHONG_OPACITY,
+    PHONG_METALNESS,
+    PHONG_BUMP
+};
+#define KD                                                                                                             \
+    { "kd", KIND_COLOUR, OR_TEXTURE, ANY, NULL, NULL, "Diffuse and ambient colour." }
+#define KS                                                                                                             \
+    {                                                                                                                  \
+        "ks", KIND_COLOUR, OPTIONAL | OR_TEXTURE, ANY, NULL, "{0, 0, 0}",                                              \
+            "Colour of highlights; filter of reflected and refracted rays."                                            \
+    }
+#define SHININESS                                                                                                      \
+    { "shininess", KIND_NUMBER, OPTIONAL | OR_TEXTURE, ABOVE(0), NULL, "1", "Exponent of the highlight." }
+#define TWO_SIDED                                                                                                      \
+    { "two_sided", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether faces seen from behind are lit, too." }
+#define SURFACE_FIELDS                                                                                                 \
+    [PHONG_HIGHLIGHT] = {"highlight",                                                                                  \
+                         KIND_CHOICE,                                                                                  \
+                         OPTIONAL,                                                                                     \
+                         0,                                                                                            \
+                         0,                                                                                            \
+                         LIST_BLANKS(HIGHLIGHTS),                                                                      \
+                         NULL,                                                                                         \
+                         "specular of the render",                                                                     \
+                         "Formula of the highlight."},                                                                 \
+    [PHONG_LIT] =                                                                                                      \
+        {"lit", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "true", "Whether light affects it; false: it shows kd unchanged."}, \
+    [PHONG_EMISSION] = {"emission",                                                                                    \
+                        KIND_COLOUR,                                                                                   \
+                        OPTIONAL | OR_TEXTURE,                                                                         \
+                        ANY,                                                                                           \
+                        NULL,                                                                                          \
+                        "{0, 0, 0}",                                                                                   \
+                        "Emitted light, added to reflected light."},                                                   \
+    [PHONG_ROUGHNESS] = {"roughness",                                                                                  \
+                         KIND_NUMBER,                                                                                  \
+                         OPTIONAL | OR_TEXTURE,                                                                        \
+                         IN_RANGE(0, 1),                                                                               \
+                         NULL,                                                                                         \
+                         "0",                                                                                          \
+                         "Roughness of reflection and refraction; 0 is polished."},                                    \
+    [PHONG_GLOSSY_SAMPLES] = {"glossy_samples",                                                                        \
+                              KIND_WHOLE,                                                                              \
+                              OPTIONAL,                                                                                \
+                              IN_RANGE(1, 64),                                                                         \
+                              NULL,                                                                                    \
+                              "4",                                                                                     \
+                              "N x N rays from a rough surface; after the first rough surface of a path, one ray."},   \
+    [PHONG_ABSORPTION] = {"absorption",                                                                                \
+                          KIND_COLOUR,                                                                                 \
+                          OPTIONAL,                                                                                    \
+                          ABOVE(0),                                                                                    \
+                          NULL,                                                                                        \
+                          "{0, 0, 0}",                                                                                 \
+                          "Absorption inside the solid: factor exp(-absorption * distance)."},                         \
+    [PHONG_OPACITY] = {"opacity",                                                                                      \
+                       KIND_NUMBER,                                                                                    \
+                       OPTIONAL | OR_TEXTURE,                                                                          \
+                       IN_RANGE(0, 1),                                                                                 \
+                       NULL,                                                                                           \
+                       "1",                                                                                            \
+                       "Opacity of the surface; below 1 it has holes."},                                               \
+    [PHONG_METALNESS] = {"metalness",                                                                                  \
+                         KIND_NUMBER,                                                                                  \
+                         OPTIONAL | OR_TEXTURE,                                                                        \
+                         IN_RANGE(0, 1),                                                                               \
+                         NULL,                                                                                         \
+                         "0",                                                                                          \
+                         "Fraction of kd that replaces ks."},                                                          \
+    [PHONG_BUMP] = {"bump",                                                                                            \
+                    KIND_IMAGE,                                                                                        \
+                    OPTIONAL | OR_TEXTURE,                                                                             \
+                    ANY,                                                                                               \
+                    NULL,                                                                                              \
+                    "none",                                                                                            \
+                    "Heights: a result of gr.bump, a file or a texture."}
+
+static const struct script_parameter material_parameters[] = {
+    [PHONG_KD] = KD,
+    [PHONG_KS] = KS,
+    [PHONG_SHININESS] = SHININESS,
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
+                       "Amount of reflection."},
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
+                       "Amount of refraction."},
+    [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "none", "Index of refraction inside the solid."},
+    [PHONG_TWO_SIDED] = TWO_SIDED,
+    SURFACE_FIELDS,
+};
+
+static const struct script_parameter rr_parameters[] = {
+    [PHONG_KD] = KD,
+    [PHONG_KS] = KS,
+    [PHONG_SHININESS] = SHININESS,
+    [PHONG_REFLECT] = {"reflect", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
+                       "Amount of reflection."},
+    [PHONG_REFRACT] = {"refract", KIND_NUMBER, OPTIONAL | OR_TEXTURE, IN_RANGE(0, 1), NULL, "0",
+                       "Amount of refraction."},
+    [PHONG_IOR] = {"ior", KIND_NUMBER, OPTIONAL, ABOVE(1), NULL, "1", "Index of refraction inside the solid."},
+    [PHONG_TWO_SIDED] = TWO_SIDED,
+    SURFACE_FIELDS,
+};
 
 /* The inputs with textures: the texture times the number, which is 1. */
 static bool with_textures(struct script_context *context, struct material *m, const struct script_value *args,
@@ -84,8 +252,8 @@ static struct material *phong(struct script_context *context, const struct scrip
     return with_textures(context, m, args, error) ? m : NULL;
 }
 
-bool gr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
-                 struct error *error) {
+static bool gr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     context_warn_of_bytes(context, "kd", args[PHONG_KD].vector);
     context_warn_of_bytes(context, "ks", args[PHONG_KS].vector);
     if (args[PHONG_REFRACT].number > 0 && !args[PHONG_IOR].given)
@@ -93,8 +261,8 @@ bool gr_material(struct script_context *context, const struct script_value *args
     return give(result, phong(context, args, error));
 }
 
-bool gr_rr_material(struct script_context *context, const struct script_value *args, struct script_result *result,
-                    struct error *error) {
+static bool gr_rr_material(struct script_context *context, const struct script_value *args,
+                           struct script_result *result, struct error *error) {
     struct material *m = phong(context, args, error);
     if (m)
         m->phong.has_ior = true;
@@ -108,8 +276,23 @@ static bool pattern_over(struct script_context *context, struct material *m, str
     return m && material_mix_kd(m, pattern, other, &context->scene.arena, error) && give(result, m);
 }
 
-bool gr_marble(struct script_context *context, const struct script_value *args, struct script_result *result,
-               struct error *error) {
+enum { MARBLE_MATERIAL, MARBLE_F, MARBLE_MULTIPLIER, MARBLE_VEIN, MARBLE_INTERP, MARBLE_MIX };
+#define INTERP                                                                                                         \
+    { "interp", KIND_WHOLE, OPTIONAL, IN_RANGE(0, 1), NULL, "0", "Interpolation of the noise: 0 linear, 1 cosine." }
+#define MIX                                                                                                            \
+    { "mix", KIND_COLOUR, OR_DISPLAY, ANY, NULL, NULL, "Colour to mix with kd." }
+
+static const struct script_parameter marble_parameters[] = {
+    [MARBLE_MATERIAL] = BASE,
+    [MARBLE_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
+    [MARBLE_MULTIPLIER] = {"multiplier", KIND_NUMBER, 0, ANY, NULL, NULL, "Strength of the noise in the veins."},
+    [MARBLE_VEIN] = {"vein_frequency", KIND_NUMBER, 0, ANY, NULL, NULL, "Frequency of the veins along y."},
+    [MARBLE_INTERP] = INTERP,
+    [MARBLE_MIX] = MIX,
+};
+
+static bool gr_marble(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     struct texture pattern = texture_marble(args[MARBLE_F].number, args[MARBLE_MULTIPLIER].number,
                                             args[MARBLE_VEIN].number, (int)args[MARBLE_INTERP].number);
     return pattern_over(context,
@@ -117,16 +300,28 @@ bool gr_marble(struct script_context *context, const struct script_value *args, 
                         pattern, &args[MARBLE_MIX], result, error);
 }
 
-bool gr_wood(struct script_context *context, const struct script_value *args, struct script_result *result,
-             struct error *error) {
+enum { WOOD_MATERIAL, WOOD_F, WOOD_DENSITY, WOOD_INTERP, WOOD_MIX };
+static const struct script_parameter wood_parameters[] = {
+    [WOOD_MATERIAL] = BASE,
+    [WOOD_F] = {"f", KIND_NUMBER, 0, ANY, NULL, NULL, "Factor of the point before the noise."},
+    [WOOD_DENSITY] = {"density", KIND_NUMBER, 0, ANY, NULL, NULL, "Density of the grain."},
+    [WOOD_INTERP] = INTERP,
+    [WOOD_MIX] = MIX,
+};
+
+static bool gr_wood(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     struct texture pattern =
         texture_wood(args[WOOD_F].number, args[WOOD_DENSITY].number, (int)args[WOOD_INTERP].number);
     return pattern_over(context, scene_material(&context->scene, MATERIAL_WOOD, args[WOOD_MATERIAL].material, error),
                         pattern, &args[WOOD_MIX], result, error);
 }
 
-bool gr_fresnel(struct script_context *context, const struct script_value *args, struct script_result *result,
-                struct error *error) {
+enum { FRESNEL_MATERIAL };
+static const struct script_parameter fresnel_parameters[] = {[FRESNEL_MATERIAL] = BASE};
+
+static bool gr_fresnel(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
     if (!material_has_ior(args[FRESNEL_MATERIAL].material))
         return error_set(error, ERROR_SCENE, "material has no index of refraction; give it one with gr.rr_material");
     return give(result, scene_material(&context->scene, MATERIAL_FRESNEL, args[FRESNEL_MATERIAL].material, error));
@@ -137,7 +332,7 @@ static struct image *image_of_file(struct script_context *context, const struct 
     if (value->image)
         return value->image;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    if (!files_require(context, value->text, path, error))
+    if (!files_require(&context->sandbox, value->text, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical))
         memcpy(canonical, path, sizeof canonical);
@@ -223,6 +418,15 @@ static bool image_over(struct script_context *context, const struct texture_imag
     return ok && give(result, m);
 }
 
+enum { IMAGE_MATERIAL, IMAGE_PNG, IMAGE_FILTER, IMAGE_FLIP_U, IMAGE_MAPPING };
+static const struct script_parameter image_parameters[] = {
+    [IMAGE_MATERIAL] = BASE,
+    [IMAGE_PNG] = {"png", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
+    [IMAGE_FILTER] = FILTER,
+    [IMAGE_FLIP_U] = FLIP_U,
+    [IMAGE_MAPPING] = SPHERE_MAPPING,
+};
+
 static bool td_material(struct script_context *context, const struct script_value *args, enum texture_mapping mapping,
                         struct script_result *result, struct error *error) {
     struct script_value lookup[LOOKUP_COUNT] = {[LOOKUP_FILTER] = args[IMAGE_FILTER],
@@ -235,18 +439,27 @@ static bool td_material(struct script_context *context, const struct script_valu
     return image_over(context, &image, INPUT_KD, args[IMAGE_MATERIAL].material, result, error);
 }
 
-bool gr_td_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
-                struct error *error) {
+static bool gr_td_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
     return td_material(context, args, MAPPING_CUBE, result, error);
 }
 
-bool gr_td_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
-                  struct error *error) {
+static bool gr_td_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
+                         struct error *error) {
     return td_material(context, args, MAPPING_SPHERE, result, error);
 }
 
-bool gr_image_material(struct script_context *context, const struct script_value *args, struct script_result *result,
-                       struct error *error) {
+enum { OVER_MATERIAL, OVER_IMAGE, OVER_LOOKUP, OVER_CHANNEL = OVER_LOOKUP + LOOKUP_COUNT };
+static const struct script_parameter image_over_parameters[] = {
+    [OVER_MATERIAL] = BASE,
+    [OVER_IMAGE] = {"image", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file, or a texture."},
+    LOOKUP_FIELDS(OVER_LOOKUP),
+    [OVER_CHANNEL] = {"channel", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(IMAGE_CHANNELS), NULL, "'kd'",
+                      "The input that the image replaces; where opacity is below 1, the surface has holes."},
+};
+
+static bool gr_image_material(struct script_context *context, const struct script_value *args,
+                              struct script_result *result, struct error *error) {
     static const enum material_input channels[] = {IMAGE_CHANNELS(LIST_MEMBER)};
     struct texture_image image;
     return read_image(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &image, error) &&
@@ -276,21 +489,46 @@ static bool read_bump(struct script_context *context, const struct script_value 
     return true;
 }
 
-bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
-                struct error *error) {
+enum { TEXTURE_FILE, TEXTURE_LOOKUP };
+static const struct script_parameter texture_parameters[] = {
+    [TEXTURE_FILE] = {"file", KIND_IMAGE, 0, ANY, NULL, NULL, "A PNG or JPEG file."},
+    LOOKUP_FIELDS(TEXTURE_LOOKUP),
+};
+
+static bool gr_texture(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
     struct script_texture texture = {.texture =
                                          read_texture(context, &args[TEXTURE_FILE], &args[TEXTURE_LOOKUP], error)};
-    result->pointer = texture.texture ? gr_keep_texture(context, &texture, error) : NULL;
+    result->pointer = texture.texture ? context_keep_texture(context, &texture, error) : NULL;
     return result->pointer != NULL;
 }
 
 static struct script_texture *keep_bump(struct script_context *context, const struct bump *bump, struct error *error) {
-    return gr_keep_texture(
+    return context_keep_texture(
         context, &(struct script_texture){.texture = bump->texture.authored, .is_bump = true, .bump = *bump}, error);
 }
 
-bool gr_bump(struct script_context *context, const struct script_value *args, struct script_result *result,
-             struct error *error) {
+enum { BUMP_FILE, BUMP_LOOKUP, BUMP_AMOUNT = BUMP_LOOKUP + LOOKUP_COUNT, BUMP_KIND };
+#define BUMP_AMOUNT_FIELD                                                                                              \
+    {                                                                                                                  \
+        "height", KIND_NUMBER, OPTIONAL, ANY, NULL, "1/50 of the picture's size; 1 for normals",                       \
+            "Height of white above black, in units of the object; for normals, a factor of the slopes."                \
+    }
+#define BUMP_KIND_FIELD                                                                                                \
+    {                                                                                                                  \
+        "kind", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(BUMP_KINDS), NULL, "'bump'",                                  \
+            "Contents: heights, or normals as colours (x right, y up, z outwards)."                                    \
+    }
+
+static const struct script_parameter bump_parameters[] = {
+    [BUMP_FILE] = {"file", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or any texture."},
+    LOOKUP_FIELDS(BUMP_LOOKUP),
+    [BUMP_AMOUNT] = BUMP_AMOUNT_FIELD,
+    [BUMP_KIND] = BUMP_KIND_FIELD,
+};
+
+static bool gr_bump(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     struct bump bump;
     if (!read_bump(context, &args[BUMP_FILE], &args[BUMP_LOOKUP], &args[BUMP_AMOUNT], &bump, error))
         return false;
@@ -298,8 +536,17 @@ bool gr_bump(struct script_context *context, const struct script_value *args, st
     return result->pointer != NULL;
 }
 
-bool gr_bump_material(struct script_context *context, const struct script_value *args, struct script_result *result,
-                      struct error *error) {
+enum { BUMP_OVER_AMOUNT = OVER_LOOKUP + LOOKUP_COUNT, BUMP_OVER_KIND };
+static const struct script_parameter bump_over_parameters[] = {
+    [OVER_MATERIAL] = BASE,
+    [OVER_IMAGE] = {"image", KIND_IMAGE, OR_TEXTURE, ANY, NULL, NULL, "A PNG or JPEG file, or a result of gr.bump."},
+    LOOKUP_FIELDS(OVER_LOOKUP),
+    [BUMP_OVER_AMOUNT] = BUMP_AMOUNT_FIELD,
+    [BUMP_OVER_KIND] = BUMP_KIND_FIELD,
+};
+
+static bool gr_bump_material(struct script_context *context, const struct script_value *args,
+                             struct script_result *result, struct error *error) {
     struct bump bump;
     if (!read_bump(context, &args[OVER_IMAGE], &args[OVER_LOOKUP], &args[BUMP_OVER_AMOUNT], &bump, error))
         return false;
@@ -325,6 +572,32 @@ const struct texture_image *gr_image(struct script_context *context, const struc
     if (!kept)
         return NULL;
     image_defaults(kept, value, image);
-    context->scene.material_count++; /* as gr_keep_texture does */
+    context->scene.material_count++; /* as context_keep_texture does */
     return kept;
 }
+
+static const struct script_function material_rows[] = {
+    GR("material", material_parameters, RESULT_MATERIAL, gr_material, "A Phong material.", "kd ks? shininess?"),
+    GR("rr_material", rr_parameters, RESULT_MATERIAL, gr_rr_material, "A Phong material that reflects and refracts.",
+       "kd ks shininess reflect refract ior"),
+    GR("marble_pnd_material", marble_parameters, RESULT_MATERIAL, gr_marble, "Marble over another material.",
+       "material f multiplier vein_frequency interp mix"),
+    GR("wood_pnd_material", wood_parameters, RESULT_MATERIAL, gr_wood, "Wood over another material.",
+       "material f density interp mix"),
+    GR("td_cube_material", image_parameters, RESULT_MATERIAL, gr_td_cube,
+       "An image on each side of the unit cube, over another material.", "material png"),
+    GR("td_sphere_material", image_parameters, RESULT_MATERIAL, gr_td_sphere,
+       "An image around the unit sphere, over another material.", "material png"),
+    GR("difresnel_material", fresnel_parameters, RESULT_MATERIAL, gr_fresnel,
+       "A dielectric: reflects and refracts by Fresnel's equations.", "material"),
+    GR("difresneld_material", fresnel_parameters, RESULT_MATERIAL, gr_fresnel, "The same as gr.difresnel_material.",
+       "material"),
+    GR("texture", texture_parameters, RESULT_TEXTURE, gr_texture,
+       "An image texture for node:set_texture and for inputs of gr.material.", "file"),
+    GR("bump", bump_parameters, RESULT_TEXTURE, gr_bump, "A bump map or normal map for node:set_bump.", "file height?"),
+    GR("image_material", image_over_parameters, RESULT_MATERIAL, gr_image_material,
+       "An image mapped by the texture coordinates of the shape, over another material.", "material image"),
+    GR("bump_material", bump_over_parameters, RESULT_MATERIAL, gr_bump_material,
+       "A bump map or normal map over another material.", "material image height?"),
+};
+const struct function_rows material_functions = {material_rows, COUNT(material_rows)};

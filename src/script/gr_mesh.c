@@ -1,15 +1,61 @@
 /* Meshes from tables and from files. Both are assets: equal tables, or the same file, give one mesh, so that a script
  * that builds its scene again for every picture does not build its meshes again. */
-#include "script/bindings_internal.h"
-#include "script/lenient_internal.h"
-
 #include "base/file.h"
+#include "compat/lenient.h"
+#include "compat/lenient_picture.h"
 #include "formats/font.h"
 #include "formats/model_node.h"
 #include "mesh/mesh_smooth.h"
+#include "sandbox/suggestion.h"
+#include "script/rows_internal.h"
 
 #include <math.h>
 #include <string.h>
+
+enum {
+    MESH_NAME,
+    MESH_MATERIAL,
+    MESH_FILE,
+    MESH_VERTS,
+    MESH_NORMALS,
+    MESH_FACES,
+    MESH_FACE_NORMALS,
+    MESH_UVS,
+    MESH_FACE_UVS,
+    MESH_SMOOTH,
+    MESH_WELD,
+    MESH_FLIP,
+    MESH_CULL,
+    MESH_MATERIALS,
+    MESH_FACE_MATERIALS
+};
+static const struct script_parameter mesh_parameters[] = {
+    [MESH_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'mesh'", NAME_HELP},
+    [MESH_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    [MESH_FILE] = {"file", KIND_FILE, OPTIONAL, ANY, NULL, NULL,
+                   "An OBJ, PLY, STL, glTF or GLB file, instead of verts and faces."},
+    [MESH_VERTS] = {"verts", KIND_POINTS, OPTIONAL, ANY, NULL, NULL, "The vertices."},
+    [MESH_NORMALS] = {"normals", KIND_POINTS, OPTIONAL, ANY, NULL, "none: flat", "Vertex normals, of any length."},
+    [MESH_FACES] = {"faces", KIND_FACES, OPTIONAL, ANY, NULL, NULL, "Polygons: tuples of indices into verts, from 0."},
+    [MESH_FACE_NORMALS] = {"face_normals", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
+                           "For each face a tuple of indices into normals, from 0."},
+    [MESH_UVS] = {"uvs", KIND_PAIRS, OPTIONAL, ANY, NULL, "none",
+                  "Texture coordinates, {u, v}; v = 0 is the lower edge of an image."},
+    [MESH_FACE_UVS] = {"face_uvs", KIND_FACES, OPTIONAL, ANY, NULL, "faces",
+                       "For each face a tuple of indices into uvs, from 0."},
+    [MESH_SMOOTH] =
+        {"smooth", KIND_NUMBER, OPTIONAL, IN_RANGE(0, 180), "degrees", "the given normals",
+         "Crease angle: faces that meet at a smaller angle are shaded as one smooth surface; 0: all faces are flat."},
+    [MESH_WELD] = {"weld", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false",
+                   "Whether vertices at the same position become one."},
+    [MESH_FLIP] = {"flip", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the faces are reversed."},
+    [MESH_CULL] = {"cull", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(NODE_CULLS), NULL, "'none'",
+                   "Which faces rays ignore: those seen from behind, or those seen from the front."},
+    [MESH_MATERIALS] = {"materials", KIND_MATERIALS, OPTIONAL, ANY, NULL, "the file's",
+                        "Materials by the names of the parts in the file; with face_materials, a list."},
+    [MESH_FACE_MATERIALS] = {"face_materials", KIND_NUMBERS, OPTIONAL, ANY, NULL, "material for all",
+                             "With faces: the index into materials of each face, from 1."},
+};
 
 static void read_options(const struct script_value *args, struct model_options *options) {
     options->smooth = args[MESH_SMOOTH].given;
@@ -22,12 +68,12 @@ static const struct model *model_of_file(struct script_context *context, const s
                                          struct error *error) {
     const char *name = args[MESH_FILE].text;
     char path[PATH_SIZE], canonical[PATH_SIZE];
-    struct model_options options = {.path_policy = context->path_policy,
+    struct model_options options = {.path_policy = context->sandbox.path_policy,
                                     .search = files_search,
-                                    .search_context = context,
+                                    .search_context = &context->sandbox,
                                     .forgive = context->lenient != NULL};
     read_options(args, &options);
-    if (!files_require(context, name, path, error))
+    if (!files_require(&context->sandbox, name, path, error))
         return NULL;
     if (!file_canonical(path, canonical, sizeof canonical)) {
         error_set(error, ERROR_SCENE, "cannot find '%s'", name);
@@ -36,7 +82,7 @@ static const struct model *model_of_file(struct script_context *context, const s
     bool fresh;
     const struct model *model = model_asset(context->scene.assets, path, canonical, &options, &fresh, error);
     for (int i = 0; model && fresh && i < model->warning_count; i++)
-        context_warn(context, "%s", model->warnings[i]);
+        sandbox_warn(&context->sandbox, "%s", model->warnings[i]);
     return model;
 }
 
@@ -98,7 +144,7 @@ static bool face_slots(struct script_context *context, const struct script_value
     if (numbers->single || numbers->count != args[MESH_FACES].count)
         return error_set(error, ERROR_SCENE, "face_materials has %u entries, but faces has %u", numbers->count,
                          args[MESH_FACES].count);
-    uint32_t *slots = arena_alloc_array(&context->call, numbers->count, sizeof *slots);
+    uint32_t *slots = arena_alloc_array(&context->sandbox.call, numbers->count, sizeof *slots);
     if (!slots)
         return error_no_memory(error, "the materials of the faces");
     for (uint32_t f = 0; f < numbers->count; f++) {
@@ -187,8 +233,8 @@ static bool keep_slots(struct script_context *context, const struct script_value
     return true;
 }
 
-bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
-             struct error *error) {
+static bool gr_mesh(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     bool from_file = args[MESH_FILE].given, from_tables = args[MESH_VERTS].given || args[MESH_FACES].given;
     if (from_file && from_tables)
         return error_set(error, ERROR_SCENE, "file and verts exclude each other");
@@ -234,34 +280,31 @@ bool gr_mesh(struct script_context *context, const struct script_value *args, st
     return true;
 }
 
-bool gr_faces(struct script_context *context, const struct script_value *args, struct script_result *result,
-              struct error *error) {
-    (void)context;
-    const struct node *node = args[SELF].node;
-    if (node->kind != NODE_GEOMETRY || node->shape.kind != SHAPE_MESH)
-        return error_set(error, ERROR_SCENE, "the node is not a mesh");
-    result->mesh = node->shape.mesh;
-    return true;
-}
-
 /* gr.glyphs: a font file is mapped for the time of one call. */
 
-bool gr_glyphs(struct script_context *context, const struct script_value *args, struct script_result *result,
-               struct error *error) {
+enum { GLYPHS_FONT, GLYPHS_TEXT };
+static const struct script_parameter glyphs_parameters[] = {
+    [GLYPHS_FONT] = {"font", KIND_FILE, 0, ANY, NULL, NULL, "A font file: TrueType, OpenType or Type 1."},
+    [GLYPHS_TEXT] = {"text", KIND_TEXT, 0, ANY, NULL, NULL, "One line of text, in UTF-8."},
+};
+
+static bool gr_glyphs(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     char path[PATH_SIZE];
     struct file_bytes bytes;
-    struct font_text *text = arena_alloc(&context->call, sizeof *text);
+    struct font_text *text = arena_alloc(&context->sandbox.call, sizeof *text);
     if (!text)
         return error_no_memory(error, "letters");
     /* Errors that do not depend on files are reported before files are searched. */
     if (!FONTS_READABLE)
-        return font_layout(&(struct font_file){args[GLYPHS_FONT].text, NULL, 0}, "", &context->call, text, error);
-    if (!files_require(context, args[GLYPHS_FONT].text, path, error) ||
-        !path_policy_map(context->path_policy, path, FILE_LIMIT, &bytes, error))
+        return font_layout(&(struct font_file){args[GLYPHS_FONT].text, NULL, 0}, "", &context->sandbox.call, text,
+                           error);
+    if (!files_require(&context->sandbox, args[GLYPHS_FONT].text, path, error) ||
+        !path_policy_map(context->sandbox.path_policy, path, FILE_LIMIT, &bytes, error))
         return false;
     uint64_t refusals = mem_refusals();
-    bool done = font_layout(&(struct font_file){path, bytes.data, bytes.size}, args[GLYPHS_TEXT].text, &context->call,
-                            text, error);
+    bool done = font_layout(&(struct font_file){path, bytes.data, bytes.size}, args[GLYPHS_TEXT].text,
+                            &context->sandbox.call, text, error);
     file_unmap(&bytes);
     if (!done)
         (void)error_of_file(error, path, refusals);
@@ -272,3 +315,25 @@ bool gr_glyphs(struct script_context *context, const struct script_value *args, 
     result->pointer = text;
     return done;
 }
+
+#define VN_FORM(first) first " verts normals faces face_normals"
+
+static const struct script_function mesh_rows[] = {
+    GR("mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh of polygons, flat or with vertex normals.",
+       "material verts faces", "name file", "name verts faces", "material file"),
+    GR("fast_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.mesh: every mesh is fast.",
+       "material verts faces", "name verts faces"),
+    GR("vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "A mesh with vertex normals.", VN_FORM("material"),
+       VN_FORM("name")),
+    GR("fast_vn_mesh", mesh_parameters, RESULT_NODE, gr_mesh, "The same as gr.vn_mesh.", VN_FORM("material"),
+       VN_FORM("name")),
+};
+const struct function_rows mesh_functions = {mesh_rows, COUNT(mesh_rows)};
+
+static const struct script_function glyph_rows[] = {
+    GR("glyphs", glyphs_parameters, RESULT_GLYPHS, gr_glyphs,
+       "Outlines of a line of text, in ems: a list of letters with code, x, advance, missing and contours (cubic, for "
+       "gr.prism), and the fields width, ascender, descender and line.",
+       "font text"),
+};
+const struct function_rows glyph_functions = {glyph_rows, COUNT(glyph_rows)};

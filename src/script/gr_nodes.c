@@ -1,7 +1,6 @@
 /* Nodes and primitives. A primitive is a geometry node: everything that can have a pose is a node. */
-#include "scene/node_bounds.h"
-#include "script/bindings_internal.h"
-#include "script/context_internal.h"
+#include "call/context.h"
+#include "script/rows_internal.h"
 
 #include <string.h>
 
@@ -23,8 +22,17 @@ static bool add_children(struct script_context *context, struct node *node, cons
     return true;
 }
 
-bool gr_node(struct script_context *context, const struct script_value *args, struct script_result *result,
-             struct error *error) {
+enum { GROUP_NAME, GROUP_CHILDREN };
+#define CHILDREN                                                                                                       \
+    { "children", KIND_NODES, OPTIONAL, ANY, NULL, "{}", "Child nodes." }
+
+static const struct script_parameter group_parameters[] = {
+    [GROUP_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'node'", NAME_HELP},
+    [GROUP_CHILDREN] = CHILDREN,
+};
+
+static bool gr_node(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GROUP, text_or(&args[GROUP_NAME], "node"), error);
     return give(result, node) && add_children(context, node, &args[GROUP_CHILDREN], error);
 }
@@ -64,8 +72,22 @@ static bool check_rows(const struct script_value *at, uint32_t length, struct er
     return true;
 }
 
-bool gr_instances(struct script_context *context, const struct script_value *args, struct script_result *result,
-                  struct error *error) {
+enum { INSTANCES_NAME, INSTANCES_OF, INSTANCES_AT, INSTANCES_TURN, INSTANCES_AXIS, INSTANCES_SIZE };
+static const struct script_parameter instances_parameters[] = {
+    [INSTANCES_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'instances'", NAME_HELP},
+    [INSTANCES_OF] = {"of", KIND_NODE, 0, ANY, NULL, NULL, "The node to place."},
+    [INSTANCES_AT] = {"at", KIND_ROWS, 0, ANY, NULL, NULL,
+                      "Its positions, {x, y, z}, or matrices of three rows, 12 numbers each."},
+    [INSTANCES_TURN] =
+        {"turn", KIND_NUMBERS, OPTIONAL, ANY, "degrees", "0",
+         "Angle of a rotation about axis, before the translation; one for each position, or one for all."},
+    [INSTANCES_AXIS] = {"axis", KIND_AXIS, OPTIONAL, 0, 0, "x y z", NULL, "'y'", "Axis of that rotation."},
+    [INSTANCES_SIZE] = {"size", KIND_NUMBERS, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1",
+                        "Scale factor, applied first; one for each position, or one for all."},
+};
+
+static bool gr_instances(struct script_context *context, const struct script_value *args, struct script_result *result,
+                         struct error *error) {
     const struct script_value *at = &args[INSTANCES_AT];
     bool matrices = at->count > 0 && at->starts[1] == MATRIX_NUMBERS;
     if (!check_rows(at, matrices ? MATRIX_NUMBERS : PLACEMENT_NUMBERS, error))
@@ -93,8 +115,17 @@ bool gr_instances(struct script_context *context, const struct script_value *arg
            node_add_child(&context->scene, node, args[INSTANCES_OF].node, error);
 }
 
-bool gr_joint(struct script_context *context, const struct script_value *args, struct script_result *result,
-              struct error *error) {
+enum { JOINT_NAME, JOINT_X, JOINT_Y, JOINT_CHILDREN };
+static const struct script_parameter joint_parameters[] = {
+    [JOINT_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'joint'", NAME_HELP},
+    [JOINT_X] = {"x", KIND_TRIPLE, 0, ANY, "degrees", NULL,
+                 "Smallest, initial and largest angle about x; gray draws the initial one."},
+    [JOINT_Y] = {"y", KIND_TRIPLE, 0, ANY, "degrees", NULL, "The same for y."},
+    [JOINT_CHILDREN] = CHILDREN,
+};
+
+static bool gr_joint(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_JOINT, text_or(&args[JOINT_NAME], "joint"), error);
     if (!node)
         return false;
@@ -105,8 +136,16 @@ bool gr_joint(struct script_context *context, const struct script_value *args, s
     return add_children(context, node, &args[JOINT_CHILDREN], error);
 }
 
-bool gr_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
-               struct error *error) {
+enum { SPHERE_NAME, SPHERE_MATERIAL, SPHERE_CENTRE, SPHERE_RADIUS };
+static const struct script_parameter sphere_parameters[] = {
+    [SPHERE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'sphere'", NAME_HELP},
+    [SPHERE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    [SPHERE_CENTRE] = {"centre", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}", "Centre."},
+    [SPHERE_RADIUS] = {"radius", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "1", "Radius."},
+};
+
+static bool gr_sphere(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[SPHERE_NAME], "sphere"), error);
     if (!node)
         return false;
@@ -117,8 +156,18 @@ bool gr_sphere(struct script_context *context, const struct script_value *args, 
     return give(result, node);
 }
 
-bool gr_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
-             struct error *error) {
+enum { CUBE_NAME, CUBE_MATERIAL, CUBE_CORNER, CUBE_SIZE };
+static const struct script_parameter cube_parameters[] = {
+    [CUBE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'cube'", NAME_HELP},
+    [CUBE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP},
+    [CUBE_CORNER] = {"corner", KIND_POINT, OPTIONAL, ANY, NULL, "{0, 0, 0}",
+                     "The corner with the smallest coordinates."},
+    [CUBE_SIZE] = {"size", KIND_SIZE, OPTIONAL | NOT_ZERO, ANY, NULL, "1",
+                   "Length of the edges, one number or three; a negative length extends in the negative direction."},
+};
+
+static bool gr_cube(struct script_context *context, const struct script_value *args, struct script_result *result,
+                    struct error *error) {
     struct node *node = scene_node(&context->scene, NODE_GEOMETRY, text_or(&args[CUBE_NAME], "cube"), error);
     if (!node)
         return false;
@@ -133,8 +182,16 @@ bool gr_cube(struct script_context *context, const struct script_value *args, st
     return give(result, node);
 }
 
-bool gr_geometry(struct script_context *context, const struct script_value *args, struct script_result *result,
-                 struct error *error) {
+enum { GEOMETRY_NAME, GEOMETRY_PRIMITIVE, GEOMETRY_MATERIAL };
+static const struct script_parameter geometry_parameters[] = {
+    [GEOMETRY_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'geometry'", NAME_HELP},
+    [GEOMETRY_PRIMITIVE] = {"primitive", KIND_NODE, 0, ANY, NULL, NULL, "A primitive, for instance gr.sphere(mat)."},
+    [GEOMETRY_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "the primitive's",
+                           MATERIAL_HELP},
+};
+
+static bool gr_geometry(struct script_context *context, const struct script_value *args, struct script_result *result,
+                        struct error *error) {
     const struct node *primitive = args[GEOMETRY_PRIMITIVE].node;
     if (primitive->kind != NODE_GEOMETRY && primitive->kind != NODE_CSG)
         return error_set(error, ERROR_SCENE, "primitive must be a shape, not the plain node '%s'", primitive->name);
@@ -198,11 +255,22 @@ static bool show_rest(struct script_context *context, const char *name, struct n
     return give(result, node);
 }
 
+enum { CSG_NAME, CSG_A, CSG_B, CSG_OPERANDS };
+static const struct script_parameter csg_parameters[] = {
+    [CSG_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'csg'", NAME_HELP},
+    [CSG_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+               "A closed solid; a group is the union of the solids below it."},
+    [CSG_B] = {"b", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL, "The second operand."},
+    [CSG_OPERANDS] = {"operands", KIND_NODES, OPTIONAL | REST, ANY, NULL, NULL,
+                      "Further operands: as extra arguments, as this list, or as unnamed entries of the table; a and b "
+                      "may be left out then."},
+};
+
 /* a and b if they are given (ghosts are not), and those of the list, which has NULL for ghosts. */
 static struct node **list_operands(struct script_context *context, const struct script_value *args, uint32_t *count) {
     const struct script_value *list = &args[CSG_OPERANDS];
     bool named = !list->given || list->single || args[CSG_A].given || args[CSG_B].given;
-    struct node **operands = arena_alloc_array(&context->call, (size_t)list->count + 2, sizeof *operands);
+    struct node **operands = arena_alloc_array(&context->sandbox.call, (size_t)list->count + 2, sizeof *operands);
     *count = 0;
     if (operands && named) {
         operands[(*count)++] = args[CSG_A].node;
@@ -234,23 +302,30 @@ static bool combine(struct script_context *context, enum node_csg operation, con
     return give(result, scene_combine(&context->scene, name, operation, operands, known, error));
 }
 
-bool gr_union(struct script_context *context, const struct script_value *args, struct script_result *result,
-              struct error *error) {
+static bool gr_union(struct script_context *context, const struct script_value *args, struct script_result *result,
+                     struct error *error) {
     return combine(context, NODE_UNION, args, result, error);
 }
 
-bool gr_difference(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+static bool gr_difference(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     return combine(context, NODE_DIFFERENCE, args, result, error);
 }
 
-bool gr_intersection(struct script_context *context, const struct script_value *args, struct script_result *result,
-                     struct error *error) {
+static bool gr_intersection(struct script_context *context, const struct script_value *args,
+                            struct script_result *result, struct error *error) {
     return combine(context, NODE_INTERSECTION, args, result, error);
 }
 
-bool gr_inverse(struct script_context *context, const struct script_value *args, struct script_result *result,
-                struct error *error) {
+enum { INVERSE_NAME, INVERSE_A };
+static const struct script_parameter inverse_parameters[] = {
+    [INVERSE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'inverse'", NAME_HELP},
+    [INVERSE_A] = {"a", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                   "A closed solid; a group is the union of the solids below it."},
+};
+
+static bool gr_inverse(struct script_context *context, const struct script_value *args, struct script_result *result,
+                       struct error *error) {
     struct node *solid = args[INVERSE_A].node;
     const char *name = text_or(&args[INVERSE_NAME], "inverse");
     if (!solid)
@@ -258,6 +333,24 @@ bool gr_inverse(struct script_context *context, const struct script_value *args,
     return check_operand(solid, error) &&
            give(result, scene_combine(&context->scene, name, NODE_INVERSE, &solid, 1, error));
 }
+
+enum { CLIPPED_NAME, CLIPPED_OBJECT, CLIPPED_BY };
+static const struct script_parameter clipped_parameters[] = {
+    [CLIPPED_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'clipped'", NAME_HELP},
+    [CLIPPED_OBJECT] = {"object", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                        "The visible object: a shape or a group of shapes."},
+    [CLIPPED_BY] = {"by", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                    "A closed solid; the part of the object inside it remains."},
+};
+
+static const struct script_parameter bounded_parameters[] = {
+    [CLIPPED_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'bounded'", NAME_HELP},
+    [CLIPPED_OBJECT] = {"object", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                        "The visible object: a shape or a group of shapes."},
+    [CLIPPED_BY] = {"by", KIND_NODE, GHOST_IS_NONE, ANY, NULL, NULL,
+                    "A closed solid that contains the object. gray does not verify this: parts outside may or may not "
+                    "be visible."},
+};
 
 static bool enclose(struct script_context *context, enum node_csg operation, const char *name,
                     const struct script_value *args, struct script_result *result, struct error *error) {
@@ -268,35 +361,59 @@ static bool enclose(struct script_context *context, enum node_csg operation, con
            give(result, scene_combine(&context->scene, name, operation, operands, 2, error));
 }
 
-bool gr_clipped_by(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+static bool gr_clipped_by(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     return enclose(context, NODE_CLIPPED, text_or(&args[CLIPPED_NAME], "clipped"), args, result, error);
 }
 
-bool gr_bounded_by(struct script_context *context, const struct script_value *args, struct script_result *result,
-                   struct error *error) {
+static bool gr_bounded_by(struct script_context *context, const struct script_value *args, struct script_result *result,
+                          struct error *error) {
     return enclose(context, NODE_BOUNDED, text_or(&args[CLIPPED_NAME], "bounded"), args, result, error);
-}
-
-bool gr_transform_order(struct script_context *context, const struct script_value *args, struct script_result *result,
-                        struct error *error) {
-    (void)result;
-    (void)error;
-    context->scene.order = (enum transform_order)args[0].choice;
-    return true;
 }
 
 /* node:bounds(). */
 
-bool gr_bounds(struct script_context *context, const struct script_value *args, struct script_result *result,
-               struct error *error) {
-    struct box *box = arena_alloc(&context->call, sizeof *box);
-    if (!box)
-        return error_no_memory(error, "a box");
-    if (!node_bounds(args[SELF].node, box, error))
-        return false;
-    if (box_is_empty(box))
-        return error_set(error, ERROR_SCENE, "no shape is below this node");
-    result->pointer = box;
-    return true;
-}
+static const struct script_function node_rows[] = {
+    GR("node", group_parameters, RESULT_NODE, gr_node, "A node with children and a transform.", "name?"),
+    GR("instances", instances_parameters, RESULT_NODE, gr_instances,
+       "A node at many positions; each position costs a tenth of the memory of a node.", "of at"),
+    GR("joint", joint_parameters, RESULT_NODE, gr_joint,
+       "A node that rotates about x and y, with limits of the angles.", "name x y"),
+    GR("sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere; by default of radius 1 at the origin.",
+       "material", "name"),
+    GR("cube", cube_parameters, RESULT_NODE, gr_cube, "A cube; by default from (0,0,0) to (1,1,1).", "material",
+       "name"),
+    GR("nh_sphere", sphere_parameters, RESULT_NODE, gr_sphere, "A sphere with centre and radius.", "name centre radius",
+       "material centre radius"),
+    GR("nh_box", cube_parameters, RESULT_NODE, gr_cube, "A cube with corner and size.", "name corner size",
+       "material corner size"),
+};
+const struct function_rows node_functions = {node_rows, COUNT(node_rows)};
+
+static const struct script_function solid_rows[] = {
+    GR("geometry", geometry_parameters, RESULT_NODE, gr_geometry, "A node with the shape and material of a primitive.",
+       "name primitive"),
+    GR("csg_union", csg_parameters, RESULT_NODE, gr_union,
+       "The union of solids: points in any operand. It has no inner walls.", "name a b", "a b"),
+    GR("csg_difference", csg_parameters, RESULT_NODE, gr_difference,
+       "The difference of solids: points in the first operand and in none of the others.", "name a b", "a b"),
+    GR("csg_intersection", csg_parameters, RESULT_NODE, gr_intersection,
+       "The intersection of solids: points in all operands.", "name a b", "a b"),
+    GR("csg_merge", csg_parameters, RESULT_NODE, gr_union,
+       "The same as gr.csg_union, which has no inner walls either; a plain node keeps them.", "name a b", "a b"),
+    GR("csg_inverse", inverse_parameters, RESULT_NODE, gr_inverse,
+       "The complement of a solid: the same surface, turned inside out.", "name a", "a"),
+    GR("union", csg_parameters, RESULT_NODE, gr_union, "The same as gr.csg_union.", "name a b", "a b"),
+    GR("difference", csg_parameters, RESULT_NODE, gr_difference, "The same as gr.csg_difference.", "name a b", "a b"),
+    GR("intersection", csg_parameters, RESULT_NODE, gr_intersection, "The same as gr.csg_intersection.", "name a b",
+       "a b"),
+    GR("merge", csg_parameters, RESULT_NODE, gr_union, "The same as gr.csg_merge.", "name a b", "a b"),
+    GR("inverse", inverse_parameters, RESULT_NODE, gr_inverse, "The same as gr.csg_inverse.", "name a", "a"),
+    GR("clipped_by", clipped_parameters, RESULT_NODE, gr_clipped_by,
+       "The part of the surfaces of an object that is inside a solid: cut open, without caps. It is not a CSG operand.",
+       "name object by", "object by"),
+    GR("bounded_by", bounded_parameters, RESULT_NODE, gr_bounded_by,
+       "The object, with the hint that a solid contains it. This makes objects with a large bounding box faster.",
+       "name object by", "object by"),
+};
+const struct function_rows solid_functions = {solid_rows, COUNT(solid_rows)};

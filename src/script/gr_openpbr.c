@@ -1,13 +1,14 @@
 /* Layered materials: gr.openpbr_material with the parameters of OpenPBR Surface 1.1, under their names, and
  * gr.metal_material, whose reflectances are measured. Both are one kind of material (material/openpbr.h). */
-#include "script/bindings_internal.h"
-#include "script/context_internal.h"
-#include "script/table_rows_internal.h"
-
+#include "call/context.h"
 #include "material/material_inputs.h"
 #include "material/metals.h"
 #include "material/openpbr.h"
 #include "math/elementary.h"
+#include "script/gr_materials_internal.h"
+#include "script/gr_textures_internal.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
 
 enum {
     BASE_WEIGHT,

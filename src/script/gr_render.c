@@ -1,10 +1,121 @@
 /* gr.render. */
+#include "compat/lenient.h"
+#include "compat/lenient_picture.h"
 #include "image/transfer.h"
 #include "math/elementary.h"
+#include "record/record_bounds.h"
 #include "scene/node_bounds.h"
-#include "script/bindings_internal.h"
-#include "script/lenient_internal.h"
+#include "script/gr_materials_internal.h"
+#include "script/rows_internal.h"
+#include "script/script_internal.h"
 #include "settings/setting.h"
+
+enum {
+    RENDER_NODE,
+    RENDER_FILE,
+    RENDER_SKY,
+    RENDER_WIDTH,
+    RENDER_HEIGHT,
+    RENDER_EYE,
+    RENDER_VIEW,
+    RENDER_UP,
+    RENDER_FOV,
+    RENDER_AMBIENT,
+    RENDER_LIGHTS,
+    RENDER_TARGET,
+    RENDER_BACKGROUND,
+    RENDER_MIRROR,
+    RENDER_FIRST_SETTING,
+    RENDER_LAST_SETTING = RENDER_FIRST_SETTING + LIST_COUNT(SETTINGS_WITH_FIELD) - 1,
+    RENDER_FOG,
+    RENDER_PROJECTION,
+    RENDER_VIEW_HEIGHT,
+    RENDER_ANGLE,
+    RENDER_SHIFT_X,
+    RENDER_SHIFT_Y,
+    RENDER_APERTURE,
+    RENDER_FOCUS,
+    RENDER_FOCUS_POINT,
+    RENDER_BLADES,
+    RENDER_BLADE_ANGLE,
+    RENDER_STEREO,
+    RENDER_EYE_DISTANCE,
+    RENDER_SCREEN,
+    RENDER_SHUTTER,
+    RENDER_EYE_TO,
+    RENDER_VIEW_TO,
+    RENDER_TARGET_TO,
+    RENDER_UP_TO,
+    RENDER_COUNT
+};
+
+/* The parameter of a setting: its type, range and words by its kind. */
+#define PARAMETER_FLAG(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
+#define PARAMETER_WHOLE(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
+#define PARAMETER_NUMBER(low, high, list) KIND_NUMBER, OPTIONAL, low, high, NULL
+#define PARAMETER_SEED(low, high, list) KIND_WHOLE, OPTIONAL, low, high, NULL
+#define PARAMETER_CHOICE(low, high, list) KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(list)
+#define PARAMETER_TONE(low, high, list) KIND_CHOICE, OPTIONAL | OR_CURVE, 0, 0, LIST_BLANKS(list)
+#define PARAMETER_DENOISE(low, high, list) KIND_BOOLEAN, OPTIONAL, 0, 0, NULL
+#define PARAMETER_CAUSTICS(low, high, list) KIND_CAUSTICS, OPTIONAL, 0, 0, NULL
+#define PARAMETER_OF_SETTING(kind, type, member, change, initial, low, high, list, option, value, unit, field, ...)    \
+    {field, PARAMETER_##kind(low, high, list), unit, option, FIRST_HELP(__VA_ARGS__)},
+#define FIRST_HELP(words, group, help) help
+
+_Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
+static const struct script_parameter render_parameters[] = {
+    [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
+    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
+                     "Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders."},
+    [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
+                    "A PNG or JPEG file with six views of the sky in a 4 x 3 cross."},
+    [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
+    [RENDER_HEIGHT] = {"height", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Height of the picture."},
+    [RENDER_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
+    [RENDER_VIEW] = {"view", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}", "Direction of view."},
+    [RENDER_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Direction that is up in the picture."},
+    [RENDER_FOV] = {"fov", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, 0, 180, NULL, "degrees", "50",
+                    "Full vertical angle of view."},
+    [RENDER_AMBIENT] = {"ambient", KIND_COLOUR, OPTIONAL | OR_DISPLAY, ANY, NULL, "{0, 0, 0}", "Ambient light."},
+    [RENDER_LIGHTS] = {"lights", KIND_LIGHTS, OPTIONAL, ANY, NULL, "{}", "The lights."},
+    [RENDER_TARGET] = {"target", KIND_POINT, OPTIONAL, ANY, NULL, NULL, "Point to look at, instead of view."},
+    [RENDER_BACKGROUND] = {"background", KIND_BACKGROUND, OPTIONAL, ANY, NULL, "'gradient'",
+                           "Background for rays that hit nothing: a colour, a sky, a function of the unit direction, "
+                           "or 'gradient' for {0, 0, (1 + y)/2}. If all pictures of the script have the form "
+                           "gr.render{...} without background, the default is light and neutral."},
+    [RENDER_MIRROR] = {"mirror", KIND_BOOLEAN, OPTIONAL, ANY, NULL, "false", "Whether the sky cross is mirrored."},
+    SETTINGS_WITH_FIELD(PARAMETER_OF_SETTING)[RENDER_FOG] = {"fog", KIND_FOG, OPTIONAL, ANY, NULL, "none", "A fog."},
+    [RENDER_PROJECTION] = {"projection", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(PROJECTIONS), NULL, "'perspective'",
+                           "Fisheye: equidistant, inside a circle; panorama: 360 degrees, longitude by latitude."},
+    [RENDER_VIEW_HEIGHT] = {"view_height", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "2",
+                            "Height of an orthographic picture, in units of the scene."},
+    [RENDER_ANGLE] = {"angle", KIND_NUMBER, OPTIONAL | LOW_OPEN, IN_RANGE(0, 360), "degrees", "180",
+                      "Full angle of a fisheye across the height."},
+    [RENDER_SHIFT_X] = {"shift_x", KIND_NUMBER, OPTIONAL, ANY, "widths", "0", "Shift of the window to the right."},
+    [RENDER_SHIFT_Y] = {"shift_y", KIND_NUMBER, OPTIONAL, ANY, "heights", "0", "Shift of the window upwards."},
+    [RENDER_APERTURE] =
+        {"aperture", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "0",
+         "Radius of the lens, in units of the scene; 0 is a pinhole. With a lens, gray resamples every pixel."},
+    [RENDER_FOCUS] = {"focus", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "target, else 1",
+                      "Distance of the plane in focus, along the view."},
+    [RENDER_FOCUS_POINT] = {"focus_point", KIND_POINT, OPTIONAL, ANY, NULL, NULL,
+                            "A point of the plane in focus, instead of focus."},
+    [RENDER_BLADES] = {"blades", KIND_WHOLE, OPTIONAL, IN_RANGE(3, 64), NULL, "round",
+                       "Number of blades: the aperture is a polygon."},
+    [RENDER_BLADE_ANGLE] = {"blade_angle", KIND_NUMBER, OPTIONAL, ANY, "degrees", "0", "Rotation of that polygon."},
+    [RENDER_STEREO] = {"stereo", KIND_CHOICE, OPTIONAL, 0, 0, LIST_BLANKS(STEREOS), NULL, "'none'",
+                       "Two eyes: side by side (left picture on the left), or red and cyan."},
+    [RENDER_EYE_DISTANCE] = {"eye_distance", KIND_NUMBER, OPTIONAL, ABOVE(0), NULL, "screen / 30",
+                             "Distance between the eyes."},
+    [RENDER_SCREEN] = {"screen", KIND_NUMBER, OPTIONAL | LOW_OPEN, ABOVE(0), NULL, "focus",
+                       "Distance along the view where both eyes see the same point of the picture."},
+    [RENDER_SHUTTER] = {"shutter", KIND_INTERVAL, OPTIONAL, ANY, NULL, "{0, 1}",
+                        "Times when the shutter opens and closes, {open, close}; motion between them is blurred."},
+    [RENDER_EYE_TO] = {"eye_to", KIND_POINT, OPTIONAL, ANY, NULL, "eye", "Position of a moving camera at time 1."},
+    [RENDER_VIEW_TO] = {"view_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "view", "Its direction of view at time 1."},
+    [RENDER_TARGET_TO] = {"target_to", KIND_POINT, OPTIONAL, ANY, NULL, "target", "The point to look at, at time 1."},
+    [RENDER_UP_TO] = {"up_to", KIND_DIRECTION, OPTIONAL, ANY, NULL, "up", "Its up direction at time 1."},
+};
 
 static bool choose_sky(struct script_context *context, const struct script_value *args, struct sky *sky,
                        struct error *error) {
@@ -13,7 +124,7 @@ static bool choose_sky(struct script_context *context, const struct script_value
     static const double neutral[][4] = {{-1, 0.62, 0.61, 0.6}, {0, 0.8, 0.81, 0.82}, {1, 0.9, 0.93, 0.96}};
     const struct script_value *background = &args[RENDER_BACKGROUND];
     *sky = (struct sky){.kind = SKY_GRADIENT};
-    if (context->only_named_pictures && !background->given)
+    if (script_of(context)->only_named_pictures && !background->given)
         *sky = (struct sky){.kind = SKY_STOPS, .stops = neutral, .stop_count = 3};
     if (args[RENDER_SKY].given && background->given)
         return error_set(error, ERROR_SCENE, "sky and background exclude each other");
@@ -101,18 +212,19 @@ static void apply_settings(const struct script_value *args, struct settings *set
 /* One notice for each option of the command line that the call has overridden. --seed has none: it also seeds
  * math.random. */
 static void note_overridden(struct script_context *context, const struct settings *settings) {
-    const char *const *given = context->options->given;
-    for (int i = 0; i < setting_count && given && !context->host->repeats; i++) {
+    struct script *script = script_of(context);
+    const char *const *given = context->sandbox.options->given;
+    for (int i = 0; i < setting_count && given && !script->host->repeats; i++) {
         const struct setting *row = &setting_table[i];
         char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
-        if (!given[i] || row->kind == SETTING_SEED || context->overridden >> i & 1 ||
-            setting_bits(row, &context->host->settings) == setting_bits(row, settings))
+        if (!given[i] || row->kind == SETTING_SEED || script->overridden >> i & 1 ||
+            setting_bits(row, &script->host->settings) == setting_bits(row, settings))
             continue;
-        context->overridden |= UINT64_C(1) << i;
-        context_where(context, where, sizeof where);
+        script->overridden |= UINT64_C(1) << i;
+        sandbox_where(&context->sandbox, where, sizeof where);
         (void)snprintf(text, sizeof text, "%s%.*s%s%.64s has no effect: a field of gr.render sets it", where,
                        (int)strcspn(row->option, "|"), row->option, given[i][0] ? " " : "", given[i]);
-        context->host->message(context->host->context, SCRIPT_NOTICE, text);
+        sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
     }
 }
 _Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of overridden");
@@ -221,7 +333,7 @@ static void turn_camera(struct render_request *request, const struct render_requ
 
 /* --turntable: renders the pictures of one call. Without it, `render` renders one picture. */
 static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
-    const struct frame_options *options = &context->options->frames;
+    const struct frame_options *options = &context->sandbox.options->frames;
     struct render_request request = *first;
     struct vec3 middle = turntable_middle(first, first->camera.view);
     uint32_t count = (uint32_t)options->turntable;
@@ -230,9 +342,9 @@ static bool render_turntable(struct script_context *context, const struct render
     if (options->selection.step > 0 && options->selection.last > count)
         return error_set(error, ERROR_SCENE, "--frames selects frame %u, but the last frame is %u",
                          options->selection.last, count);
-    const struct script_host *host = context->host;
+    const struct script_host *host = script_of(context)->host;
     request.frame = (struct frame){0, count, options->rate > 0 ? options->rate : FRAME_RATE_DEFAULT, .loops = true,
-                                   .before = context->pictures * count};
+                                   .before = script_of(context)->pictures * count};
     while ((request.frame.number = host->next_frame ? host->next_frame(host->context, &request.frame)
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
@@ -242,14 +354,14 @@ static bool render_turntable(struct script_context *context, const struct render
     return true;
 }
 
-bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
-               struct error *error) {
+static bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
+                      struct error *error) {
     (void)result;
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
     char where[PATH_SIZE + 32], title[96];
-    context_where(context, where, sizeof where);
-    const char *call = arena_format(&context->call, "%s%s", where, function_title(context->function, title));
+    sandbox_where(&context->sandbox, where, sizeof where);
+    const char *call = arena_format(&context->sandbox.call, "%s%s", where, function_title(context->function, title));
     if (!call)
         return error_no_memory(error, "a picture");
     struct render_request request = {
@@ -269,8 +381,8 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         .lights = args[RENDER_LIGHTS].lights,
         .light_count = args[RENDER_LIGHTS].count,
         .fog = args[RENDER_FOG].fog,
-        .settings = context->host->settings,
-        .frame = context->frame,
+        .settings = script_of(context)->host->settings,
+        .frame = script_of(context)->animation.frame,
     };
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
     struct camera fitted;
@@ -297,21 +409,38 @@ bool gr_render(struct script_context *context, const struct script_value *args, 
         fog->display = false;
         request.fog = fog;
     }
-    if (!record_check(context, request.root, error) ||
+    if (!record_check(&context->sandbox, &context->scene, request.root, error) ||
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||
-        !apply_motion(args, &context->frame, context->frame_shutter, &request.settings, &request.camera, error) ||
+        !apply_motion(args, &script_of(context)->animation.frame, script_of(context)->animation.shutter,
+                      &request.settings, &request.camera, error) ||
         !choose_sky(context, args, &request.sky, error))
         return false;
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))
         return false;
-    request.changed = context->change_count > 0;
-    limits_pause(context);
-    bool turns = context->options->frames.turntable > 0;
+    request.changed = script_of(context)->changes.count > 0;
+    limits_pause(&context->sandbox.limits);
+    bool turns = context->sandbox.options->frames.turntable > 0;
     bool done = turns ? render_turntable(context, &request, error)
-                      : context->host->render(context->host->context, &request, error);
-    limits_resume(context);
+                      : script_of(context)->host->render(script_of(context)->host->context, &request, error);
+    limits_resume(&context->sandbox.limits);
     changes_take_off(&changed);
-    context->pictures += done;
+    script_of(context)->pictures += done;
     return done;
 }
+
+#define RENDER_TAIL " width height eye view up fov ambient? lights?"
+
+static const struct script_function render_rows[] = {
+    GR("render", render_parameters, RESULT_NOTHING, gr_render, "Renders a picture into a file.",
+       "node file" RENDER_TAIL),
+    GR("render_skybox", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render, with a sky picture.",
+       "node file sky" RENDER_TAIL),
+};
+const struct function_rows render_functions = {render_rows, COUNT(render_rows)};
+
+static const struct script_function render_method_rows[] = {
+    NODE("render", render_parameters, RESULT_NOTHING, gr_render, "The same as gr.render with this node.",
+         "file" RENDER_TAIL),
+};
+const struct function_rows render_method_functions = {render_method_rows, COUNT(render_method_rows)};

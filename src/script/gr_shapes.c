@@ -1,8 +1,9 @@
 /* Analytic shapes: every row of the table becomes a geometry node with one shape. Checked here are the conditions on
  * several numbers together, which the table cannot express, and sizes that the root-finders cannot handle. */
+#include "call/context.h"
 #include "math/range.h"
-#include "script/context_internal.h"
-#include "script/table_rows_internal.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
 #include "shape/planar.h"
 #include "shape/revolved_quadric.h"
 
@@ -422,8 +423,8 @@ static bool gr_polygon(struct script_context *context, const struct script_value
     const struct script_value *points = &args[POLYGON_POINTS], *outlines = &args[POLYGON_OUTLINES];
     uint32_t count = outlines->given ? outlines->starts[outlines->count] : points->count;
     uint32_t outline_count = outlines->given ? outlines->count : 1;
-    struct vec3 *corners = arena_alloc_array(&context->call, count, sizeof *corners);
-    uint32_t *ends = arena_alloc_array(&context->call, outline_count, sizeof *ends);
+    struct vec3 *corners = arena_alloc_array(&context->sandbox.call, count, sizeof *corners);
+    uint32_t *ends = arena_alloc_array(&context->sandbox.call, outline_count, sizeof *ends);
     if (!corners || !ends)
         return error_no_memory(error, "a polygon");
     for (uint32_t i = 0; i < count; i++) {

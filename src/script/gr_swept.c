@@ -1,9 +1,12 @@
 /* Shapes with many parts: lathe, prism, sweep, height field, blob, curve and patches. The parameters of a
  * shape live in the arena of the scene; the builder of the shape reports their errors. */
-#include "script/context_internal.h"
-#include "script/table_rows_internal.h"
-
+#include "call/context.h"
 #include "mesh/patch.h"
+#include "record/record_bounds.h"
+#include "script/gr_displace_internal.h"
+#include "script/gr_materials_internal.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
 #include "shape/blob.h"
 #include "shape/curve.h"
 #include "shape/height_field.h"
@@ -33,7 +36,7 @@ static enum spline_kind spline_or(const struct script_value *value, enum spline_
 /* One number for each of `count` points, or one for all of them. */
 static bool one_each(struct script_context *context, const struct script_value *value, const char *name, uint32_t count,
                      const double **out, struct error *error) {
-    double *all = arena_alloc_array(&context->call, count, sizeof *all);
+    double *all = arena_alloc_array(&context->sandbox.call, count, sizeof *all);
     if (!all)
         return error_no_memory(error, "the numbers of a shape");
     if (!value->single && value->count != count)
@@ -86,8 +89,9 @@ static bool gr_prism(struct script_context *context, const struct script_value *
     const struct script_value *outline = &args[PRISM_OUTLINE], *holes = &args[PRISM_HOLES];
     uint32_t hole_points = holes->given ? holes->starts[holes->count] : 0,
              curves = 1 + (holes->given ? holes->count : 0);
-    double(*points)[2] = arena_alloc_array(&context->call, (size_t)outline->count + hole_points + 1, sizeof *points);
-    uint32_t *starts = arena_alloc_array(&context->call, (size_t)curves + 1, sizeof *starts);
+    double(*points)[2] =
+        arena_alloc_array(&context->sandbox.call, (size_t)outline->count + hole_points + 1, sizeof *points);
+    uint32_t *starts = arena_alloc_array(&context->sandbox.call, (size_t)curves + 1, sizeof *starts);
     if (!points || !starts)
         return error_no_memory(error, "a prism");
     memcpy(points, outline->pairs, outline->count * sizeof *points);
@@ -155,7 +159,7 @@ static const struct script_parameter implicit_parameters[] = {
 static void use_in_bounds(struct script_context *context, const struct expr_program *program,
                           const struct shape *shape) {
     const struct box bounds = shape_bounds(shape);
-    record_use(context, program, &bounds);
+    record_use(&context->sandbox, program, &bounds);
 }
 
 /* Operations for a line of an implicit solid. A picture of 640 x 480 needs minutes above the first number, and hours
@@ -177,18 +181,19 @@ static bool examine_implicit(struct script_context *context, const struct implic
             error, ERROR_SCENE,
             "the bounds of f are too wide to find its surface in reasonable time, as of fractals: " ADVICE);
     if (found.line_work > slow_line)
-        context_warn(context, "the bounds of f are wide, so that rays need %.0f operations each: " ADVICE,
+        sandbox_warn(&context->sandbox, "the bounds of f are wide, so that rays need %.0f operations each: " ADVICE,
                      found.line_work);
     if (found.is_empty)
-        context_warn(context, "f is negative at none of the points that were examined: if it is an estimate that stays "
-                              "above 0, subtract a small distance from it");
+        sandbox_warn(&context->sandbox,
+                     "f is negative at none of the points that were examined: if it is an estimate that stays "
+                     "above 0, subtract a small distance from it");
     if (found.steep_points > 0 && in->is_distance)
-        context_warn(context,
+        sandbox_warn(&context->sandbox,
                      "|f| is above the distance to the surface at %u of %u points (%.3g times at {%.4g, %.4g, %.4g}), "
                      "so parts of the surface may be missing: divide f, or declare lipschitz instead of distance",
                      found.steep_points, found.points, found.steepest, at.x, at.y, at.z);
     else if (found.steep_points > 0)
-        context_warn(context,
+        sandbox_warn(&context->sandbox,
                      "the slope of f is above lipschitz = %.4g at %u of %u points (%.3g at {%.4g, %.4g, %.4g}), so "
                      "parts of the surface may be missing: declare a larger bound, or divide f by it",
                      in->lipschitz, found.steep_points, found.points, found.steepest, at.x, at.y, at.z);
@@ -277,7 +282,7 @@ static bool heights_of_image(struct script_context *context, const struct script
         return false;
     in->columns = image_width(image);
     in->rows = image_height(image);
-    double *heights = arena_alloc_array(&context->call, (size_t)in->columns * in->rows, sizeof *heights);
+    double *heights = arena_alloc_array(&context->sandbox.call, (size_t)in->columns * in->rows, sizeof *heights);
     if (!heights)
         return error_no_memory(error, "a height field");
     for (uint32_t j = 0; j < in->rows; j++)
@@ -396,7 +401,7 @@ static bool gr_blob(struct script_context *context, const struct script_value *a
                     struct error *error) {
     const struct script_value *balls = &args[BLOB_SPHERES], *rods = &args[BLOB_CYLINDERS];
     struct blob_input in = {.count = balls->count + rods->count, .threshold = 0.5};
-    struct blob_element *elements = arena_alloc_array(&context->call, (size_t)in.count + 1, sizeof *elements);
+    struct blob_element *elements = arena_alloc_array(&context->sandbox.call, (size_t)in.count + 1, sizeof *elements);
     if (!elements)
         return error_no_memory(error, "a blob");
     if (!blob_rows(balls, "spheres", 4, elements, error) ||
@@ -429,7 +434,7 @@ static bool gr_patch(struct script_context *context, const struct script_value *
     struct patch_input in = {.name = name, .points = points->points, .flip = args[PATCH_FLIP].boolean};
     in.tolerance = args[PATCH_TOLERANCE].number;
     if (patches->given) {
-        double(*all)[3] = arena_alloc_array(&context->call, (size_t)patches->count * 16 + 1, sizeof *all);
+        double(*all)[3] = arena_alloc_array(&context->sandbox.call, (size_t)patches->count * 16 + 1, sizeof *all);
         if (!all)
             return error_no_memory(error, "patches");
         for (uint32_t k = 0; k < patches->count; k++) {
@@ -453,7 +458,7 @@ static bool gr_patch(struct script_context *context, const struct script_value *
         in.count = points->count / 16;
     }
     struct mesh_input input;
-    if (!patch_tessellate(&context->call, &in, &input, error))
+    if (!patch_tessellate(&context->sandbox.call, &in, &input, error))
         return false;
     struct shape shape = {.kind = SHAPE_MESH, .mesh = assets_mesh(context->scene.assets, &input, error)};
     return shape.mesh && give_node(context, args, "patch", &shape, result, error);

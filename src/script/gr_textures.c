@@ -1,22 +1,16 @@
 /* Textures that are no images: patterns, and operations on other textures. Each function has its binding and its table
  * row in this file.
  */
-#include "script/bindings_internal.h"
-#include "script/context_internal.h"
-#include "script/table_rows_internal.h"
+#include "script/gr_textures_internal.h"
 
-/* Saved edits count textures among the materials of a scene. */
-struct script_texture *gr_keep_texture(struct script_context *context, const struct script_texture *value,
-                                       struct error *error) {
-    struct script_texture *out = arena_alloc(&context->scene.arena, sizeof *out);
-    if (!out) {
-        error_no_memory(error, "a texture");
-        return NULL;
-    }
-    *out = *value;
-    context->scene.material_count++;
-    return out;
-}
+#include "compat/lenient_handles.h"
+#include "image/image_function.h"
+#include "record/vector.h"
+#include "script/rows_internal.h"
+#include "script/table_internal.h"
+
+#include <lauxlib.h>
+#include <string.h>
 
 const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
                                     struct error *error) {
@@ -36,7 +30,7 @@ const struct texture *gr_texture_of(struct script_context *context, const struct
 static bool give(struct script_context *context, struct texture texture, struct script_result *result,
                  struct error *error) {
     struct script_texture out = {.texture = texture_keep(&context->scene.arena, texture, error)};
-    result->pointer = out.texture ? gr_keep_texture(context, &out, error) : NULL;
+    result->pointer = out.texture ? context_keep_texture(context, &out, error) : NULL;
     return result->pointer != NULL;
 }
 
@@ -142,3 +136,76 @@ static const struct script_function rows[] = {
 };
 
 const struct function_rows texture_functions = {rows, COUNT(rows)};
+
+/* --- pictures as functions --- */
+
+/* The picture of a texture as a function, with the lookup of gr.texture. Its numbers are those of the file, unless the
+ * texture has an explicit encoding. */
+static struct image_function *make_image_function(struct script_context *context, const struct texture_image *image) {
+    struct error error = {0};
+    struct transfer_function transfer = {TRANSFER_UNSTATED, 0};
+    struct image_function *out = arena_alloc(&context->scene.arena, sizeof *out);
+    if (!out)
+        sandbox_raise_no_memory(&context->sandbox);
+    if (image->gamma > 0)
+        transfer = (struct transfer_function){TRANSFER_POWER, image->gamma};
+    else if (image->encoding == ENCODING_SRGB)
+        transfer = (struct transfer_function){TRANSFER_SRGB, 0};
+    struct image *decoded = image_decode(image->image, transfer, &error);
+    if (!decoded || !image_make_ranges(decoded, &error))
+        sandbox_raise_error(&context->sandbox, &error);
+    *out = (struct image_function){.image = decoded,
+                                   .sampling = {image->filter, image->wrap, image->apart ? image->wrap_v : image->wrap},
+                                   .scale = {1, 1},
+                                   .flip_u = image->flip_u,
+                                   .tint = {1, 1, 1}};
+    if (!image->apart)
+        return out;
+    for (int k = 0; k < 2; k++) {
+        out->scale[k] = image->scale[k];
+        out->offset[k] = image->offset[k];
+    }
+    out->tint[0] = image->tint.x;
+    out->tint[1] = image->tint.y;
+    out->tint[2] = image->tint.z;
+    return out;
+}
+
+static const struct image_function *image_function_at(lua_State *L, int index) {
+    struct script_context *context = context_of(L);
+    const struct handle *handle = handle_at(L, index);
+    struct script_texture *texture = handle && handle->type == HANDLE_TEXTURE ? handle->pointer : NULL;
+    const struct texture_image *image = texture && !texture->is_bump ? texture_as_image(texture->texture) : NULL;
+    context->sandbox.lua = L;
+    if (!image)
+        luaL_error(L, "img:at(u, v) needs a picture, a result of gr.texture, not %s", value_words(L, index));
+    if (!texture->function) {
+        texture->function = make_image_function(context, image);
+        context->scene.escaped = true; /* the texture may be older */
+    }
+    return texture->function;
+}
+
+/* img:at(u, v): the colour, multiplied by alpha, and alpha. */
+static int image_at(lua_State *L) {
+    const struct image_function *function = image_function_at(L, 1);
+    lua_settop(L, 3);
+    return push_image_value(L, function);
+}
+
+static int texture_index(lua_State *L) {
+    if (lua_type(L, 2) == LUA_TSTRING && strcmp(lua_tostring(L, 2), "at") == 0) {
+        lua_pushcfunction(L, image_at);
+        return 1;
+    }
+    if (context_of(L)->lenient)
+        return lenient_handle_index(L);
+    return luaL_error(L, "a texture has no field '%s'; img:at(u, v) reads a picture", luaL_tolstring(L, 2, NULL));
+}
+
+void textures_open(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, handle_key(HANDLE_TEXTURE));
+    lua_pushcfunction(L, texture_index);
+    lua_setfield(L, -2, "__index");
+    lua_pop(L, 1);
+}

@@ -1,13 +1,21 @@
 /* Runs one scene: a fresh Lua state on our allocator, one protected call around everything, then the state is closed
  * and after it the scene. Invariant: after every error lua_close is called first, then the arenas are destroyed;
  * nothing else is owned here. */
-#include "script/context_internal.h"
+#include "script/script.h"
+#include "script/script_internal.h"
 
 #include "base/file.h"
-#include "script/hints_internal.h"
-#include "script/lenient_internal.h"
-#include "script/order_internal.h"
-#include "script/record_internal.h"
+#include "compat/compat.h"
+#include "compat/dialect.h"
+#include "compat/lenient.h"
+#include "compat/lenient_handles.h"
+#include "compat/lenient_picture.h"
+#include "compat/order.h"
+#include "compat/traverse.h"
+#include "record/record.h"
+#include "sandbox/hints.h"
+#include "script/dispatch_internal.h"
+#include "script/gr_textures_internal.h"
 
 #include <assert.h>
 #include <lauxlib.h>
@@ -63,8 +71,8 @@ static void push_value(lua_State *L, const char *value) {
     lua_pushstring(L, value);
 }
 
-void define_open(lua_State *L) {
-    const struct script_options *options = context_of(L)->options;
+static void define_open(lua_State *L) {
+    const struct script_options *options = sandbox_of(L)->options;
     for (int k = 0; k < options->define_count; k++) {
         push_value(L, options->defines[k].value);
         lua_setglobal(L, options->defines[k].name);
@@ -74,9 +82,9 @@ void define_open(lua_State *L) {
 /* The length of the source position at the start of a message, "scene.lua:12: " or that of a chunk from a string; 0
  * when it has none.
  */
-static size_t position_length(const struct script_context *context, const char *message) {
+static size_t position_length(const struct sandbox *sandbox, const char *message) {
     size_t length = strncmp(message, "[string \"", 9) == 0 ? strcspn(message, "]") + 1 : 0;
-    for (const struct source_name *source = context->sources; source && length == 0; source = source->next) {
+    for (const struct source_name *source = sandbox->files.sources; source && length == 0; source = source->next) {
         size_t name = strlen(source->path);
         if (strncmp(message, source->path, name) == 0 && message[name] == ':')
             length = name;
@@ -88,12 +96,12 @@ static size_t position_length(const struct script_context *context, const char *
 
 /* The message from its innermost source position on, which is the most precise: coroutine.wrap and error add others
  * before it. Paths that Lua has shortened are written in full. NULL without memory. */
-static const char *innermost(struct script_context *context, const char *message, bool *has_position) {
-    message = files_unshorten(context, message);
-    size_t outer = message ? position_length(context, message) : 0;
+static const char *innermost(struct sandbox *sandbox, const char *message, bool *has_position) {
+    message = files_unshorten(sandbox, message);
+    size_t outer = message ? position_length(sandbox, message) : 0;
     *has_position = outer > 0;
-    const char *inner = outer > 0 ? files_unshorten(context, message + outer) : message;
-    return inner && outer > 0 && position_length(context, inner) == 0 ? message : inner;
+    const char *inner = outer > 0 ? files_unshorten(sandbox, message + outer) : message;
+    return inner && outer > 0 && position_length(sandbox, inner) == 0 ? message : inner;
 }
 
 /* The text with every line indented, and two blanks for a tab. */
@@ -119,65 +127,64 @@ static const char *indent(struct arena *arena, const char *text) {
 
 /* Whether a function of gr raised this message, and would not under --lenient. */
 static bool is_forgivable(const struct script_context *context, const char *message) {
-    size_t length = strlen(message), raised = strlen(context->raised);
-    return !context->lenient && !context->unforgivable && raised > 0 && length >= raised &&
-           strcmp(message + length - raised, context->raised) == 0;
+    const struct sandbox *sandbox = &context->sandbox;
+    size_t length = strlen(message), raised = strlen(sandbox->raised);
+    return !context->lenient && !sandbox->unforgivable && raised > 0 && length >= raised &&
+           strcmp(message + length - raised, sandbox->raised) == 0;
 }
 
 /* The message handler: writes the complete first line and the traceback while the stack still exists. */
 static int describe_error(lua_State *L) {
-    struct script_context *context = context_of(L);
-    if (context->ended || context->fatal.kind != ERROR_NONE) /* the context has the error */
+    struct script *script = script_of(context_of(L));
+    struct sandbox *sandbox = &script->context.sandbox;
+    if (sandbox->ended || sandbox->fatal.kind != ERROR_NONE) /* the sandbox has the error */
         return 1;
-    context->lua = L;
+    sandbox->lua = L;
     char where[PATH_SIZE + 32];
-    context_where(context, where, sizeof where);
+    sandbox_where(sandbox, where, sizeof where);
     const char *message;
     if (lua_type(L, 1) == LUA_TSTRING || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL)
         message = luaL_tolstring(L, 1, NULL);
     else
         message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
     bool has_position;
-    message = innermost(context, message, &has_position);
+    message = innermost(sandbox, message, &has_position);
     if (!message) {
-        error_no_memory(&context->fatal, "the script");
+        error_no_memory(&sandbox->fatal, "the script");
         return 1;
     }
     size_t first = strcspn(message, "\n");
-    char frame[FRAME_WORDS];
-    frames_name_frame(context, frame);
-    error_set(&context->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
-              hint_of_lua_error(L, message), frame);
+    error_set(&script->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
+              hint_of_lua_error(L, message), sandbox->error_suffix);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
-    if (is_forgivable(context, message)) {
+    if (is_forgivable(&script->context, message)) {
         lua_pushliteral(L, "\n--lenient gets over this error");
         lua_concat(L, 2);
     }
-    context->traceback = indent(context->out, lua_tostring(L, -1));
+    script->traceback = indent(script->out, lua_tostring(L, -1));
     lua_settop(L, 1); /* load also calls this, if its text is nested too deeply, and returns the message */
     return 1;
 }
 
 static int run_scene(lua_State *L) {
-    struct script_context *context = context_of(L);
+    const struct script *script = script_of(context_of(L));
     sandbox_open(L);
-    protect_open(L);
-    files_open(L);
-    streams_open(L);
     traverse_open(L);
     compat_open(L);
     handles_open(L);
     dispatch_open(L);
-    lenient_open(L);
+    if (script->context.lenient)
+        lenient_open(L);
     record_open(L);
+    textures_open(L);
     frames_open(L);
-    library_open(L);
+    files_save_globals(L);
     define_open(L);
     lua_settop(L, 0);
     limits_open(L);
     dialect_run(L);
-    if (files_load(L, context->path) != LUA_OK)
+    if (files_load(L, script->context.sandbox.files.path) != LUA_OK)
         return lua_error(L);
     lua_call(L, 0, 0);
     dialect_finish(L);
@@ -185,47 +192,51 @@ static int run_scene(lua_State *L) {
 }
 
 /* The result of the protected call as one error. */
-static bool conclude(struct script_context *context, int status, struct error *error) {
-    if (context->fatal.kind != ERROR_NONE) {
-        *error = context->fatal;
+static bool conclude(struct script *script, int status, struct error *error) {
+    const struct sandbox *sandbox = &script->context.sandbox;
+    if (sandbox->fatal.kind != ERROR_NONE) {
+        *error = sandbox->fatal;
         return false;
     }
-    if (status == LUA_OK || context->ended)
+    if (status == LUA_OK || sandbox->ended)
         return true;
-    if (context->limits.memory_out)
-        return error_set(error, ERROR_SCENE, "%s: %s", context->path, context->limits.memory_words);
+    if (sandbox->limits.memory_out)
+        return error_set(error, ERROR_SCENE, "%s: %s", sandbox->files.path, sandbox->limits.memory_words);
     if (status == LUA_ERRMEM)
-        return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", context->path);
-    *error = context->failure;
+        return error_set(error, ERROR_MACHINE, "%s: out of memory for the script", sandbox->files.path);
+    *error = script->failure;
     return false;
 }
 
-static bool choose_order(struct script_context *context, struct error *error) {
+static bool choose_order(struct script *script, struct error *error) {
+    const struct sandbox *sandbox = &script->context.sandbox;
+    struct scene *scene = &script->context.scene;
+    const char *path = sandbox->files.path;
     struct order_finding finding;
-    if (!order_detect(context->path, context->options->library_folder, context->path_policy, &finding, error))
+    if (!order_detect(path, sandbox->options->library_folder, sandbox->path_policy, &finding, error))
         return false;
-    context->only_named_pictures = finding.only_named_pictures;
-    switch (context->options->transform_order) {
+    script->only_named_pictures = finding.only_named_pictures;
+    switch (sandbox->options->transform_order) {
     case SCRIPT_ORDER_NEW:
-        context->scene.order = ORDER_NEW;
+        scene->order = ORDER_NEW;
         return true;
     case SCRIPT_ORDER_OLD:
-        context->scene.order = ORDER_OLD;
+        scene->order = ORDER_OLD;
         return true;
     case SCRIPT_ORDER_SEPARATE:
-        context->scene.order = ORDER_SEPARATE;
+        scene->order = ORDER_SEPARATE;
         return true;
     case SCRIPT_ORDER_AUTO:
         break;
     }
-    context->scene.order = finding.order;
+    scene->order = finding.order;
     if (finding.order != ORDER_OLD)
         return true;
     char text[PATH_SIZE + 600];
     snprintf(text, sizeof text,
              "%s: old transform order, because %s; set it with --transform-order old or gr.transform_order('old')",
-             context->path, finding.reason);
-    context->host->message(context->host->context, SCRIPT_NOTICE, text);
+             path, finding.reason);
+    sandbox_message(sandbox, SCRIPT_NOTICE, text);
     return true;
 }
 
@@ -256,60 +267,116 @@ struct digest render_request_digest(const struct render_request *request) {
     return digest_bytes(request->lights, request->light_count * sizeof *request->lights, digest);
 }
 
-static bool prepare(struct script_context *context, struct path_policy *path_policy, struct error *error) {
-    const char *slash = strrchr(context->path, '/');
-    size_t length = slash ? (size_t)(slash - context->path) + 1 : 0;
-    if (strlen(context->path) >= PATH_SIZE - 64)
-        return error_set(error, ERROR_SCENE, "%.100s...: the path is too long", context->path);
-    memcpy(context->folder, context->path, length);
-    context->warned = arena_alloc(&context->keep, (size_t)function_count());
-    context->checked_lines = arena_alloc_array(&context->keep, CHECKED_LINES, sizeof *context->checked_lines);
-    if (!context->warned || !context->checked_lines || !lenient_begin(context))
+/* --lenient: a picture of the scene if gr.render made none. `failed`: the script ended with an error. */
+static void render_last_picture(struct script *script, bool failed) {
+    enum { SIDE = 256 };
+    struct script_context *c = &script->context;
+    const struct script_host *host = script->host;
+    const struct lenient *lenient = c->lenient;
+    char name[PATH_SIZE], text[3 * PATH_SIZE];
+    if (script->pictures > 0 || lenient->refused || c->sandbox.fatal.kind != ERROR_NONE)
+        return;
+    struct node *root = lenient_root(c);
+    if (!root)
+        return;
+    lenient_picture_name(c, name, sizeof name);
+    struct render_request request = {.where = c->sandbox.files.path,
+                                     .scene = &c->scene,
+                                     .root = root,
+                                     .file = name,
+                                     .width = SIDE,
+                                     .height = SIDE,
+                                     .ambient = {0.3, 0.3, 0.3},
+                                     .lights = lenient->lights,
+                                     .light_count = lenient->light_count,
+                                     .sky = {.kind = SKY_GRADIENT},
+                                     .keep = true,
+                                     .settings = host->settings};
+    lenient_camera(root, &request.camera);
+    request.settings.view_is_target = false;
+    request.settings.lens = (struct lens){.projection = request.settings.lens.projection,
+                                          .view_height = request.settings.lens.view_height,
+                                          .angle = request.settings.lens.angle,
+                                          .focus = 1,
+                                          .screen = 1};
+    struct scene_light above = {
+        .light = {
+            .kind = LIGHT_POINT, .position = request.camera.eye, .colour = {0.7, 0.7, 0.7}, .falloff = {1, 0, 0}}};
+    if (lenient->light_count == 0) {
+        request.lights = &above;
+        request.light_count = 1;
+    }
+    struct error error = {0};
+    limits_pause(&c->sandbox.limits);
+    bool done = host->render(host->context, &request, &error);
+    limits_resume(&c->sandbox.limits);
+    if (done)
+        snprintf(text, sizeof text, "%s: %s: the picture of --lenient shows node '%.200s'", c->sandbox.files.path,
+                 failed ? "an error ended the script" : "the script has rendered no picture", root->name);
+    else
+        snprintf(text, sizeof text, "%s: warning: no picture of --lenient: %s", c->sandbox.files.path, error.text);
+    sandbox_message(&c->sandbox, done ? SCRIPT_NOTICE : SCRIPT_WARNING, text);
+}
+
+static bool prepare(struct script *script, struct path_policy *path_policy, struct error *error) {
+    struct sandbox *sandbox = &script->context.sandbox;
+    if (!sandbox_begin(sandbox, error))
+        return false;
+    if (sandbox->options->lenient && !lenient_begin(&script->context))
         return error_no_memory(error, "the script");
     struct file_bytes bytes; /* an unreadable file is reported before anything else, in one line */
-    if (!file_map(context->path, FILE_LIMIT, &bytes, error))
+    if (!file_map(sandbox->files.path, FILE_LIMIT, &bytes, error))
         return false;
     file_unmap(&bytes);
-    if (!context->options->no_sandbox) {
-        if (!script_path_policy(context->path, context->options, path_policy, error))
+    if (!sandbox->options->no_sandbox) {
+        if (!script_path_policy(sandbox->files.path, sandbox->options, path_policy, error))
             return false;
-        context->path_policy = path_policy;
+        sandbox->path_policy = path_policy;
     }
-    return dialect_find(context, error) && choose_order(context, error);
+    return dialect_find(sandbox, error) && choose_order(script, error);
+}
+
+static struct sandbox sandbox_of_script(const char *path, const struct script_options *options,
+                                        const struct script_host *host) {
+    return (struct sandbox){.options = options,
+                            .host = {.context = host->context,
+                                     .message = host->message,
+                                     .cancelled = host->cancelled,
+                                     .error_text = host->error_text,
+                                     .output_is_error = host->output_is_error,
+                                     .prints = host->prints},
+                            .files = {.path = path}};
 }
 
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct arena *arena, const char **traceback, struct error *error) {
-    struct script_context context = {.options = options, .host = host, .out = arena, .path = path};
+    struct script script = {.host = host, .out = arena};
+    struct sandbox *sandbox = &script.context.sandbox;
     *traceback = NULL;
-    scene_init(&context.scene, host->assets);
+    *sandbox = sandbox_of_script(path, options, host);
+    scene_init(&script.context.scene, host->assets);
     struct path_policy path_policy = {0};
     /* The message if the message handler failed. */
-    error_set(&context.failure, ERROR_SCENE, "%s: an error while an error was reported", path);
-    limits_begin(&context);
-    bool done = prepare(&context, &path_policy, error);
-    lua_State *L = done ? lua_newstate(limits_allocate, &context) : NULL;
+    error_set(&script.failure, ERROR_SCENE, "%s: an error while an error was reported", path);
+    bool done = prepare(&script, &path_policy, error);
+    lua_State *L = done ? lua_newstate(limits_allocate, &sandbox->limits) : NULL;
     if (done && !L)
         done = error_no_memory(error, "the script");
     if (L) {
-        *(struct script_context **)lua_getextraspace(L) = &context;
-        context.lua = L;
+        *(struct sandbox **)lua_getextraspace(L) = sandbox;
+        sandbox->lua = L;
         lua_pushcfunction(L, describe_error);
         lua_pushcfunction(L, run_scene);
-        done = conclude(&context, lua_pcall(L, 0, 0, 1), error);
-        context.lua = NULL;
-        if (context.lenient && (done || error->kind == ERROR_SCENE))
-            lenient_last_picture(&context, !done);
-        *traceback = done || error->kind != ERROR_SCENE ? NULL : context.traceback;
+        done = conclude(&script, lua_pcall(L, 0, 0, 1), error);
+        sandbox->lua = NULL;
+        if (script.context.lenient && (done || error->kind == ERROR_SCENE))
+            render_last_picture(&script, !done);
+        *traceback = done || error->kind != ERROR_SCENE ? NULL : script.traceback;
         lua_close(L);
     }
-    recorder_destroy(context.recorder);
-    streams_close(&context);
+    recorder_destroy(sandbox->recorder);
     path_policy_destroy(&path_policy);
-    scene_destroy(&context.scene);
-    arena_destroy(&context.search.arena);
-    arena_destroy(&context.call);
-    arena_destroy(&context.keep);
-    limits_end(&context);
+    scene_destroy(&script.context.scene);
+    host->assets->memory += sandbox_end(sandbox); /* what is still allocated belongs to the assets */
     return done;
 }

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "material/medium.h"
+#include "sandbox/message.h"
 #include "scene/node.h"
 #include "settings/script_options.h"
 #include "settings/settings.h"
@@ -41,8 +42,6 @@ struct render_request {
  * of the request's bytes, so it includes every field. Different padding only means that an equal frame is rendered. */
 struct digest render_request_digest(const struct render_request *request);
 
-enum script_message { SCRIPT_NOTICE, SCRIPT_WARNING };
-
 struct script_host {
     void *context;
     struct assets *assets;    /* meshes and images that outlive the script */
@@ -76,17 +75,9 @@ struct path_policy;
 bool script_path_policy(const char *path, const struct script_options *options, struct path_policy *path_policy,
                         struct error *error);
 
-/* The file of --dialect: the one it names, or that of the name in the library. False: no dialect, or the path is too
- * long. */
-bool script_dialect_file(const struct script_options *options, char *out, size_t size);
-
 /* Runs the script at `path`. false: error.text is the complete first line, and *traceback (allocated in `arena`, lines
  * indented by two spaces, may be NULL) follows for script errors. */
 bool script_run(const char *path, const struct script_options *options, const struct script_host *host,
                 struct arena *arena, const char **traceback, struct error *error);
-
-/* The table of functions as documents; the text is allocated in the arena. */
-const char *script_manual(struct arena *arena);      /* for --man: plain text, 100 columns */
-const char *script_annotations(struct arena *arena); /* lua/gr.lua, LuaLS ---@meta */
 
 #endif

@@ -1,197 +1,22 @@
-/* One table describes every gr function and node method: name, arguments with type, range, unit and default, result,
- * help. Argument checking, suggestions, the manual page and the editor annotations are all read from it. Constant data.
- */
+/* The table of all functions of gr and methods of nodes, in the order of the manual. */
 #ifndef GRAY_SCRIPT_TABLE_INTERNAL_H
 #define GRAY_SCRIPT_TABLE_INTERNAL_H
 
-#include "base/error.h"
-#include "image/tone.h"
-#include "light/light.h"
-#include "light/sky.h"
-#include "material/material.h"
-#include "material/medium.h"
-#include "mesh/mesh.h"
-#include "scene/node.h"
+#include "call/function.h"
+#include "record/vector.h"
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-struct script_context;
-
-/* The kinds of arguments. The plain C form is in struct script_value. */
-enum kind {
-    KIND_NUMBER,     /* number */
-    KIND_WHOLE,      /* number: a float with a whole value is fine */
-    KIND_BOOLEAN,    /* boolean */
-    KIND_TEXT,       /* text */
-    KIND_FILE,       /* text: a file to be read, looked for beside the scene */
-    KIND_OUTPUT,     /* text: a file to be written */
-    KIND_CHOICE,     /* choice: index into the words of parameter.choices */
-    KIND_AXIS,       /* choice: 0, 1, 2 */
-    KIND_POINT,      /* vector */
-    KIND_DIRECTION,  /* vector */
-    KIND_COLOUR,     /* vector */
-    KIND_TRIPLE,     /* vector: three numbers that are not a position */
-    KIND_SIZE,       /* vector: one number counts for all three */
-    KIND_INTERVAL,   /* vector: x and y, two numbers, the second not below the first */
-    KIND_QUATERNION, /* vector = x, y, z, number = w: four numbers, w first */
-    KIND_PAIR,       /* vector, z = 0: two numbers, or one for both */
-    KIND_NODE,       /* node */
-    KIND_MATERIAL,   /* material */
-    KIND_MATERIALS,  /* materials, count; names as well, in byte order, or a list: names is NULL */
-    KIND_IMAGE,      /* image, or text: the name of its file */
-    KIND_BACKGROUND, /* vector, or text = "gradient", or sky, or program */
-    KIND_FOG,        /* fog */
-    KIND_CAUSTICS,   /* number: photons, vector.x: radius; a number alone is the photons */
-    KIND_NODES,      /* nodes, count */
-    KIND_LIGHTS,     /* lights, count */
-    KIND_POINTS,     /* points, count */
-    KIND_PAIRS,      /* pairs, count */
-    KIND_STOPS,      /* stops, count: tables of 4 numbers */
-    KIND_FACES,      /* starts, indices, count */
-    KIND_NUMBERS,    /* numbers, count; a number alone: single */
-    KIND_ROWS,       /* starts, numbers, count: lists of numbers of any length */
-    KIND_CURVES,     /* starts, pairs, count: lists of pairs */
-    KIND_FUNCTION,   /* program: a function of Lua, recorded */
-    KIND_CALLBACK,   /* a function of Lua that is called; it stays on the stack */
-    KIND_COUNT,
-};
-
-/* What gr.texture, gr.bump and their like made. */
-struct script_texture {
-    const struct texture *texture;
-    struct image_function *function; /* for img:at, made by its first call */
-    bool is_bump;
-    struct bump bump; /* then, with that texture */
-};
-
-/* One argument in plain C. Text belongs to Lua and lives as long as the call, arrays to the call's arena. */
-struct script_value {
-    bool given;
-    bool boolean;
-    int choice;
-    double number;
-    struct vec3 vector;
-    const char *text;
-    struct node *node;
-    const struct material *material;
-    const struct material **materials;
-    const struct script_texture *texture;
-    const struct expr_program *program;
-    const char *source; /* of the program: "scene.lua:12" */
-    const char **names;
-    struct image *image;
-    uint32_t count;
-    struct node **nodes;
-    const struct scene_light *lights;
-    const double (*points)[3];
-    const double (*pairs)[2];
-    const double (*stops)[4];
-    const struct fog *fog;
-    const struct sky *sky;
-    const struct tone_table *curve;
-    const uint32_t *starts, *indices;
-    const double *numbers;
-    bool display; /* `vector` is a colour of the screen */
-    bool single;  /* a number alone; of a REST parameter: arguments behind a form */
-};
-
-enum {
-    OPTIONAL = 1, /* may be left out of the table form */
-    LOW_OPEN = 2, /* value > low, not >= */
-    HIGH_OPEN = 4,
-    NOT_ZERO = 8,
-    OR_TEXTURE = 64, /* a texture is accepted, too: `texture` is set, numbers are 1; of KIND_IMAGE: one without image */
-    OR_NUMBER = 256, /* of KIND_CHOICE: a number is accepted, in the range of the parameter, above 0 */
-    OR_CURVE = 2048, /* of KIND_CHOICE: also accepts a function of the light, which sets `curve` */
-    /* Of KIND_COLOUR: also accepts a function of the direction; then `program` is set, and vector is 1. Of
-     * KIND_FUNCTION: it is a function of the direction. */
-    OR_PROFILE = 512,
-    OR_FUNCTION = 1024, /* of KIND_COLOUR: also accepts a function of the point, in the same way */
-    OR_DISPLAY = 128,   /* of KIND_COLOUR without OR_TEXTURE: also accepts a display colour, which sets `display` */
-    REST = 32,          /* takes the arguments after a positional form, and entries without names of the table form */
-    GHOST_IS_NONE = 16  /* with --lenient: a ghost is treated as missing, and the call continues */
-};
-
-struct script_parameter {
-    const char *name;
-    enum kind kind;
-    unsigned flags;
-    double low, high;     /* of each number; both 0 = any finite number */
-    const char *choices;  /* words separated by blanks */
-    const char *unit;     /* or NULL */
-    const char *fallback; /* the default in words, or NULL */
-    const char *help;     /* one sentence */
-};
-
-enum owner { OWNER_GR, OWNER_NODE };
-enum result_kind {
-    RESULT_NOTHING,
-    RESULT_SELF,
-    RESULT_NODE,
-    RESULT_MATERIAL,
-    RESULT_LIGHT,
-    RESULT_TEXTURE,
-    RESULT_BOUNDS,
-    RESULT_FACES,
-    RESULT_FOG,
-    RESULT_SKY,
-    RESULT_GLYPHS,
-    RESULT_FRAMES /* nothing; calls the function of the animation */
-};
-
-struct script_result {
-    void *pointer;           /* of the type of the result kind; owned by the scene or the assets */
-    const struct mesh *mesh; /* RESULT_FACES, in its place */
-};
-
-enum { FORM_LIMIT = 4, PARAMETER_LIMIT = 96 };
-
-/* `run` is the C function of a row, which cannot raise. args[i] belongs to parameters[i]. */
-struct script_function {
-    const char *name;
-    enum owner owner;
-    const struct script_parameter *parameters;
-    int parameter_count;
-    /* The positional forms: parameter names in their order, separated by blanks; "name?" is optional at the end. The
-     * form whose types match the arguments best is used. Parameters in no form exist in the table form only. */
-    const char *forms[FORM_LIMIT];
-    enum result_kind result;
-    bool (*run)(struct script_context *context, const struct script_value *args, struct script_result *result,
-                struct error *error);
-    const char *help;
-};
-
-/* The rows of one file. The table is these one after the other. */
-struct function_rows {
-    const struct script_function *rows;
-    int count;
-};
-extern const struct function_rows shape_functions, swept_functions, displace_functions, texture_functions,
-    layered_functions, light_functions, frame_functions;
+/* The rows of the files gr_....c: beside the functions. */
+extern const struct function_rows node_functions, mesh_functions, solid_functions, shape_functions, swept_functions,
+    displace_functions, texture_functions, material_functions, glyph_functions, layered_functions, light_functions,
+    change_functions, environment_functions, render_functions, method_functions, render_method_functions,
+    frame_functions;
 
 int function_count(void);
 /* index: 0 to function_count() - 1. */
 const struct script_function *function_at(int index);
-int function_index(const struct script_function *function);
-
-/* The functions of gr on numbers and vectors (vector.c). They read Lua values directly and have no rows in the table;
- * their arguments and effects are described in text. NULL after the last one. */
-struct value_function {
-    const char *name, *parameters, *help;
-    const char *result; /* its type in annotations */
-};
-const struct value_function *value_function_at(size_t index);
-
 /* The row of that name, or NULL. */
 const struct script_function *function_find(enum owner owner, const char *name);
-/* Whether a call with one table of named fields is a form of it. Most methods take tuples or handles instead. Only
- * methods whose arguments are all optional, and node:render, have fields. */
-bool function_takes_names(const struct script_function *function);
-/* Reads the next name of a form: false at its end. *index is its parameter. */
-bool form_next(const struct script_function *function, const char **form, int *index, bool *optional);
-/* What the script must pass: "a number", "a colour {r, g, b}". */
-const char *kind_words(enum kind kind);
+/* The functions on numbers and vectors, which have no rows in the table. NULL after the last one. */
+const struct value_function *value_function_at(size_t index);
 
 #endif

@@ -1,5 +1,5 @@
 /* Any bytes as the text of a scene whose order of transforms is guessed before it runs: an order and a short reason. */
-#include "script/order_internal.h"
+#include "compat/order.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -2,6 +2,7 @@
  * of a wrong type, out of its range, NaN, infinite, with a wrong number of entries: the message names line, function
  * and argument. And with everything right, every form runs. */
 #include "base/fault.h"
+#include "script/document.h"
 #include "tests/unit/call_makers.h"
 #include "tests/unit/script_host.h"
 

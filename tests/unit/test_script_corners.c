@@ -1,7 +1,8 @@
 /* Rare features of scripts, one short text each: it runs, or it is refused with these words. Also scripts of an older
  * Lua, unknown names under --lenient, values of -D, truncated texts for the transform order. */
 #include "base/fault.h"
-#include "script/order_internal.h"
+#include "compat/order.h"
+#include "script/document.h"
 #include "script/table_internal.h"
 #include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"

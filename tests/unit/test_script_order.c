@@ -1,6 +1,6 @@
 /* Which transform order the text of a scene implies (docs/language.md 12.4), and the effect of each order.
  */
-#include "script/order_internal.h"
+#include "compat/order.h"
 #include "tests/unit/script_host.h"
 
 #include <sys/stat.h>

@@ -3,8 +3,9 @@
  * allocation and system call on such paths. */
 #define _GNU_SOURCE
 #include "base/fault.h"
-#include "script/context_internal.h"
-#include "script/order_internal.h"
+#include "compat/order.h"
+#include "sandbox/limits.h"
+#include "script/table_internal.h"
 #include "tests/unit/file_makers.h"
 #include "tests/unit/script_host.h"
 
@@ -214,32 +215,32 @@ TEST(warnings_count_as_output_too) {
 
 /* Lua repeats the request after it has collected its garbage; success of another request does not undo the refusal. */
 TEST(memory_that_was_refused_is_forgotten_only_when_it_is_got_after_all) {
-    struct script_context context = {.limits = {.account = {.limit = 10000}}};
-    (void)mem_charge(&context.limits.account);
-    char *kept = limits_allocate(&context, NULL, 0, 100), *large = limits_allocate(&context, NULL, 0, 9000);
-    CHECK(kept && large && !context.limits.memory_out);
-    CHECK(!limits_allocate(&context, kept, 100, 2000) && context.limits.memory_out);
-    CHECK(!limits_allocate(&context, large, 9000, 0));
-    kept = limits_allocate(&context, kept, 100, 2000); /* garbage was collected, and now it fits */
-    CHECK(kept && !context.limits.memory_out);
-    large = limits_allocate(&context, NULL, 0, 7000);
-    CHECK(!limits_allocate(&context, kept, 2000, 8000) && context.limits.memory_out);
-    large = limits_allocate(&context, large, 7000, 50); /* shrinking a block is not a request */
-    CHECK(large && !context.limits.refused_for_good);
-    void *same_size = limits_allocate(&context, NULL, 0, 8000); /* for another caller */
-    CHECK(!same_size && context.limits.memory_out);
-    CHECK(!limits_allocate(&context, large, 50, 0));
-    kept = limits_allocate(&context, kept, 2000, 8000);
-    CHECK(kept && context.limits.memory_out); /* too late */
-    CHECK(!limits_allocate(&context, kept, 8000, 0));
+    struct limits limits = {.account = {.limit = 10000}};
+    (void)mem_charge(&limits.account);
+    char *kept = limits_allocate(&limits, NULL, 0, 100), *large = limits_allocate(&limits, NULL, 0, 9000);
+    CHECK(kept && large && !limits.memory_out);
+    CHECK(!limits_allocate(&limits, kept, 100, 2000) && limits.memory_out);
+    CHECK(!limits_allocate(&limits, large, 9000, 0));
+    kept = limits_allocate(&limits, kept, 100, 2000); /* garbage was collected, and now it fits */
+    CHECK(kept && !limits.memory_out);
+    large = limits_allocate(&limits, NULL, 0, 7000);
+    CHECK(!limits_allocate(&limits, kept, 2000, 8000) && limits.memory_out);
+    large = limits_allocate(&limits, large, 7000, 50); /* shrinking a block is not a request */
+    CHECK(large && !limits.refused_for_good);
+    void *same_size = limits_allocate(&limits, NULL, 0, 8000); /* for another caller */
+    CHECK(!same_size && limits.memory_out);
+    CHECK(!limits_allocate(&limits, large, 50, 0));
+    kept = limits_allocate(&limits, kept, 2000, 8000);
+    CHECK(kept && limits.memory_out); /* too late */
+    CHECK(!limits_allocate(&limits, kept, 8000, 0));
     /* Another request was granted first. */
-    context.limits.memory_out = context.limits.refused_for_good = false;
-    kept = limits_allocate(&context, NULL, 0, 100);
-    CHECK(!limits_allocate(&context, kept, 100, 20000) && context.limits.memory_out);
-    void *other = limits_allocate(&context, NULL, 0, 20), *more = limits_allocate(&context, other, 20, 200);
-    CHECK(more && context.limits.memory_out && context.limits.refused_for_good);
-    CHECK(!limits_allocate(&context, more, 200, 0) && !limits_allocate(&context, kept, 100, 0));
-    CHECK_EQ_INT((long long)context.limits.account.held, 0);
+    limits.memory_out = limits.refused_for_good = false;
+    kept = limits_allocate(&limits, NULL, 0, 100);
+    CHECK(!limits_allocate(&limits, kept, 100, 20000) && limits.memory_out);
+    void *other = limits_allocate(&limits, NULL, 0, 20), *more = limits_allocate(&limits, other, 20, 200);
+    CHECK(more && limits.memory_out && limits.refused_for_good);
+    CHECK(!limits_allocate(&limits, more, 200, 0) && !limits_allocate(&limits, kept, 100, 0));
+    CHECK_EQ_INT((long long)limits.account.held, 0);
     (void)mem_charge(NULL);
 }
 

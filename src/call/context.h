@@ -1,0 +1,47 @@
+/* The state of a call of gr: the sandbox, the scene it builds, the function that runs. */
+#ifndef GRAY_CALL_CONTEXT_H
+#define GRAY_CALL_CONTEXT_H
+
+#include "call/function.h"
+#include "call/handle.h"
+#include "sandbox/sandbox.h"
+
+struct lenient;
+struct function_warnings;
+
+struct script_context {
+    struct sandbox sandbox; /* the first member: Lua's extra space points to both */
+    struct scene scene;
+    struct handles handles;
+    const struct script_function *function; /* the one that runs */
+    struct function_warnings *warned;
+    const char *line_source; /* context_note_line: the source that scene.file is of */
+    struct lenient *lenient; /* NULL without --lenient */
+    /* With it: the node or material that stands for a ghost, or NULL; if `make` is set, a missing node is created. */
+    void *(*ghost_as)(struct script_context *context, const struct handle *ghost, enum handle_type type, bool make);
+};
+
+struct script_context *context_of(lua_State *L);
+/* A function of the table begins. */
+void context_begin_call(struct script_context *context, const struct script_function *function);
+
+/* The functions of gr, even if the script has replaced them, with --lenient: keeps the table on top, which is popped;
+ * pushes one of them. */
+void context_keep_functions(lua_State *L);
+void context_push_function(lua_State *L, const char *name);
+
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8 };
+/* Warns once for each function and bit. */
+void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Warns once for a function if the colour has numbers from 0 to 255. */
+void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 colour);
+/* Nodes that are created from now on have the current line. */
+void context_note_line(struct script_context *context);
+/* An array that lives as long as the call. Raises an error without memory. */
+void *context_array(struct script_context *context, size_t count, size_t size);
+/* The contents of the handle of a texture; NULL with an error. */
+struct script_texture *context_keep_texture(struct script_context *context, const struct script_texture *value,
+                                            struct error *error);
+
+#endif

@@ -1,0 +1,10 @@
+/* pairs in a fixed order. */
+#ifndef GRAY_COMPAT_TRAVERSE_H
+#define GRAY_COMPAT_TRAVERSE_H
+
+#include <lua.h>
+
+/* Replaces pairs, and adds table.foreach of Lua 5.0. Runs protected and may raise. */
+void traverse_open(lua_State *L);
+
+#endif

@@ -1,0 +1,17 @@
+/* Hints about misspelt names in messages. Texts are in the arena of the call, and "" if there is no hint. */
+#ifndef GRAY_SANDBOX_HINTS_H
+#define GRAY_SANDBOX_HINTS_H
+
+#include <lua.h>
+
+struct sandbox;
+
+/* "; 'redd' is nil, did you mean 'red'?": about the first name in the running call that is an undefined global. */
+const char *hint_of_nil(struct sandbox *sandbox);
+/* Raises an error if the running call has `name = VARIABLE` with an undefined global; once for each line. */
+void hint_check_field(struct sandbox *sandbox, const char *name);
+/* A hint for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is called while an error
+ * is handled. */
+const char *hint_of_lua_error(lua_State *L, const char *message);
+
+#endif

@@ -1,0 +1,13 @@
+/* Textures that are no images. */
+#ifndef GRAY_SCRIPT_GR_TEXTURES_INTERNAL_H
+#define GRAY_SCRIPT_GR_TEXTURES_INTERNAL_H
+
+#include "call/context.h"
+
+/* The texture of an input, or a constant texture of its number or colour; NULL with an error. */
+const struct texture *gr_texture_of(struct script_context *context, const struct script_value *value,
+                                    struct error *error);
+/* Adds img:at to the handles of textures; after lenient_open. */
+void textures_open(lua_State *L);
+
+#endif

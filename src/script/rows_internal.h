@@ -1,0 +1,32 @@
+/* Shared by the files with rows of the table of gr functions: the macros of its columns. */
+#ifndef GRAY_SCRIPT_ROWS_INTERNAL_H
+#define GRAY_SCRIPT_ROWS_INTERNAL_H
+
+#include "script/table_internal.h"
+
+#include <math.h>
+
+/* The range of a parameter, and no choices. */
+#define ANY 0, 0, NULL
+#define ABOVE(low) (low), (double)INFINITY, NULL
+#define IN_RANGE(low, high) (low), (high), NULL
+
+#define NAME_HELP "Name of the node, for messages."
+#define MATERIAL_HELP "Material of the surface."
+
+#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+#define GR(name, parameters, result, run, help, ...)                                                                   \
+    { name, OWNER_GR, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
+#define NODE(name, parameters, result, run, help, ...)                                                                 \
+    { name, OWNER_NODE, parameters, COUNT(parameters), {__VA_ARGS__}, result, run, help }
+
+/* The first parameter of every method. */
+#define SELF_PARAMETER [SELF] = {"self", KIND_NODE, 0, ANY, NULL, NULL, "The node."}
+
+/* Every shape begins with these parameters; its own start at SHAPE_FIRST. */
+enum { SHAPE_NAME, SHAPE_MATERIAL, SHAPE_FIRST };
+#define SHAPE(otherwise)                                                                                               \
+    [SHAPE_NAME] = {"name", KIND_TEXT, OPTIONAL, ANY, NULL, "'" otherwise "'", NAME_HELP},                             \
+    [SHAPE_MATERIAL] = {"material", KIND_MATERIAL, OPTIONAL | GHOST_IS_NONE, ANY, NULL, "plain gray", MATERIAL_HELP}
+
+#endif

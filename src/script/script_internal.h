@@ -1,0 +1,27 @@
+/* One run of a script. */
+#ifndef GRAY_SCRIPT_SCRIPT_INTERNAL_H
+#define GRAY_SCRIPT_SCRIPT_INTERNAL_H
+
+#include "call/context.h"
+#include "script/gr_changes_internal.h"
+#include "script/gr_frames_internal.h"
+#include "script/script.h"
+
+struct script {
+    struct script_context context; /* the first member: Lua's extra space points to both */
+    const struct script_host *host;
+    struct arena *out; /* the caller's arena, for the traceback */
+    const char *traceback;
+    struct error failure;     /* the message of a script error, made by the message handler */
+    bool only_named_pictures; /* struct order_finding */
+    uint32_t pictures;        /* that gr.render has made */
+    uint64_t overridden;      /* by options->given: the notice was printed */
+    struct script_changes changes;
+    struct script_animation animation;
+};
+
+static inline struct script *script_of(const struct script_context *context) {
+    return (struct script *)(uintptr_t)context;
+}
+
+#endif
