@@ -6,11 +6,14 @@
 #include "base/fault.h"
 #include "base/mem.h"
 
+#include <limits.h>
+#include <linux/futex.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -37,20 +40,24 @@ struct pool {
     const _Atomic int *watched; /* cancels too, or NULL */
     void (*poll)(void *context);
     void *poll_context;
+    double polled; /* seconds: when, by worker 0 */
     int workers;
     struct pool_thread *threads; /* workers - 1 of them */
 };
 
+void pool_poll(struct pool *pool, int worker) {
+    if (worker != 0 || !pool->poll)
+        return;
+    double now = clock_seconds(CLOCK_MONOTONIC);
+    if (now - pool->polled < 0.005)
+        return;
+    pool->poll(pool->poll_context);
+    pool->polled = now;
+}
+
 static void work(struct pool *pool, int worker) {
-    double polled = 0;
     for (;;) {
-        if (worker == 0 && pool->poll) {
-            double now = clock_seconds(CLOCK_MONOTONIC);
-            if (now - polled >= 0.005) {
-                pool->poll(pool->poll_context);
-                polled = now;
-            }
-        }
+        pool_poll(pool, worker);
         if (pool_cancelled(pool))
             return;
         uint64_t item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
@@ -250,6 +257,21 @@ bool pool_cancelled(const struct pool *pool) {
 void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context) {
     pool->poll = poll;
     pool->poll_context = context;
+}
+
+/* --- events --- */
+
+/* A futex: the kernel compares the number and sleeps in one step, so no signal is lost (U. Drepper, "Futexes Are
+ * Tricky", 2011). */
+void pool_signal(struct pool_event *event) {
+    atomic_fetch_add(&event->signals, 1);
+    (void)syscall(SYS_futex, &event->signals, FUTEX_WAKE, INT_MAX, NULL, NULL, 0);
+}
+
+void pool_wait(struct pool_event *event, uint32_t seen, double seconds) {
+    const struct timespec limit = {0, (long)(seconds * 1e9)};
+    if (atomic_load(&event->signals) == seen)
+        (void)syscall(SYS_futex, &event->signals, FUTEX_WAIT, seen, &limit, NULL, 0);
 }
 
 struct pool_progress pool_progress(const struct pool *pool) {

@@ -36,6 +36,18 @@ void pool_reset_cancel(struct pool *pool);
 bool pool_cancelled(const struct pool *pool);
 /* Called (from worker 0's thread, every 10 ms or so while it works) during pool_run; may call pool_cancel. */
 void pool_set_poll(struct pool *pool, void (*poll)(void *context), void *context);
+/* For long items: that call, if the worker is worker 0 and it is due. */
+void pool_poll(struct pool *pool, int worker);
+
+/* Something that threads wait for, of this process or, in shared memory, of another. Zero-initialised. Who changes what
+ * they wait for signals it, and waits for nobody: a process that ends at any moment harms no other. */
+struct pool_event {
+    _Atomic uint32_t signals;
+};
+void pool_signal(struct pool_event *event);
+/* seen: event->signals before the caller looked whether it has to wait. Returns after the first signal since then, or
+ * after that many seconds (below 1). */
+void pool_wait(struct pool_event *event, uint32_t seen, double seconds);
 
 /* Counts of the current run, or of the last one; for the thread that calls pool_run, and its poll. */
 struct pool_progress {

@@ -23,8 +23,7 @@ bool film_size(uint32_t width, uint32_t height, struct film_record record, size_
     if (width == 0 || height == 0 || !checked_mul(width, height, &pixels) || pixels > (size_t)1 << 31)
         return error_set(error, ERROR_SCENE, "a picture of %u x %u pixels is more than gray can hold (2^31 pixels)",
                          width, height);
-    size_t tiles = max_tiles(width, height), of_tiles = tiles + sizeof(struct film_level) * (tiles + 1);
-    if (!checked_mul(pixels, film_record_size(record), &size) || !checked_add(size, of_tiles, &size))
+    if (!checked_mul(pixels, film_record_size(record), &size) || !checked_add(size, max_tiles(width, height), &size))
         return error_no_memory(error, "the picture");
     *bytes = size;
     return true;
@@ -40,8 +39,6 @@ void film_layout(struct film *film, void *block, uint32_t width, uint32_t height
     uint8_t *behind = (uint8_t *)(film->floats + record.floats * pixels);
     film->marked = record.marks ? behind : NULL;
     film->tiles = (_Atomic uint8_t *)(behind + record.marks * pixels);
-    size_t before = film_record_size(record) * pixels + max_tiles(width, height), unit = sizeof(struct film_level);
-    film->levels = (struct film_level *)block + (before + unit - 1) / unit;
 }
 
 bool film_size_layered(uint32_t width, uint32_t height, struct film_record record, uint32_t layers, size_t *bytes,
@@ -173,7 +170,7 @@ bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes
     return true;
 }
 
-bool film_tile_put(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
+bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
     struct film_rectangle r = film_tile_rectangle(film, tile);
     uint32_t bit = 0, floats = film->record.floats;
     if (!film_tile_fits(film, tile, bytes, size))
@@ -192,12 +189,6 @@ bool film_tile_put(struct film *film, uint32_t tile, const uint8_t *bytes, size_
                 next = get_floats(next, &film->floats[at * floats], floats);
         }
     }
-    return true;
-}
-
-bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size) {
-    if (!film_tile_put(film, tile, bytes, size))
-        return false;
     atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
     return true;
 }

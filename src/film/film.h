@@ -31,19 +31,6 @@ struct film_record {
 };
 enum { FILM_RECORD_FLOATS = 81 };
 
-/* Tiles of a farm with --noise get their samples level by level, from one rank after the other
- * (render/sample_levels.c). This is passed on with the pixels of a tile: who may change them may change it. Zero: no
- * samples. */
-struct film_level {
-    _Atomic uint32_t samples;  /* of each pixel */
-    _Atomic uint32_t threads;  /* of the farm, when the tile was handed out */
-    uint32_t state;            /* an enum film_tile: of the tile that was passed on */
-    double urgency;            /* of its next level: the largest one comes first */
-    _Atomic double cost, rest; /* of its samples so far, and expected of its further samples */
-    _Atomic double begun;      /* how much of the rest the level in progress has used */
-    uint64_t known[16];        /* a struct noise_tile */
-};
-
 struct film {
     uint32_t width, height;
     uint32_t x0, y0, full_width, full_height;
@@ -52,8 +39,7 @@ struct film {
     float *floats;             /* record.floats of each pixel; Whitted: the first pass, one sample */
     uint8_t *marked;           /* 1 = resampled; FILM_MARK_WAITS while it is to be; NULL without marks */
     _Atomic uint8_t *tiles;    /* an enum film_tile each; set after the pixels of the tile */
-    struct film_level *levels; /* of each tile */
-    /* Render layers (film/aov.h): the layers of the mask one after the other, width * height each; NULL
+    /* Render layers (render/aov.h): the layers of the mask one after the other, width * height each; NULL
      * without any. Filled after the tiles are done. */
     uint32_t layer_mask;
     float (*layers)[3];
@@ -66,20 +52,21 @@ enum film_tile {
     FILM_TILE_ELSEWHERE, /* another shard's, or passed on */
     FILM_TILE_LATER,     /* in a farm: not handed out yet */
     FILM_TILE_TAKEN,     /* in progress, here or, in a farm, elsewhere */
-    /* With the number of the level added: some samples are in the pixels, and nothing changes until the state does. */
-    FILM_TILE_LEVEL = 0x40,
+    /* With the number of a check added (--noise): the pixels have the samples of that check, until the state changes.
+     */
+    FILM_TILE_BEGUN = 0x40,
     /* With the number of the pass added: some samples are in the pixels, more will come. */
     FILM_TILE_PASSED = 0x80
 };
-enum { FILM_LEVELS = 0x40, FILM_PASSES = 0x80 }; /* numbers of levels and passes, which begin again then */
+enum { FILM_CHECKS = 0x40, FILM_PASSES = 0x80 }; /* numbers of checks and passes, which begin again then */
 
 /* Whether a tile in that state has samples that can be kept, and gets more. */
 static inline bool film_tile_is_begun(uint8_t state) {
-    return state >= FILM_TILE_LEVEL && state < FILM_TILE_PASSED;
+    return state >= FILM_TILE_BEGUN && state < FILM_TILE_PASSED;
 }
 /* Whether a tile in that state is visible. */
 static inline bool film_tile_shows(uint8_t state) {
-    return state == FILM_TILE_DONE || state >= FILM_TILE_LEVEL;
+    return state == FILM_TILE_DONE || state >= FILM_TILE_BEGUN;
 }
 
 /* Rectangle of pixels of the whole picture: x0 <= x < x1. */
@@ -101,8 +88,7 @@ static inline size_t film_record_size(struct film_record record) {
 
 /* Bytes for the arrays of a film; false if the numbers are too large (over 2^31 pixels). The record is valid. */
 bool film_size(uint32_t width, uint32_t height, struct film_record record, size_t *bytes, struct error *error);
-/* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles, their
- * levels. */
+/* Lays the arrays into a zeroed block of film_size bytes: all colours, all floats, all marks, the tiles. */
 void film_layout(struct film *film, void *block, uint32_t width, uint32_t height, struct film_record record);
 
 /* The same with `layers` more of three floats a pixel, laid behind by film_layout_layers after film_layout. */
@@ -130,10 +116,7 @@ size_t film_tile_pack(const struct film *film, uint32_t tile, uint8_t *out);
 /* Whether the size of the bytes agrees with their own mask, and all colours are finite; only needs the rectangle and
  * the record of the film. */
 bool film_tile_fits(const struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
-/* Unpacks it, and leaves the state of the tile to the caller; false: not the bytes of such a tile, and nothing changes.
- */
-bool film_tile_put(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
-/* The same, and marks the tile as done. */
+/* Unpacks it and marks the tile as done; false: not the bytes of such a tile, and nothing changes. */
 bool film_tile_unpack(struct film *film, uint32_t tile, const uint8_t *bytes, size_t size);
 
 enum film_view {

@@ -522,7 +522,7 @@ void tile_file_restore(const struct tile_file *file, struct film *film, uint32_t
         else if (record.kind == RECORD_TILE)
             *restored += film_tile_unpack(film, tile, input.at, record.size - 4);
         else if (film_tile_unpack(film, tile, input.at, record.size - 4))
-            atomic_store_explicit(&film->tiles[tile], FILM_TILE_LEVEL, memory_order_release);
+            atomic_store_explicit(&film->tiles[tile], FILM_TILE_BEGUN, memory_order_release);
     }
 }
 

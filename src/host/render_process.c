@@ -437,9 +437,10 @@ static bool render_job_run(struct render_process *process, const struct render_r
     process->passed_over = already;
     if (already)
         return true;
-    if (atomic_load(&control->progress_estimate.begun) == PROGRESS_ESTIMATE_WANTED)
+    if (atomic_load(&control->progress_estimate.wanted))
         work.job.progress_estimate = &control->progress_estimate;
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
+    work.job.handed = &control->handed;
     const struct options *options = process->options;
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     process->rendered = (struct digest){0};

@@ -88,7 +88,8 @@ static bool answer_retry(struct supervisor *supervisor, const struct picture_req
         error_set(&error, ERROR_SCENE,
                   "started again after its render process was killed, the script renders a different picture");
     } else {
-        progress_estimate_reset(&supervisor->control->progress_estimate, progress_wants_estimate(&output->progress));
+        progress_estimate_reset(&supervisor->control->progress_estimate,
+                                output->progress.mode != PROGRESS_NONE && !output->farm);
     }
     supervisor_send_answer(supervisor, MESSAGE_FILM, same, false, &error,
                            same ? output->current.memory.descriptor : -1);

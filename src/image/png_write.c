@@ -4,7 +4,6 @@
  * Stripes depend only on the size of the picture, and the file contains no time: the bytes are the same for any number
  * of threads. */
 #include "image/png_write.h"
-#include "base/clock.h"
 
 #include "base/file_output.h"
 #include "base/mem.h"
@@ -227,20 +226,6 @@ static struct text_writer writer_for(const struct png_source *rows, const struct
     writer.workers = pool ? pool_workers(pool) : 1;
     writer.in_flight = pool ? IN_FLIGHT * writer.workers : 1;
     return writer;
-}
-
-double png_write_trial(const struct png_source *source) {
-    struct text_writer writer = writer_for(source, NULL);
-    double begun = 0;
-    bool ready = begin(&writer);
-    for (int round = 0; round < 2; round++) { /* the first one warms the caches, as in a long run */
-        begun = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-        for (writer.first = 0; ready && writer.first < writer.stripe_count; writer.first++)
-            pack_stripe(&writer, 0, 0);
-    }
-    double ended = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
-    end(&writer);
-    return ready ? ended - begun : -1;
 }
 
 bool png_write_from(const struct file_target *target, const struct png_source *rows, struct pool *pool,

@@ -26,9 +26,6 @@ bool png_write_from(const struct file_target *target, const struct png_source *r
 /* The number of stripes of a picture of that size: more threads have no work. Sides from 1. */
 uint32_t png_write_stripes(uint32_t width, uint32_t height, int bits);
 
-/* Seconds of processor time to compress such a picture on this thread; writes nothing. Negative: no memory. */
-double png_write_trial(const struct png_source *source);
-
 /* (Not png_byte: that is a type of libpng.) floor(255 c + 0.5) after clamping to [0,1]; NaN gives 0. */
 uint8_t png_write_byte(double c);
 

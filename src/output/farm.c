@@ -1,37 +1,29 @@
 /* State of a tile in a farm: LATER until it may be rendered, WANTED when a worker of this process may, TAKEN when one
  * does, DONE when it is finished; a rank that has sent a finished tile to the first rank marks it ELSEWHERE. The first
- * rank stores the owner of every tile, so that the tiles of a lost rank can be assigned again. Pictures of a run are
- * numbered; messages about other pictures are late and are ignored.
- *
- * With --noise a tile is handed out many times: every time a rank gives it some samples and returns it, with a record
- * (struct film_level) of what is known of its further ones (render/sample_levels.c). On the first rank a tile with
- * samples that waits, or that another rank has, keeps the state of its last level, so a lost rank loses no more than
- * the level that it was making. The most urgent tile is handed out next.
+ * rank stores the owner of every tile, so that the tiles of a lost rank can be assigned again; a tile with samples of a
+ * checkpoint is its own. Pictures of a run are numbered; messages about other pictures are late and are ignored.
  *
  * All ranks send heartbeats, so that silence means that a rank is stopped, dead or cut off. A silent rank gets no tiles
  * and is not waited for, but it remains a member: it receives the missed messages when it continues. */
 #include "output/farm.h"
 
 #include "base/mem.h"
-#include "render/render.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 
 enum farm_message_kind {
     FARM_BEGIN = 1, /* to the first rank: struct begin */
-    FARM_TILE,      /* to the first rank: number, tile, its level, packed tile */
+    FARM_TILE,      /* to the first rank: number, tile, packed tile */
     FARM_LEAVE,     /* to the first rank: number; no more tiles of this picture */
     FARM_LINE,      /* to the first rank: an error line */
     FARM_BYE,       /* to the first rank: all scripts have ended */
     FARM_ANSWER,    /* from the first rank: number, enum farm_answer */
-    FARM_ASSIGN,    /* from the first rank: number, tile, its level, and, if it has samples, packed tile */
+    FARM_ASSIGN,    /* from the first rank: number, tile */
     FARM_CLOSE,     /* from the first rank: number; all tiles are there */
     FARM_ALIVE,     /* to and from the first rank: a heartbeat */
     FARM_NOTE,      /* to the first rank: a line to be shown at once */
-    FARM_PART,      /* to the first rank: struct part */
     FARM_END,       /* from the first rank: number, how many ranks are silent; the farm has ended */
 };
 
@@ -45,17 +37,6 @@ struct begin {
 struct pair {
     uint32_t number, value;
 };
-
-/* Bytes before a packed tile. */
-enum { TILE_HEAD = sizeof(struct pair) + sizeof(struct film_level) };
-
-/* A rank is so far with the level of a tile (struct film_level). */
-struct part {
-    struct pair tile;
-    double begun;
-};
-/* Seconds between two such messages for a tile: some, and more the more threads the farm has. */
-static const double part_pause = 0.02, part_pause_of_thread = 0.001;
 
 enum { LINES_LIMIT = 32, LINE_LIMIT = 1024, NOTES_LIMIT = 16, NOBODY = UINT16_MAX };
 /* The number of heartbeats in the time after which a rank is regarded as lost; and the number of these times that the
@@ -87,12 +68,10 @@ struct farm {
     int line_count, own_lines;
     char (*notes)[LINE_LIMIT];
     int note_count;
-    uint8_t *message, *sending;
-    size_t message_size;
+    uint8_t *message;
     double silence;    /* the limit */
     double time;       /* seconds in which this process ran, measured at regular calls */
     double clock;      /* of the transport, at the last reading */
-    double next_parts; /* on the clock: when levels in progress are sent again */
     double sent;       /* on `time`: when the last heartbeat was sent */
     double last_heard; /* on `time`: from the first rank */
     bool ended;        /* the first rank has reported it */
@@ -112,8 +91,7 @@ struct farm *farm_create(const struct farm_transport *transport, uint32_t slots,
     farm->lines = mem_alloc_zero(LINES_LIMIT, sizeof *farm->lines);
     farm->notes = mem_alloc_zero(NOTES_LIMIT, sizeof *farm->notes);
     farm->message = mem_alloc(FARM_MESSAGE_LIMIT);
-    farm->sending = mem_alloc(FARM_MESSAGE_LIMIT);
-    if (farm->peers && farm->lines && farm->notes && farm->message && farm->sending)
+    if (farm->peers && farm->lines && farm->notes && farm->message)
         return farm;
     farm_destroy(farm);
     return NULL;
@@ -126,7 +104,6 @@ void farm_destroy(struct farm *farm) {
     mem_free(farm->lines);
     mem_free(farm->notes);
     mem_free(farm->message);
-    mem_free(farm->sending);
     mem_free(farm->owner);
     mem_free(farm);
 }
@@ -179,13 +156,15 @@ static void set_state(struct film *film, uint32_t tile, enum film_tile state) {
     atomic_store_explicit(&film->tiles[tile], (uint8_t)state, memory_order_release);
 }
 
-/* Sends a tile with its level; packed: with its pixels. */
-static void send_tile(const struct farm *farm, int to, enum farm_message_kind kind, uint32_t tile, bool packed) {
-    struct pair pair = {farm->number, tile};
-    memcpy(farm->sending, &pair, sizeof pair);
-    memcpy(farm->sending + sizeof pair, &farm->film->levels[tile], sizeof *farm->film->levels);
-    size_t size = packed ? film_tile_pack(farm->film, tile, farm->sending + TILE_HEAD) : 0;
-    send(farm, to, kind, farm->sending, TILE_HEAD + size);
+/* To the workers of this process, which may wait. */
+static void hand_out(const struct farm *farm, uint32_t tile) {
+    set_state(farm->film, tile, FILM_TILE_WANTED);
+    pool_signal(&farm->control->handed);
+}
+
+static void close_handout(const struct farm *farm) {
+    atomic_store(&farm->control->handout, HANDOUT_CLOSED);
+    pool_signal(&farm->control->handed);
 }
 
 /* The first rank. */
@@ -195,78 +174,37 @@ static void add_note(struct farm *farm, int rank, const char *text, int length) 
         (void)snprintf(farm->notes[farm->note_count++], LINE_LIMIT, "rank %d %.*s", rank, length, text);
 }
 
-/* Of the tiles that have samples and wait, the most urgent one, or UINT32_MAX. */
-static uint32_t urgent_tile(const struct farm *farm) {
-    const struct film *film = farm->film;
-    uint32_t found = UINT32_MAX;
-    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        if (farm->owner[tile] == NOBODY && film_tile_is_begun((uint8_t)state_of(film, tile)) &&
-            (found == UINT32_MAX || film->levels[tile].urgency > film->levels[found].urgency))
-            found = tile;
-    }
-    return found;
-}
-
 /* The next tile that no rank has, or UINT32_MAX. */
 static uint32_t next_tile(struct farm *farm) {
     uint32_t count = film_tile_count(farm->film);
     while (farm->from < count && state_of(farm->film, farm->from) != FILM_TILE_LATER)
         farm->from++;
-    return farm->from < count ? farm->from : urgent_tile(farm);
+    return farm->from < count ? farm->from : UINT32_MAX;
 }
 
-static uint32_t threads_of(const struct farm *farm) {
-    uint32_t slots = farm->slots;
-    for (int rank = 1; rank < farm->transport->size; rank++)
-        slots += farm->peers[rank].joined && !farm->peers[rank].silent ? farm->peers[rank].begin.slots : 0;
-    return slots / 2;
-}
-
-/* Without samples, a tile of another rank is TAKEN here until it is returned. */
+/* A tile of another rank is TAKEN here until it is returned. */
 static bool assign(struct farm *farm, int rank) {
     uint32_t tile = next_tile(farm);
     if (tile == UINT32_MAX)
         return false;
-    bool begun = film_tile_is_begun((uint8_t)state_of(farm->film, tile));
     farm->owner[tile] = (uint16_t)rank;
-    farm->film->levels[tile].threads = threads_of(farm);
     if (rank == 0)
-        set_state(farm->film, tile, FILM_TILE_WANTED);
-    else if (!begun)
+        hand_out(farm, tile);
+    else
         set_state(farm->film, tile, FILM_TILE_TAKEN);
     if (rank > 0)
-        send_tile(farm, rank, FARM_ASSIGN, tile, begun);
+        send_pair(farm, rank, FARM_ASSIGN, tile);
     return true;
-}
-
-/* The tile waits again. Pixels that this rank was changing are of no use; a tile that no worker has taken keeps its
- * samples. */
-static void let_wait(struct farm *farm, uint32_t tile) {
-    struct film_level *level = &farm->film->levels[tile];
-    enum film_tile state = state_of(farm->film, tile);
-    farm->owner[tile] = NOBODY;
-    sum_store(&level->begun, 0);
-    if (state == FILM_TILE_WANTED && atomic_load(&level->samples) > 0)
-        set_state(farm->film, tile, FILM_TILE_LEVEL);
-    if (film_tile_is_begun((uint8_t)state_of(farm->film, tile)))
-        return;
-    memset(level, 0, sizeof *level);
-    set_state(farm->film, tile, FILM_TILE_LATER);
-    farm->from = tile < farm->from ? tile : farm->from;
 }
 
 static void take_back(struct farm *farm, int rank) {
     for (uint32_t tile = 0; farm->film && tile < film_tile_count(farm->film); tile++) {
-        if (farm->owner[tile] == rank && state_of(farm->film, tile) != FILM_TILE_DONE)
-            let_wait(farm, tile);
-    }
-}
-
-/* Tiles to which this rank has given some samples wait again. */
-static void take_own_levels(struct farm *farm) {
-    for (uint32_t tile = 0; tile < film_tile_count(farm->film); tile++) {
-        if (farm->owner[tile] == 0 && film_tile_is_begun((uint8_t)state_of(farm->film, tile)))
-            farm->owner[tile] = NOBODY;
+        enum film_tile state = state_of(farm->film, tile);
+        if (farm->owner[tile] != rank || state == FILM_TILE_DONE || film_tile_is_begun((uint8_t)state))
+            continue;
+        farm->owner[tile] = NOBODY;
+        set_state(farm->film, tile, FILM_TILE_LATER);
+        farm->from = tile < farm->from ? tile : farm->from;
     }
 }
 
@@ -338,55 +276,24 @@ static void close_picture(struct farm *farm) {
             send_pair(farm, rank, FARM_CLOSE, 0);
         farm->peers[rank].joined = false;
     }
-    atomic_store(&farm->control->handout, HANDOUT_CLOSED);
+    close_handout(farm);
     farm->film = NULL;
 }
 
-/* Takes the pixels and the level of a tile. False: they are damaged. */
-static bool put_tile(struct film *film, uint32_t tile, const uint8_t *data, size_t size) {
-    if (!film_tile_put(film, tile, data + TILE_HEAD, size - TILE_HEAD))
-        return false;
-    memcpy(&film->levels[tile], data + sizeof(struct pair), sizeof *film->levels);
-    return true;
-}
-
-/* From a rank that was silent: a tile that no rank has is still useful, unless other ranks have given it as many
- * samples. */
 static void take_tile(struct farm *farm, int from, const uint8_t *data, size_t size) {
-    struct film_level level;
     struct pair pair;
     memcpy(&pair, data, sizeof pair);
-    memcpy(&level, data + sizeof pair, sizeof level);
     if (!farm->film || pair.number != farm->number || pair.value >= film_tile_count(farm->film))
         return;
+    /* From a rank that was silent: a tile that was not assigned to another rank is still useful. */
     enum film_tile state = state_of(farm->film, pair.value);
-    bool done = level.state == FILM_TILE_DONE, owned = farm->owner[pair.value] == from;
-    if (state == FILM_TILE_DONE || (!owned && farm->owner[pair.value] != NOBODY) ||
-        (!done && (level.state > UINT8_MAX || !film_tile_is_begun((uint8_t)level.state))))
+    if (state == FILM_TILE_DONE || (state != FILM_TILE_LATER && farm->owner[pair.value] != from))
         return;
-    bool newer = done || atomic_load(&level.samples) > atomic_load(&farm->film->levels[pair.value].samples);
-    if (newer) {
-        set_state(farm->film, pair.value, FILM_TILE_TAKEN);
-        if (!put_tile(farm->film, pair.value, data, size)) {
-            set_state(farm->film, pair.value, state);
-            return;
-        }
-        set_state(farm->film, pair.value, (enum film_tile)level.state);
-    }
-    farm->peers[from].made += done;
-    if (done)
-        farm->owner[pair.value] = (uint16_t)from;
-    else
-        let_wait(farm, pair.value);
+    if (!film_tile_unpack(farm->film, pair.value, data + sizeof pair, size - sizeof pair))
+        return;
+    farm->owner[pair.value] = (uint16_t)from;
+    farm->peers[from].made++;
     (void)assign(farm, from);
-}
-
-static void take_part(struct farm *farm, int from, const uint8_t *data) {
-    struct part part;
-    memcpy(&part, data, sizeof part);
-    if (farm->film && part.tile.number == farm->number && part.tile.value < film_tile_count(farm->film) &&
-        farm->owner[part.tile.value] == from && state_of(farm->film, part.tile.value) != FILM_TILE_DONE)
-        sum_store(&farm->film->levels[part.tile.value].begun, part.begun);
 }
 
 static void take_message(struct farm *farm, int from, int kind, const uint8_t *data, size_t size) {
@@ -399,7 +306,7 @@ static void take_message(struct farm *farm, int from, int kind, const uint8_t *d
         }
         return;
     case FARM_TILE:
-        if (size > TILE_HEAD)
+        if (size > sizeof(struct pair))
             take_tile(farm, from, data, size);
         return;
     case FARM_LEAVE:
@@ -414,10 +321,6 @@ static void take_message(struct farm *farm, int from, int kind, const uint8_t *d
         take_back(farm, from);
         peer->joined = false;
         peer->gone = true;
-        return;
-    case FARM_PART:
-        if (size == sizeof(struct part))
-            take_part(farm, from, data);
         return;
     case FARM_NOTE:
         add_note(farm, from, (const char *)data, (int)size);
@@ -444,7 +347,6 @@ static void step_first(struct farm *farm) {
     answer_waiting(farm);
     if (!farm->film)
         return;
-    take_own_levels(farm);
     for (uint32_t waiting = film_tiles_in(farm->film, FILM_TILE_WANTED); waiting < farm->slots; waiting++) {
         if (!assign(farm, 0))
             break;
@@ -459,32 +361,16 @@ static void step_first(struct farm *farm) {
 
 /* The others. */
 
-/* Tiles that are finished, or have samples of another level. */
 static void send_finished(struct farm *farm) {
     for (uint32_t tile = 0; tile < film_tile_count(farm->film); tile++) {
-        enum film_tile state = state_of(farm->film, tile);
-        if (state != FILM_TILE_DONE && !film_tile_is_begun((uint8_t)state))
+        if (state_of(farm->film, tile) != FILM_TILE_DONE)
             continue;
-        farm->film->levels[tile].state = (uint32_t)state;
-        send_tile(farm, 0, FARM_TILE, tile, true);
+        struct pair pair = {farm->number, tile};
+        memcpy(farm->message, &pair, sizeof pair);
+        size_t size = film_tile_pack(farm->film, tile, farm->message + sizeof pair);
         set_state(farm->film, tile, FILM_TILE_ELSEWHERE);
+        send(farm, 0, FARM_TILE, farm->message, sizeof pair + size);
     }
-}
-
-/* Levels in progress. */
-static void send_parts(struct farm *farm) {
-    double threads = 0;
-    if (farm->clock < farm->next_parts)
-        return;
-    for (uint32_t tile = 0; tile < film_tile_count(farm->film); tile++) {
-        const struct film_level *level = &farm->film->levels[tile];
-        struct part part = {{farm->number, tile}, sum_load(&level->begun)};
-        if (state_of(farm->film, tile) != FILM_TILE_TAKEN || !(part.begun > 0))
-            continue;
-        threads = level->threads;
-        send(farm, 0, FARM_PART, &part, sizeof part);
-    }
-    farm->next_parts = farm->clock + part_pause + part_pause_of_thread * threads;
 }
 
 /* The next message of the first rank, if there is one; sends heartbeats meanwhile. */
@@ -498,10 +384,9 @@ static bool listen(struct farm *farm, int *kind, struct pair *pair) {
         if (from != 0)
             continue;
         farm->last_heard = farm->time;
-        if (size != sizeof *pair && (*kind != FARM_ASSIGN || size < TILE_HEAD))
+        if (size != sizeof *pair)
             continue;
         memcpy(pair, farm->message, sizeof *pair);
-        farm->message_size = size;
         if (*kind != FARM_END)
             return true;
         farm->ended = true;
@@ -514,22 +399,12 @@ bool farm_is_abandoned(const struct farm *farm) {
     return !farm_is_first(farm) && farm->silence > 0 && farm->time - farm->last_heard > PATIENCE * farm->silence;
 }
 
-/* After a silence a tile may be assigned that is still being rendered here: it is sent when it is finished. Without a
- * level it has no samples. */
+/* After a silence a tile may be assigned that is still being rendered here: it is sent when it is finished. */
 static void want_tile(const struct farm *farm, uint32_t tile) {
-    struct film *film = farm->film;
-    uint8_t wanted = FILM_TILE_WANTED;
-    (void)atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_LATER);
+    const struct film *film = farm->film;
     enum film_tile state = state_of(film, tile);
-    if (state != FILM_TILE_LATER && state != FILM_TILE_ELSEWHERE)
-        return;
-    if (farm->message_size <= TILE_HEAD)
-        memset(&film->levels[tile], 0, sizeof *film->levels);
-    if (farm->message_size == TILE_HEAD)
-        memcpy(&film->levels[tile], farm->message + sizeof(struct pair), sizeof *film->levels);
-    if (farm->message_size > TILE_HEAD && !put_tile(film, tile, farm->message, farm->message_size))
-        return;
-    set_state(film, tile, FILM_TILE_WANTED);
+    if (state != FILM_TILE_TAKEN && state != FILM_TILE_DONE && !film_tile_is_begun((uint8_t)state))
+        hand_out(farm, tile);
 }
 
 static void step_other(struct farm *farm) {
@@ -541,14 +416,12 @@ static void step_other(struct farm *farm) {
         if (kind == FARM_ASSIGN && pair.value < film_tile_count(farm->film))
             want_tile(farm, pair.value);
         if (kind == FARM_CLOSE)
-            atomic_store(&farm->control->handout, HANDOUT_CLOSED);
+            close_handout(farm);
     }
     if (farm->ended) /* without this rank, which was silent: its work is of no use */
         atomic_store(&farm->control->cancel, CANCEL_ALL);
-    if (!farm->film)
-        return;
-    send_finished(farm);
-    send_parts(farm);
+    if (farm->film)
+        send_finished(farm);
 }
 
 /* Waits for the answer to the beginning of a picture. */
@@ -588,21 +461,6 @@ static bool join(struct farm *farm, bool *already, struct error *error) {
 
 /* All. */
 
-/* A tile of a checkpoint waits for its next level if all its pixels have the samples of one. The rest of its record is
- * empty, so that samples of an earlier run are no cost of this one. */
-static void begin_tile(struct film *film, uint32_t tile, bool keep) {
-    uint8_t state = (uint8_t)state_of(film, tile);
-    bool begun = film_tile_is_begun(state);
-    uint32_t samples = keep && begun ? render_level_samples(film, tile, PATH_SAMPLES_MAX) : 0;
-    memset(&film->levels[tile], 0, sizeof *film->levels);
-    if (samples > 0) {
-        atomic_store(&film->levels[tile].samples, samples);
-        film->levels[tile].urgency = HUGE_VAL;
-    } else if (state == FILM_TILE_WANTED || begun) {
-        set_state(film, tile, FILM_TILE_LATER);
-    }
-}
-
 bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct film *film, bool *already,
                 struct error *error) {
     farm->picture = *picture;
@@ -622,8 +480,14 @@ bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct fi
         for (int rank = 0; rank < farm->transport->size; rank++)
             farm->peers[rank].made = 0;
     }
-    for (uint32_t tile = 0; tile < count; tile++)
-        begin_tile(film, tile, farm_is_first(farm));
+    for (uint32_t tile = 0; tile < count; tile++) {
+        enum film_tile state = state_of(film, tile);
+        bool begun = film_tile_is_begun((uint8_t)state);
+        if (begun && farm_is_first(farm))
+            farm->owner[tile] = 0;
+        else if (begun || state == FILM_TILE_WANTED)
+            set_state(film, tile, FILM_TILE_LATER);
+    }
     farm->film = film;
     atomic_store(&farm->control->handout, HANDOUT_OPEN);
     farm_step(farm);
@@ -640,8 +504,6 @@ void farm_step(struct farm *farm) {
 void farm_end(struct farm *farm, bool given_up) {
     bool open = farm->film != NULL;
     if (farm_is_first(farm)) {
-        if (open && given_up)
-            take_back(farm, 0); /* for its checkpoint */
         if (open)
             close_picture(farm);
     } else if (open) {

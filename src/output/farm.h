@@ -35,10 +35,9 @@ struct farm *farm_create(const struct farm_transport *transport, uint32_t slots,
 /* `poll` is called every millisecond while the farm waits: in farm_begin and farm_finish. */
 void farm_set_poll(struct farm *farm, void (*poll)(void *context), void *context);
 bool farm_is_first(const struct farm *farm);
-/* A picture begins. First rank: tiles that are finished and samples of whole levels (of a checkpoint) are kept; all
- * tiles but the finished ones wait to be assigned. Others: waits until the first rank has begun the same picture.
- * *already: this rank has no work. False: the first rank renders another picture, or has cancelled. film may be NULL if
- * the picture needs no work here (*already was true before). */
+/* A picture begins. First rank: its tiles of a checkpoint are kept, the others wait to be assigned. Others:
+ * waits until the first rank has begun the same picture. *already: this rank has no work. False: the first rank renders
+ * another picture, or has cancelled. film may be NULL if the picture needs no work here (*already was true before). */
 bool farm_begin(struct farm *farm, const struct tile_picture *picture, struct film *film, bool *already,
                 struct error *error);
 /* Receives and sends all pending messages; to be called every few milliseconds while a picture is rendered. */

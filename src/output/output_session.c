@@ -319,12 +319,11 @@ static void start_picture(struct output_session *output) {
     struct picture *picture = &output->current;
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
-    bool helps = output->farm && !farm_is_first(output->farm);
     picture->open = true;
     atomic_store(&output->control->tiles, 0);
     atomic_store(&output->control->tiles_done, 0);
     progress_estimate_reset(&output->control->progress_estimate,
-                            progress_wants_estimate(&output->progress) && !request->in_window && !helps);
+                            output->progress.mode != PROGRESS_NONE && !request->in_window && !output->farm);
     (void)wait_for_text(output);
     if (!output->plays)
         progress_begin(&output->progress, picture->name, request->width, request->height,
@@ -600,9 +599,6 @@ void output_show_progress(struct output_session *output) {
         progress_hide(&output->progress);
     report_display(output, display_step(&output->display, progress_clock(), &error), &error);
     progress_update(&output->progress, done, count, &output->control->progress_estimate);
-    if (output->current.open && !output->current.request.in_window && progress_wants_writing_time(&output->progress))
-        progress_note_writing_time(&output->progress,
-                                   picture_writing_time(output->options, &output->current, output->progress.threads));
 }
 
 void output_report(struct output_session *output, enum line_kind kind, const char *text) {

@@ -38,9 +38,5 @@ bool picture_write_bytes(const struct picture_files *files, const struct picture
                          struct error *error);
 /* How many pixels gray denoises for each pixel of the file: 0, or 1 and more with the rim of a part. */
 double picture_denoised_pixels(const struct options *options, const struct picture *picture);
-/* Seconds of one core for a pixel of the file, from measuring the compression and the finishing (FXAA, bloom) of some
- * finished tiles and the denoising of a small picture. Finishing uses one thread, so it counts `threads` times.
- * Negative: it could not be measured. */
-double picture_writing_time(const struct options *options, const struct picture *picture, int threads);
 
 #endif

@@ -1,5 +1,5 @@
-/* The remaining time is the estimate for rendering (render/time_estimate.h) plus that for writing. The
- * bar is erased with blanks, not with escape sequences, so that any terminal shows it. */
+/* The remaining time is the estimate for rendering (render/time_estimate.h) plus a usual time for denoising and
+ * writing. The bar is erased with blanks, not with escape sequences, so that any terminal shows it. */
 #define _GNU_SOURCE
 #include "output/progress.h"
 #include "base/clock.h"
@@ -15,11 +15,8 @@
 
 enum { BAR_CELLS = 24, COLUMNS_LIMIT = 200 };
 
-/* Seconds of one core for a pixel of a PNG file, which is written after the last tile, until it is measured on finished
- * tiles: it depends on the picture. */
-static const double usual_writing = 5e-8;
-/* The same for denoising a pixel of the film. */
-static const double usual_denoising = 8e-6;
+/* Seconds of one core for a pixel: of a PNG file, which is written after the last tile; of a film that is denoised. */
+static const double usual_writing = 5e-8, usual_denoising = 8e-6;
 
 double progress_clock(void) {
     return clock_seconds(CLOCK_MONOTONIC);
@@ -55,32 +52,43 @@ static int terminal_columns(void) {
     return columns < COLUMNS_LIMIT ? columns : COLUMNS_LIMIT - 1;
 }
 
-/* The finished share of the picture. Without an estimate, tiles are counted. */
+/* Without an estimate, tiles are counted: the share and the time left stay unknown, which is negative. */
 struct state {
-    double elapsed, share, left; /* share and left: negative while unknown */
+    double elapsed, share, left;
     uint32_t done, count;
+    bool counts; /* tiles */
 };
 
 static struct state state_of(struct progress *progress, double now, uint32_t done, uint32_t count,
                              const struct progress_estimate *progress_estimate) {
-    struct state state = {now - progress->begun, -1, -1, done, count};
-    bool asked = progress_estimate_is_wanted(progress_estimate);
-    if (count == 0)
+    struct state state = {now - progress->begun, -1, -1, done, count, !progress_estimate->wanted};
+    if (count == 0 || state.counts)
         return state;
-    state.share = asked ? progress_estimate_share(progress_estimate) : (double)done / (double)count;
-    state.left = asked             ? progress_estimate_left(progress_estimate, now)
-                 : state.share > 0 ? state.elapsed / state.share - state.elapsed
-                                   : -1;
-    if (asked && state.share > 0 && state.left >= 0) {
-        /* After the last tile, all threads denoise and write the picture. */
-        double pixels = (double)progress->width * progress->height;
-        double last = progress->writing * progress_estimate_pace(progress_estimate) * pixels / progress->threads;
-        double whole = state.elapsed + state.left;
-        state.share = fmax(progress->share, state.share * whole / (whole + last));
-        progress->share = state.share;
+    state.share = progress_estimate_share(progress_estimate);
+    state.left = progress_estimate_left(progress_estimate, now);
+    if (state.share > 0 && state.left >= 0) {
+        double whole = state.elapsed + state.left, last = progress->writing;
+        state.share = progress->share = fmax(progress->share, state.share * whole / (whole + last));
         state.left += last;
     }
     return state;
+}
+
+/* "43 %  2 min 8 s, about 2 min 46 s left", of a farm "12 of 300 tiles  2 min 8 s"; on a line "43 % after 2 min 8 s".
+ */
+static void describe(const struct state *state, bool line, char out[160]) {
+    char elapsed[48], left[48];
+    text_duration(state->elapsed, elapsed, sizeof elapsed);
+    text_duration(fmax(state->left, 0), left, sizeof left);
+    bool shown = state->left >= 0 && (line || state->elapsed > 1);
+    const char *after = line ? " after " : "  ";
+    if (state->count == 0)
+        (void)snprintf(out, 160, "building the scene%s%s", line ? ", " : "  ", elapsed);
+    else if (state->counts)
+        (void)snprintf(out, 160, "%u of %u tiles%s%s", state->done, state->count, after, elapsed);
+    else
+        (void)snprintf(out, 160, "%*.0f %%%s%s%s%s%s", line ? 0 : 3, 100 * fmax(state->share, 0), after, elapsed,
+                       shown ? ", about " : "", shown ? left : "", shown ? " left" : "");
 }
 
 /* The last bytes of a long path, as a terminal may show them at the beginning of a line. */
@@ -97,28 +105,20 @@ static void short_name(const char *name, size_t shown, char *out, size_t size) {
 }
 
 static void draw_bar(struct progress *progress, const struct state *state) {
-    char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], left[80] = "", elapsed[48];
-    double share = state->share > 0 ? state->share : 0;
+    char cells[BAR_CELLS + 1], line[4 * COLUMNS_LIMIT], name[64], text[160];
+    double share = state->counts ? fmin((double)state->done / fmax(state->count, 1), 1) : fmax(state->share, 0);
     /* In a narrow terminal the remaining time is more useful than a long bar. */
     int limit = terminal_columns(), bar = limit < 78 ? BAR_CELLS / 3 : BAR_CELLS;
     memset(cells, '.', (size_t)bar);
     memset(cells, '#', (size_t)(share * bar));
     cells[bar] = '\0';
-    text_duration(state->elapsed, elapsed, sizeof elapsed);
-    if (state->left >= 0 && state->elapsed > 1) {
-        char time[48];
-        text_duration(state->left, time, sizeof time);
-        (void)snprintf(left, sizeof left, ", about %s left", time);
-    }
-    char name[64];
     short_name(progress->name, limit < 78 ? 14 : 30, name, sizeof name);
+    describe(state, false, text);
     if (state->count > 0)
-        (void)snprintf(line, sizeof line, "%s [%s] %3.0f %%  %s%s", name, cells, 100 * share, elapsed, left);
+        (void)snprintf(line, sizeof line, "%s [%s] %s", name, cells, text);
     else
-        (void)snprintf(line, sizeof line, "%s: building the scene  %s", name, elapsed);
-    int columns = (int)strlen(line);
-    if (columns > limit)
-        columns = limit;
+        (void)snprintf(line, sizeof line, "%s: %s", name, text);
+    int columns = (int)strlen(line) < limit ? (int)strlen(line) : limit;
     begin_line(progress);
     int blanks = progress->columns > columns ? progress->columns - columns : 0;
     (void)fprintf(stderr, "\r%.*s%*s", columns, line, blanks, "");
@@ -127,16 +127,9 @@ static void draw_bar(struct progress *progress, const struct state *state) {
 }
 
 static void print_line(struct progress *progress, const struct state *state) {
-    char line[4096 + 160], elapsed[48], left[48] = "";
-    text_duration(state->elapsed, elapsed, sizeof elapsed);
-    if (state->left >= 0)
-        text_duration(state->left, left, sizeof left);
-    if (state->count > 0)
-        (void)snprintf(line, sizeof line, "%s: %.0f %% after %s%s%s%s", progress->name,
-                       100 * (state->share > 0 ? state->share : 0), elapsed, left[0] ? ", about " : "", left,
-                       left[0] ? " left" : "");
-    else
-        (void)snprintf(line, sizeof line, "%s: building the scene, %s", progress->name, elapsed);
+    char line[4096 + 160], text[160];
+    describe(state, true, text);
+    (void)snprintf(line, sizeof line, "%s: %s", progress->name, text);
     begin_line(progress);
     text_print_scene_line(stderr, line);
     progress->printed = true;
@@ -161,27 +154,13 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
     progress->name = name;
     progress->printed = progress->elsewhere = false;
     progress->share = 0;
-    progress->writing = usual_writing + usual_denoising * denoised;
-    progress->tried = progress->known = false;
+    progress->writing = (usual_writing + usual_denoising * denoised) * width * height / progress->threads;
+    progress->known = false;
     progress->width = width;
     progress->height = height;
     progress->begun = progress->shown = progress_clock();
     if (progress->mode == PROGRESS_JSON)
-        print_json(progress, "begin", &(struct state){0, -1, -1, 0, 0});
-}
-
-bool progress_wants_writing_time(const struct progress *progress) {
-    return progress->mode != PROGRESS_NONE && !progress->tried && progress->share > 0.25;
-}
-
-void progress_note_writing_time(struct progress *progress, double seconds) {
-    progress->tried = true;
-    if (seconds > 0)
-        progress->writing = seconds;
-}
-
-bool progress_wants_estimate(const struct progress *progress) {
-    return progress->mode != PROGRESS_NONE;
+        print_json(progress, "begin", &(struct state){.share = -1, .left = -1});
 }
 
 /* Ten times a second is smooth; lines are for logs: the first after ten seconds, then one whenever the time has grown
@@ -244,7 +223,8 @@ void progress_end(struct progress *progress, enum progress_end how) {
     double elapsed = progress_clock() - progress->begun;
     progress_hide(progress);
     if (progress->mode == PROGRESS_JSON)
-        print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up", &(struct state){elapsed, -1, -1, 0, 0});
+        print_json(progress, how == PROGRESS_WRITTEN ? "written" : "given up",
+                   &(struct state){elapsed, .share = -1, .left = -1});
     bool reported = (progress->mode == PROGRESS_BAR && !progress->elsewhere) ||
                     (progress->mode == PROGRESS_LINES && progress->printed);
     if (reported && how == PROGRESS_WRITTEN) {

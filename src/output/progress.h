@@ -18,8 +18,7 @@ struct progress {
     int threads;
     double begun, shown; /* seconds; when the picture began, when it was last reported */
     bool printed;        /* a line was printed */
-    double writing;      /* seconds of one core for denoising and writing a pixel of the file */
-    bool tried;          /* that was measured; else it is a guess */
+    double writing;      /* seconds for denoising and writing the file */
     bool known;          /* the start of tiles was reported */
     double share;        /* the reported share; it never decreases */
     int columns;         /* columns of the bar on the screen; 0: no bar */
@@ -40,12 +39,6 @@ void progress_begin(struct progress *progress, const char *name, uint32_t width,
 /* count 0: the scene is still being built. Reports at most ten times a second. */
 void progress_update(struct progress *progress, uint32_t done, uint32_t count,
                      const struct progress_estimate *progress_estimate);
-/* Whether to measure the time for writing the file now: enough tiles are finished, and an estimate is shown. */
-bool progress_wants_writing_time(const struct progress *progress);
-/* The processor seconds for a pixel; negative: it could not be measured. */
-void progress_note_writing_time(struct progress *progress, double seconds);
-/* Whether an estimate is shown. */
-bool progress_wants_estimate(const struct progress *progress);
 /* Erases the bar, so that a line can be printed; the next update draws it again. */
 void progress_hide(struct progress *progress);
 void progress_end(struct progress *progress, enum progress_end how);

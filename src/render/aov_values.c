@@ -135,10 +135,7 @@ void renderer_layer_item(void *context, uint32_t item, int index) {
     struct renderer *renderer = context;
     struct worker *worker = &renderer->workers[index];
     struct film_rectangle r = film_tile_rectangle(renderer->job->film, item);
-    for (int64_t y = r.y0; y < r.y1; y++) {
-        uint64_t begun = renderer_layers_begin(renderer);
+    for (int64_t y = r.y0; y < r.y1; y++)
         for (int64_t x = r.x0; x < r.x1 && !renderer_stopped(renderer, worker); x++)
             renderer_layer_pixel(renderer, worker, x, y);
-        renderer_layers_end(renderer, worker, begun, (double)(r.x1 - r.x0));
-    }
 }

@@ -96,23 +96,6 @@ struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *wo
     UNREACHABLE(no_kind);
 }
 
-struct pixel integrator_probe_pixel(const struct film_rectangle *tile, int i) {
-    uint32_t column = (uint32_t)i % PROBE_SIDE, row = (uint32_t)i / PROBE_SIDE;
-    return (struct pixel){tile->x0 + (tile->x1 - tile->x0) * (2 * column + 1) / (2 * PROBE_SIDE),
-                          tile->y0 + (tile->y1 - tile->y0) * (2 * row + 1) / (2 * PROBE_SIDE)};
-}
-
-double integrator_resampling(struct renderer *renderer, struct worker *worker, const struct film_rectangle *tile,
-                             const struct vec3 colours[PROBE_RAYS]) {
-    switch (renderer->integrator->kind) {
-    case INTEGRATOR_WHITTED:
-        return whitted_resampling(renderer, colours);
-    case INTEGRATOR_PATH:
-        return path_tracer_resampling(&renderer->integrator->path, renderer, worker, tile);
-    }
-    UNREACHABLE(no_kind);
-}
-
 void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y) {
     switch (renderer->integrator->kind) {
     case INTEGRATOR_WHITTED:

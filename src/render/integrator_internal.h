@@ -29,17 +29,6 @@ struct vec3 integrator_radiance(struct renderer *renderer, struct worker *worker
 /* The same for a ray of a packet. met: its hit, or NULL. */
 struct vec3 integrator_radiance_met(struct renderer *renderer, struct worker *worker, const struct ray *ray,
                                     const struct packet_answer *met, uint64_t key);
-/* For the time estimate: the pixels of a tile through which rays are traced before the first tile, a lattice. */
-enum { PROBE_SIDE = 4, PROBE_RAYS = PROBE_SIDE * PROBE_SIDE };
-struct pixel {
-    int64_t x, y;
-};
-struct pixel integrator_probe_pixel(const struct film_rectangle *tile, int i);
-/* The amount of resampling in a tile. Whitted's integrator: the fraction of lattice neighbours whose colours differ so
- * much that pixels between them get more samples. Paths with --noise: the expected number of samples of a pixel, from a
- * few samples of each pixel of the lattice; otherwise 0. colours: of the lattice. */
-double integrator_resampling(struct renderer *renderer, struct worker *worker, const struct film_rectangle *tile,
-                             const struct vec3 colours[PROBE_RAYS]);
 /* Traces the samples of a finished pixel once more, one by one, for layers that measure their cost. */
 void integrator_repeat(struct renderer *renderer, struct worker *worker, int64_t x, int64_t y);
 /* Adds the numbers that only this integrator counts. */

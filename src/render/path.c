@@ -3,13 +3,11 @@
 #include "render/path_internal.h"
 
 #include "film/aov.h"
-#include "film/path_film.h"
-#include "math/elementary.h"
 #include "render/integrator_internal.h"
 #include "render/path_noise_internal.h"
 
-#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 struct film_record path_tracer_record(const struct settings *settings) {
     unsigned parts = 0;
@@ -35,6 +33,25 @@ static bool make_sample_parts(struct path_tracer *tracer, struct renderer *rende
         renderer->workers[i].batch.parts = parts;
     }
     return true;
+}
+
+/* With --noise: a film of one tile for each worker. */
+static bool make_tile_films(struct path_tracer *tracer, struct renderer *renderer) {
+    struct film_record record = renderer->job->film->record;
+    struct error ignored;
+    size_t bytes;
+    int workers = pool_workers(renderer->pool);
+    if (!(tracer->noise > 0))
+        return true;
+    tracer->tiles = arena_alloc_array(&tracer->arena, (size_t)workers, sizeof *tracer->tiles);
+    for (int i = 0; tracer->tiles && i < workers; i++) {
+        void *block =
+            film_size(FILM_TILE, FILM_TILE, record, &bytes, &ignored) ? arena_alloc(&tracer->arena, bytes) : NULL;
+        if (!block)
+            return false;
+        film_layout(&tracer->tiles[i], block, FILM_TILE, FILM_TILE, record);
+    }
+    return tracer->tiles != NULL;
 }
 
 static bool make_contours(struct path_tracer *tracer, struct renderer *renderer) {
@@ -79,7 +96,8 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
     tracer->strategy = settings->path_strategy;
     const struct world *world = renderer->job->world;
     bool has_parts = path_film_parts(path_tracer_record(settings)) & (PATH_PART_FEATURES | PATH_PART_LIGHT);
-    if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_contours(tracer, renderer))
+    if ((has_parts && !make_sample_parts(tracer, renderer)) || !make_tile_films(tracer, renderer) ||
+        !make_contours(tracer, renderer))
         return error_no_memory(error, "the workers of a render");
     struct world_lights_options options = {renderer->job->background_lights, settings->light_choice};
     tracer->built = world_lights_build(&tracer->lights, world, options, &tracer->arena, renderer->pool, error);
@@ -131,13 +149,21 @@ static struct path_pixel begin_pixel(const struct film *film, const struct conto
     return (struct path_pixel){.line = lines ? (float)contour_coverage(lines, x, y) : 0};
 }
 
-/* Adds these samples to the pixels of a row, pixel by pixel and batch by batch. A batch may contain samples of
- * several pixels. */
+/* What a part of a tile gets: before: samples of a checkpoint; expected: all samples, 0 if that is not known. */
+struct sample_plan {
+    struct film *film;
+    const struct rectangle *part;
+    uint32_t before, expected;
+};
+
+/* Adds these samples to the pixels of a row of the film, pixel by pixel and batch by batch. A batch may contain samples
+ * of several pixels. */
 static bool sample_row(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                       const struct rectangle *part, int64_t y, struct sample_range range) {
+                       const struct sample_plan *plan, int64_t y, struct sample_range range) {
+    struct film *film = plan->film;
+    const struct rectangle *part = plan->part;
     uint32_t begin = range.begin, end = range.end;
     struct batch *batch = &worker->batch;
-    struct film *film = renderer->job->film;
     uint32_t each = end - begin;
     const struct contour *lines = tracer->contours ? &tracer->contours[worker->index] : NULL;
     uint64_t all = (uint64_t)(part->x1 - part->x0) * each, next = 0;
@@ -165,110 +191,112 @@ static bool sample_row(const struct path_tracer *tracer, struct renderer *render
 }
 
 static bool sample_part(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                        const struct rectangle *part, uint32_t begin, uint32_t end) {
-    uint32_t expected = tracer->noise > 0 ? worker->samples_expected : tracer->samples;
+                        const struct sample_plan *plan, struct sample_range range) {
+    const struct rectangle *part = plan->part;
     for (int64_t y = part->y0; y < part->y1; y++) {
-        if (!sample_row(tracer, renderer, worker, part, y, (struct sample_range){begin, end}))
+        if (!sample_row(tracer, renderer, worker, plan, y, range))
             return false;
         double rows = (double)(y + 1 - part->y0) / (double)(part->y1 - part->y0);
-        double samples = begin + (end - begin) * rows;
-        if (renderer->noise_estimate.count > 0)
-            renderer_tile_goes_on(renderer, worker, 1,
-                                  (samples - worker->range.begin) / (worker->range.end - worker->range.begin));
-        else if (expected > 0)
-            renderer_tile_goes_on(renderer, worker, 1, samples / expected);
+        double samples = range.begin + (range.end - range.begin) * rows;
+        if (plan->expected > 0)
+            renderer_tile_goes_on(renderer, worker, (samples - plan->before) / (plan->expected - plan->before));
     }
     return true;
 }
 
 /* --- noise --- */
 
-static bool is_check(uint32_t samples) {
-    return samples >= 16 && path_next_check(samples - 1) == samples;
+static void copy_pixels(struct film *to, const struct film *from, const struct rectangle *part) {
+    size_t width = (size_t)(part->x1 - part->x0), floats = from->record.floats;
+    for (int64_t y = part->y0; y < part->y1; y++) {
+        size_t in = pixel_index(to, part->x0, y), out = pixel_index(from, part->x0, y);
+        memcpy(&to->pixels[in], &from->pixels[out], width * sizeof *to->pixels);
+        memcpy(&to->floats[in * floats], &from->floats[out * floats], width * floats * sizeof *to->floats);
+    }
 }
 
-static double square(double x) {
-    return x * x;
+/* A tile that gets its samples in one go gets them in a film of the worker. After each check they are copied into the
+ * film of the picture, so that a checkpoint finds the samples of the last check there at any time. */
+static struct film *begin_tile(const struct path_tracer *tracer, const struct film *film, const struct worker *worker,
+                               const struct rectangle *part) {
+    struct film *own = &tracer->tiles[worker->index];
+    own->x0 = (uint32_t)part->x0;
+    own->y0 = (uint32_t)part->y0;
+    own->width = (uint32_t)(part->x1 - part->x0);
+    if (film_tile_is_begun(atomic_load(worker->tile_state)))
+        copy_pixels(own, film, part);
+    return own;
 }
 
-/* The natural logarithm of the ratio of two variances. Noise below 1e-5 is none. */
-static double log_of_ratio(double noise, double other) {
-    return 2 * el_log(fmax(noise, 1e-5) / fmax(other, 1e-5));
+/* Unless the tile is to have no more samples, its state tells others which check it has passed. */
+static void end_check(struct film *film, const struct film *own, const struct worker *worker,
+                      const struct rectangle *part, struct sample_range range) {
+    uint32_t checks = 0;
+    for (uint32_t n = 0; n < range.begin; n = path_next_check(n))
+        checks++;
+    /* Who reads samples that follow sees that state: no store moves before an exchange. */
+    (void)atomic_exchange(worker->tile_state, FILM_TILE_TAKEN);
+    copy_pixels(film, own, part);
+    if (range.begin < range.end)
+        atomic_store_explicit(worker->tile_state, (uint8_t)(FILM_TILE_BEGUN + checks % FILM_CHECKS),
+                              memory_order_release);
 }
 
-/* Checks the noise of the tile, and computes its expected number of samples. True: it is at a check, and its noise is
- * small enough. */
-static bool is_quiet(const struct path_tracer *tracer, const struct film *film, struct worker *worker,
-                     const struct rectangle *part, uint32_t samples) {
-    double wanted = tracer->noise, minimum = path_minimum_samples(wanted);
+/* Whether the tile is at a check and its noise is small enough. Computes its expected number of samples. */
+static bool is_quiet(const struct path_tracer *tracer, const struct film *film, const struct rectangle *part,
+                     uint32_t samples, uint32_t *expected) {
     struct film_rectangle tile = {(uint32_t)part->x0, (uint32_t)part->y0, (uint32_t)part->x1, (uint32_t)part->y1};
-    struct path_noise noise = path_tile_noise(film, tile);
-    bool quiet = is_check(samples) && samples >= minimum && noise.noise <= wanted;
-    worker->quiet = quiet;
-    worker->noise =
-        (struct noise_point){samples, samples * square(noise.noise / wanted), log_of_ratio(noise.noise, noise.plain),
-                             log_of_ratio(noise.noise, noise.by_samples), noise.concentration};
-    worker->samples_expected = quiet ? samples : path_samples_expected(samples, noise.noise, wanted, tracer->samples);
+    double wanted = tracer->noise, noise = path_tile_noise(film, tile);
+    bool quiet = path_is_check(samples) && samples >= path_minimum_samples(wanted) && noise <= wanted;
+    *expected = quiet ? samples : path_samples_expected(samples, noise, wanted, tracer->samples);
     return quiet;
 }
 
-/* Takes these samples, until the noise of the tile is small enough. A tile that an earlier pass has finished gets no
- * more samples. */
+/* Takes the samples of the pass until the noise of the tile is small enough. A tile that an earlier pass has finished
+ * gets no more samples. */
 static bool sample_until_quiet(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                                const struct rectangle *part) {
-    const struct film *film = renderer->job->film;
-    uint32_t done = worker->range.begin, end = worker->range.end;
-    worker->samples_expected = 0;
-    worker->noise = (struct noise_point){0};
-    if (done > 0 && path_film_load(film, pixel_index(film, part->x0, part->y0)).samples < done)
+    struct film *film = renderer->job->film;
+    bool whole = worker->tile_state != NULL;
+    struct sample_plan plan = {whole ? begin_tile(tracer, film, worker, part) : film, part, 0, 0};
+    struct sample_range range = {renderer->pass.begin, renderer->pass.end};
+    /* The tile has samples of a checkpoint, or of earlier passes. */
+    if (whole && film_tile_is_begun(atomic_load(worker->tile_state)))
+        range.begin = plan.before = path_film_load(plan.film, 0).samples;
+    if (!whole && range.begin > 0 && path_film_load(film, pixel_index(film, part->x0, part->y0)).samples < range.begin)
         return true;
-    while (!((is_check(done) || done == end) && is_quiet(tracer, film, worker, part, done))) {
-        if (done == end) {
-            if (worker->level.end == 0 || end == tracer->samples)
-                atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
-            return true;
+    while (!((path_is_check(range.begin) || range.begin == range.end) &&
+             is_quiet(tracer, plan.film, part, range.begin, &plan.expected))) {
+        if (range.begin == range.end) {
+            atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
+            break;
         }
-        uint32_t check = path_next_check(done), next = check < end ? check : end;
-        if (!sample_part(tracer, renderer, worker, part, done, next))
+        /* The samples up to the next check. */
+        uint32_t check = path_next_check(range.begin), next = check < range.end ? check : range.end;
+        if ((whole && range.begin > 0 && renderer_is_done(renderer)) ||
+            !sample_part(tracer, renderer, worker, &plan, (struct sample_range){range.begin, next}))
             return false;
-        done = next;
+        range.begin = next;
+        if (whole)
+            end_check(film, plan.film, worker, part, range);
     }
+    if (plan.expected > plan.before)
+        renderer_tile_goes_on(renderer, worker, (double)(range.begin - plan.before) / (plan.expected - plan.before));
     return true;
 }
 
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part) {
     const struct sample_pass *pass = &renderer->pass;
-    worker->range = worker->level.end > 0 ? worker->level : (struct sample_range){pass->begin, pass->end};
-    if (tracer->contours && worker->range.begin == 0 &&
+    bool kept = worker->tile_state && film_tile_is_begun(atomic_load(worker->tile_state));
+    if (tracer->contours && pass->begin == 0 && !kept &&
         !contour_find(&tracer->contours[worker->index], renderer, worker, part))
         return false;
     if (tracer->noise > 0)
         return sample_until_quiet(tracer, renderer, worker, part);
     atomic_store_explicit(&renderer->unsatisfied, true, memory_order_relaxed);
-    worker->noise = (struct noise_point){.samples = worker->range.end, .needed = noise_endless};
-    return sample_part(tracer, renderer, worker, part, worker->range.begin, worker->range.end);
-}
-
-/* The noise of one sample from few samples of few pixels; it is inversely proportional to the square root of the number
- * of samples. */
-double path_tracer_resampling(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                              const struct film_rectangle *tile) {
-    enum { SAMPLES = 8 };
-    double sum = 0;
-    if (!(tracer->noise > 0))
-        return 0;
-    for (int i = 0; i < PROBE_RAYS; i++) {
-        struct pixel at = integrator_probe_pixel(tile, i);
-        struct path_pixel pixel = {0};
-        for (uint32_t number = 0; number < SAMPLES && !renderer_stopped(renderer, worker); number++) {
-            struct pixel_sample position = sample_position(tracer, renderer, at.x, at.y, number);
-            path_pixel_add(&pixel, renderer_sample(renderer, worker, &position), position.weight);
-        }
-        sum += path_pixel_noise_of_samples(&pixel);
-    }
-    double needed = SAMPLES * sum / PROBE_RAYS / (tracer->noise * tracer->noise);
-    return fmin(fmax(needed, path_minimum_samples(tracer->noise)), tracer->samples);
+    const struct sample_plan plan = {renderer->job->film, part, 0, tracer->samples};
+    return sample_part(tracer, renderer, worker, &plan, (struct sample_range){pass->begin, pass->end});
 }
 
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,

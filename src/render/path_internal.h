@@ -28,6 +28,7 @@ struct path_tracer {
      * traced lobes, and paths omit it. NULL: paths include it. */
     const bool *photon_lights;
     struct photon_map caustics;
+    struct film *tiles;       /* with --noise: of each worker, for the tile that it makes; else NULL */
     struct contour *contours; /* NULL: no lines */
     int contour_count;
     struct arena arena;
@@ -41,8 +42,6 @@ bool path_tracer_create(struct path_tracer *tracer, struct renderer *renderer, s
 void path_tracer_destroy(struct path_tracer *tracer);
 bool path_tracer_render(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
                         const struct rectangle *part);
-double path_tracer_resampling(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker,
-                              const struct film_rectangle *tile);
 void path_tracer_repeat(const struct path_tracer *tracer, struct renderer *renderer, struct worker *worker, int64_t x,
                         int64_t y);
 void path_tracer_warn(const struct render_job *job, world_warning *warn, void *context);

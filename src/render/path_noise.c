@@ -85,17 +85,11 @@ static double median_of_neighbours(struct channel (*pixels)[3], struct film_rect
     return median_of_9(means);
 }
 
-struct relative {
-    double halves, samples, plain;
-};
-
-/* The relative variances of a channel. */
-static struct relative relative_variance(const struct channel *of, double median) {
+/* The relative variance of a channel. */
+static double relative_variance(const struct channel *of, double median) {
     double low = of->mean - sqrt(of->samples), mean = fmin(of->mean, fmax(low, median));
     double square = of->mean * of->mean, unsure = of->samples < square ? of->samples / square : 1;
-    double below = 1 / (mean * mean + dark);
-    return (struct relative){(of->halves + (of->samples - of->halves) * unsure) * below, of->samples * below,
-                             of->halves / (square + dark)};
+    return (of->halves + (of->samples - of->halves) * unsure) * (1 / (mean * mean + dark));
 }
 
 /* The standard error of the sum over a whole tile is added as far as it exceeds `usual` times that of equal pixels,
@@ -109,10 +103,10 @@ static double noise_of(double sum, double squares, double pixels) {
     return sqrt(mean + (1 - share) * error + share * excess);
 }
 
-struct path_noise path_tile_noise(const struct film *film, struct film_rectangle tile) {
+double path_tile_noise(const struct film *film, struct film_rectangle tile) {
     struct channel pixels[SIDE * SIDE][3];
     const struct film_rectangle size = {0, 0, tile.x1 - tile.x0, tile.y1 - tile.y0};
-    struct relative sum = {0, 0, 0}, squares = {0, 0, 0};
+    double sum = 0, squares = 0;
     for (uint32_t y = 0; y < size.y1; y++) {
         for (uint32_t x = 0; x < size.x1; x++)
             load_pixel(film, (size_t)(tile.y0 + y - film->y0) * film->width + (tile.x0 + x - film->x0),
@@ -120,32 +114,14 @@ struct path_noise path_tile_noise(const struct film *film, struct film_rectangle
     }
     for (uint32_t y = 0; y < size.y1; y++) {
         for (uint32_t x = 0; x < size.x1; x++) {
-            struct relative pixel = {0, 0, 0};
-            for (int c = 0; c < 3; c++) {
-                struct relative add =
-                    relative_variance(&pixels[y * SIDE + x][c], median_of_neighbours(pixels, size, x, y, c));
-                pixel.halves += add.halves / 3;
-                pixel.samples += add.samples / 3;
-                pixel.plain += add.plain / 3;
-            }
-            sum.halves += pixel.halves;
-            sum.samples += pixel.samples;
-            sum.plain += pixel.plain;
-            squares.halves += pixel.halves * pixel.halves;
-            squares.samples += pixel.samples * pixel.samples;
+            double pixel = 0;
+            for (int c = 0; c < 3; c++)
+                pixel += relative_variance(&pixels[y * SIDE + x][c], median_of_neighbours(pixels, size, x, y, c)) / 3;
+            sum += pixel;
+            squares += pixel * pixel;
         }
     }
-    double count = (double)size.x1 * size.y1;
-    return (struct path_noise){noise_of(sum.halves, squares.halves, count),
-                               noise_of(sum.samples, squares.samples, count), sqrt(sum.plain / count),
-                               sum.halves > 0 ? sqrt(squares.halves) / sum.halves : 0};
-}
-
-double path_pixel_noise_of_samples(const struct path_pixel *pixel) {
-    struct vec3 mean = path_pixel_mean(pixel), variance = path_pixel_variance_of_samples(pixel);
-    return (variance.x / (mean.x * mean.x + dark) + variance.y / (mean.y * mean.y + dark) +
-            variance.z / (mean.z * mean.z + dark)) /
-           3;
+    return noise_of(sum, squares, (double)size.x1 * size.y1);
 }
 
 /* --- the number of samples --- */
@@ -155,6 +131,23 @@ uint32_t path_next_check(uint32_t samples) {
     while (power <= samples / 2)
         power *= 2;
     return samples < power ? power : samples < power + power / 2 ? power + power / 2 : 2 * power;
+}
+
+bool path_is_check(uint32_t samples) {
+    return samples >= 16 && path_next_check(samples - 1) == samples;
+}
+
+uint32_t path_samples_kept(const struct film *film, struct film_rectangle tile, uint32_t limit) {
+    uint32_t all = 0;
+    for (uint32_t y = tile.y0; y < tile.y1; y++) {
+        for (uint32_t x = tile.x0; x < tile.x1; x++) {
+            uint32_t samples = path_film_load(film, (size_t)(y - film->y0) * film->width + (x - film->x0)).samples;
+            if (all > 0 && samples != all)
+                return 0;
+            all = samples;
+        }
+    }
+    return path_is_check(all) && all < limit ? all : 0;
 }
 
 uint32_t path_minimum_samples(double wanted) {

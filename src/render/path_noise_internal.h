@@ -5,21 +5,16 @@
 
 #include "film/path_film.h"
 
-struct path_noise {
-    double noise; /* this decides: mostly from the halves of the samples */
-    /* For time estimates: */
-    double by_samples;    /* the same from the variance of the samples */
-    double plain;         /* the same with the own mean of each pixel, without what is added for rare paths */
-    double concentration; /* sqrt(sum of e^2) / sum of e over the pixels' e: 1 if all noise is in one pixel, 1/sqrt(n)
-                             if n pixels have the same; 0: no noise */
-};
 /* Of the pixels of a tile, or of a part of one; pixels as in film_tile_rectangle. 0 with less than two samples. */
-struct path_noise path_tile_noise(const struct film *film, struct film_rectangle tile);
-/* Of one pixel without neighbours, the square of by_samples. */
-double path_pixel_noise_of_samples(const struct path_pixel *pixel);
+double path_tile_noise(const struct film *film, struct film_rectangle tile);
 
-/* --noise checks a tile after 16, 24, 32, 48, 64 ... samples: returns the first of these numbers above `samples`. */
+/* --noise checks a tile after 16, 24, 32, 48, 64 ... samples: returns the first of these numbers above `samples`; and
+ * whether `samples` is one of them. */
 uint32_t path_next_check(uint32_t samples);
+bool path_is_check(uint32_t samples);
+/* The number of samples of each pixel of a tile that a checkpoint holds unfinished: a check below `limit`, or 0 if they
+ * are of no use. */
+uint32_t path_samples_kept(const struct film *film, struct film_rectangle tile, uint32_t limit);
 /* A tile with fewer samples is not finished: 16, or 1.25 / wanted. */
 uint32_t path_minimum_samples(double wanted);
 /* The expected number of samples, at most `limit`, at which a tile reaches the noise `wanted`, if it has `noise` after

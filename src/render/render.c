@@ -8,6 +8,7 @@
 #include "film/aov.h"
 #include "film/film.h"
 #include "film/path_film.h"
+#include "render/path_noise_internal.h"
 #include "render/pixel_trace.h"
 #include "settings/settings.h"
 
@@ -60,159 +61,127 @@ bool renderer_is_done(const struct renderer *renderer) {
     return renderer->job->drain && atomic_load_explicit(renderer->job->drain, memory_order_relaxed) != 0;
 }
 
-/* A cancelled ray leaves a wrong colour: a tile that ends after a request to stop counts as not done. */
-bool renderer_make_samples(struct renderer *renderer, struct worker *worker, struct rectangle part) {
+/* Makes a tile or a part of it. False: stopped. A cancelled ray leaves a wrong colour, so a tile that ends after a
+ * request to stop counts as not done. */
+static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
+                      double share) {
+    renderer_tile_begins(renderer, worker, tile, share);
     bool whole = integrator_render(renderer, worker, &part) && !renderer_stopped(renderer, worker);
     if (worker->scratch.failed) {
         atomic_store(&renderer->failed, true);
         pool_cancel(renderer->pool);
     }
     worker->tile_ended = clock_seconds(CLOCK_MONOTONIC);
-    return whole;
-}
-
-/* Makes a tile or a part of it; false: stopped. */
-static bool make_part(struct renderer *renderer, struct worker *worker, uint32_t tile, struct rectangle part,
-                      double share) {
-    renderer_tile_begins(renderer, worker, tile, share);
-    bool whole = renderer_make_samples(renderer, worker, part);
     if (whole)
         renderer_tile_ends(renderer, worker);
     return whole;
 }
 
-void renderer_end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
+/* The tile is done, and is reported; or it is not whole and still wanted, unless it has samples that are kept. */
+static void end_tile(struct renderer *renderer, uint32_t tile, bool whole) {
     struct film *film = renderer->job->film;
-    atomic_store_explicit(&film->tiles[tile], whole ? FILM_TILE_DONE : FILM_TILE_WANTED, memory_order_release);
+    uint8_t taken = FILM_TILE_TAKEN;
+    if (whole)
+        atomic_store_explicit(&film->tiles[tile], FILM_TILE_DONE, memory_order_release);
+    else
+        (void)atomic_compare_exchange_strong(&film->tiles[tile], &taken, FILM_TILE_WANTED);
     if (whole && renderer->job->tile_done) {
         uint32_t done = atomic_fetch_add(&renderer->done, 1) + 1;
         renderer->job->tile_done(renderer->job->context, tile, done, renderer->tiles_wanted);
     }
 }
 
-static void make_tile(struct renderer *renderer, uint32_t tile, int index) {
-    struct film *film = renderer->job->film;
+/* --- the work --- */
+
+/* So many of the last tiles of the order are rendered in quarters, so that no thread waits long for the last tile of
+ * another: a share of all tiles. */
+enum { TAIL_SHARE = 16 };
+/* A request to stop is noticed so soon while a worker waits, in seconds. */
+static const double work_patience = 0.01;
+
+/* Whether the item is to be made. The first worker of a tile takes it; once it is begun, its other quarters are
+ * finished even while draining. Passes take tiles again. */
+static bool claim(struct renderer *renderer, const struct work_item *item, uint8_t *before) {
+    _Atomic uint8_t *state = &renderer->job->film->tiles[item->tile];
     uint8_t wanted = FILM_TILE_WANTED;
-    struct worker *worker = &renderer->workers[index];
-    if (renderer_is_done(renderer) || !atomic_compare_exchange_strong(&film->tiles[tile], &wanted, FILM_TILE_TAKEN))
-        return;
-    if (renderer->levels.wanted) {
-        renderer_make_farm_levels(renderer, worker, tile);
-        return;
-    }
-    struct film_rectangle r = film_tile_rectangle(film, tile);
-    bool whole = make_part(renderer, worker, tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, 1);
-    if (whole)
-        renderer_measure_layers(renderer, worker, tile);
-    renderer_end_tile(renderer, tile, whole);
+    *before = atomic_load(state);
+    if (item->quarter != WORK_WHOLE && *before == FILM_TILE_TAKEN)
+        return true;
+    if (renderer_is_done(renderer))
+        return false;
+    if (renderer->pass.open)
+        return *before == FILM_TILE_WANTED || *before >= FILM_TILE_PASSED;
+    if (atomic_compare_exchange_strong(state, &wanted, FILM_TILE_TAKEN))
+        return true;
+    return item->quarter == WORK_WHOLE ? film_tile_is_begun(wanted) : wanted == FILM_TILE_TAKEN;
 }
 
-void renderer_pass_item(void *context, uint32_t position, int index) {
-    struct renderer *renderer = context;
+static enum work_result make_item(struct renderer *renderer, struct worker *worker, const struct work_item *item) {
     struct film *film = renderer->job->film;
-    uint32_t tile = renderer->order[position];
-    uint8_t before = atomic_load(&film->tiles[tile]);
-    if (renderer_is_done(renderer) || (before != FILM_TILE_WANTED && before < FILM_TILE_PASSED))
-        return;
-    struct film_rectangle r = film_tile_rectangle(film, tile);
-    struct worker *worker = &renderer->workers[index];
-    struct rectangle part = {r.x0, r.y0, r.x1, r.y1};
-    const struct sample_pass *pass = &renderer->pass;
-    renderer_level_begins(renderer, worker, tile, pass->end);
-    bool whole = renderer_make_samples(renderer, worker, part);
-    if (whole)
-        renderer_level_ends(renderer, worker, tile, worker->quiet || pass->end == pass->limit);
+    struct film_rectangle tile = film_tile_rectangle(film, item->tile), r = work_item_part(tile, item);
+    double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), all = (double)(tile.x1 - tile.x0) * (tile.y1 - tile.y0);
+    uint8_t before;
+    if (!claim(renderer, item, &before))
+        return WORK_SKIPPED;
+    worker->tile_state = item->quarter == WORK_WHOLE && !renderer->pass.open ? &film->tiles[item->tile] : NULL;
+    bool whole = !(pixels > 0) ||
+                 make_part(renderer, worker, item->tile, (struct rectangle){r.x0, r.y0, r.x1, r.y1}, pixels / all);
+    if (!renderer->pass.open)
+        return whole ? WORK_DONE : WORK_FAILED;
     uint8_t after = (uint8_t)(FILM_TILE_PASSED + renderer->pass.number % FILM_PASSES);
-    atomic_store_explicit(&film->tiles[tile], whole ? after : before, memory_order_release);
+    atomic_store_explicit(&film->tiles[item->tile], whole ? after : before, memory_order_release);
+    return WORK_SKIPPED; /* the tile ends after the last pass */
 }
 
-/* All passes are made. */
-static void end_passes(struct renderer *renderer) {
-    struct film *film = renderer->job->film;
-    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        if (atomic_load(&film->tiles[tile]) >= FILM_TILE_PASSED)
-            renderer_end_tile(renderer, tile, true);
+/* A pool_function: a worker, until the work is over. */
+static void work(void *context, uint32_t item, int index) {
+    struct renderer *renderer = context;
+    struct worker *worker = &renderer->workers[index];
+    (void)item;
+    for (enum work_answer answer = WORK_LATER; answer != WORK_OVER && !renderer_stopped(renderer, worker);) {
+        struct work_item taken;
+        answer = work_queue_take(&renderer->queue, work_patience, &taken);
+        if (answer == WORK_HERE) {
+            enum work_result result = make_item(renderer, worker, &taken);
+            result = work_queue_give_back(&renderer->queue, &taken, result);
+            if (result != WORK_SKIPPED)
+                end_tile(renderer, taken.tile, result == WORK_DONE);
+        }
+        pool_poll(renderer->pool, index);
     }
 }
 
-/* The last tiles of the order are rendered in quarters, so that no thread waits long for the last tile of another. The
- * first worker begins the tile, the last one ends it; once it is begun, its other quarters are finished even while
- * draining. */
-enum { QUARTERS = 4, QUARTER_FAILED = 0x80, TAIL_SHARE = 16, TAIL_LIMIT = 64 };
-
-static void make_quarter(struct renderer *renderer, uint32_t number, int index) {
-    struct film *film = renderer->job->film;
-    uint32_t tile = renderer->order[renderer->whole_tiles + number / QUARTERS];
-    _Atomic uint8_t *count = &renderer->quarters[number / QUARTERS];
-    uint8_t state = atomic_load(&film->tiles[tile]);
-    if (state == FILM_TILE_WANTED && renderer_is_done(renderer))
-        return;
-    if (state == FILM_TILE_WANTED && atomic_compare_exchange_strong(&film->tiles[tile], &state, FILM_TILE_TAKEN))
-        state = FILM_TILE_TAKEN;
-    if (state != FILM_TILE_TAKEN)
-        return;
-    struct film_rectangle r = film_tile_rectangle(film, tile);
-    uint32_t x = r.x0 + (r.x1 - r.x0 + 1) / 2, y = r.y0 + (r.y1 - r.y0 + 1) / 2;
-    bool right = number % 2 == 1, low = number / 2 % 2 == 1;
-    struct rectangle part = {right ? x : r.x0, low ? y : r.y0, right ? r.x1 : x, low ? r.y1 : y};
-    int64_t pixels = (part.x1 - part.x0) * (part.y1 - part.y0);
-    double share = (double)pixels / ((double)(r.x1 - r.x0) * (r.y1 - r.y0));
-    if (pixels > 0 && !make_part(renderer, &renderer->workers[index], tile, part, share))
-        atomic_fetch_or(count, QUARTER_FAILED);
-    uint8_t before = atomic_fetch_add(count, 1);
-    if ((before & ~QUARTER_FAILED) + 1 != QUARTERS)
-        return;
-    bool whole = !(before & QUARTER_FAILED);
-    if (whole)
-        renderer_measure_layers(renderer, &renderer->workers[index], tile);
-    renderer_end_tile(renderer, tile, whole);
-}
-
-static void tile_item(void *context, uint32_t position, int index) {
-    struct renderer *renderer = context;
-    if (position < renderer->whole_tiles)
-        make_tile(renderer, renderer->order[position], index);
-    else
-        make_quarter(renderer, position - renderer->whole_tiles, index);
-}
-
-/* Renders tiles that become wanted until no more can. */
-static void handout_item(void *context, uint32_t item, int index) {
+/* In a farm: the tiles that are wanted now. The state is read before them, so that none is missed at the end. */
+static enum work_answer find_handed_out(void *context, struct work_queue *queue) {
     struct renderer *renderer = context;
     const struct film *film = renderer->job->film;
-    const struct timespec pause = {0, 500000};
-    uint32_t count = film_tile_count(film);
-    (void)item;
-    while (!renderer_stopped(renderer, &renderer->workers[index]) && !renderer_is_done(renderer)) {
-        uint32_t tile = 0;
-        while (tile < count && atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) != FILM_TILE_WANTED)
-            tile++;
-        if (tile < count)
-            make_tile(renderer, tile, index);
-        else if (atomic_load(renderer->job->handout) != 1)
-            return;
-        else
-            (void)nanosleep(&pause, NULL);
-        if (renderer->estimated)
-            renderer_report_estimate(renderer);
+    bool open = atomic_load(renderer->job->handout) == 1;
+    uint32_t found = 0;
+    for (uint32_t tile = 0; tile < film_tile_count(film) && !renderer_is_done(renderer); tile++) {
+        if (atomic_load_explicit(&film->tiles[tile], memory_order_relaxed) == FILM_TILE_WANTED)
+            renderer->order[found++] = tile;
     }
+    if (found == 0)
+        return open && !renderer_is_done(renderer) ? WORK_LATER : WORK_OVER;
+    work_queue_set(queue, renderer->order, found, 0);
+    return WORK_HERE;
 }
 
-static bool render_tiles(struct renderer *renderer, struct render_statistics *statistics) {
+/* False: stopped. */
+static bool do_work(struct renderer *renderer, struct render_statistics *statistics) {
+    struct work_queue *queue = &renderer->queue;
     int workers = pool_workers(renderer->pool);
     double begun = clock_seconds(CLOCK_MONOTONIC);
     for (int i = 0; i < workers; i++)
         renderer->workers[i].tile_ended = begun;
-    uint32_t tail = film_tile_count(renderer->job->film) - renderer->whole_tiles;
-    bool whole = renderer->job->handout ? pool_run(renderer->pool, (uint32_t)workers, handout_item, renderer)
-                 : renderer->levels.wanted
-                     ? renderer_make_levels(renderer)
-                     : pool_run(renderer->pool, renderer->whole_tiles + QUARTERS * tail, tile_item, renderer);
+    work_queue_begin(queue);
+    bool whole = pool_run(renderer->pool, (uint32_t)workers, work, renderer);
+    work_queue_destroy(queue);
     double ended = clock_seconds(CLOCK_MONOTONIC);
-    for (uint32_t i = 0; i < tail && !whole; i++) { /* those of which quarters are missing */
+    for (uint32_t i = 0; i < queue->tail && !whole; i++) { /* those of which quarters are missing */
         uint8_t taken = FILM_TILE_TAKEN;
-        (void)atomic_compare_exchange_strong(&renderer->job->film->tiles[renderer->order[renderer->whole_tiles + i]],
-                                             &taken, FILM_TILE_WANTED);
+        (void)atomic_compare_exchange_strong(&renderer->job->film->tiles[queue->tiles[queue->whole + i]], &taken,
+                                             FILM_TILE_WANTED);
     }
     for (int i = 0; i < workers; i++)
         statistics->idle_seconds += ended - renderer->workers[i].tile_ended;
@@ -342,11 +311,7 @@ static void end_rendering(struct renderer *renderer, int workers) {
     mem_free(renderer->workers);
     mem_free(renderer->closed);
     mem_free(renderer->order);
-    mem_free(renderer->quarters);
-    time_estimate_destroy(&renderer->time_estimate);
-    noise_estimate_destroy(&renderer->noise_estimate);
-    mem_free(renderer->levels.samples);
-    mem_free(renderer->levels.waiting);
+    mem_free(renderer->time_estimate.tiles);
 }
 
 /* The part is one pixel. */
@@ -393,26 +358,41 @@ bool render_pixels(const struct render_job *job, struct pool *pool, struct pixel
     return ok;
 }
 
-/* In a farm tiles are made as they are handed out. */
-static bool order_tiles(struct renderer *renderer) {
-    const struct film *film = renderer->job->film;
-    uint32_t count = film_tile_count(film);
-    if (!renderer_order_levels(renderer))
-        return false;
-    if (renderer->job->progress_estimate && !renderer->levels.wanted &&
-        !time_estimate_create(&renderer->time_estimate, count, film_tiles_across(film), pool_workers(renderer->pool)))
-        return false;
-    renderer->whole_tiles = count;
-    if (renderer->job->handout)
-        return true;
-    uint32_t tail = (count + TAIL_SHARE - 1) / TAIL_SHARE;
-    tail = tail < TAIL_LIMIT ? tail : TAIL_LIMIT;
-    if (renderer->job->settings.noise > 0) /* the noise of the whole tile decides */
-        tail = 0;
-    renderer->whole_tiles = count - tail;
+/* Tiles of a checkpoint that have samples (--noise): they go on if these are of use, else they begin again. */
+static void find_begun_tiles(const struct renderer *renderer) {
+    struct film *film = renderer->job->film;
+    bool keeps = renderer->job->settings.noise > 0 && renderer->pass.end > 0 && !renderer_makes_passes(renderer);
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        if (film_tile_is_begun(atomic_load_explicit(&film->tiles[tile], memory_order_relaxed)) &&
+            !(keeps && path_samples_kept(film, film_tile_rectangle(film, tile), renderer->pass.end)))
+            atomic_store_explicit(&film->tiles[tile], FILM_TILE_WANTED, memory_order_relaxed);
+    }
+}
+
+/* The whole picture in its order, or, in a farm, those tiles that are begun: the others follow when they are handed
+ * out. False: no memory. */
+static bool plan_work(struct renderer *renderer) {
+    const struct render_job *job = renderer->job;
+    const struct film *film = job->film;
+    uint32_t count = film_tile_count(film), tail = (count + TAIL_SHARE - 1) / TAIL_SHARE, begun = 0;
     renderer->order = mem_alloc_zero(count, sizeof *renderer->order);
-    renderer->quarters = mem_alloc_zero((size_t)tail + 1, sizeof *renderer->quarters);
-    return renderer->order && renderer->quarters && tile_order(film, renderer->job->settings.order, renderer->order);
+    if (!renderer->order || !tile_order(film, job->settings.order, renderer->order))
+        return false;
+    find_begun_tiles(renderer);
+    if (job->handout) {
+        for (uint32_t tile = 0; tile < count; tile++) {
+            if (film_tile_is_begun(atomic_load(&film->tiles[tile])))
+                renderer->order[begun++] = tile;
+        }
+        renderer->queue = (struct work_queue){.event = job->handed, .more = find_handed_out, .context = renderer};
+        work_queue_set(&renderer->queue, renderer->order, begun, 0);
+        return true;
+    }
+    tail = tail < WORK_TAIL ? tail : WORK_TAIL;
+    if (job->settings.noise > 0 || renderer_makes_passes(renderer)) /* the noise of the whole tile decides */
+        tail = 0;
+    work_queue_set(&renderer->queue, renderer->order, count - tail, tail);
+    return true;
 }
 
 static bool is_unfinished(const struct renderer *renderer) {
@@ -429,51 +409,6 @@ static bool show_denoised(struct renderer *renderer) {
         film_tiles_in(film, FILM_TILE_ELSEWHERE) > 0)
         return true;
     return film_show_denoised(film, renderer->pool, &error) || error.kind != ERROR_CANCELLED;
-}
-
-static bool make_passes(struct renderer *renderer, struct render_statistics *statistics) {
-    if (!renderer_make_passes(renderer))
-        return false;
-    statistics->passes_samples = renderer->pass.end;
-    statistics->out_of_time = renderer->pass.end < renderer->pass.limit;
-    bool ok = show_denoised(renderer);
-    end_passes(renderer);
-    return ok;
-}
-
-static bool make_tiles(struct renderer *renderer, struct render_statistics *statistics, struct error *error) {
-    if (!order_tiles(renderer))
-        return error_no_memory(error, "the order of the tiles");
-    count_tiles(renderer);
-    bool whole = renderer_makes_passes(renderer)
-                     ? make_passes(renderer, statistics)
-                     : renderer_cost_prepass(renderer) && render_tiles(renderer, statistics) &&
-                           !(renderer_is_done(renderer) && is_unfinished(renderer));
-    if (!atomic_load(&renderer->failed))
-        return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
-    if (!whole)
-        pool_reset_cancel(renderer->pool);
-    return error_no_memory(error, "the crossings of a ray");
-}
-
-bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
-                struct error *error) {
-    double begin = clock_seconds(CLOCK_MONOTONIC);
-    struct renderer renderer = {.job = job, .pool = pool, .begun = begin};
-    int workers = pool_workers(pool);
-    bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
-              make_tiles(&renderer, statistics, error);
-    if (renderer.integrator)
-        add_statistics(&renderer, workers, statistics);
-    if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), renderer_layer_item, &renderer))
-        ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
-    if (ok && job->progress_estimate)
-        renderer_report_end(&renderer);
-    for (int i = 0; renderer.workers && i < workers; i++)
-        statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
-    end_rendering(&renderer, workers);
-    statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
-    return ok;
 }
 
 /* Passes over the picture: every pass adds samples to all pixels, so that something is to be seen soon, and the time
@@ -506,38 +441,82 @@ static uint32_t next_samples(const struct renderer *renderer, uint32_t limit, do
     return fitting < (double)count ? (uint32_t)fmax(fitting, 1) : count;
 }
 
-/* If there is no memory, there is no time estimate. */
-static void begin_progress(struct renderer *renderer) {
-    struct progress_estimate *estimate = renderer->job->progress_estimate;
-    if (!estimate)
-        return;
-    uint32_t count = film_tile_count(renderer->job->film);
-    struct noise_limits limits = noise_limits_for(renderer->job->settings.noise, renderer->pass.end);
-    if (noise_estimate_create(&renderer->noise_estimate, count, limits, pool_workers(renderer->pool)))
-        renderer_expect_levels(renderer);
-    else
-        noise_estimate_destroy(&renderer->noise_estimate);
-    renderer->estimated = renderer->noise_estimate.count > 0;
-    renderer->worked = clock_nanoseconds(CLOCK_PROCESS_CPUTIME_ID);
-    atomic_store(&estimate->begun, clock_nanoseconds(CLOCK_MONOTONIC));
+/* The next pass, when all workers have ended the one before. */
+static enum work_answer next_pass(void *context, struct work_queue *queue) {
+    struct renderer *renderer = context;
+    struct sample_pass *pass = &renderer->pass;
+    double now = clock_seconds(CLOCK_MONOTONIC), seconds = fmax((now - renderer->passes_begun) / pass->end, 1e-9);
+    if (queue->out > 0)
+        return WORK_LATER;
+    if (renderer_is_done(renderer) || pass->end == pass->limit || !atomic_load(&renderer->unsatisfied) ||
+        time_left(renderer, now) < seconds)
+        return WORK_OVER;
+    uint32_t samples = next_samples(renderer, pass->limit, seconds, now);
+    pass->number++;
+    pass->begin = pass->end;
+    pass->end += samples;
+    atomic_store(&renderer->unsatisfied, false);
+    work_queue_set(queue, queue->tiles, queue->whole, 0);
+    return WORK_HERE;
 }
 
-bool renderer_make_passes(struct renderer *renderer) {
-    uint32_t limit = renderer->pass.end, count = film_tile_count(renderer->job->film);
-    double begun = clock_seconds(CLOCK_MONOTONIC), now = begun;
-    begin_progress(renderer);
-    renderer->pass = (struct sample_pass){.limit = limit, .begin = 0, .end = 1, .open = true};
-    for (;;) {
-        atomic_store(&renderer->unsatisfied, false);
-        if (!pool_run(renderer->pool, count, renderer_pass_item, renderer) || renderer_is_done(renderer))
-            return false;
-        now = clock_seconds(CLOCK_MONOTONIC);
-        uint32_t done = renderer->pass.end;
-        double seconds = fmax((now - begun) / done, 1e-9);
-        if (done == limit || !atomic_load(&renderer->unsatisfied) || time_left(renderer, now) < seconds)
-            return true;
-        renderer->pass.number++;
-        renderer->pass.begin = done;
-        renderer->pass.end = done + next_samples(renderer, limit, seconds, now);
+static void begin_passes(struct renderer *renderer) {
+    renderer->passes_begun = clock_seconds(CLOCK_MONOTONIC);
+    renderer->pass = (struct sample_pass){.limit = renderer->pass.end, .begin = 0, .end = 1, .open = true};
+    renderer->queue.more = next_pass;
+    renderer->queue.context = renderer;
+}
+
+/* All passes are made. */
+static void end_passes(struct renderer *renderer) {
+    struct film *film = renderer->job->film;
+    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
+        if (atomic_load(&film->tiles[tile]) >= FILM_TILE_PASSED)
+            end_tile(renderer, tile, true);
     }
+}
+
+static bool make_passes(struct renderer *renderer, struct render_statistics *statistics) {
+    begin_passes(renderer);
+    if (!do_work(renderer, statistics) || renderer_is_done(renderer))
+        return false;
+    statistics->passes_samples = renderer->pass.end;
+    statistics->out_of_time = renderer->pass.end < renderer->pass.limit;
+    bool ok = show_denoised(renderer);
+    end_passes(renderer);
+    return ok;
+}
+
+static bool make_tiles(struct renderer *renderer, struct render_statistics *statistics, struct error *error) {
+    if (!plan_work(renderer) || !renderer_begin_estimate(renderer))
+        return error_no_memory(error, "the order of the tiles");
+    count_tiles(renderer);
+    bool whole = renderer_makes_passes(renderer)
+                     ? make_passes(renderer, statistics)
+                     : do_work(renderer, statistics) && !(renderer_is_done(renderer) && is_unfinished(renderer));
+    if (!atomic_load(&renderer->failed))
+        return whole || error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    if (!whole)
+        pool_reset_cancel(renderer->pool);
+    return error_no_memory(error, "the crossings of a ray");
+}
+
+bool render_run(const struct render_job *job, struct pool *pool, struct render_statistics *statistics,
+                struct error *error) {
+    double begin = clock_seconds(CLOCK_MONOTONIC);
+    struct renderer renderer = {.job = job, .pool = pool, .begun = begin};
+    int workers = pool_workers(pool);
+    bool ok = begin_rendering(&renderer, workers, statistics, error) && choose_tiles(&renderer, error) &&
+              make_tiles(&renderer, statistics, error);
+    if (renderer.integrator)
+        add_statistics(&renderer, workers, statistics);
+    if (ok && job->film->layers && !pool_run(pool, film_tile_count(job->film), renderer_layer_item, &renderer))
+        ok = error_set(error, ERROR_CANCELLED, "stopped while rendering");
+    if (ok && job->progress_estimate)
+        progress_estimate_report(job->progress_estimate, 1, 0, clock_seconds(CLOCK_MONOTONIC));
+    for (int i = 0; renderer.workers && i < workers; i++)
+        statistics->clamped += renderer.workers[i].clamped || renderer.workers[i].state.clamped;
+    end_rendering(&renderer, workers);
+    statistics->render_seconds += clock_seconds(CLOCK_MONOTONIC) - begin;
+    return ok;
 }

@@ -24,12 +24,12 @@ struct render_job {
     bool background_lights;          /* the script chose the sky of the world: paths take its light */
     struct film *film;               /* placed for the crop; only tiles in the state FILM_TILE_WANTED are made */
     const _Atomic uint32_t *handout; /* or NULL; while it is 1 more tiles may become wanted */
+    struct pool_event *handed;       /* or NULL; signalled when tiles become wanted, and when no more can */
     uint32_t shard, shards;          /* this one of so many, from 1, makes its own tiles only; 0 of 0: all */
     /* Called from any worker when a tile is final; may be NULL. done counts from 1. */
     void (*tile_done)(void *context, uint32_t tile, uint32_t done, uint32_t count);
     void *context;
-    struct progress_estimate
-        *progress_estimate; /* or NULL; zero: reports the progress, from an estimate made before the first tile */
+    struct progress_estimate *progress_estimate; /* or NULL; zero */
     const _Atomic int
         *drain; /* or NULL; while it is not 0, no further tile is begun, and the render counts as stopped */
 };
@@ -56,8 +56,5 @@ struct render_area {
 };
 /* Checks picture size, crop, camera; fills the area. First call of a job. Warnings: up parallel to view. */
 bool render_prepare(struct render_job *job, struct render_area *area, char warning[256], struct error *error);
-/* The number of samples of a tile that is begun, in a film of a checkpoint (--noise); 0 unless all its pixels have
- * those of one level, below `limit`. */
-uint32_t render_level_samples(const struct film *film, uint32_t tile, uint32_t limit);
 
 #endif

@@ -41,7 +41,6 @@ bool whitted_create(struct whitted *whitted, struct renderer *renderer, int work
 void whitted_destroy(struct whitted *whitted);
 bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct worker *worker,
                     const struct rectangle *part);
-double whitted_resampling(const struct renderer *renderer, const struct vec3 *colours);
 void whitted_repeat(const struct whitted *whitted, struct renderer *renderer, struct worker *worker, int64_t x,
                     int64_t y);
 void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,

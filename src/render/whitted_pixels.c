@@ -141,21 +141,6 @@ static double squared_distance(struct vec3 a, struct vec3 b) {
     return vec3_dot(d, d);
 }
 
-static bool refines(const struct renderer *renderer, struct vec3 a, struct vec3 b) {
-    const struct tone *tone = &renderer->job->settings.tone;
-    return squared_distance(toned(tone, a), toned(tone, b)) > renderer->job->settings.side_tolerance;
-}
-
-double whitted_resampling(const struct renderer *renderer, const struct vec3 *colours) {
-    enum { SIDE = PROBE_SIDE, PAIRS = 2 * SIDE * (SIDE - 1) };
-    uint32_t edges = 0;
-    for (int i = 0; i < PROBE_RAYS; i++) {
-        edges += i % SIDE + 1 < SIDE && refines(renderer, colours[i], colours[i + 1]);
-        edges += i / SIDE + 1 < SIDE && refines(renderer, colours[i], colours[i + SIDE]);
-    }
-    return (double)edges / PAIRS;
-}
-
 /* The fraction of the tolerances for colours on different surfaces, and for a colour compared with the mean of two
  * opposite neighbours. */
 static const double fine_share = 1.0 / 16;
@@ -472,20 +457,22 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
                 return false;
             sample_patch(&part, x, y);
         }
-        renderer_tile_goes_on(renderer, worker, 0,
-                              fmin(1, (double)(y + PATCH - area.y0) / (double)(area.y1 - area.y0)));
+        renderer_tile_goes_on(renderer, worker,
+                              fmin(0.5, (double)(y + PATCH - area.y0) / (double)(2 * (area.y1 - area.y0))));
     }
     if (settings->show_refined && part.has_first)
         show_refined(&part, tile);
     if (!contour_find(&part.own->contour, renderer, worker, tile))
         return false;
+    double before = part.has_first ? 0.5 : 0; /* the part of the work that the first pass is */
     for (int64_t y = tile->y0; y < tile->y1; y++) {
         for (int64_t x = tile->x0; x < tile->x1; x++) {
             if (renderer_stopped(renderer, worker))
                 return false;
             finish_pixel(&part, x, y);
         }
-        renderer_tile_goes_on(renderer, worker, 1, (double)(y + 1 - tile->y0) / (double)(tile->y1 - tile->y0));
+        renderer_tile_goes_on(renderer, worker,
+                              before + (1 - before) * (double)(y + 1 - tile->y0) / (double)(tile->y1 - tile->y0));
     }
     return true;
 }

@@ -3,6 +3,7 @@
 #ifndef GRAY_SESSION_CONTROL_H
 #define GRAY_SESSION_CONTROL_H
 
+#include "base/pool.h"
 #include "render/time_estimate.h"
 #include "session/standard_streams.h"
 
@@ -21,6 +22,7 @@ struct control {
     _Atomic uint32_t tiles_done;                /* of the picture being made */
     _Atomic uint32_t tiles;                     /* 0 until its scene is built */
     _Atomic uint32_t handout;                   /* an enum handout */
+    struct pool_event handed;                   /* signalled when tiles are handed out, and at HANDOUT_CLOSED */
     _Atomic int drain;                          /* not 0: finish the started tiles, begin no others */
     struct progress_estimate progress_estimate; /* the progress of the picture, if requested */
     _Atomic uint32_t next_frame; /* that the window wants of an animation; 0: the first one, or FRAMES_OVER */

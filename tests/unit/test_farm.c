@@ -12,7 +12,7 @@
 
 enum { RANKS = 4, WIDTH = 130, HEIGHT = 70, QUEUE = 4096 };
 /* As in farm.c. */
-enum { BEGIN = 1, TILE, LEAVE, LINE, BYE, ANSWER, ASSIGN, CLOSE, ALIVE, NOTE, PART, END, NO_KIND = 99 };
+enum { BEGIN = 1, TILE, LEAVE, LINE, BYE, ANSWER, ASSIGN, CLOSE, ALIVE, NOTE, END, NO_KIND = 99 };
 #define SILENCE 8.0
 
 struct letter {
@@ -139,42 +139,6 @@ static void paint(struct film *film) {
     }
 }
 
-/* Tiles with --noise: each level adds 1 to the colours that the tile came with, so that a level that is lost or made
- * twice is seen. Every third tile has one level, the others two and three. */
-enum { LEVELS = 3 };
-
-static void paint_level(struct film *film) {
-    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        struct film_level *level = &film->levels[tile];
-        if (film->tiles[tile] != FILM_TILE_WANTED)
-            continue;
-        uint32_t last = 1 + tile % LEVELS, before = level->samples, all = 0;
-        CHECK(before < last && level->threads >= 1);
-        for (uint32_t i = 0; i < before; i++)
-            all += (uint32_t)level->known[i];
-        CHECK_EQ_INT(all, before * tile);
-        struct film_rectangle r = film_tile_rectangle(film, tile);
-        for (uint32_t y = r.y0; y < r.y1; y++)
-            for (uint32_t x = r.x0; x < r.x1; x++) {
-                uint32_t at = y * WIDTH + x;
-                film->marked[at] = (x + y) % 3 == 0;
-                for (uint32_t c = 0; c < 3; c++) {
-                    float value = (float)(x + 1000 * y + c) - (float)(last - before);
-                    CHECK(before == 0 || (film->pixels[at].rgb[c] >= value && film->pixels[at].rgb[c] <= value));
-                    film->pixels[at].rgb[c] = value + 1;
-                    film->floats[3 * at + c] = (x + y) % 3 == 0 ? -value - 1 : value + 1;
-                }
-            }
-        level->known[before] = tile;
-        level->samples = before + 1;
-        level->urgency = (double)tile;
-        level->cost = before + 1;
-        level->rest = last - before - 1;
-        film->tiles[tile] = before + 1 == last ? FILM_TILE_DONE : (uint8_t)(FILM_TILE_LEVEL + before);
-        return;
-    }
-}
-
 static void check_film(const struct film *film) {
     int wrong = 0;
     CHECK_EQ_INT(film_tiles_in(film, FILM_TILE_DONE), film_tile_count(film));
@@ -251,46 +215,6 @@ TEST(ranks_in_any_order_with_nonsense_messages_make_every_tile_once) {
             CHECK(turn % 2 || turn % 3 == 1 || turn % 5 == 2 || !is_open(rank));
             farm_end(farms[rank], false);
         }
-        farm_end(farms[0], false);
-        end_farm(RANKS);
-    }
-}
-
-TEST(tiles_that_get_their_samples_level_by_level_keep_them_whichever_ranks_make_the_levels) {
-    for (int turn = 0; turn < 12; turn++) {
-        struct test_random random = {(uint64_t)turn + 77};
-        struct error error;
-        struct tile_picture picture = picture_of(1, "a.png");
-        double cost = 0;
-        begin_farm(RANKS);
-        for (int rank = 0; rank < RANKS; rank++) {
-            bool already = false;
-            CHECK(farm_begin(farms[rank], &picture, &films[rank], &already, &error) && !already);
-        }
-        for (int step = 0; step < 100000 && is_open(0); step++) {
-            int rank = (int)test_uniform(&random, 0, RANKS);
-            if (turn % 2)
-                disturb(&random);
-            if (turn % 3 == 1 && step > 20 && rank == 2) {
-                if (is_open(2))
-                    farm_end(farms[2], true);
-                controls[2].handout = HANDOUT_CLOSED;
-                continue;
-            }
-            if (turn % 4 == 2 && step % 40 == 39) /* its renderer is lost */
-                farm_take_back_own(farms[0]);
-            paint_level(&films[rank]);
-            farm_step(farms[rank]);
-        }
-        CHECK(!is_open(0));
-        check_film(&films[0]);
-        for (uint32_t tile = 0; tile < film_tile_count(&films[0]); tile++) {
-            CHECK_EQ_INT(films[0].levels[tile].samples, 1 + tile % LEVELS);
-            cost += films[0].levels[tile].cost - (1 + tile % LEVELS);
-        }
-        CHECK_NEAR(cost, 0, 0);
-        for (int rank = 1; rank < RANKS; rank++)
-            farm_end(farms[rank], false);
         farm_end(farms[0], false);
         end_farm(RANKS);
     }
@@ -424,87 +348,6 @@ TEST(tiles_of_a_renderer_that_is_gone_are_handed_out_again_on_the_first_rank) {
     pass(0.25, "0");
     CHECK_EQ_INT(tiles_in(0, FILM_TILE_WANTED), 2);
     make_all("01");
-    end_farm(2);
-}
-
-TEST(the_tile_that_is_handed_out_next_has_the_largest_urgency_of_those_with_samples) {
-    begin_farm(2);
-    begin_picture(2);
-    for (int step = 0; step < 100 && tiles_in(0, FILM_TILE_LATER) > 0; step++) {
-        paint_level(&films[1]);
-        farm_step(farms[1]);
-        farm_step(farms[0]);
-    }
-    uint32_t count = film_tile_count(&films[0]), first = 0, urgent = 0;
-    farm_step(farms[1]); /* one of the tiles is sent again, with its first level */
-    for (uint32_t tile = 0; tile < count; tile++)
-        first += films[1].tiles[tile] == FILM_TILE_WANTED && films[1].levels[tile].samples == 1;
-    paint_level(&films[1]);
-    farm_step(farms[1]);
-    farm_step(farms[0]);
-    farm_step(farms[1]);
-    for (uint32_t tile = 0; tile < count; tile++)
-        urgent = films[1].tiles[tile] == FILM_TILE_WANTED ? tile : urgent;
-    CHECK(first <= 2);
-    CHECK(count % LEVELS == 0); /* so the last tile has more than one level */
-    CHECK_EQ_INT(urgent, count - 1);
-    end_farm(2);
-}
-
-TEST(a_lost_rank_loses_no_level_that_it_has_returned) {
-    begin_farm(2);
-    begin_picture(2);
-    while (tiles_in(0, FILM_TILE_LATER) > 0) {
-        paint_level(&films[1]);
-        pass(0.25, "01");
-    }
-    uint32_t begun = film_tiles_begun(&films[0]), done = tiles_in(0, FILM_TILE_DONE);
-    CHECK(begun > 0 && tiles_in(1, FILM_TILE_WANTED) > 0);
-    pass(SILENCE * 1.2, "0");
-    expect_note("rank 1 has been silent");
-    /* Its tiles are here as it has returned them: at most two, which have no samples yet, begin again. */
-    CHECK(film_tiles_begun(&films[0]) + tiles_in(0, FILM_TILE_WANTED) >= begun);
-    CHECK_EQ_INT(tiles_in(0, FILM_TILE_DONE), done);
-    /* It goes on with a tile that another one has finished meanwhile, and with the old level of one: no harm. */
-    for (int step = 0; step < 6; step++) {
-        paint_level(&films[0]);
-        farm_step(farms[0]);
-    }
-    for (int step = 0; step < 1000 && is_open(0); step++) {
-        for (int rank = 0; rank < 2; rank++) {
-            paint_level(&films[rank]);
-            pass(0.25, rank ? "1" : "0");
-        }
-    }
-    check_film(&films[0]);
-    end_farm(2);
-}
-
-TEST(the_first_rank_knows_how_much_of_a_level_others_have_made) {
-    begin_farm(2);
-    begin_picture(2);
-    pass(1, "01");
-    uint32_t tile = 0, other;
-    while (films[1].tiles[tile] != FILM_TILE_WANTED)
-        tile++;
-    films[1].tiles[tile] = FILM_TILE_TAKEN;
-    films[1].levels[tile].begun = 7;
-    pass(1, "01");
-    CHECK_NEAR(films[0].levels[tile].begun, 7, 0);
-    for (other = 0; films[0].tiles[other] != FILM_TILE_WANTED;)
-        other++;
-    struct {
-        uint32_t picture, tile;
-        double begun;
-    } foreign = {1, other, 9}; /* a tile of another rank */
-    post(1, 0, PART, &foreign, sizeof foreign);
-    farm_step(farms[0]);
-    CHECK_NEAR(films[0].levels[other].begun, 0, 0);
-    films[1].levels[tile].begun = 0;
-    films[1].tiles[tile] = FILM_TILE_WANTED;
-    paint_level(&films[1]);
-    pass(1, "01");
-    CHECK_NEAR(films[0].levels[tile].begun, 0, 0);
     end_farm(2);
 }
 

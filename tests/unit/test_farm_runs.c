@@ -328,7 +328,7 @@ TEST(ranks_end_when_the_first_one_was_killed) {
     CHECK(access(test_path("out.png"), F_OK) != 0);
 }
 
-/* --- tiles that get their samples level by level --- */
+/* --- noise --- */
 
 #define NOISE "--integrator path --noise 0.02 --denoise=none"
 
@@ -364,19 +364,26 @@ TEST(a_farm_with_noise_has_the_bytes_of_one_run_whatever_is_lost) {
     expect_pictures(NULL, COMPARE);
 }
 
-TEST(a_farm_with_noise_keeps_the_samples_of_unfinished_tiles_of_all_ranks_in_its_checkpoint) {
+/* SIGINT: mpirun ends all processes. */
+TEST(a_farm_with_noise_goes_on_from_a_checkpoint_with_the_bytes_of_one_run) {
     need_mpi(SCENE "picture('out.png', 130, 100)\n");
     CHECK_EQ_INT(shell("$gray scene.lua -q " FINE " -o whole.png"), 0);
     pid_t farm = start_farm("", 3, FINE " --checkpoint c.tiles --checkpoint-every 1000");
     if (await_work(0, 0.08, NULL))
         CHECK(kill(process_of(0, false), SIGINT) == 0);
-    CHECK(await_end(farm) > 0); /* mpirun ends all processes */
+    CHECK(await_end(farm) > 0);
     CHECK_EQ_INT(shell("cp c.tiles d.tiles && $gray scene.lua " FINE " --checkpoint c.tiles --resume 2>>said.txt"), 0);
-    if (!strstr(said(), "more, come from the checkpoint"))
-        test_fail(__FILE__, __LINE__, "no samples of unfinished tiles were kept; said:\n%s", said());
     CHECK_EQ_INT(shell(COMPARE), 0);
     CHECK_EQ_INT(await_end(start_farm("", 3, FINE " --checkpoint d.tiles --resume")), 0);
-    expect_pictures("more, come from the checkpoint", COMPARE);
+    expect_pictures("come from the checkpoint", COMPARE);
+}
+
+TEST(a_farm_shows_finished_tiles_and_no_time) {
+    need_mpi(ONE);
+    make_whole();
+    CHECK_EQ_INT(await_end(start_farm("", 2, WORDS " --progress=json")), 0);
+    expect_pictures("\"tiles_done\":", COMPARE);
+    CHECK(!strstr(said(), "\"left\":") && !strstr(said(), "\"share\":"));
 }
 
 TEST(a_rank_that_fails_alone_is_a_line_and_no_status) {

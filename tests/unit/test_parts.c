@@ -631,7 +631,7 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         uint32_t kept = 0, restored, twice;
         for (uint32_t i = 0; i < film_tile_count(&film); i++) {
             bool keep = test_uniform(&random, 0, 1) < 0.6;
-            int other = i % 3 == 0 ? FILM_TILE_LEVEL + 7 : i % 3 == 1 ? FILM_TILE_WANTED : FILM_TILE_ELSEWHERE;
+            int other = i % 3 == 0 ? FILM_TILE_BEGUN + 7 : i % 3 == 1 ? FILM_TILE_WANTED : FILM_TILE_ELSEWHERE;
             atomic_store(&film.tiles[i], keep ? FILM_TILE_DONE : (uint8_t)other);
             kept += keep;
         }

@@ -1,15 +1,12 @@
 /* Samples that come in passes, until a time is over or a tile has little enough noise. */
 #include "denoise/film_denoise.h"
 #include "render/path_noise_internal.h"
-#include "render/time_estimate.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { WIDTH = 70, HEIGHT = 50 };
 
@@ -128,7 +125,7 @@ TEST(every_tile_gets_at_least_16_samples_and_as_many_as_its_noise_asks_for) {
             for (uint32_t x = r.x0; x < r.x1; x++)
                 CHECK_EQ_INT(pixel_at(&s, x, y).samples, samples);
         }
-        CHECK(path_tile_noise(&s.film, r).noise <= wanted);
+        CHECK(path_tile_noise(&s.film, r) <= wanted);
         fewest = samples < fewest ? samples : fewest;
         largest = samples > largest ? samples : largest;
     }
@@ -155,84 +152,29 @@ TEST(a_picture_of_little_noise_has_the_same_bytes_for_any_threads_order_and_pass
     stage_end(&s);
 }
 
-/* --- in a farm --- */
-
-struct helper {
-    struct stage *s;
-    struct render_job job;
-    bool ok;
-};
-
-static void *help(void *context) {
-    struct helper *helper = context;
-    helper->ok = render_run(&helper->job, helper->s->pool, &helper->s->statistics, &helper->s->error);
-    return NULL;
-}
-
-static double cost_of(const struct film *film) {
-    double cost = 0;
-    for (uint32_t tile = 0; tile < film_tile_count(film); tile++)
-        cost += sum_load(&film->levels[tile].cost);
-    return cost;
-}
-
-/* Hands out a tile, unless two are under way: one without samples, or the most urgent one. */
-static void hand_out(struct film *film) {
-    uint32_t waiting = film_tiles_in(film, FILM_TILE_WANTED) + film_tiles_in(film, FILM_TILE_TAKEN), next = UINT32_MAX;
-    for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
-        uint8_t state = atomic_load(&film->tiles[tile]);
-        if (state == FILM_TILE_LATER) {
-            next = tile;
-            break;
-        }
-        if (film_tile_is_begun(state) &&
-            (next == UINT32_MAX || film->levels[tile].urgency > film->levels[next].urgency))
-            next = tile;
-    }
-    if (next == UINT32_MAX || waiting >= 2)
-        return;
-    film->levels[next].threads = 1;
-    atomic_store(&film->tiles[next], FILM_TILE_WANTED);
-}
-
-TEST(tiles_that_are_handed_out_level_by_level_have_the_bytes_of_one_render_and_say_what_is_left) {
+/* Every tile needs more than the 24 samples that it has at first. */
+TEST(tiles_that_go_on_from_a_check_end_at_the_same_sample_with_the_bytes_of_one_go) {
     struct stage s;
-    struct progress_estimate estimate = {0};
-    struct film single;
-    _Atomic uint32_t handout = 1;
-    pthread_t thread;
-    double cost = 0, share = 0;
-    const struct timespec pause = {0, 200000};
-    size_t bytes;
-    uint32_t early = 0;
+    struct render_statistics statistics = {0};
     begin(&s, 2);
-    s.settings.noise = 0.12;
-    CHECK(stage_render(&s, 160, 128));
-    single = s.film;
-    CHECK(film_size(160, 128, single.record, &bytes, &s.error));
-    film_layout(&s.film, calloc(1, bytes), 160, 128, single.record);
-    struct helper helper = {.s = &s, .job = stage_job(&s, 160, 128)};
-    helper.job.handout = &handout;
-    helper.job.progress_estimate = &estimate;
-    for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++)
-        s.film.tiles[tile] = FILM_TILE_LATER;
-    CHECK(pthread_create(&thread, NULL, help, &helper) == 0);
-    while (film_tiles_in(&s.film, FILM_TILE_DONE) < film_tile_count(&s.film)) {
-        (void)nanosleep(&pause, NULL);
-        hand_out(&s.film);
-        early += film_tiles_in(&s.film, FILM_TILE_LATER) > 0 && film_tiles_in(&s.film, FILM_TILE_DONE) > 0;
-        if (share <= 0.4) {
-            share = progress_estimate_share(&estimate);
-            cost = cost_of(&s.film);
-        }
+    s.settings.noise = 0.04;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++) {
+        struct film_rectangle r = film_tile_rectangle(&s.film, tile);
+        CHECK(pixel_at(&s, r.x0, r.y0).samples > 24);
     }
-    handout = 2;
-    CHECK(pthread_join(thread, NULL) == 0 && helper.ok);
-    CHECK(memcmp(single.pixels, s.film.pixels, film_bytes(&single)) == 0);
-    CHECK_EQ_INT(early, 0); /* all tiles get a level before one gets all */
-    CHECK_NEAR(share, cost / cost_of(&s.film), 0.15);
-    CHECK_NEAR(progress_estimate_share(&estimate), 1, 1e-6);
-    free(single.pixels);
+    void *whole = film_copy(&s);
+    uint64_t all = s.statistics.camera_rays;
+    s.settings.path_samples = 24;
+    CHECK(stage_render(&s, WIDTH, HEIGHT));
+    for (uint32_t tile = 0; tile < film_tile_count(&s.film); tile++)
+        s.film.tiles[tile] = FILM_TILE_BEGUN;
+    s.settings.path_samples = 0;
+    struct render_job job = stage_job(&s, WIDTH, HEIGHT);
+    CHECK(render_run(&job, s.pool, &statistics, &s.error));
+    CHECK_EQ_INT(statistics.camera_rays, all - 24 * WIDTH * HEIGHT);
+    CHECK(memcmp(whole, s.film.pixels, film_bytes(&s.film)) == 0);
+    free(whole);
     stage_end(&s);
 }
 

@@ -581,8 +581,8 @@ TEST(window_shows_how_long_the_picture_will_take) {
     begin(&t);
     t.viewer.control = &control;
     progress_estimate_reset(&control.progress_estimate, true);
-    atomic_store(&control.progress_estimate.begun, (uint64_t)((t.now - 30) * 1e9));
-    progress_estimate_report(&control.progress_estimate, 1, 3, (uint64_t)(t.now * 1e9));
+    control.progress_estimate.begun = t.now - 30;
+    progress_estimate_report(&control.progress_estimate, 1, 3, t.now);
     finish_pass(&t, 0.02, false);
     CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     t.now += 1;
@@ -592,8 +592,8 @@ TEST(window_shows_how_long_the_picture_will_take) {
         finish_pass(&t, 1, false);
         CHECK_EQ_INT(step(&t), VIEWER_SEND_COMMAND);
     }
-    atomic_store(&control.progress_estimate.begun, (uint64_t)((t.now - 30) * 1e9));
-    progress_estimate_report(&control.progress_estimate, 1, 3, (uint64_t)(t.now * 1e9));
+    control.progress_estimate.begun = t.now - 30;
+    progress_estimate_report(&control.progress_estimate, 1, 3, t.now);
     t.now += 10;
     (void)step(&t);
     CHECK(strstr(t.fake.title, "25 %, 1 min 20 s left"));
