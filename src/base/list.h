@@ -14,6 +14,9 @@
 #define LIST_MEMBER(...) LIST_FIRST(__VA_ARGS__, 0)
 #define LIST_WORD(member, word) [member] = (word),
 #define LIST_ONE(...) +1
+/* The labels of a switch for the members of a list that have one answer. */
+#define LIST_LABEL_OF(member, ...) case member:
+#define LIST_LABEL(...) LIST_LABEL_OF(__VA_ARGS__, 0)
 /* The number of members of a list, as a constant. */
 #define LIST_COUNT(list) (0 list(LIST_ONE))
 

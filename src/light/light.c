@@ -35,13 +35,9 @@ bool light_prepare(struct light *light, struct arena *arena, struct pool *pool, 
     case LIGHT_SKY:
         light->table = sky_table_build(light->sky, arena, pool);
         return light->table || error_no_memory(error, "the light of the sky");
-    case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
     case LIGHT_MESH:
+        POINT_LIGHTS(LIST_LABEL)
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return true;
@@ -66,10 +62,8 @@ static struct vec3 colour_along(const struct light *light, struct vec3 direction
 bool light_middle(const struct light *light, struct light_target *out) {
     switch (light->kind) {
     case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
     case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
+        SURFACE_LIGHTS(LIST_LABEL)
         *out = (struct light_target){light->position, false};
         return true;
     case LIGHT_DIRECTIONAL:
@@ -104,12 +98,10 @@ bool light_arrive(const struct light *light, struct vec3 point, struct light_arr
         out->strength *= light_cone(light, vec3_negate(out->direction));
         break;
     case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
     case LIGHT_DIRECTIONAL:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return true;
@@ -156,9 +148,7 @@ bool light_context_make(const struct light *light, struct vec3 point, struct vec
     case LIGHT_SKY:
         out->bounded = false;
         return true;
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
+        POINT_LIGHTS(LIST_LABEL)
         out->bounded = false;
         out->single = true;
         break;
@@ -176,11 +166,9 @@ struct vec3 light_target_at(const struct light *light, const struct light_contex
         return light_disc_target(light, context, xi);
     case LIGHT_SPHERE:
         return context->single ? light->position : light_sphere_target(light, context, xi);
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return light->position;
@@ -254,9 +242,7 @@ struct light_sample light_sample(const struct light *light, const struct light_c
         return light_mesh_sample(light->mesh, context, xi);
     case LIGHT_SKY:
         return sky_sample(light, xi);
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return delta_sample(light, context, xi);
@@ -282,9 +268,7 @@ double light_pdf(const struct light *light, const struct light_context *context,
         return light_mesh_pdf(light->mesh, context, hit);
     case LIGHT_SKY:
         return sky_table_pdf(light->table, direction);
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return 0;
@@ -300,11 +284,9 @@ static bool surface_meets_ray(const struct light *light, const struct ray *ray, 
         return light_disc_meets_ray(light, ray, t);
     case LIGHT_SPHERE:
         return light_sphere_meets_ray(light, ray, t);
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return false;
@@ -321,13 +303,9 @@ bool light_meets_ray(const struct light *light, const struct ray *ray, struct li
 struct vec3 light_emitted(const struct light *light, const struct ray *ray, const struct light_hit *hit) {
     const struct light_triangle *t;
     switch (light->kind) {
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
+        POINT_LIGHTS(LIST_LABEL)
         break;
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
+        SURFACE_LIGHTS(LIST_LABEL)
         return colour_along(light, vec3_negate(ray->direction));
     case LIGHT_MESH:
         t = &light->mesh->triangles[hit->triangle];
@@ -359,12 +337,8 @@ double light_brightest(const struct light *light) {
         return max * sky_brightest(light->sky);
     case LIGHT_MESH:
         return mesh_brightest(light->mesh);
-    case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
+        POINT_LIGHTS(LIST_LABEL)
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return light->profile ? max * light->profile_largest : max;
@@ -381,11 +355,9 @@ bool light_surface_box(const struct light *light, struct box *out) {
     case LIGHT_SPHERE:
         *out = light_box_centred(light->position, vec3_all(light->radius));
         return true;
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return false;
@@ -397,13 +369,9 @@ uint32_t light_part_count(const struct light *light) {
     switch (light->kind) {
     case LIGHT_MESH:
         return light->mesh->count;
-    case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return 1;
@@ -463,13 +431,11 @@ double light_divided_extent(const struct light *light) {
     switch (light->kind) {
     case LIGHT_PARALLELOGRAM:
         return vec3_length(light->edge1) + vec3_length(light->edge2);
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
     case LIGHT_DISC:
     case LIGHT_SPHERE:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return 0;
@@ -559,13 +525,9 @@ struct vec3 light_emitter_colour(const struct light_emitter *emitter) {
     switch (light->kind) {
     case LIGHT_MESH:
         return light_mesh_colour(light->mesh);
-    case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return light->profile ? vec3_scale(light->colour, light->profile_largest) : light->colour;
@@ -583,11 +545,9 @@ double light_emitter_unit(const struct light_emitter *emitter) {
         return intensity_of(PI * light->radius * light->radius) * part;
     case LIGHT_SPHERE:
         return light->radius * light->radius; /* of the area pi r^2 across every direction */
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return part;
@@ -617,11 +577,9 @@ static struct vec3 emitter_point(const struct light_emitter *emitter, struct vec
         frame_tangents(direction, &right, &up);
         at = round_position(emitter, right, up, part, &height);
         return light->emissive && height > 0 ? vec3_add_scaled(at, direction, light->radius * height) : at;
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        POINT_LIGHTS(LIST_LABEL)
         break;
     }
     return emitter->centre;
@@ -633,10 +591,8 @@ struct light_photon light_photon(const struct light_emitter *emitter, struct vec
     struct light_sample sample;
     switch (light->kind) {
     case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
     case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
+        SURFACE_LIGHTS(LIST_LABEL)
         photon.origin = emitter_point(emitter, direction, xi);
         photon.power = vec3_scale(colour_along(light, direction),
                                   light_emitter_shine(emitter, direction) * light_emitter_unit(emitter));
@@ -661,10 +617,8 @@ double light_photon_attenuation(const struct light *light, double length) {
         return 1;
     switch (light->kind) {
     case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
     case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
+        SURFACE_LIGHTS(LIST_LABEL)
         return length * length * light_attenuation(light, length);
     case LIGHT_DIRECTIONAL:
     case LIGHT_MESH:

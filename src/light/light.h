@@ -19,14 +19,19 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Every kind with its name. Those of a mesh and of a sky are lamps always: `emissive` is set. */
-#define LIGHT_KINDS(X)                                                                                                 \
+/* Every kind with its name. A switch names a whole list where its lights have one answer. Those of a mesh and of a sky
+ * are lamps always: `emissive` is set. Those of points have no extent, those of surfaces a surface of their own. */
+#define POINT_LIGHTS(X)                                                                                                \
     X(LIGHT_POINT, "point light")                                                                                      \
-    X(LIGHT_PARALLELOGRAM, "area light")                                                                               \
     X(LIGHT_DIRECTIONAL, "directional light")                                                                          \
-    X(LIGHT_SPOT, "spot light")                                                                                        \
+    X(LIGHT_SPOT, "spot light")
+#define SURFACE_LIGHTS(X)                                                                                              \
+    X(LIGHT_PARALLELOGRAM, "area light")                                                                               \
     X(LIGHT_DISC, "disc light")                                                                                        \
-    X(LIGHT_SPHERE, "spherical light")                                                                                 \
+    X(LIGHT_SPHERE, "spherical light")
+#define LIGHT_KINDS(X)                                                                                                 \
+    POINT_LIGHTS(X)                                                                                                    \
+    SURFACE_LIGHTS(X)                                                                                                  \
     X(LIGHT_MESH, "mesh light")                                                                                        \
     X(LIGHT_SKY, "sky light")
 enum light_kind { LIGHT_KINDS(LIST_MEMBER) };
@@ -92,15 +97,11 @@ static inline bool light_is_delta(const struct light *light) {
 /* Whether all of its samples for a point have the same target. */
 static inline bool light_is_point(const struct light *light) {
     switch (light->kind) {
-    case LIGHT_POINT:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
+        POINT_LIGHTS(LIST_LABEL)
         return true;
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
     case LIGHT_MESH:
     case LIGHT_SKY:
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return false;

@@ -23,12 +23,8 @@ bool light_is_seen(const struct light *light) {
         return true;
     case LIGHT_MESH: /* the mesh shows the emission of its material */
         return !light->has_emission && light->mesh->shown;
-    case LIGHT_POINT:
-    case LIGHT_PARALLELOGRAM:
-    case LIGHT_DIRECTIONAL:
-    case LIGHT_SPOT:
-    case LIGHT_DISC:
-    case LIGHT_SPHERE:
+        POINT_LIGHTS(LIST_LABEL)
+        SURFACE_LIGHTS(LIST_LABEL)
         break;
     }
     return light->visible;

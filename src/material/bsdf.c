@@ -74,7 +74,7 @@ struct vec3 bsdf_classic(const struct bsdf *bsdf, uint32_t lobes, struct vec3 wo
         case LOBE_BLINN:
             factor = blinn_formula(lobe, bsdf->lit, wo, wi);
             break;
-            ROUGH_LOBES(LOBE_LABEL)
+            ROUGH_LOBES(LIST_LABEL)
             if (lobe_flags(lobe->kind) & BSDF_CLASSIC)
                 sum = vec3_add_scaled(sum, rough_lobe_weight(bsdf, lobe, wo, wi),
                                       radiance_of(rough_lobe_eval(bsdf, lobe, wo, wi)));
@@ -246,7 +246,7 @@ static double lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi).pdf;
-        ROUGH_LOBES(LOBE_LABEL)
+        ROUGH_LOBES(LIST_LABEL)
         return rough_lobe_pdf(bsdf, lobe, wo, wi);
     }
     return 0;
@@ -270,7 +270,7 @@ static double lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct
         struct facet_path path = rough_path(bsdf, lobe->kind == LOBE_GGX_TRANSMISSION, wo, wi);
         return path.pdf * path.share;
     }
-        ROUGH_LOBES(LOBE_LABEL)
+        ROUGH_LOBES(LIST_LABEL)
         return rough_lobe_eval(bsdf, lobe, wo, wi);
     }
     return 0;
@@ -345,7 +345,7 @@ static bool lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct
     case LOBE_GGX_REFLECTION:
     case LOBE_GGX_TRANSMISSION:
         return traced_direction(bsdf, lobe, wo, microfacet_normal(bsdf->side, wo, bsdf->alpha, u), out);
-        ROUGH_LOBES(LOBE_LABEL)
+        ROUGH_LOBES(LIST_LABEL)
         return rough_lobe_sample(bsdf, lobe, wo, u, &out->direction, &out->transmits);
     }
     return false;

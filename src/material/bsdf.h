@@ -51,8 +51,6 @@ enum bsdf_flags {
     X(LOBE_FACETS_MULTIPLE, "facets, multiple", BSDF_ROUGH | BSDF_CLASSIC | BSDF_REFLECTS)                             \
     X(LOBE_FACETS_THROUGH, "facets through, multiple", BSDF_ROUGH | BSDF_TRANSMITS)
 #define LOBES(X) SIMPLE_LOBES(X) ROUGH_LOBES(X)
-/* The labels of a list in a switch, where its lobes have one answer. */
-#define LOBE_LABEL(kind, name, flags) case kind:
 enum lobe_kind { LOBES(LIST_MEMBER) };
 enum { LOBE_KINDS = LIST_COUNT(LOBES) };
 

@@ -335,7 +335,7 @@ double rough_lobe_eval(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_FACETS_MULTIPLE:
     case LOBE_FACETS_THROUGH:
         return facets_multiple(bsdf, lobe, wo, wi) * n_i / PI;
-        SIMPLE_LOBES(LOBE_LABEL)
+        SIMPLE_LOBES(LIST_LABEL)
         break;
     }
     return 0;
@@ -365,7 +365,7 @@ double rough_lobe_pdf(const struct bsdf *bsdf, const struct lobe *lobe, struct v
     case LOBE_GLASS:
     case LOBE_PANE:
         return path_of(bsdf, lobe, wo, wi).pdf;
-        SIMPLE_LOBES(LOBE_LABEL)
+        SIMPLE_LOBES(LIST_LABEL)
         break;
     }
     return 0;
@@ -389,7 +389,7 @@ bool rough_lobe_sample(const struct bsdf *bsdf, const struct lobe *lobe, struct 
     case LOBE_GLASS:
     case LOBE_PANE:
         return facet_sample(bsdf, lobe, wo, u, direction, transmits);
-        SIMPLE_LOBES(LOBE_LABEL)
+        SIMPLE_LOBES(LIST_LABEL)
         return false;
     }
     return cosine_on(bsdf, *transmits, *direction) > 0;

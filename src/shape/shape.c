@@ -1,4 +1,5 @@
-/* The switch over shapes. A new shape adds one case to every function here; the compiler names those it forgot. */
+/* The switch over shapes. A new shape is in a list of shape.h and has a case in every function that does not treat its
+ * list alike; the compiler names those it forgot. */
 #include "shape/shape.h"
 
 #include "mesh/mesh.h"
@@ -139,19 +140,9 @@ static bool is_box_under(const struct shape *shape, const struct affine *map, co
         return shape->planar.kind == PLANAR_PLANE &&
                !(box->min.x == -box->max.x && box->min.y == -box->max.y && box->min.z == -box->max.z);
     case SHAPE_SPHERE:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
     case SHAPE_MESH:
+        ANALYTIC_SOLIDS(LIST_LABEL)
+        LISTED_SHAPES(LIST_LABEL)
         break;
     }
     return false;
@@ -170,64 +161,16 @@ bool shape_inner_box(const struct shape *shape, const struct affine *map, struct
     return true;
 }
 
-bool shape_is_closed(const struct shape *shape) {
-    switch (shape->kind) {
-    case SHAPE_SPHERE:
-        return true;
-    case SHAPE_BOX:
-        return true;
-    case SHAPE_REVOLVED_QUADRIC:
-        return revolved_quadric_is_closed(&shape->revolved_quadric);
-    case SHAPE_ELLIPSOID:
-        return true;
-    case SHAPE_QUADRIC:
-        return quadric_is_closed(shape->quadric);
-    case SHAPE_TORUS:
-        return true;
-    case SHAPE_SUPERELLIPSOID:
-        return true;
-    case SHAPE_PLANAR:
-        return shape->planar.kind == PLANAR_PLANE;
-    case SHAPE_LATHE:
-        return lathe_is_closed(shape->lathe);
-    case SHAPE_PRISM:
-        return true;
-    case SHAPE_SWEEP:
-        return true;
-    case SHAPE_HEIGHT_FIELD:
-        return height_field_is_closed(shape->height_field);
-    case SHAPE_BLOB:
-        return true;
-    case SHAPE_IMPLICIT:
-        return implicit_is_closed(shape->implicit);
-    case SHAPE_CURVE:
-        return false;
-    case SHAPE_MESH:
-        return mesh_is_closed(shape->mesh);
-    }
-    return false;
-}
-
 enum surface_layout shape_layout(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
         return LAYOUT_SPHERE;
     case SHAPE_BOX:
         return LAYOUT_FACES;
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
     case SHAPE_PLANAR:
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
     case SHAPE_MESH:
+        ANALYTIC_SOLIDS(LIST_LABEL)
+        LISTED_SHAPES(LIST_LABEL)
         break;
     }
     return LAYOUT_UV;
@@ -242,18 +185,8 @@ enum shape_area shape_area(const struct shape *shape) {
     case SHAPE_MESH:
         return SHAPE_AREA_TRIANGLES;
     case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
+        ANALYTIC_SOLIDS(LIST_LABEL)
+        LISTED_SHAPES(LIST_LABEL)
         break;
     }
     return SHAPE_AREA_UNKNOWN;
@@ -292,37 +225,15 @@ enum hit_convexity shape_convexity(const struct shape *shape) {
     case SHAPE_QUADRIC:
     case SHAPE_TORUS:
     case SHAPE_SUPERELLIPSOID:
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
+        LISTED_SHAPES(LIST_LABEL)
         break;
     }
     return CONVEXITY_NONE;
 }
 
 const char *shape_why_open(const struct shape *shape) {
-    if (shape_is_closed(shape))
-        return NULL;
+    static const char *const no_caps = "has no caps (open = true), so it has no inside";
     switch (shape->kind) {
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_QUADRIC:
-        return "has no caps (open = true), so it has no inside";
-    case SHAPE_PLANAR:
-        return "is flat, so it has no inside; only a plane with a normal is a half-space";
-    case SHAPE_IMPLICIT:
-        return "is an implicit surface without caps on its bounds (open = true), so it has no inside";
-    case SHAPE_CURVE:
-        return "is a curve, a ribbon without inside";
-    case SHAPE_LATHE:
-        return "is an open lathe: its profile ends off the axis, so it has no inside";
-    case SHAPE_HEIGHT_FIELD:
-        return "is a sheet without walls and floor (open = true), so it has no inside";
-    case SHAPE_MESH:
-        return "is a mesh with open edges, so it has no inside";
     case SHAPE_SPHERE:
     case SHAPE_BOX:
     case SHAPE_ELLIPSOID:
@@ -331,9 +242,36 @@ const char *shape_why_open(const struct shape *shape) {
     case SHAPE_PRISM:
     case SHAPE_SWEEP:
     case SHAPE_BLOB:
-        break;
+        return NULL;
+    case SHAPE_REVOLVED_QUADRIC:
+        return revolved_quadric_is_closed(&shape->revolved_quadric) ? NULL : no_caps;
+    case SHAPE_QUADRIC:
+        return quadric_is_closed(shape->quadric) ? NULL : no_caps;
+    case SHAPE_PLANAR:
+        return shape->planar.kind == PLANAR_PLANE
+                   ? NULL
+                   : "is flat, so it has no inside; only a plane with a normal is a half-space";
+    case SHAPE_LATHE:
+        return lathe_is_closed(shape->lathe) ? NULL
+                                             : "is an open lathe: its profile ends off the axis, so it has no inside";
+    case SHAPE_HEIGHT_FIELD:
+        return height_field_is_closed(shape->height_field)
+                   ? NULL
+                   : "is a sheet without walls and floor (open = true), so it has no inside";
+    case SHAPE_IMPLICIT:
+        return implicit_is_closed(shape->implicit)
+                   ? NULL
+                   : "is an implicit surface without caps on its bounds (open = true), so it has no inside";
+    case SHAPE_CURVE:
+        return "is a curve, a ribbon without inside";
+    case SHAPE_MESH:
+        return mesh_is_closed(shape->mesh) ? NULL : "is a mesh with open edges, so it has no inside";
     }
-    return "is only a surface, so it has no inside";
+    return NULL;
+}
+
+bool shape_is_closed(const struct shape *shape) {
+    return !shape_why_open(shape);
 }
 
 /* All crossings of the whole line in order with a shape that has only a few. */
@@ -355,14 +293,8 @@ static int analytic_crossings(const struct shape *shape, const struct ray *ray, 
         return superellipsoid_crossings(&shape->superellipsoid, ray, out);
     case SHAPE_PLANAR:
         return planar_crossings(&shape->planar, ray, out);
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
     case SHAPE_MESH:
+        LISTED_SHAPES(LIST_LABEL)
         break;
     }
     return 0;
@@ -381,23 +313,10 @@ static bool analytic_nearest(const struct shape *shape, const struct ray *ray, s
 
 bool shape_is_listed(const struct shape *shape) {
     switch (shape->kind) {
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_PLANAR:
+        ANALYTIC_SHAPES(LIST_LABEL)
         return false;
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
     case SHAPE_MESH:
+        LISTED_SHAPES(LIST_LABEL)
         break;
     }
     return true;
@@ -421,15 +340,8 @@ static bool listed_crossings(const struct shape *shape, const struct ray *ray, s
         return implicit_crossings(shape->implicit, ray, scratch, out);
     case SHAPE_CURVE:
         return curve_crossings(shape->curve, ray, scratch, out);
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_PLANAR:
     case SHAPE_MESH:
+        ANALYTIC_SHAPES(LIST_LABEL)
         break;
     }
     *out = (struct crossing_list){scratch->used, 0};
@@ -455,14 +367,7 @@ static bool listed_nearest(const struct shape *shape, const struct ray *ray, str
 bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
                    struct crossing *out) {
     switch (shape->kind) {
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_PLANAR:
+        ANALYTIC_SHAPES(LIST_LABEL)
         scratch->shape_tests++;
         return analytic_nearest(shape, ray, out);
     case SHAPE_LATHE:
@@ -485,77 +390,56 @@ bool shape_nearest(const struct shape *shape, const struct ray *ray, struct geom
 }
 
 bool shape_any(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch) {
+    struct crossing ignored;
     switch (shape->kind) {
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_PLANAR: {
-        struct crossing ignored;
+        ANALYTIC_SHAPES(LIST_LABEL)
         scratch->shape_tests++;
         return analytic_nearest(shape, ray, &ignored);
-    }
     case SHAPE_LATHE:
     case SHAPE_PRISM:
     case SHAPE_SWEEP:
     case SHAPE_BLOB:
-    case SHAPE_CURVE: {
-        struct crossing ignored;
+    case SHAPE_CURVE:
         scratch->shape_tests++;
         return listed_nearest(shape, ray, scratch, &ignored);
-    }
     case SHAPE_IMPLICIT:
         scratch->shape_tests++;
         return implicit_any(shape->implicit, ray, scratch);
-    case SHAPE_HEIGHT_FIELD: {
-        struct crossing ignored;
+    case SHAPE_HEIGHT_FIELD:
         scratch->shape_tests++;
         return height_field_nearest(shape->height_field, ray, scratch, &ignored);
-    }
     case SHAPE_MESH:
         return mesh_any(shape->mesh, ray, ACCEL_AUTO, scratch);
     }
     return false;
 }
 
+static bool analytic_list(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
+                          struct crossing_list *out) {
+    struct crossing all[ANALYTIC_MAX];
+    if (scratch->capacity - scratch->used >= ANALYTIC_MAX) { /* nearly always */
+        uint32_t found = (uint32_t)analytic_crossings(shape, ray, &scratch->items[scratch->used]);
+        *out = (struct crossing_list){scratch->used, found};
+        scratch->used += found;
+        return true;
+    }
+    int count = analytic_crossings(shape, ray, all);
+    *out = (struct crossing_list){scratch->used, (uint32_t)count};
+    for (int i = 0; i < count; i++)
+        if (!geom_scratch_push(scratch, all[i])) {
+            scratch->used = out->first;
+            return false;
+        }
+    return true;
+}
+
 bool shape_crossings(const struct shape *shape, const struct ray *ray, struct geom_scratch *scratch,
                      struct crossing_list *out) {
     switch (shape->kind) {
-    case SHAPE_SPHERE:
-    case SHAPE_BOX:
-    case SHAPE_REVOLVED_QUADRIC:
-    case SHAPE_ELLIPSOID:
-    case SHAPE_QUADRIC:
-    case SHAPE_TORUS:
-    case SHAPE_SUPERELLIPSOID:
-    case SHAPE_PLANAR: {
-        struct crossing all[ANALYTIC_MAX];
+        ANALYTIC_SHAPES(LIST_LABEL)
         scratch->shape_tests++;
-        if (scratch->capacity - scratch->used >= ANALYTIC_MAX) { /* nearly always */
-            uint32_t found = (uint32_t)analytic_crossings(shape, ray, &scratch->items[scratch->used]);
-            *out = (struct crossing_list){scratch->used, found};
-            scratch->used += found;
-            return true;
-        }
-        int count = analytic_crossings(shape, ray, all);
-        *out = (struct crossing_list){scratch->used, (uint32_t)count};
-        for (int i = 0; i < count; i++)
-            if (!geom_scratch_push(scratch, all[i])) {
-                scratch->used = out->first;
-                return false;
-            }
-        return true;
-    }
-    case SHAPE_LATHE:
-    case SHAPE_PRISM:
-    case SHAPE_SWEEP:
-    case SHAPE_HEIGHT_FIELD:
-    case SHAPE_BLOB:
-    case SHAPE_IMPLICIT:
-    case SHAPE_CURVE:
+        return analytic_list(shape, ray, scratch, out);
+        LISTED_SHAPES(LIST_LABEL)
         scratch->shape_tests++;
         return listed_crossings(shape, ray, scratch, out);
     case SHAPE_MESH:
@@ -679,9 +563,7 @@ void shape_describe(const struct shape *shape, const struct ray *ray, const stru
 uint32_t shape_scratch_need(const struct shape *shape) {
     switch (shape->kind) {
     case SHAPE_SPHERE:
-        return 2;
     case SHAPE_BOX:
-        return 2;
     case SHAPE_ELLIPSOID:
     case SHAPE_PLANAR:
         return 2;

@@ -26,24 +26,28 @@ struct blob;
 struct curve;
 struct implicit;
 
-/* Every kind, with its name in scene dumps and traces. */
-#define SHAPE_KINDS(X)                                                                                                 \
-    X(SHAPE_SPHERE, "sphere")                                                                                          \
-    X(SHAPE_BOX, "box")                                                                                                \
+/* Every kind, with its name in scene dumps and traces. A switch names a whole list where its shapes have one answer.
+ * Analytic shapes have few crossings, from a formula; listed shapes a list of any length. */
+#define ANALYTIC_SOLIDS(X)                                                                                             \
     X(SHAPE_REVOLVED_QUADRIC, "conic")                                                                                 \
     X(SHAPE_ELLIPSOID, "ellipsoid")                                                                                    \
     X(SHAPE_QUADRIC, "quadric")                                                                                        \
     X(SHAPE_TORUS, "torus")                                                                                            \
-    X(SHAPE_SUPERELLIPSOID, "superellipsoid")                                                                          \
-    X(SHAPE_PLANAR, "flat")                                                                                            \
+    X(SHAPE_SUPERELLIPSOID, "superellipsoid")
+#define ANALYTIC_SHAPES(X)                                                                                             \
+    X(SHAPE_SPHERE, "sphere")                                                                                          \
+    X(SHAPE_BOX, "box")                                                                                                \
+    ANALYTIC_SOLIDS(X)                                                                                                 \
+    X(SHAPE_PLANAR, "flat")
+#define LISTED_SHAPES(X)                                                                                               \
     X(SHAPE_LATHE, "lathe")                                                                                            \
     X(SHAPE_PRISM, "prism")                                                                                            \
     X(SHAPE_SWEEP, "sweep")                                                                                            \
     X(SHAPE_HEIGHT_FIELD, "height field")                                                                              \
     X(SHAPE_BLOB, "blob")                                                                                              \
     X(SHAPE_IMPLICIT, "implicit")                                                                                      \
-    X(SHAPE_CURVE, "curve")                                                                                            \
-    X(SHAPE_MESH, "mesh")
+    X(SHAPE_CURVE, "curve")
+#define SHAPE_KINDS(X) ANALYTIC_SHAPES(X) LISTED_SHAPES(X) X(SHAPE_MESH, "mesh")
 enum shape_kind { SHAPE_KINDS(LIST_MEMBER) };
 enum { SHAPE_KIND_COUNT = LIST_COUNT(SHAPE_KINDS) };
 
