@@ -1,6 +1,6 @@
 /* The error of a few shadow rays: lamps of each kind over a floor, with no occluder, an edge or a ball, for several
  * sample patterns (independent, in cells, in cells with stratified rows and columns) and, for a rectangle, by area or
- * by solid angle. Prints a table for docs/light.md: root mean square of the relative error over many keys. */
+ * by solid angle. Prints a table for docs/design/light.md: root mean square of the relative error over many keys. */
 #include "light/light.h"
 
 #include <math.h>

@@ -1686,7 +1686,7 @@ function gr.fog_field(corner, size, density, colour) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): Root node of the picture.
----@field file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@field file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1755,7 +1755,7 @@ function gr.fog_field(corner, size, density, colour) end
 
 ---Renders a picture into a file.
 ---@param node gr.node node (a node): Root node of the picture.
----@param file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@param file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Position of the camera.
@@ -1769,7 +1769,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): Root node of the picture.
----@field file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@field file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1838,7 +1838,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
----@param file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@param file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -1964,7 +1964,7 @@ function node:rotate_quat(w, x, y, z) end
 function node:translate(x, y, z) end
 
 ---@class gr.node.render.fields
----@field file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@field file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
 ---@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
@@ -2032,7 +2032,7 @@ function node:translate(x, y, z) end
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
 
 ---The same as gr.render with this node.
----@param file string file (the name of a file): Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders.
+---@param file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
 ---@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
 ---@param eye gr.triple eye (a point {x, y, z}): Position of the camera.

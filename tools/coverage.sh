@@ -1,6 +1,6 @@
 #!/bin/sh
 # make coverage: builds with clang's counters, runs the tests (all fast ones, or those that the words match) and reports
-# in build/coverage what they cover; a complete run also updates the tables of docs/coverage.md.
+# in build/coverage what they cover; a complete run also updates the tables of docs/lab/coverage.md.
 cd "$(dirname "$0")/.." || exit 1
 command -v clang >/dev/null && command -v llvm-cov >/dev/null && command -v llvm-profdata >/dev/null ||
     { echo "make coverage needs clang and llvm" >&2; exit 1; }
@@ -19,7 +19,7 @@ done
 llvm-cov export $objects -instr-profile $to/all.profdata >$to/export.json 2>$to/llvm.log &&
     llvm-cov export -format=lcov $objects -instr-profile $to/all.profdata >$to/export.lcov 2>$to/llvm.log || exit 1
 python3 tools/coverage.py $to || exit 1
-echo "files below their mark: $to/summary.md; all that is missing: $to/missing.txt"
+echo "files below their mark: $to/files.md; all that is missing: $to/missing.txt"
 if [ $# -eq 0 ] && [ -z "$GRAY_COVERAGE_ADD" ]; then
-    { sed '/^<!-- tables -->$/q' docs/coverage.md && cat $to/summary.md; } >$to/page.md && cp $to/page.md docs/coverage.md
+    { sed '/^<!-- tables -->$/q' docs/lab/coverage.md && cat $to/summary.md; } >$to/page.md && cp $to/page.md docs/lab/coverage.md
 fi

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints every include that violates the order of modules (docs/architecture.md), every include by which session or
+# Prints every include that violates the order of modules (docs/design/architecture.md), every include by which session or
 # output reach scene, world or script through any number of headers, every cycle of headers that include one another,
 # every use of files or memory outside the module that owns them, and every module that has more than a tenth of the
 # lines; fails if there is any. tools/layers.allow has the exceptions; one that is not needed is also a failure.

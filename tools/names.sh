@@ -121,7 +121,7 @@ END {
 }' tools/names.allow "$work/found" >"$work/bad"
 if [ -s "$work/bad" ]; then
     cat "$work/bad"
-    echo "names: $(wc -l <"$work/bad") lines; docs/glossary.md has the words of the field" >&2
+    echo "names: $(wc -l <"$work/bad") lines; docs/design/glossary.md has the words of the field" >&2
     exit 1
 fi
 echo "names: no identifier and no file has a word of tools/names.list (found by $by)"

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs tests that compare means with known values and prints a table of the measurements. Each line has a test, claim
 # and value: mean over the seeds, largest standard error of a seed, largest distance in standard errors, seeds.
-# docs/verification.md has the result. Usage: tools/verification.sh [WORD ...]; the words select tests, by default all of
+# docs/design/verification.md has the result. Usage: tools/verification.sh [WORD ...]; the words select tests, by default all of
 # the path tracer.
 cd "$(dirname "$0")/.." || exit 1
 export GRAY_TEST_BINARY="${GRAY_TEST_BINARY:-build/release/gray}"

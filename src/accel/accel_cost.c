@@ -13,7 +13,7 @@
 #include "base/mem.h"
 #include "math/elementary.h"
 
-/* In visits of a node; measured (docs/performance.md). */
+/* In visits of a node; measured (docs/lab/performance.md). */
 #define STEP_COST 0.35 /* one voxel on */
 #define LIST_COST 0.3  /* an entry of a list: its box */
 #define OVERLAP 1.5    /* factor for nodes that overlap or are not full */

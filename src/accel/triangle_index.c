@@ -7,7 +7,7 @@
  * for 16 of them, 2 for 64; but a ray through a body of that many visits 2 to 4 occupied ones. For compact bodies this
  * is about even. But with one voxel a ray need not be moved to the frame, and rays of one origin traverse the hierarchy
  * together, which saves four visits of a node per ray; so the model chooses one voxel for every measured mesh, and each
- * was fastest with it (docs/performance-notebook.md has the estimates and the times of 8 to 4,096 voxels). The frame is
+ * was fastest with it (docs/lab/notebook.md has the estimates and the times of 8 to 4,096 voxels). The frame is
  * then only the box to which every ray is clipped. */
 #include "accel/triangle_index.h"
 

@@ -9,7 +9,7 @@
  * Which branches become nodes of eight children, and which blocks, is the cheapest choice of all: H. Ylitie, T. Karras,
  * S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", HPG 2017, section 3.1. For every
  * branch and 1 .. 8 lanes, the minimal cost of occupying this many lanes of a node follows from the costs of both
- * children. * Measurements: docs/performance-notebook.md. */
+ * children. * Measurements: docs/lab/notebook.md. */
 #include "accel/triangle_tree_internal.h"
 
 #include "base/mem.h"
@@ -26,7 +26,7 @@ enum {
     POLL_COUNT = 2000       /* references that are split without asking whether to stop */
 };
 
-/* The cost of a node and of a block for a ray that hits it, relative to a node (docs/performance-notebook.md: 30
+/* The cost of a node and of a block for a ray that hits it, relative to a node (docs/lab/notebook.md: 30
  * cycles, 60). */
 #define NODE_COST 1.0f
 #define BLOCK_COST 2.0f

@@ -179,21 +179,6 @@ struct image *image_parse(const char *path, const uint8_t *data, size_t size, st
     return image_parse_png(path, data, size, error);
 }
 
-/* Stricter than the readers for short signatures, because files that it accepts may be replaced. */
-bool image_is_picture(const uint8_t *head, size_t size) {
-    static const struct {
-        size_t size;
-        const char *bytes;
-    } signatures[] = {
-        {8, "\x89PNG\r\n\x1a\n"}, {3, "\xff\xd8\xff"}, {10, "#?RADIANCE"}, {6, "#?RGBE"}, {4, "\x76\x2f\x31\x01"},
-    };
-    for (size_t i = 0; i < sizeof signatures / sizeof *signatures; i++) {
-        if (size >= signatures[i].size && memcmp(head, signatures[i].bytes, signatures[i].size) == 0)
-            return true;
-    }
-    return pfm_is(head, size) && size >= 4 && (head[3] == '\n' || (head[3] >= '0' && head[3] <= '9'));
-}
-
 struct image *image_read(const char *path, struct error *error) {
     struct file_bytes file;
     uint64_t refusals = mem_refusals();

@@ -78,7 +78,5 @@ void image_lookup_slopes(const struct image *image, struct image_point at, struc
 struct image *image_read(const char *path, struct error *error);
 /* From memory; `path` is for messages. */
 struct image *image_parse(const char *path, const uint8_t *data, size_t size, struct error *error);
-/* Whether a file that begins so (FILE_HEAD_SIZE bytes) is a picture of a format that gray reads or writes. */
-bool image_is_picture(const uint8_t *head, size_t size);
 
 #endif

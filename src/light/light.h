@@ -226,7 +226,7 @@ struct light_photon {
 };
 /* LOCAL: a photon in the given unit direction, from the point xi of the light; its power is flux per solid angle, as a
  * mean over xi. Others: the direction follows from xi, the origin is not set, and the power is flux per area
- * perpendicular to the direction, as a mean over xi. Fluxes are those of classic intensities (docs/light.md). */
+ * perpendicular to the direction, as a mean over xi. Fluxes are those of classic intensities (docs/design/light.md). */
 struct light_photon light_photon(const struct light_emitter *emitter, struct vec3 direction, struct sample2 xi);
 /* The factor for the power of a photon after a path of `length`. */
 double light_photon_attenuation(const struct light *light, double length);

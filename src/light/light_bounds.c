@@ -139,7 +139,7 @@ double light_bounds_importance(const struct light_bounds *b, struct vec3 point, 
     return cos_i > cos_b ? strength : strength * larger(min_cosine, cos_i * cos_b + sine_of(cos_i) * sin_b);
 }
 
-/* The attenuation of delta lights: by distance, and for a spot by its cone (docs/light.md). */
+/* The attenuation of delta lights: by distance, and for a spot by its cone (docs/design/light.md). */
 
 /* For a denominator of zero or a point at the light. A colour times it is finite. */
 static const double strongest = 1e200;

@@ -3,8 +3,8 @@
  * the direction from which a path comes, on the side of `geometric_side`; wi is the direction in which it continues.
  *
  * There are two kinds of lobes. Classic lobes (docs/language.md 5.2) reflect the lights of the scene by a formula,
- * bsdf_classic; traced lobes show the hit of a ray in their direction and do not reflect lights. docs/light.md defines
- * f for both. */
+ * bsdf_classic; traced lobes show the hit of a ray in their direction and do not reflect lights. docs/design/light.md
+ * defines f for both. */
 #ifndef GRAY_MATERIAL_BSDF_H
 #define GRAY_MATERIAL_BSDF_H
 

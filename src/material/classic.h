@@ -2,7 +2,7 @@
  * from the direction l (docs/language.md 5.2); a Lambertian surface of albedo kd reflects kd / pi L w (n.l) of radiance
  * L from the solid angle w. So radiance L from the solid angle w is intensity L w / pi, a formula of
  * docs/language.md 5.2 is pi f |cos| of a BSDF f, and a white surface whose whole hemisphere has radiance L reflects
- * radiance L. This is the only place with that pi (docs/light.md). */
+ * radiance L. This is the only place with that pi (docs/design/light.md). */
 #ifndef GRAY_MATERIAL_CLASSIC_H
 #define GRAY_MATERIAL_CLASSIC_H
 

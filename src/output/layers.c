@@ -3,32 +3,11 @@
 
 #include "film/aov.h"
 #include "image/exr.h"
-#include "image/float_write.h"
+#include "image/picture_file.h"
 #include "image/png_write.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
-
-static const char *const extensions[] = {PICTURE_FORMATS(LIST_WORD)};
-
-const char *picture_extensions(char out[PICTURE_EXTENSIONS_SIZE]) {
-    size_t at = 0;
-    for (int i = 0; i < PICTURE_OTHER && at < PICTURE_EXTENSIONS_SIZE; i++) {
-        const char *separator = i == 0 ? "" : i + 1 < PICTURE_OTHER ? ", " : " or ";
-        at += (size_t)snprintf(out + at, PICTURE_EXTENSIONS_SIZE - at, "%s%s", separator, extensions[i]);
-    }
-    return out;
-}
-
-enum picture_format picture_format(const char *name) {
-    const char *dot = strrchr(name, '.');
-    for (int i = 0; dot && i < PICTURE_OTHER; i++) {
-        if (strcasecmp(dot, extensions[i]) == 0)
-            return (enum picture_format)i;
-    }
-    return PICTURE_OTHER;
-}
 
 bool layers_name(const char *name, const char *layer, char out[LAYER_NAME_LIMIT], struct error *error) {
     const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name, *dot = strrchr(base, '.');
@@ -101,36 +80,12 @@ bool layers_write_exr(const struct file_target *target, const struct film *film,
     return exr_write_channels(target, film->width, film->height, channels, count, error);
 }
 
-/* One layer as a file. deep: 16 bits in PNG files. */
-static bool write_layer(const struct file_target *target, enum picture_format format, const struct film *film,
-                        struct layer_rows *rows, bool deep, struct error *error) {
-    struct png_source source = {.width = film->width, .height = film->height, .context = rows};
-    switch (format) {
-    case PICTURE_PFM:
-        return pfm_write(target, film->width, film->height, layer_row_linear, rows, error);
-    case PICTURE_HDR:
-        return hdr_write(target, film->width, film->height, layer_row_linear, rows, error);
-    case PICTURE_EXR:
-        return true; /* the picture has it */
-    case PICTURE_PNG:
-    case PICTURE_OTHER:
-        break;
-    }
-    source.srgb = rows->aov == AOV_RAW && rows->tone->srgb;
-    if (deep)
-        source.words = layer_row_16;
-    else
-        source.bytes = layer_row;
-    return png_write_from(target, &source, NULL, error);
-}
-
 bool layers_write(const struct file_target *picture, const struct film *film, const struct tone *tone,
                   bool deep_picture, struct error *error) {
-    enum picture_format format = picture_format(picture->path);
     size_t pixels = (size_t)film->width * film->height;
     char name[LAYER_NAME_LIMIT];
     const struct file_target target = {.path = name, .rules = picture->rules};
-    for (int i = 0; i < AOV_COUNT && format != PICTURE_EXR; i++) {
+    for (int i = 0; i < AOV_COUNT && picture_format(picture->path) != PICTURE_EXR; i++) {
         if (!(film->layer_mask >> i & 1))
             continue;
         struct layer_rows rows = {.aov = (enum aov)i, .width = film->width, .tone = tone};
@@ -138,7 +93,15 @@ bool layers_write(const struct file_target *picture, const struct film *film, co
         rows.scale = aov_scale(rows.aov, rows.values, pixels);
         if (!layers_name(picture->path, aov_name(rows.aov), name, error))
             return false;
-        if (!write_layer(&target, format, film, &rows, deep_picture || rows.aov == AOV_DEPTH, error))
+        struct picture_source source = {film->width,
+                                        film->height,
+                                        layer_row,
+                                        layer_row_16,
+                                        layer_row_linear,
+                                        &rows,
+                                        deep_picture || rows.aov == AOV_DEPTH,
+                                        rows.aov == AOV_RAW && tone->srgb};
+        if (!picture_file_write(&target, &source, NULL, error))
             return false;
     }
     return true;

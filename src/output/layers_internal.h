@@ -3,23 +3,8 @@
 #define GRAY_OUTPUT_LAYERS_INTERNAL_H
 
 #include "base/file_output.h"
-#include "base/list.h"
 #include "film/film.h"
 #include "image/tone.h"
-
-/* The formats of pictures, with their extensions. PICTURE_OTHER, the last one, has none: PNG under any other name. */
-#define PICTURE_FORMATS(X)                                                                                             \
-    X(PICTURE_PNG, ".png")                                                                                             \
-    X(PICTURE_PFM, ".pfm")                                                                                             \
-    X(PICTURE_HDR, ".hdr")                                                                                             \
-    X(PICTURE_EXR, ".exr")                                                                                             \
-    X(PICTURE_OTHER, "")
-enum picture_format { PICTURE_FORMATS(LIST_MEMBER) };
-/* By the extension of the name, in upper or lower case. */
-enum picture_format picture_format(const char *name);
-/* All extensions in a sentence: ".png, .pfm or .exr". */
-enum { PICTURE_EXTENSIONS_SIZE = 128 };
-const char *picture_extensions(char out[PICTURE_EXTENSIONS_SIZE]);
 
 /* The layers of the film in files of the picture's format: dir/foo.png with depth is dir/foo.depth.png. An EXR picture
  * contains them already (layers_write_exr). Depth is always written with 16 bits, the others with the bit depth of the

@@ -10,6 +10,7 @@
 #include "base/version.h"
 #include "film/aov.h"
 #include "image/exr.h"
+#include "image/picture_file.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
 #include "output/statistics_internal.h"

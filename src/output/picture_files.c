@@ -6,7 +6,7 @@
 #include "film/aov.h"
 #include "film/tile_file.h"
 #include "image/animation.h"
-#include "image/image.h"
+#include "image/picture_file.h"
 #include "output/layers_internal.h"
 
 #include <stdio.h>
@@ -31,7 +31,7 @@ void picture_files_init(struct picture_files *files, const struct options *optio
     for (int i = 0; ok && i < options->script.allow_write_count; i++)
         ok = path_policy_add(&files->folders, options->script.allow_write[i], PATH_POLICY_WRITE, &files->folders_error);
     const struct path_policy *folders = options->script.no_sandbox ? NULL : &files->folders;
-    files->picture = (struct file_rules){.may_replace = image_is_picture,
+    files->picture = (struct file_rules){.may_replace = picture_file_is,
                                          .expected = "a picture",
                                          .advice = by_user ? NULL : advice,
                                          .role = FILE_ROLE_PICTURE,

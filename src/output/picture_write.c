@@ -5,8 +5,7 @@
 #include "base/mem.h"
 #include "denoise/denoise.h"
 #include "film/path_film.h"
-#include "image/exr.h"
-#include "image/float_write.h"
+#include "image/picture_file.h"
 #include "image/png_write.h"
 #include "output/layers_internal.h"
 #include "output/picture_shown_internal.h"
@@ -64,26 +63,11 @@ bool picture_write_view(const struct picture *picture, const struct file_target 
     const struct picture_request *request = &picture->request;
     struct tone tone = picture_tone(request);
     struct rows rows = {&picture->film, view, &tone, picture->display, request->settings.finish.dither};
-    switch (picture_format(target->path)) {
-    case PICTURE_PFM:
-        return pfm_write(target, request->width, request->height, row_linear, &rows, error);
-    case PICTURE_HDR:
-        return hdr_write(target, request->width, request->height, row_linear, &rows, error);
-    case PICTURE_EXR:
-        if (view == FILM_FINAL && picture->film.layer_mask)
-            return layers_write_exr(target, &picture->film, error);
-        return exr_write(target, request->width, request->height, row_linear, &rows, error);
-    case PICTURE_PNG:
-    case PICTURE_OTHER:
-        break;
-    }
-    struct png_source source = {
-        .width = request->width, .height = request->height, .context = &rows, .srgb = tone.srgb};
-    if (request->settings.deep)
-        source.words = row_16;
-    else
-        source.bytes = row;
-    return png_write_from(target, &source, pool, error);
+    struct picture_source source = {request->width, request->height,        row,      row_16, row_linear,
+                                    &rows,          request->settings.deep, tone.srgb};
+    if (view == FILM_FINAL && picture->film.layer_mask && picture_format(target->path) == PICTURE_EXR)
+        return layers_write_exr(target, &picture->film, error);
+    return picture_file_write(target, &source, pool, error);
 }
 
 /* Threads for writing only: there must be none while a process is started. NULL: this thread alone. */

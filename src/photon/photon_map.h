@@ -11,7 +11,7 @@
 #define PHOTON_NOWHERE UINT32_MAX
 
 /* A photon as it landed. Power: irradiance times area, in the unit in which a light's colour times its falloff is
- * irradiance (docs/light.md). */
+ * irradiance (docs/design/light.md). */
 struct photon {
     struct vec3 position, power;
     uint32_t from;  /* unit direction to where it came from, packed by photon_pack */

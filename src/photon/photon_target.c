@@ -11,9 +11,9 @@
  *
  * An environment emits from all sides: it chooses directions itself, and each has its rectangle across.
  *
- * Units (docs/light.md): a light without an extent emits its colour per steradian, times d^2 attenuation(d) after the
- * distance d, so that unblocked light arrives as colour * attenuation(d) * cosine. A lamp emits radiance / pi per area
- * and projected solid angle, because a view factor is a cosine over pi. */
+ * Units (docs/design/light.md): a light without an extent emits its colour per steradian, times d^2 attenuation(d)
+ * after the distance d, so that unblocked light arrives as colour * attenuation(d) * cosine. A lamp emits radiance / pi
+ * per area and projected solid angle, because a view factor is a cosine over pi. */
 #include "photon/photon_target_internal.h"
 
 #include "base/random.h"

@@ -1,6 +1,7 @@
 /* gr.render. */
 #include "compat/lenient.h"
 #include "compat/lenient_picture.h"
+#include "image/picture_file.h"
 #include "image/transfer.h"
 #include "math/elementary.h"
 #include "record/record_bounds.h"
@@ -66,7 +67,7 @@ _Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more 
 static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
     [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
-                     "Picture file: .png, or .pfm, .hdr or .exr for linear light; gray creates missing folders."},
+                     "Picture file:" PICTURE_FORMATS_HELP "; gray creates missing folders."},
     [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                     "A PNG or JPEG file with six views of the sky in a 4 x 3 cross."},
     [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},

@@ -1,6 +1,8 @@
 /* Checks options that exclude, require or imply one another. */
 #include "session/options_internal.h"
 
+#include "image/picture_file.h"
+
 #include <string.h>
 #include <strings.h>
 
@@ -159,15 +161,15 @@ static enum animation_format animation_of(const char *output) {
 
 static bool check_name(const struct options *options, struct error *error) {
     const char *output = options->output;
+    char extensions[PICTURE_EXTENSIONS_SIZE];
     if (!output || !output_name_numbered(output))
         return true;
     if (output_name_numbered_twice(output))
         return error_set(error, ERROR_USAGE, "-o %.600s: a name has one number: %%d, %%04d or ####", output);
     return animation_of(output) == ANIMATION_NONE ||
            error_set(error, ERROR_USAGE,
-                     "-o %.600s: %s is one file of all frames, without a number; names with a number end in .png, "
-                     ".pfm, .hdr or .exr",
-                     output, strrchr(output, '.'));
+                     "-o %.600s: %s is one file of all frames, without a number; names with a number end in %s", output,
+                     strrchr(output, '.'), picture_extensions(extensions));
 }
 
 /* Frames are kept until the animation is complete, as if --checkpoint auto were given. */

@@ -2,6 +2,7 @@
 #include "session/options_internal.h"
 
 #include "base/isa.h"
+#include "image/picture_file.h"
 
 #include <limits.h>
 #include <math.h>
@@ -39,7 +40,7 @@ static const struct setting options_table[] = {
     {SETTING_CHOICE, CHANGES_RUN, OPTION_GROUP_SIZE_AND_COLOUR, "--isa", NULL, ISA_CHOICES, NULL, FIELD(isa), 0, 0, 0,
      "auto", "Instruction set of the kernels; the picture is the same."},
     {SETTING_TEXT, CHANGES_RUN, OPTION_GROUP_FILES, "-o", "FILE", "", NULL, FIELD(output), 0, 0, 0, "the script's",
-     "Name of the picture: .png, or .pfm, .hdr and .exr for linear light; '-' is standard output; for several "
+     "Name of the picture:" PICTURE_FORMATS_HELP "; '-' is standard output; for several "
      "pictures, FILE must contain %d (or %03d, or ####), their number from 1, or it must be an animation: .apng, .gif, "
      ".webp, .y4m, .mp4 or .webm."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_FILES, "--force", NULL, "", NULL, FIELD(force), 0, 0, 0, NULL,

@@ -51,7 +51,7 @@ struct camera_motion {
     struct vec3 eye, view, up;
 };
 
-/* A photon map for caustics (docs/light.md). */
+/* A photon map for caustics (docs/design/light.md). */
 struct caustics {
     int photons;   /* sent; 0: no caustics; at most PHOTONS_MAX */
     double radius; /* of what one photon lights, world units; 0: by their density */

@@ -5,7 +5,7 @@
  * ACCEL_AUTO asks the cost model of accel/accel_cost.c, which estimates from a sample of the boxes how many voxels a
  * line visits, the length of their lists, and the length for rays to the crowd: voxels with lists where they cost
  * clearly less, else one voxel with the hierarchy of box_tree.c in it, which also lets packets and shafts through.
- * ACCEL_GRID and ACCEL_BVH pin it. docs/performance.md has the measurements. */
+ * ACCEL_GRID and ACCEL_BVH pin it. docs/lab/performance.md has the measurements. */
 #include "world/scene_accel.h"
 
 #include "accel/accel_cost.h"

@@ -390,8 +390,8 @@ static double f_of(enum lobe_kind kind, bool fresnel, double alpha, double n, st
     return bsdf_eval(&view.bsdf, BSDF_ALL, BSDF_RADIANCE, wo, wi).x / fabs(wi.z);
 }
 
-/* Highlights of docs/language.md 5.2 have no cosine, so they are not reciprocal (docs/light.md); delta lobes have tests
- * of their own. */
+/* Highlights of docs/language.md 5.2 have no cosine, so they are not reciprocal (docs/design/light.md); delta lobes
+ * have tests of their own. */
 TEST(every_lobe_but_classic_highlights_is_reciprocal_with_the_square_of_the_index) {
     for (int kind = 0; kind < LOBE_KINDS; kind++) {
         double sum = 0, n = kind == LOBE_PANE ? 1 : 1.5; /* a thin wall has the same medium on both sides */

@@ -8,7 +8,7 @@
 #include <stdatomic.h>
 #include <time.h>
 
-/* An idle machine needs some milliseconds (docs/reliability.md). The test must also pass on a busy one: a task that
+/* An idle machine needs some milliseconds (docs/lab/reliability.md). The test must also pass on a busy one: a task that
  * never polls the flag takes longer than this. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 static const double allowed = 1;

@@ -11,9 +11,9 @@
 
 enum { WORD = 512 };
 
-/* Calls `visit` for every page of docs/ and of the root, with its text. */
+/* Calls `visit` for every page of docs/ and of the root and of data/, with its text. */
 static void each_page(void (*visit)(const char *name, char *text)) {
-    static const char *const folders[] = {".", "docs"};
+    static const char *const folders[] = {".", "docs", "docs/design", "docs/lab", "data"};
     int count = 0;
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
         DIR *folder = opendir(folders[i]);
@@ -92,7 +92,7 @@ static bool test_is_in_sources(const char *pattern) {
 }
 
 static void tests_of_page(const char *page, char *text) {
-    static const char *const pages[] = {"docs/status.md", "docs/reliability.md", "docs/long-tests.md",
+    static const char *const pages[] = {"docs/lab/status.md", "docs/lab/reliability.md", "docs/lab/long-tests.md",
                                         "docs/solids.md"};
     char word[WORD], pattern[2 * WORD];
     bool is_listed = false;

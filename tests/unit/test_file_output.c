@@ -4,7 +4,7 @@
 #include "base/file_output.h"
 
 #include "film/tile_file.h"
-#include "image/image.h"
+#include "image/picture_file.h"
 #include "tests/harness.h"
 
 #include <errno.h>
@@ -71,7 +71,7 @@ TEST(a_picture_replaces_pictures_and_empty_files_and_nothing_else) {
                {"GRAYTILE", false},
                {"x", false}};
     const char *path = test_path("a.png");
-    const struct file_rules rules = {.may_replace = image_is_picture, .expected = "a picture"};
+    const struct file_rules rules = {.may_replace = picture_file_is, .expected = "a picture"};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         struct error error = {0};
         test_write_text(path, all[i].text);
@@ -112,7 +112,7 @@ TEST(files_that_were_read_stay_and_pictures_of_this_run_are_written_again) {
     const char *path = test_path("a.png"), *link_path = test_path("b.png");
     struct file_guard guard = {0};
     struct file_rules rules = {
-        .may_replace = image_is_picture, .expected = "a picture", .role = FILE_ROLE_PICTURE, .guard = &guard};
+        .may_replace = picture_file_is, .expected = "a picture", .role = FILE_ROLE_PICTURE, .guard = &guard};
     struct file_identity identity;
     struct error error = {0};
     test_write_text(path, old_picture);

@@ -348,7 +348,7 @@ TEST(a_sample_of_every_lamp_has_the_radiance_of_a_ray_that_meets_it) {
             CHECK_NEAR(light_pdf(&e.light, &context, sample.direction, &hit) / sample.pdf, 1, 1e-6);
             CHECK_NEAR(vec3_length(vec3_sub(seen, sample.radiance)), 0, 1e-6);
             CHECK(vec3_max_abs(seen) <= light_brightest(&e.light) * (1 + 1e-9));
-            /* The pi between radiance and classic intensity (docs/light.md). */
+            /* The pi between radiance and classic intensity (docs/design/light.md). */
             struct vec3 unit = vec3_scale(sample.intensity, pi * sample.pdf);
             CHECK_NEAR(vec3_length(vec3_sub(unit, sample.radiance)), 0, 1e-9);
         }

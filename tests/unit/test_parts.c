@@ -250,7 +250,7 @@ TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
     CHECK(kills.among > 500);
 }
 
-/* The table of docs/reliability.md. */
+/* The table of docs/lab/reliability.md. */
 static void check_one_hash(const char *options) {
     char *folder = getcwd(NULL, 0), *line = NULL;
     CHECK(folder && asprintf(&line, "bash %s/tools/one_hash.sh $gray %s/tests/scripts/one_hash.lua %s >table.txt",

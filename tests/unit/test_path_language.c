@@ -1,4 +1,4 @@
-/* The meaning of the classic language in the path tracer (docs/light.md): one test for each rule. */
+/* The meaning of the classic language in the path tracer (docs/design/light.md): one test for each rule. */
 #include "shape/planar.h"
 #include "tests/harness.h"
 #include "tests/stage.h"

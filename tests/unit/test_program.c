@@ -2,8 +2,7 @@
  * an old picture is never damaged. */
 #define _GNU_SOURCE
 #include "image/exr.h"
-#include "image/image.h"
-#include "output/layers_internal.h"
+#include "image/picture_file.h"
 #include "tests/harness.h"
 
 #include <dirent.h>
@@ -329,7 +328,7 @@ TEST(every_format_of_pictures_is_written_and_may_be_replaced) {
         for (int k = 0; k < 2; k++) {
             char *path = path_in(test_folder(), files[k]);
             FILE *file = fopen(path, "rb");
-            CHECK(file && fread(head, 1, sizeof head, file) == sizeof head && image_is_picture(head, sizeof head));
+            CHECK(file && fread(head, 1, sizeof head, file) == sizeof head && picture_file_is(head, sizeof head));
             if (file)
                 (void)fclose(file);
             free(path);

@@ -1,5 +1,5 @@
-/* Claims of docs/security.md and docs/reliability.md that no other test would refute; the table "Promises and attacks"
- * in docs/reliability.md names all of them. */
+/* Claims of docs/security.md and docs/lab/reliability.md that no other test would refute; the table "Promises and
+ * attacks" in docs/lab/reliability.md names all of them. */
 #define _GNU_SOURCE
 #include "tests/attack_files.h"
 

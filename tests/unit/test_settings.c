@@ -13,7 +13,7 @@ static uint64_t other_value(const struct setting *row) {
     struct settings settings = settings_default();
     if (!has_range)
         return row->initial > 0 ? 0 : 1;
-    setting_store(row, &settings, row->high < HUGE_VAL ? row->high : row->low + 1);
+    setting_store(row, &settings, row->high < HUGE_VAL ? row->high : fmax(row->low, row->initial) + 1);
     return setting_bits(row, &settings);
 }
 
