@@ -215,7 +215,7 @@ TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
           3, "oidnDenoise made a picture of 1 x 1 pixels instead of ");
     gives("PATH=$PWD/none $gray -q scene.lua --denoise=oidn", 3,
           "--denoise=oidn: there is no program oidnDenoise on PATH\n");
-    gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of gray|oidn|none, not 'other'");
+    gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of auto|none|gray|oidn, not 'other'");
 }
 
 TEST(the_raw_layer_is_the_picture_without_denoising_in_every_format) {
