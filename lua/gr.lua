@@ -1709,9 +1709,9 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path; the option has priority over the field.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
----@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X; the option has priority over the field.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
@@ -1724,7 +1724,7 @@ function gr.fog_field(corner, size, density, colour) end
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue, over which the option has priority.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
 ---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
 ---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.
@@ -1792,9 +1792,9 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path; the option has priority over the field.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
----@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X; the option has priority over the field.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
@@ -1807,7 +1807,7 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue, over which the option has priority.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
 ---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
 ---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.
@@ -1987,9 +1987,9 @@ function node:translate(x, y, z) end
 ---@field use_tir? boolean use_tir (true or false; default -use-tir): At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.
 ---@field area_samples? integer area_samples (a whole number, 1 to 64; default -al-samples): N x N shadow rays for each area light.
 ---@field cutoff? number cutoff (a number, 0 to 1; default --cutoff): Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.
----@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path; the option has priority over the field.
+---@field spp? integer spp (a whole number, 1 to 16777216; default --spp): N samples for a pixel, with integrator path.
 ---@field max_depth? integer max_depth (a whole number, 0 to 1000000; default --max-depth): A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.
----@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X; the option has priority over the field.
+---@field noise? number noise (a number, 1e-06 to 10; default --noise): With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative standard error is X.
 ---@field clamp? number clamp (a number, >= 0; default --clamp): With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture becomes darker than it should be (bias).
 ---@field filter? 'box'|'tent'|'gaussian'|'mitchell' filter ('box'|'tent'|'gaussian'|'mitchell'; default --filter): Reconstruction filter of a pixel.
 ---@field denoise? boolean denoise (true or false; default --denoise): Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.
@@ -2002,7 +2002,7 @@ function node:translate(x, y, z) end
 ---@field toon_steps? integer toon_steps (a whole number, 1 to 64; default --toon-steps): Number of levels of light of style toon, not counting shadow.
 ---@field specular? 'phong'|'blinn' specular ('phong'|'blinn'; default --specular): Formula of the highlight.
 ---@field exposure? number exposure (a number, >= -100 and <= 100, in stops; default --exposure): Multiply light by 2^STOPS when a PNG file is written.
----@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue, over which the option has priority.
+---@field tone? 'none'|'reinhard'|'filmic'|fun(x: number): number tone ('none'|'reinhard'|'filmic' or a function; default --tone): Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the light x from 0 on, the same for red, green and blue.
 ---@field srgb? boolean srgb (true or false; default --srgb): Encode PNG files with the sRGB transfer function; without it, values are linear.
 ---@field bloom? number bloom (a number, 0 to 1; default --bloom): Spread light above white to the pixels around it, with the weight X.
 ---@field vignette? number vignette (a number, 0 to 1; default --vignette): Darken the corners; with X = 1 they have a quarter of their light.

@@ -35,6 +35,10 @@ wanted() { # wanted PATH
     return 1
 }
 
+# What a picture has whose script does not set the fields itself.
+small='--default samples=2 --default area_samples=2'
+first='--default samples=1 --default area_samples=1 --default full=yes --default deep=yes'
+
 # Scenes read only their own files; their output is part of the list, too.
 render() { # render NAME SCENE OPTION...
     name=$1
@@ -54,20 +58,21 @@ for scene in $scenes; do
     options=$(head -n 20 "$scene" | sed -n 's/^-- *OPTIONS: *//p' | head -n 1)
     for variant in $variants; do
         # shellcheck disable=SC2046,SC2086
-        render "$base.$variant" "$scene" --size 96x72 -ss 2 -al-samples 2 $options $(options_of "$variant") \
+        render "$base.$variant" "$scene" --size 96x72 $small $options $(options_of "$variant") \
             -o "$folder/$base.$variant-%02d.png"
     done
     case " $variants " in *" default "*) ;; *) continue ;; esac
     # shellcheck disable=SC2086
     case $scene in
     *0[2-9]demo.lua | *1[0-4]demo.lua | tests/pictures/*)
-        render "$base.aov" "$scene" --size 64x48 -ss 2 -al-samples 2 $options -j 1 --isa avx2 --aov all -o "$folder/$base.aov-%02d.pfm"
+        render "$base.aov" "$scene" --size 64x48 $small $options -j 1 --isa avx2 --aov all -o "$folder/$base.aov-%02d.pfm"
         ;;
     esac
     # shellcheck disable=SC2086
-    render "$base.pixel" "$scene" --size 96x72 -al-samples 2 $options --isa avx2 --pixel 48,40 --pixel 20,60
+    render "$base.pixel" "$scene" --size 96x72 --default area_samples=2 $options --isa avx2 --pixel 48,40 --pixel 20,60
+    options=$(echo "$options" | sed 's/-ss [0-9]*//') # one sample in all
     # shellcheck disable=SC2086
-    render "$base.first" "$scene" --size 96x72 -al-samples 1 $options -full -ss 1 --deep -o "$folder/$base.first-%02d.png"
+    render "$base.first" "$scene" --size 96x72 $first $options -o "$folder/$base.first-%02d.png"
 done
 
 (cd "$folder" && ls | grep -v '^hashes$' | while read -r file; do

@@ -484,8 +484,12 @@ static bool render_one(struct render_process *process, const struct render_reque
 /* With --check a scene that cannot be built is reported at once and the script continues, to find further errors. */
 static bool render(void *context, const struct render_request *request, struct error *error) {
     struct render_process *process = context;
-    if (process->skips || render_one(process, request, error))
+    if (process->skips)
         return true;
+    if (render_one(process, request, error)) {
+        render_process_count_replaced(process, request->replaced);
+        return true;
+    }
     if (!process->options->check || error->kind != ERROR_SCENE || error->limit)
         return false;
     char line[2048];
@@ -639,6 +643,7 @@ static int run_script(struct render_process *process, const char *path) {
     process->script = path;
     process->status = 0;
     process->warned_count = 0;
+    memset(process->replaced, 0, sizeof process->replaced);
     process->animates = false;
     if (repeats && process->options->window) {
         frame.number = 0;
@@ -662,6 +667,7 @@ static int run_script(struct render_process *process, const char *path) {
     }
     if (status == 0 && process->pictures == first)
         report_no_picture(process, path);
+    render_process_report_replaced(process);
     return status;
 }
 

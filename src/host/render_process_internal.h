@@ -14,6 +14,12 @@
 
 enum { WARNINGS_LIMIT = 256 };
 
+/* What an option of the command line has done to the pictures of a script. */
+struct replaced_fields {
+    uint64_t fields; /* by setting, as bits */
+    uint64_t pictures;
+};
+
 struct render_process {
     const struct options *options;
     const struct host_services *services;
@@ -40,6 +46,7 @@ struct render_process {
     uint64_t runs_before;            /* of the pool, before that */
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
+    struct replaced_fields replaced[LIST_COUNT(SETTINGS_WITH_FIELD)]; /* by setting, of its option */
 };
 
 /* A picture between the call of gr.render and the finished film. */
@@ -68,6 +75,9 @@ void render_process_fill_report(const struct picture_work *work, const struct fi
                                 struct picture_report *report);
 void render_process_report_world(const struct render_process *process, const char *file,
                                  const struct picture_report *report);
+/* Counts a picture with these fields (render_request.replaced), and prints what was counted: a line for each option. */
+void render_process_count_replaced(struct render_process *process, uint64_t fields);
+void render_process_report_replaced(const struct render_process *process);
 void render_process_report_samples(const struct picture_work *work);
 
 #endif

@@ -5,7 +5,9 @@
 #include "film/aov.h"
 #include "image/image.h"
 #include "session/text.h"
+#include "settings/setting.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -49,6 +51,40 @@ static void warn_once(struct render_process *process, const char *key, const cha
 
 void render_process_warn(void *context, const char *text) {
     warn_once(context, text, text);
+}
+
+void render_process_count_replaced(struct render_process *process, uint64_t fields) {
+    uint64_t options = 0;
+    for (int i = 0; i < setting_field_count; i++) {
+        if (!(fields >> i & 1))
+            continue;
+        int option = script_option_given(&process->options->script, i) ? i : setting_rival(i);
+        options |= UINT64_C(1) << option;
+        process->replaced[option].fields |= UINT64_C(1) << i;
+    }
+    for (int i = 0; i < setting_field_count; i++)
+        process->replaced[i].pictures += options >> i & 1;
+}
+
+/* "--integrator path replaces the fields integrator and style of 3 pictures" */
+void render_process_report_replaced(const struct render_process *process) {
+    for (int i = 0; i < setting_field_count; i++) {
+        const struct setting *row = &setting_table[i];
+        const struct replaced_fields *replaced = &process->replaced[i];
+        if (replaced->pictures == 0)
+            continue;
+        const char *value = process->options->script.given[i];
+        bool needs_sign = row->kind == SETTING_FLAG || row->kind == SETTING_DENOISE;
+        const char *joint = value[0] == '\0' ? "" : needs_sign ? "=" : " ";
+        const char *rival = replaced->fields & ~(UINT64_C(1) << i) ? setting_table[setting_rival(i)].field : "";
+        bool own = replaced->fields >> i & 1, both = own && rival[0] != '\0';
+        char line[2 * NAME_LIMIT];
+        (void)snprintf(line, sizeof line, "%.4000s: %.*s%s%.64s replaces the field%s %s%s%s of %" PRIu64 " picture%s",
+                       process->script, (int)strcspn(row->option, "|"), row->option, joint, value, both ? "s" : "",
+                       own ? row->field : "", both ? " and " : "", rival, replaced->pictures,
+                       replaced->pictures > 1 ? "s" : "");
+        render_process_report_scene(process, LINE_NOTICE, line);
+    }
 }
 
 /* After a picture: reports the functions that returned NaN at a hit. */

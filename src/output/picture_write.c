@@ -93,12 +93,14 @@ static bool write_prefixed(const struct picture_files *files, const struct pictu
            picture_write_view(picture, &target, view, pool, error);
 }
 
-/* A film with features is there to be denoised; the command line may choose the program that does it. With `gray merge
- * --denoise=none` the features of the parts are not used. */
+/* A film with features is there to be denoised; the command line of gray merge may choose the program that does it, or
+ * none. */
 static enum denoiser denoiser_of(const struct options *options, const struct picture *picture) {
-    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES) || options->settings.denoise == DENOISER_NONE)
+    bool merges = options->action == ACTION_MERGE;
+    enum denoiser denoiser = merges ? options->settings.denoise : picture->request.settings.denoise;
+    if (!(path_film_parts(picture->film.record) & PATH_PART_FEATURES))
         return DENOISER_NONE;
-    return options->settings.denoise == DENOISER_OIDN ? DENOISER_OIDN : DENOISER_GRAY;
+    return denoiser == DENOISER_AUTO ? DENOISER_GRAY : denoiser;
 }
 
 double picture_denoised_pixels(const struct options *options, const struct picture *picture) {

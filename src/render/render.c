@@ -205,7 +205,7 @@ bool render_prepare(struct render_job *job, struct render_area *area, char warni
     if (!integrator_traits(s->integrator).has_light_parts && s->aov & AOV_PATH && s->aov != AOV_ALL)
         return error_set(error, ERROR_USAGE, "--aov %s is a layer of --integrator path only",
                          aov_name(path_layer(s->aov)));
-    if (integrator_traits(s->integrator).progressive && s->style != STYLE_NONE)
+    if (settings_exclude(s))
         return error_set(error, ERROR_SCENE,
                          "styles are for the integrator 'whitted', not for 'path'; --line-width draws lines over its "
                          "pictures");

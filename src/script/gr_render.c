@@ -145,13 +145,6 @@ static bool choose_sky(struct script_context *context, const struct script_value
     return true;
 }
 
-/* Whether the option has priority over the field. */
-static bool option_wins(const struct setting *row, const struct settings *settings) {
-    bool is_one =
-        row->offset == offsetof(struct settings, path_samples) || row->offset == offsetof(struct settings, noise);
-    return is_one && setting_bits(row, settings) != 0;
-}
-
 static void apply_setting(const struct setting *row, const struct script_value *value, struct settings *settings) {
     switch (row->kind) {
     case SETTING_FLAG:
@@ -160,23 +153,17 @@ static void apply_setting(const struct setting *row, const struct script_value *
     case SETTING_WHOLE:
     case SETTING_NUMBER:
     case SETTING_SEED:
-        if (!option_wins(row, settings))
-            setting_store(row, settings, value->number);
+        setting_store(row, settings, value->number);
         break;
     case SETTING_CHOICE:
         setting_store(row, settings, value->choice);
         break;
     case SETTING_TONE:
-        if (!value->curve) {
-            settings->tone.curve = (enum tone_curve)value->choice;
-        } else if (!settings->keeps_tone) { /* over functions the option has priority */
-            settings->tone.curve = TONE_FUNCTION;
-            settings->tone.table = value->curve;
-        }
+        settings->tone.curve = value->curve ? TONE_FUNCTION : (enum tone_curve)value->choice;
+        settings->tone.table = value->curve;
         break;
     case SETTING_DENOISE:
-        if (value->boolean && settings->denoise == DENOISER_AUTO)
-            settings->denoise = DENOISER_GRAY;
+        settings->denoise = value->boolean ? DENOISER_GRAY : DENOISER_NONE;
         break;
     case SETTING_CAUSTICS:
         settings->caustics = (struct caustics){(int)value->number, value->vector.x};
@@ -192,43 +179,63 @@ static void apply_setting(const struct setting *row, const struct script_value *
     case SETTING_ACTION:
     case SETTING_PIXEL:
     case SETTING_DEFINE:
+    case SETTING_DEFAULT:
     case SETTING_FOLDER:
         break; /* options only */
     }
 }
 
-/* The named fields of the call have priority over the command line. */
-static void apply_settings(const struct script_value *args, struct settings *settings) {
-    for (int i = 0; i < setting_field_count; i++) {
-        if (args[RENDER_FIRST_SETTING + i].given)
-            apply_setting(&setting_table[i], &args[RENDER_FIRST_SETTING + i], settings);
+/* Who chose a setting; later ones have priority. A field `seed` has priority over --seed, which also seeds
+ * math.random. */
+enum chooser { CHOSEN_BY_DEFAULT, CHOSEN_BY_FIELD, CHOSEN_BY_OPTION };
+
+static enum chooser chooser_of(const struct script_options *options, const struct script_value *args, int index) {
+    bool has_field = args[RENDER_FIRST_SETTING + index].given;
+    bool may_win = setting_table[index].kind != SETTING_SEED || !has_field;
+    if (script_option_given(options, index) && may_win)
+        return CHOSEN_BY_OPTION;
+    return has_field ? CHOSEN_BY_FIELD : CHOSEN_BY_DEFAULT;
+}
+
+/* Of two settings that exclude each other the one with priority stays. If both have the same, the renderer reports
+ * them. */
+static void drop_rival(const struct script_options *options, const struct script_value *args,
+                       struct render_request *request) {
+    int loser = SETTING_INDEX(style), winner = setting_rival(loser);
+    enum chooser of_loser = chooser_of(options, args, loser), of_winner = chooser_of(options, args, winner);
+    if (!settings_exclude(&request->settings) || of_loser == of_winner)
+        return;
+    if (of_loser > of_winner) {
+        loser = winner;
+        of_loser = of_winner;
     }
+    setting_store(&setting_table[loser], &request->settings, setting_table[loser].initial);
+    if (of_loser == CHOSEN_BY_FIELD)
+        request->replaced |= UINT64_C(1) << loser;
+}
+
+static void apply_settings(const struct script_options *options, const struct script_value *args,
+                           struct render_request *request) {
+    struct settings *settings = &request->settings;
+    for (int i = 0; i < setting_field_count; i++) {
+        if (!args[RENDER_FIRST_SETTING + i].given)
+            continue;
+        struct settings with_field = *settings;
+        apply_setting(&setting_table[i], &args[RENDER_FIRST_SETTING + i], &with_field);
+        if (chooser_of(options, args, i) == CHOSEN_BY_FIELD)
+            *settings = with_field;
+        else if (!settings_equal(settings, &with_field))
+            request->replaced |= UINT64_C(1) << i;
+    }
+    drop_rival(options, args, request);
     if (args[RENDER_TARGET].given)
         settings->view_is_target = true;
     /* Linear colours are shown by the sRGB curve. */
-    if (settings_linear(settings) && !args[RENDER_FIRST_SETTING + SETTING_INDEX(tone.srgb)].given)
+    int srgb = SETTING_INDEX(tone.srgb);
+    if (settings_linear(settings) && !args[RENDER_FIRST_SETTING + srgb].given && !script_option_chosen(options, srgb))
         settings->tone.srgb = true;
 }
-
-/* One notice for each option of the command line that the call has overridden. --seed has none: it also seeds
- * math.random. */
-static void note_overridden(struct script_context *context, const struct settings *settings) {
-    struct script *script = script_of(context);
-    const char *const *given = context->sandbox.options->given;
-    for (int i = 0; i < setting_count && given && !script->host->repeats; i++) {
-        const struct setting *row = &setting_table[i];
-        char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
-        if (!given[i] || row->kind == SETTING_SEED || script->overridden >> i & 1 ||
-            setting_bits(row, &script->host->settings) == setting_bits(row, settings))
-            continue;
-        script->overridden |= UINT64_C(1) << i;
-        sandbox_where(&context->sandbox, where, sizeof where);
-        (void)snprintf(text, sizeof text, "%s%.*s%s%.64s has no effect: a field of gr.render sets it", where,
-                       (int)strcspn(row->option, "|"), row->option, given[i][0] ? " " : "", given[i]);
-        sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
-    }
-}
-_Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of overridden");
+_Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of a mask");
 
 static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
                        struct error *error) {
@@ -392,8 +399,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         request.camera = fitted;
     }
     request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
-    apply_settings(args, &request.settings);
-    note_overridden(context, &request.settings);
+    apply_settings(context->sandbox.options, args, &request);
     repair_view(context, args, &request);
     context_warn_of_bytes(context, "ambient", request.ambient);
     if (args[RENDER_BACKGROUND].given)

@@ -15,7 +15,6 @@ struct script {
     struct error failure;     /* the message of a script error, made by the message handler */
     bool only_named_pictures; /* struct order_finding */
     uint32_t pictures;        /* that gr.render has made */
-    uint64_t overridden;      /* by options->given: the notice was printed */
     struct script_changes changes;
     struct script_animation animation;
 };

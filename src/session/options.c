@@ -32,12 +32,16 @@ static struct piece without_dashes(struct piece piece) {
     return piece;
 }
 
-/* A word of the command line and a name of the table, which has no '_'. */
+static char dash_of(char letter) {
+    return letter == '_' ? '-' : letter;
+}
+
+/* A word of the command line and a name of an option or a field. */
 static bool same_name(struct piece a, struct piece b) {
     if (a.length != b.length)
         return false;
     for (size_t i = 0; i < a.length; i++) {
-        if ((a.text[i] == '_' ? '-' : a.text[i]) != b.text[i])
+        if (dash_of(a.text[i]) != dash_of(b.text[i]))
             return false;
     }
     return true;
@@ -72,7 +76,7 @@ static int name_distance(struct piece a, struct piece b) {
     for (size_t i = 1; i <= a.length; i++) {
         row[0] = (int)i;
         for (size_t j = 1; j <= b.length; j++) {
-            char x = a.text[i - 1] == '_' ? '-' : a.text[i - 1], y = b.text[j - 1];
+            char x = dash_of(a.text[i - 1]), y = dash_of(b.text[j - 1]);
             int best = last[j - 1] + (x != y);
             if (last[j] + 1 < best)
                 best = last[j] + 1;
@@ -274,69 +278,71 @@ static bool read_choice(const struct setting *option, void *base, const char *te
     return false;
 }
 
-static bool value_error(const struct setting *option, const char *text, struct error *error) {
-    const char *rest = option->option;
-    int shown = (int)option_next_piece(&rest).length;
+/* name: of the option, or of --default and its field. */
+static bool value_error(const struct setting *option, struct piece name, const char *text, struct error *error) {
+    int shown = (int)name.length;
     switch (option->kind) {
     case SETTING_CAUSTICS:
     case SETTING_WHOLE:
-        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown,
-                         option->option, option->low, option->high, text);
+        return error_set(error, ERROR_USAGE, "%.*s needs a whole number from %.0f to %.0f, not '%s'", shown, name.text,
+                         option->low, option->high, text);
     case SETTING_NUMBER:
         if (option->high < HUGE_VAL)
-            return error_set(error, ERROR_USAGE, "%.*s needs a number from %g to %g, not '%s'", shown, option->option,
+            return error_set(error, ERROR_USAGE, "%.*s needs a number from %g to %g, not '%s'", shown, name.text,
                              option->low, option->high, text);
-        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, option->option,
+        return error_set(error, ERROR_USAGE, "%.*s needs a number of at least %g, not '%s'", shown, name.text,
                          option->low, text);
     case SETTING_BYTES:
         return error_set(error, ERROR_USAGE,
                          "%.*s needs a size from 1K to 1024T, as in 512M or 2G (a plain number is MiB), not '%s'",
-                         shown, option->option, text);
+                         shown, name.text, text);
     case SETTING_SEED:
         return error_set(error, ERROR_USAGE, "%.*s needs a whole number from 0 to 18446744073709551615, not '%s'",
-                         shown, option->option, text);
+                         shown, name.text, text);
     case SETTING_CHOICE:
     case SETTING_TONE:
     case SETTING_STATS:
     case SETTING_DENOISE:
-        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, option->option, option->words,
-                         text);
+        return error_set(error, ERROR_USAGE, "%.*s needs one of %s, not '%s'", shown, name.text, option->words, text);
     case SETTING_LAYERS:
         return error_set(
             error, ERROR_USAGE,
             "%.*s needs names separated by commas (depth, normal, albedo, uv, node, material, cost, samples, "
             "lights, and with --integrator path raw, variance, emission, diffuse_direct, diffuse_indirect, "
             "specular_direct, specular_indirect, transmission_direct, transmission_indirect) or all, not '%s'",
-            shown, option->option, text);
+            shown, name.text, text);
     case SETTING_TEXT:
-        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, option->option);
+        return error_set(error, ERROR_USAGE, "%.*s needs a text", shown, name.text);
     case SETTING_SIZE:
         return error_set(error, ERROR_USAGE, "%.*s needs WxH, two whole numbers from 1 to 1048576, not '%s'", shown,
-                         option->option, text);
+                         name.text, text);
     case SETTING_CROP:
         return error_set(error, ERROR_USAGE,
                          "%.*s needs X,Y,W,H, whole numbers with X and Y not negative and W and H at least 1, not '%s'",
-                         shown, option->option, text);
+                         shown, name.text, text);
     case SETTING_PIXEL:
-        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown,
-                         option->option, text);
+        return error_set(error, ERROR_USAGE, "%.*s needs X,Y, two whole numbers from 0, not '%s'", shown, name.text,
+                         text);
     case SETTING_SHARD:
         return error_set(error, ERROR_USAGE, "%.*s needs I/N, whole numbers with I from 1 to N, not '%s'", shown,
-                         option->option, text);
+                         name.text, text);
     case SETTING_FRAMES:
         return error_set(error, ERROR_USAGE,
                          "%.*s needs N, A-B or A-B/STEP, whole numbers from 1 to %d with A not above B, not '%s'",
-                         shown, option->option, FRAMES_MAX, text);
+                         shown, name.text, FRAMES_MAX, text);
     case SETTING_FOLDER:
-        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, option->option);
+        return error_set(error, ERROR_USAGE, "%.*s needs the name of a folder", shown, name.text);
     case SETTING_DEFINE:
-        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, option->option,
-                         text);
+        return error_set(error, ERROR_USAGE, "%.*s needs name=value with a Lua name, not '%s'", shown, name.text, text);
+    case SETTING_DEFAULT:
+        return error_set(error, ERROR_USAGE, "%.*s needs FIELD=VALUE, a field of gr.render and its value, not '%s'",
+                         shown, name.text, text);
     case SETTING_FLAG:
+        return error_set(error, ERROR_USAGE, "%.*s needs yes or no, not '%s'", shown, name.text, text);
     case SETTING_ACTION:
         break;
     }
-    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, option->option);
+    return error_set(error, ERROR_USAGE, "%.*s takes no value", shown, name.text);
 }
 
 /* Room for lists that grow with the words of the command line. */
@@ -347,15 +353,17 @@ struct lists {
     const char **given;      /* by setting: the text of its option */
 };
 
-static bool apply_option(const struct setting *option, const char *text, struct options *options,
-                         const struct lists *lists, struct arena *arena, struct error *error) {
+/* Reads the value of an option into the options; of a flag, text may be NULL. */
+static bool read_value(const struct setting *option, const char *text, struct options *options,
+                       const struct lists *lists) {
     void *base = option_base(option, options), *field = (char *)base + option->offset;
     long long integer = 0;
     bool ok = false;
     switch (option->kind) {
     case SETTING_FLAG:
-        *(bool *)field = true;
-        return true;
+        ok = !text || strcmp(text, "yes") == 0 || strcmp(text, "no") == 0;
+        *(bool *)field = !text || strcmp(text, "yes") == 0;
+        break;
     case SETTING_ACTION:
         options->action = (enum options_action)option->low;
         return true;
@@ -371,11 +379,8 @@ static bool apply_option(const struct setting *option, const char *text, struct 
     case SETTING_BYTES:
         ok = read_bytes(text, option->low, option->high, field);
         break;
-    case SETTING_TONE:
-        options->settings.keeps_tone = true;
-        ok = read_choice(option, base, text);
-        break;
     case SETTING_CHOICE:
+    case SETTING_TONE:
     case SETTING_DENOISE:
     case SETTING_STATS:
         ok = read_choice(option, base, text);
@@ -397,9 +402,7 @@ static bool apply_option(const struct setting *option, const char *text, struct 
         ok = read_seed(options, text);
         break;
     case SETTING_DEFINE:
-        ok = is_define(text);
-        if (ok)
-            return note_define(options, lists->defines, text, arena, error);
+    case SETTING_DEFAULT:
         break;
     case SETTING_FOLDER:
         ok = text[0] != '\0';
@@ -416,7 +419,61 @@ static bool apply_option(const struct setting *option, const char *text, struct 
         ok = aov_parse(text, field);
         break;
     }
-    return ok || value_error(option, text, error);
+    return ok;
+}
+
+/* The first spelling of an option. */
+static struct piece shown_name(const struct setting *option) {
+    const char *rest = option->option;
+    return option_next_piece(&rest);
+}
+
+/* No setting has the field: it may be the name of an option, or misspelt. */
+static bool unknown_field(struct piece name, struct error *error) {
+    const struct setting *option = find_option(name);
+    const char *near = option ? option->field : NULL;
+    int best = name.length < 4 ? 2 : 3;
+    for (int i = 0; i < setting_field_count && !option; i++) {
+        const char *field = setting_table[i].field;
+        int distance = name_distance(name, (struct piece){field, strlen(field)});
+        if (distance < best) {
+            best = distance;
+            near = field;
+        }
+    }
+    return error_set(error, ERROR_USAGE, "--default sets fields of gr.render that are settings, not '%.*s'%s%s%s",
+                     (int)name.length, name.text, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+}
+
+/* --default: the value is read as that of the option. If the option is given, before or after, it has priority. */
+static bool apply_default(const char *text, struct options *options, const struct lists *lists, struct error *error) {
+    struct piece name = {text, strcspn(text, "=")};
+    int index = 0;
+    while (index < setting_field_count &&
+           !same_name(name, (struct piece){setting_table[index].field, strlen(setting_table[index].field)}))
+        index++;
+    if (index == setting_field_count)
+        return unknown_field(name, error);
+    const struct setting *row = &setting_table[index];
+    char words[64];
+    int length = snprintf(words, sizeof words, "--default %s", row->field);
+    const char *value = text + name.length + 1;
+    struct options read = *options;
+    if (!read_value(row, value, &read, lists))
+        return value_error(row, (struct piece){words, (size_t)length}, value, error);
+    if (!lists->given[index])
+        (void)setting_set_bits(row, &options->settings, setting_bits(row, &read.settings));
+    options->script.defaults |= UINT64_C(1) << index;
+    return true;
+}
+
+static bool apply_option(const struct setting *option, const char *text, struct options *options,
+                         const struct lists *lists, struct arena *arena, struct error *error) {
+    if (option->kind == SETTING_DEFINE && is_define(text))
+        return note_define(options, lists->defines, text, arena, error);
+    if (option->kind == SETTING_DEFAULT && strchr(text, '='))
+        return apply_default(text, options, lists, error);
+    return read_value(option, text, options, lists) || value_error(option, shown_name(option), text, error);
 }
 
 /* -j4 and -Dname=value: the one-letter options whose value may follow without a blank. */
@@ -451,8 +508,7 @@ static bool unknown_option(const char *word, struct piece name, struct error *er
 static bool serves_merge(const struct setting *option) {
     static const char names[] = "o|force|write-aa-targets|write-pre-aa|fps|loop|palette|keep-frames|contact-sheet|"
                                 "denoise|j|isa|allow-write|picture-count|picture-bytes|no-sandbox|q|verbose|progress";
-    const char *own = option->option;
-    struct piece first = without_dashes(option_next_piece(&own));
+    struct piece first = without_dashes(shown_name(option));
     for (const char *rest = names; *rest;) {
         if (same_name(first, option_next_piece(&rest)))
             return true;
@@ -461,9 +517,8 @@ static bool serves_merge(const struct setting *option) {
 }
 
 static bool refuse_for_merge(const struct setting *option, struct error *error) {
-    const char *rest = option->option;
     return error_set(error, ERROR_USAGE, "merge cannot be combined with %.*s: it only joins parts that are rendered",
-                     (int)option_next_piece(&rest).length, option->option);
+                     (int)shown_name(option).length, option->option);
 }
 
 /* Options that change a picture without being settings. A dialect counts as a file that is read. */
@@ -481,8 +536,13 @@ struct digest options_digest(const struct options *options) {
         const struct setting *option = option_at(i);
         if (option->changes == CHANGES_RUN)
             continue;
-        digest = option_is_setting(option) ? setting_digest(option, &options->settings, digest)
-                                           : digest_option(option, options, digest);
+        if (!option_is_setting(option)) {
+            digest = digest_option(option, options, digest);
+            continue;
+        }
+        /* Fields have no priority over an option, but over a default. */
+        bool is_option = script_option_given(&options->script, i), chosen = script_option_chosen(&options->script, i);
+        digest = setting_digest(option, &options->settings, digest_bytes(&(char){is_option + chosen}, 1, digest));
     }
     const int numbers[] = {SETTINGS_VERSION, options->script_count, options->script.define_count};
     digest = digest_bytes(numbers, sizeof numbers, digest);
@@ -562,8 +622,8 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         if (!not_of_merge && !serves_merge(option))
             not_of_merge = option;
         bool has_value = option_value(option) != NULL;
-        if (!has_value && text)
-            return value_error(option, text, error);
+        if (!has_value && text && option->kind != SETTING_FLAG)
+            return value_error(option, shown_name(option), text, error);
         if (!text && option_may_lack_value(option))
             text = option->value;
         if (has_value && !text) {
@@ -573,8 +633,10 @@ bool options_parse(struct options *options, int argc, char *const *argv, struct 
         }
         if (!apply_option(option, text, options, &lists, arena, error))
             return false;
+        /* --denoise=auto leaves the field to the scene. */
+        bool leaves = option->kind == SETTING_DENOISE && options->settings.denoise == DENOISER_AUTO;
         if (option_is_setting(option))
-            lists.given[option - setting_table] = has_value ? text : "";
+            lists.given[option - setting_table] = leaves ? NULL : text ? text : "";
     }
     options->settings.keep_first = options->targets_prefix || options->first_pass_prefix;
     if (options->action == ACTION_MERGE && not_of_merge)

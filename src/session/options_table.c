@@ -81,6 +81,10 @@ static const struct setting options_table[] = {
      "one for each processor", "Number of threads; the picture does not depend on it."},
     {SETTING_DEFINE, CHANGES_RUN, OPTION_GROUP_EXECUTION, "-D", "name=value", "", NULL, NO_FIELD, 0, 0, 0, NULL,
      "Set the Lua global `name` before the script runs; value is a Lua literal, else a string; may be repeated."},
+    {SETTING_DEFAULT, CHANGES_RUN, OPTION_GROUP_EXECUTION, "--default", "FIELD=VALUE", "", NULL, NO_FIELD, 0, 0, 0,
+     NULL,
+     "Set what a picture has whose script does not set FIELD of gr.render, such as samples=2; VALUE as for its option, "
+     "yes or no of one without a value; may be repeated."},
     {SETTING_FOLDER, CHANGES_RUN, OPTION_GROUP_SANDBOX, "--allow-read", "DIR", "", NULL, NO_FIELD, 0, 0, 0, NULL,
      "Let scenes read below DIR too; they always read below their own folder, its parent, the working directory and "
      "the library; may be repeated."},
@@ -252,7 +256,9 @@ void options_print_help(FILE *stream) {
     (void)fputs("gray renders scenes that are written as Lua scripts.\n"
                 "usage: gray [options] [--] scene.lua ...\n"
                 "       gray merge [-o FILE] [options] PART ...\n"
-                "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the value.\n",
+                "Long options take one dash or two, and '_' or '-' between words; a space or '=' precedes the value.\n"
+                "Options without a value take =yes and =no. Options have priority over fields of gr.render, except\n"
+                "--seed; --default sets what a script leaves open.\n",
                 stream);
     for (int group = 0; group < OPTION_GROUP_COUNT; group++) {
         (void)fprintf(stream, "\n%s\n", group_titles[group]);

@@ -1,10 +1,18 @@
-/* The limits of scripts that no option sets. Without the sandbox there are none. */
+/* Which options of settings were given, and the limits of scripts that no option sets: without the sandbox none. */
 #include "settings/script_options.h"
 
 #include "base/error.h"
 
 static const double usual_time = 60;
 static const uint64_t usual_memory = 4 * GIBIBYTE, usual_output = 64 * MEBIBYTE;
+
+bool script_option_given(const struct script_options *options, int setting) {
+    return options->given && options->given[setting];
+}
+
+bool script_option_chosen(const struct script_options *options, int setting) {
+    return script_option_given(options, setting) || (options->defaults >> setting & 1);
+}
 
 double script_time_limit(const struct script_options *options) {
     return options->time_limit > 0 || options->no_sandbox ? options->time_limit : usual_time;

@@ -28,6 +28,7 @@ struct script_options {
     int define_count;
     /* By setting (settings/setting.h): the text of its option, "" of an option without a value, or NULL: not given. */
     const char *const *given;
+    uint64_t defaults; /* by setting, as bits: --default */
     /* The sandbox: what a script may read, write and use beyond the defaults (docs/security.md). */
     bool no_sandbox;
     const char *const *allow_read, *const *allow_write; /* folders */
@@ -38,6 +39,11 @@ struct script_options {
     struct frame_options frames;
     const char *library_folder; /* absolute path of lua/ (data folder of the installation), on package.path last */
 };
+
+/* Whether the option of the setting was given, so that it has priority over the field, and whether it was or has a
+ * value of --default. */
+bool script_option_given(const struct script_options *options, int setting);
+bool script_option_chosen(const struct script_options *options, int setting);
 
 /* The limits under these options, those that were given or the usual ones; 0: none. Seconds, bytes, bytes. */
 double script_time_limit(const struct script_options *options);

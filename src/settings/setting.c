@@ -51,6 +51,11 @@ int setting_index(size_t offset) {
     return index;
 }
 
+int setting_rival(int index) {
+    int integrator = SETTING_INDEX(integrator), style = SETTING_INDEX(style);
+    return index == integrator ? style : index == style ? integrator : -1;
+}
+
 static const void *field_of(const struct setting *row, const void *base) {
     return (const char *)base + row->offset;
 }
@@ -112,6 +117,7 @@ static bool bits_are_valid(const struct setting *row, uint64_t bits) {
     case SETTING_ACTION:
     case SETTING_PIXEL:
     case SETTING_DEFINE:
+    case SETTING_DEFAULT:
     case SETTING_FOLDER:
         break;
     }

@@ -9,7 +9,7 @@
 /* The kinds of values. Those of settings are one number each (setting_bits); the others are read by the command line
  * only. */
 enum setting_kind {
-    SETTING_FLAG,     /* bool; the option takes no value */
+    SETTING_FLAG,     /* bool; the option may have =yes or =no */
     SETTING_WHOLE,    /* int in low..high */
     SETTING_NUMBER,   /* double in low..high */
     SETTING_CHOICE,   /* an enum or a bool: the position of the word */
@@ -26,8 +26,9 @@ enum setting_kind {
     SETTING_SHARD,    /* two uint32_t: I/N */
     SETTING_FRAMES,   /* a struct frame_selection */
     SETTING_ACTION,   /* an int: `low` */
-    SETTING_PIXEL,    /* may be repeated, as the next two */
+    SETTING_PIXEL,    /* may be repeated, as the next three */
     SETTING_DEFINE,
+    SETTING_DEFAULT,
     SETTING_FOLDER, /* `low` selects one of two lists */
 };
 
@@ -52,6 +53,8 @@ extern const int setting_count, setting_field_count;
 /* The index of the row of a member. */
 #define SETTING_INDEX(member) setting_index(offsetof(struct settings, member))
 int setting_index(size_t offset);
+/* The index of the setting that this one may exclude (settings_exclude), or -1. */
+int setting_rival(int index);
 
 /* The value of a scalar row in the struct at `base` as 64 bits: of doubles their bits, else the number. -0 is 0. */
 uint64_t setting_bits(const struct setting *row, const void *base);

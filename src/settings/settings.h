@@ -198,7 +198,7 @@ enum { AOV_COUNT = LIST_COUNT(AOVS) };
 #define AOV_NAMES AOVS(AOV_NAME_IN_LIST)
 
 /* Part of the keys of tile files: grows when a row is added, removed or moved, or its values change their meaning. */
-enum { SETTINGS_VERSION = 1 };
+enum { SETTINGS_VERSION = 2 };
 
 /* What a setting changes: the samples of a picture; the finished picture, which is made of the samples; or only how it
  * is made. */
@@ -253,12 +253,12 @@ enum option_group {
     X(NUMBER, double, cutoff, SAMPLES, 0.0001, 0, 1, NO_WORDS, "--cutoff", "X", NULL, "cutoff", NULL, RAYS,            \
       "Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.")                \
     X(WHOLE, int, path_samples, SAMPLES, 0, 1, PATH_SAMPLES_MAX, NO_WORDS, "--spp", "N", NULL, "spp", "64", RAYS,      \
-      "N samples for a pixel, with integrator path; the option has priority over the field.")                          \
+      "N samples for a pixel, with integrator path.")                                                                  \
     X(WHOLE, int, max_depth, SAMPLES, 16, 0, DEPTH_MAX, NO_WORDS, "--max-depth", "N", NULL, "max_depth", NULL, RAYS,   \
       "A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.")            \
     X(NUMBER, double, noise, SAMPLES, 0, 1e-6, 10, NO_WORDS, "--noise", "X", NULL, "noise", "all samples", RAYS,       \
       "With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative "   \
-      "standard error is X; the option has priority over the field.")                                                  \
+      "standard error is X.")                                                                                          \
     X(NUMBER, double, clamp, SAMPLES, 0, 0, HUGE_VAL, NO_WORDS, "--clamp", "X", NULL, "clamp", NULL, RAYS,             \
       "With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture "     \
       "becomes darker than it should be (bias).")                                                                      \
@@ -293,7 +293,7 @@ enum option_group {
     X(TONE, enum tone_curve, tone.curve, FINISH, TONE_NONE, 0, 0, TONE_CURVES, "--tone", NULL, NULL, "tone", NULL,     \
       SIZE_AND_COLOUR,                                                                                                 \
       "Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the "    \
-      "light x from 0 on, the same for red, green and blue, over which the option has priority.")                      \
+      "light x from 0 on, the same for red, green and blue.")                                                          \
     X(FLAG, bool, tone.srgb, FINISH, false, 0, 1, NO_WORDS, "--srgb", NULL, NULL, "srgb", NULL, SIZE_AND_COLOUR,       \
       "Encode PNG files with the sRGB transfer function; without it, values are linear.")
 #define SETTINGS_OF_FINISH(X)                                                                                          \
@@ -341,17 +341,15 @@ enum option_group {
       "(see --accel).")                                                                                                \
     X(CROP, bool, cropped, SAMPLES, false, 0, 1, NO_WORDS, "--crop", "X,Y,W,H", NULL, NULL, "all", SIZE_AND_COLOUR,    \
       "Write a W x H picture, exactly that part of the whole; X,Y is its upper left pixel.")
-/* Without an option and without a field. The crop is set by --crop. keeps_tone: --tone was given, and functions of
- * scenes have no effect. coarse: rough surfaces send one ray, and lights area_samples of them, instead of their own
- * numbers. passes: the picture is looked at while it is made, so its samples come in passes. keep_first: the first pass
- * is wanted even where -full makes it needless. show_refined: pixels that are to be resampled are marked in the film
- * before (FILM_MARK_WAITS). */
+/* Without an option and without a field. The crop is set by --crop. coarse: rough surfaces send one ray, and lights
+ * area_samples of them, instead of their own numbers. passes: the picture is looked at while it is made, so its samples
+ * come in passes. keep_first: the first pass is wanted even where -full makes it needless. show_refined: pixels that
+ * are to be resampled are marked in the film before (FILM_MARK_WAITS). */
 #define SETTINGS_WITHIN(X)                                                                                             \
     X(WHOLE, int, crop_x, SAMPLES, 0, 0, CROP_MAX, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                 \
     X(WHOLE, int, crop_y, SAMPLES, 0, 0, CROP_MAX, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                 \
     X(WHOLE, int, crop_width, SAMPLES, 0, 0, CROP_MAX, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)             \
     X(WHOLE, int, crop_height, SAMPLES, 0, 0, CROP_MAX, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)            \
-    X(FLAG, bool, keeps_tone, FINISH, false, 0, 1, NO_WORDS, NULL, NULL, NULL, NULL, NULL, NONE, NULL)                 \
     X(CHOICE, enum path_strategy, path_strategy, SAMPLES, PATH_STRATEGY_MIS, 0, 0, PATH_STRATEGIES, NULL, NULL, NULL,  \
       NULL, NULL, NONE, NULL)                                                                                          \
     X(CHOICE, enum light_choice, light_choice, SAMPLES, LIGHT_CHOICE_TREE, 0, 0, LIGHT_CHOICES, NULL, NULL, NULL,      \
@@ -395,6 +393,10 @@ struct camera {
 static inline double settings_line_width(const struct settings *settings) {
     double of_style = settings->style == STYLE_NONE ? 0 : LINE_WIDTH_DEFAULT;
     return settings->line_width < 0 ? of_style : settings->line_width;
+}
+/* Whether two settings exclude each other: styles are for the integrator whitted. */
+static inline bool settings_exclude(const struct settings *settings) {
+    return integrator_traits(settings->integrator).progressive && settings->style != STYLE_NONE;
 }
 /* Whether the picture is denoised. */
 static inline bool settings_denoise(const struct settings *settings) {

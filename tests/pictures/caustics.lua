@@ -1,6 +1,6 @@
 -- TITLE: Light through glass and off mirrors
--- OPTIONS: --caustics 20000
--- Covers photon maps by the option and by the field with photons and radius, from points, spots, directions and surfaces,
+-- OPTIONS: --default caustics=20000
+-- Covers photon maps by --default and by the field with photons and radius, from points, spots, directions and surfaces,
 -- through glass (Fresnel, absorption, rough), off mirrors, a metal ring and solids, onto walls, images and bump maps,
 -- and in fog.
 -- Author: gray project

@@ -363,7 +363,8 @@ TEST(paths_mean_linear_colours_unless_something_else_is_said) {
     CHECK_EQ_INT(background_byte("", "-q scene.lua"), 128);
     CHECK_EQ_INT(background_byte(", colour = 'linear'", "-q scene.lua"), 188);
     CHECK_EQ_INT(background_byte("", "-q --colour linear scene.lua"), 188);
-    CHECK_EQ_INT(background_byte(", colour = 'classic'", "-q --colour linear scene.lua"), 128);
+    CHECK_EQ_INT(background_byte(", colour = 'classic'", "-q --colour linear scene.lua"), 188);
+    CHECK_EQ_INT(background_byte(", colour = 'classic'", "-q --default colour=linear scene.lua"), 128);
     CHECK_EQ_INT(background_byte(", srgb = false", "-q --colour linear scene.lua"), 128);
     CHECK_EQ_INT(background_byte("", "-q --integrator path --spp 1 scene.lua"), 188);
     CHECK_EQ_INT(background_byte(", srgb = false", "-q --integrator path --spp 1 scene.lua"), 128);

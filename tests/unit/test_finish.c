@@ -385,7 +385,7 @@ TEST(wrong_values_of_finishing_are_refused) {
         {"vignette = 2", "--vignette 2", "vignette", "--vignette needs a number from 0 to 1, not '2'"},
         {"dither = 'red'", "--dither red", "dither", "--dither needs one of none|ordered|blue, not 'red'"},
         {"fxaa = 3", "--fxaa=3", "fxaa", "--fxaa"},
-        {"gray = 'yes'", "--gray=yes", "gray", "--gray"},
+        {"gray = 'yes'", "--gray=1", "gray", "--gray"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         char text[2048], line[200];

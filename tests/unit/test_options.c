@@ -216,7 +216,7 @@ TEST(values_outside_their_range_are_refused_with_the_range) {
     refused("--view targe s.lua", "--view needs one of direction|target, not 'targe'");
     refused("-o= s.lua", "-o needs a text");
     refused("-write-pre-aa ~ s.lua", "-write-pre-aa needs a text");
-    refused("-full=1 s.lua", "-full takes no value");
+    refused("-full=1 s.lua", "-full needs yes or no, not '1'");
     refused("s.lua -ss", "-ss needs a value: N");
 }
 

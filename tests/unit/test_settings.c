@@ -92,7 +92,7 @@ TEST(an_option_is_read_as_the_field_with_its_value) {
         argv[i] = strdup(words[i]);
     CHECK(options_parse(&options, 6, argv, &arena, &error));
     CHECK_NEAR(options.settings.finish.bloom, 0.25, 0);
-    CHECK(options.settings.tone.curve == TONE_FILMIC && options.settings.keeps_tone);
+    CHECK(options.settings.tone.curve == TONE_FILMIC);
     CHECK(options.settings.finish.dither == DITHER_BLUE);
     CHECK_TEXT(options.script.given[SETTING_INDEX(finish.bloom)], ".25");
     CHECK(options.script.given[SETTING_INDEX(finish.vignette)] == NULL);
