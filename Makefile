@@ -1,6 +1,7 @@
 # gray: make [TARGET] [config=release|debug|asan|tsan|fuzz|afl|coverage] [CC=gcc|clang] [WERROR=1] [V=1]
 #   all (default)  ./gray and the link ./rt        help        this list
-#   test           the tests, at most 8 minutes    test-long   the rest, restartable by name (ONLY="name ...")
+#   test, check    the tests, at most 8 minutes    test-long   the rest, restartable by name (ONLY="name ...")
+#   test-fast      the tests that start no program, below a minute
 #   check-clang    clang reads all sources; its warnings are errors
 #   layers         includes against the order of modules; names (tools/names.list); sizes of files, parameters
 #   format         clang-format over all sources
@@ -8,14 +9,22 @@
 #   fuzz           every tests/fuzz/fuzz_*.c for FUZZ_SECONDS each (clang's libFuzzer; FUZZ="name ..." for some)
 #   fuzz-afl       the same with AFL++
 #   bench          the benchmarks                  install     into PREFIX, below DESTDIR
-#   clean          removes all that make has built
+#   clean          removes all that make has built  uninstall   removes what install has written there
+# Objects and programs lie in build/CONFIG. With BUILD=FOLDER they lie in FOLDER, and make writes nothing elsewhere.
 # The build prints one line for each file; V=1 prints the commands.
 config ?= release
 PREFIX ?= /usr/local
 DESTDIR ?=
+# Whether the caller names the folder, and the folder of another configuration beside it.
+BUILD_GIVEN := $(if $(filter undefined,$(origin BUILD)),,yes)
+beside = $(if $(BUILD_GIVEN),$(BUILD),build)/$(1)
 BUILD ?= build/$(config)
+ifeq ($(abspath $(BUILD)),$(CURDIR))
+$(error BUILD is the folder of the sources)
+endif
 PKG_CONFIG ?= pkg-config
 
+comma := ,
 # A recipe that begins with $(call say,WORD,NAME) prints one line, and its command with V=1 only; make -s prints nothing.
 V ?=
 Q = $(if $(V),,@)
@@ -38,7 +47,7 @@ CFLAGS.afl = -O1 -g -DGRAY_FAULTS -fsanitize=address,undefined -fno-sanitize-rec
 # Counters live in a file that every process of the tests maps before anything else (%c), so that nothing that ends a
 # process loses them, and nothing needs to be written by a confined one; atomic, so that none is lost to a race. Counters
 # in loops leave them scalar: clang's warning about that (pass-failed) is off.
-COUNTERS = -fprofile-instr-generate=$(CURDIR)/$(BUILD)/raw/%m%c.profraw -fcoverage-mapping -fprofile-update=atomic \
+COUNTERS = -fprofile-instr-generate=$(abspath $(BUILD))/raw/%m%c.profraw -fcoverage-mapping -fprofile-update=atomic \
     -mllvm -runtime-counter-relocation -Wno-unused-command-line-argument -Wno-pass-failed
 CFLAGS.coverage = -O1 -g -DGRAY_FAULTS $(COUNTERS)
 CFLAGS.clang = -DGRAY_FAULTS -fsyntax-only
@@ -84,7 +93,7 @@ override OPTIONAL_CFLAGS :=
 endif
 
 override CFLAGS += -std=gnu11 $(WARNINGS) $(EXACT) $(CFLAGS.$(config)) -pthread
-override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -DGRAY_CONFIG='"$(config)"' -DGRAY_PREFIX='"$(PREFIX)"'
+override CPPFLAGS += -Isrc -I. $(LUA_CFLAGS) $(PNG_CFLAGS) $(OPTIONAL_CFLAGS) -DGRAY_CONFIG='"$(config)"'
 override LDLIBS += $(LUA_LIBS) $(PNG_LIBS) $(JPEG_LIBS) $(JANSSON_LIBS) $(FREETYPE_LIBS) $(EXR_LIBS) $(WEBP_LIBS) -lm
 override LDFLAGS += -pthread
 
@@ -111,7 +120,9 @@ ALL_OBJECTS := $(FUZZ_OBJECTS) $(FUZZ_HELP) $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJE
 
 ifeq ($(config),release)
 all: check-libraries $(BUILD)/gray $(if $(MPI_LIBS),$(BUILD)/gray-mpi) $(if $(SDL_LIBS),$(BUILD)/gray-gui)
+ifndef BUILD_GIVEN
 	@ln -sf $(BUILD)/gray gray && ln -sf gray rt
+endif
 else
 all: check-libraries $(BUILD)/gray $(if $(SDL_LIBS),$(BUILD)/gray-gui)
 ifeq ($(config),coverage)
@@ -123,9 +134,10 @@ check-libraries:
 	@test -n "$(LUA_NAME)" || { echo "gray needs Lua 5.4 with headers (Debian: liblua5.4-dev pkg-config); tools/setup.sh installs it" >&2; exit 1; }
 	@test -n "$(PNG_LIBS)" || { echo "gray needs libpng with headers (Debian: libpng-dev pkg-config); tools/setup.sh installs it" >&2; exit 1; }
 
+# A program finds its Lua library beside it where the source tree is not above it.
 $(BUILD)/gray: $(OBJECTS) $(MAIN_OBJECT)
 	$(call say,LINK,$@)
-	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)$(if $(BUILD_GIVEN), && ln -sfn $(CURDIR)/lua $(BUILD)/lua)
 
 # The program for many machines, where there is MPI: one of its own, so that the other does not load the library.
 $(BUILD)/gray-mpi: $(OBJECTS) $(MAIN_OBJECT) $(MPI_OBJECT)
@@ -139,6 +151,8 @@ $(BUILD)/$(MPI_MAIN:.c=.o): override CPPFLAGS += $(MPI_CFLAGS)
 
 $(BUILD)/src/image/webp_write.o $(BUILD)/tests/unit/test_animation.o: override CPPFLAGS += $(WEBP_CFLAGS)
 $(BUILD)/tests/run: override LDLIBS += $(if $(WEBP_LIBS),-lwebpdemux)
+# The harness knows when a test starts a program.
+$(BUILD)/tests/run: override LDFLAGS += $(patsubst %,-Wl$(comma)--wrap=%,system execv execl posix_spawnp)
 $(BUILD)/tests/run: $(OBJECTS) $(TEST_OBJECTS)
 	$(call say,LINK,$@)
 	$(Q)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -206,14 +220,17 @@ PLAIN_SOURCES := $(if $(PLAIN),$(shell grep -l 'HAVE_' $(filter-out $(MPI_MAIN) 
 read-sources-plain: $(patsubst %.c,$(BUILD)/%.o,$(PLAIN_SOURCES))
 	@echo "clang: $(words $^) files without the optional libraries"
 check-clang:
-	@$(MAKE) -s $(JOBS) config=clang WERROR=1 read-sources
-	@$(MAKE) -s $(JOBS) config=clang PLAIN=1 BUILD=build/clang-plain WERROR=1 read-sources-plain
+	@$(MAKE) -s $(JOBS) config=clang BUILD=$(call beside,clang) WERROR=1 read-sources
+	@$(MAKE) -s $(JOBS) config=clang PLAIN=1 BUILD=$(call beside,clang-plain) WERROR=1 read-sources-plain
 
 help:
 	@sed -n 's/^# \{0,1\}//p; /^$$/q; /^config/q' Makefile
 
-test:
+test check:
 	@tools/test.sh
+test-fast: check-libraries
+	@$(MAKE) -s $(JOBS) $(BUILD)/tests/run
+	@$(BUILD)/tests/run --fast -j $(shell nproc 2>/dev/null || echo 2)
 test-long:
 	@tools/test.sh --long $(ONLY)
 coverage:
@@ -235,10 +252,10 @@ $(BUILD)/src/accel/triangle_kernel_%.o $(BUILD)/src/accel/triangle_packet_%.o: C
 endif
 endif
 fuzz:
-	@$(MAKE) -s $(JOBS) config=fuzz FUZZ='$(FUZZ)' build-fuzz
+	@$(MAKE) -s $(JOBS) config=fuzz BUILD=$(call beside,fuzz) FUZZ='$(FUZZ)' build-fuzz
 	@tools/fuzz.sh libfuzzer $(FUZZ_SECONDS) $(FUZZ)
 fuzz-afl:
-	@$(MAKE) -s $(JOBS) config=afl FUZZ='$(FUZZ)' build-fuzz
+	@$(MAKE) -s $(JOBS) config=afl BUILD=$(call beside,afl) FUZZ='$(FUZZ)' build-fuzz
 	@tools/fuzz.sh afl $(FUZZ_SECONDS) $(FUZZ)
 # Embree, where it is installed, is the peer of the ray benchmark; the program itself never uses it.
 HAVE_EMBREE := $(shell $(CC) -fsyntax-only -include embree3/rtcore.h -x c /dev/null >/dev/null 2>&1 && echo yes)
@@ -256,18 +273,32 @@ bench: all
 format:
 	clang-format -i $(SOURCES) $(wildcard src/*/*.h tests/*.[ch] tests/unit/*.[ch] tests/fuzz/*.[ch])
 
+# What install writes, below DESTDIR and PREFIX.
+PROGRAMS = gray $(if $(SDL_LIBS),gray-gui) $(if $(MPI_LIBS),gray-mpi)
+DOCUMENTS := README.md LICENSE CHANGELOG.md
+MODULES_OF_LUA := $(patsubst lua/%,%,$(wildcard lua/*.lua lua/dialects/*.lua))
+INSTALLED = $(PROGRAMS:%=bin/%) $(MODULES_OF_LUA:%=share/gray/lua/%) $(DOCUMENTS:%=share/doc/gray/%)
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/gray/lua/dialects $(DESTDIR)$(PREFIX)/share/doc/gray
-	install -m 755 $(BUILD)/gray $(DESTDIR)$(PREFIX)/bin/gray
-	$(if $(SDL_LIBS),install -m 755 $(BUILD)/gray-gui $(DESTDIR)$(PREFIX)/bin/gray-gui)
-	$(if $(MPI_LIBS),install -m 755 $(BUILD)/gray-mpi $(DESTDIR)$(PREFIX)/bin/gray-mpi)
-	install -m 644 lua/*.lua $(DESTDIR)$(PREFIX)/share/gray/lua
-	install -m 644 lua/dialects/*.lua $(DESTDIR)$(PREFIX)/share/gray/lua/dialects
-	install -m 644 README.md LICENSE CHANGELOG.md $(DESTDIR)$(PREFIX)/share/doc/gray
+	install -m 755 $(PROGRAMS:%=$(BUILD)/%) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(wildcard lua/*.lua) $(DESTDIR)$(PREFIX)/share/gray/lua
+	install -m 644 $(wildcard lua/dialects/*.lua) $(DESTDIR)$(PREFIX)/share/gray/lua/dialects
+	install -m 644 $(DOCUMENTS) $(DESTDIR)$(PREFIX)/share/doc/gray
 
+# Folders of gray alone go when nothing else is in them.
+uninstall:
+	rm -f $(INSTALLED:%=$(DESTDIR)$(PREFIX)/%)
+	for folder in gray/lua/dialects gray/lua gray doc/gray; do rmdir $(DESTDIR)$(PREFIX)/share/$$folder 2>/dev/null; done; true
+
+# A folder that the caller names may hold other files.
+BUILT = src tests bench gray gray-gui gray-mpi lua fuzz_* test.log raw fuzz afl clang clang-plain asan tsan debug coverage flags
 clean:
+ifdef BUILD_GIVEN
+	test ! -f $(FLAGS_STAMP) || rm -rf $(addprefix $(BUILD)/,$(BUILT))
+else
 	rm -rf build gray rt
+endif
 
 force:
-.PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test test-long coverage layers bench format install clean force build-fuzz fuzz fuzz-afl
+.PHONY: all help check-libraries build-tests check-clang read-sources read-sources-plain test check test-fast test-long coverage layers bench format install uninstall clean force build-fuzz fuzz fuzz-afl
 -include $(ALL_OBJECTS:.o=.d) $(wildcard $(BUILD)/bench/*.d)

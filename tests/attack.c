@@ -24,7 +24,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { ORDINARY_USER = 65534, SECONDS = 20 };
+enum { ORDINARY_USER = 65534 };
 
 static time_t clock_offset;
 
@@ -41,9 +41,7 @@ void attack_set_clock(time_t seconds) {
 }
 
 double attack_now(void) {
-    struct timespec time;
-    (void)clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+    return test_clock();
 }
 
 void attack_rest(double seconds) {
@@ -52,13 +50,7 @@ void attack_rest(double seconds) {
 }
 
 const char *attack_binary(void) {
-    static char binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    if (!binary[0] && !realpath(named ? named : "build/release/gray", binary)) {
-        test_fail(__FILE__, __LINE__, "the program under test is not there");
-        exit(1);
-    }
-    return binary;
+    return test_program();
 }
 
 static enum attack_system attack_system;
@@ -222,7 +214,7 @@ static struct program_run run_attack(struct attack_setup *setup) {
         execute(setup->attack);
     }
     (void)setpgid(child, child);
-    struct program_run run = {.status = wait_up_to(child, SECONDS)};
+    struct program_run run = {.status = wait_up_to(child, ATTACK_PATIENCE)};
     run.out = bytes_of_descriptor(out);
     run.err = bytes_of_descriptor(err);
     return run;
@@ -295,7 +287,7 @@ static void check_words(struct attack_setup *setup, const struct program_run *ru
 static void check_status(struct attack_setup *setup, const struct program_run *run) {
     int wanted = setup->attack->status;
     if (run->status < 0)
-        blame(setup, "does not end within %d s", SECONDS);
+        blame(setup, "does not end within %d s", ATTACK_PATIENCE);
     else if (run->status >= 126 && run->status != 130)
         blame(setup, "ends with %d: %.300s", run->status, run->err);
     else if (wanted == ATTACK_WRONG ? run->status < 1 || run->status > 3

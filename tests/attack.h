@@ -79,6 +79,8 @@ pid_t attack_start(const char *in, const char *words, uid_t user);
 pid_t attack_start_traced(const char *in, const char *words, uid_t user);
 /* Waits for the end. Returns the status, 128 + signal, or -1 if the program had to be killed after `seconds`. */
 int attack_wait(pid_t program, double seconds);
+/* Seconds after which a program hangs, also on a busy machine. */
+enum { ATTACK_PATIENCE = 120 };
 /* The bytes of both outputs of attack_start, from malloc. */
 char *attack_output(const char *name);
 /* From now on CLOCK_REALTIME of this process and of its children is ahead by this many seconds. */

@@ -1,5 +1,5 @@
 /* The runner: every test in a process of its own, several at a time, with a time limit. The environment
- * GRAY_TEST_BINARY names the program under test.
+ * GRAY_TEST_BINARY names the program under test; without it, it is the one beside the folder of the runner.
  *
  * Between the runner and each test stands a reaper, the parent of the test. It adopts every process whose parent dies
  * below it, so that none can leave its tree, whatever group or session it moves to. When the test has ended, or the
@@ -16,14 +16,15 @@
 #include <fnmatch.h>
 #include <png.h>
 #include <poll.h>
-#include <setjmp.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -38,6 +39,8 @@ static int failures;
 static const char *current_name;
 static char folder_path[404]; /* created when it is first needed */
 static bool folder_made;
+static pid_t test_process;
+static bool *starts_program; /* shared with the runner; NULL: the test may start programs */
 
 void test_register(struct test *test) {
     test->next = all_tests;
@@ -64,26 +67,117 @@ void test_fail(const char *file, int line, const char *format, ...) {
     fflush(stdout);
 }
 
+/* The runner reads the last line with these words as the reason. */
+#define SKIPPED "    skipped: "
+
+static _Noreturn void end_skipped(bool failed, const char *format, va_list arguments) {
+    printf(SKIPPED);
+    vprintf(format, arguments);
+    printf("\n");
+    fflush(stdout);
+    _exit(failed || failures ? STATUS_FAILED : STATUS_SKIPPED);
+}
+
 void test_skip(const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    printf("    skipped: ");
-    vprintf(format, arguments);
-    printf("\n");
-    va_end(arguments);
-    fflush(stdout);
-    _exit(failures ? STATUS_FAILED : STATUS_SKIPPED);
+    end_skipped(false, format, arguments);
+}
+
+void test_lacks(const char *format, ...) {
+    const char *ci = getenv("GRAY_CI");
+    va_list arguments;
+    va_start(arguments, format);
+    end_skipped(ci && ci[0] != '\0', format, arguments);
+}
+
+/* Called before a program starts, in any process of the test. */
+static void before_program(void) {
+    if (!starts_program)
+        return;
+    *starts_program = true;
+    (void)kill(test_process, SIGKILL);
+    _exit(127);
+}
+
+/* The linker gives every call of these functions here (--wrap), so that --fast needs no list of tests. */
+int __wrap_system(const char *line);
+int __real_system(const char *line);
+int __wrap_execv(const char *path, char *const words[]);
+int __real_execv(const char *path, char *const words[]);
+int __wrap_execl(const char *path, const char *word, ...);
+int __wrap_posix_spawnp(pid_t *child, const char *name, const posix_spawn_file_actions_t *actions,
+                        const posix_spawnattr_t *attributes, char *const words[], char *const environment[]);
+int __real_posix_spawnp(pid_t *child, const char *name, const posix_spawn_file_actions_t *actions,
+                        const posix_spawnattr_t *attributes, char *const words[], char *const environment[]);
+
+int __wrap_system(const char *line) {
+    before_program();
+    return __real_system(line);
+}
+
+int __wrap_execv(const char *path, char *const words[]) {
+    before_program();
+    return __real_execv(path, words);
+}
+
+int __wrap_execl(const char *path, const char *word, ...) {
+    char *words[32] = {(char *)(uintptr_t)word};
+    va_list rest;
+    va_start(rest, word);
+    for (size_t i = 1; i + 1 < sizeof words / sizeof *words && (words[i] = va_arg(rest, char *)) != NULL; i++)
+        continue;
+    va_end(rest);
+    return __wrap_execv(path, words);
+}
+
+int __wrap_posix_spawnp(pid_t *child, const char *name, const posix_spawn_file_actions_t *actions,
+                        const posix_spawnattr_t *attributes, char *const words[], char *const environment[]) {
+    before_program();
+    return __real_posix_spawnp(child, name, actions, attributes, words, environment);
+}
+
+static bool is_on_path(const char *name) {
+    const char *path = getenv("PATH");
+    char *folders = strdup(path ? path : ""), *rest = NULL, file[4096];
+    bool found = false;
+    for (char *folder = strtok_r(folders, ":", &rest); folder && !found; folder = strtok_r(NULL, ":", &rest)) {
+        (void)snprintf(file, sizeof file, "%s/%s", folder, name);
+        found = access(file, X_OK) == 0;
+    }
+    free(folders);
+    return found;
+}
+
+void test_need_tools(const char *names) {
+    before_program();
+    char *copy = strdup(names), *rest = NULL;
+    for (char *name = strtok_r(copy, " ", &rest); name; name = strtok_r(NULL, " ", &rest)) {
+        if (!is_on_path(name))
+            test_lacks("%s is not installed", name);
+    }
+    free(copy);
+}
+
+/* A program that is built where its library is installed: gray-mpi, gray-gui. */
+static void need_program_beside(const char *suffix, const char *library) {
+    char path[4200];
+    before_program();
+    (void)snprintf(path, sizeof path, "%s%s", test_program(), suffix);
+    if (access(path, X_OK) != 0)
+        test_lacks("there is no gray%s beside the program, which needs %s", suffix, library);
+}
+
+void test_need_mpi(void) {
+    need_program_beside("-mpi", "MPI");
+    test_need_tools("mpirun");
 }
 
 void test_need_window(void) {
-    const char *named = getenv("GRAY_TEST_BINARY"), *options = getenv("ASAN_OPTIONS");
+    const char *options = getenv("ASAN_OPTIONS");
     char text[4096];
-    (void)snprintf(
-        text, sizeof text,
-        "test -x '%s-gui' && for tool in Xvfb xvfb-run xdotool; do command -v $tool || exit 1; done >/dev/null",
-        named ? named : "build/release/gray");
-    if (system(text) != 0)
-        test_skip("there is no gray-gui beside the program, or no Xvfb, xvfb-run or xdotool");
+    need_program_beside("-gui", "SDL2");
+    test_need_tools("Xvfb xvfb-run xdotool");
     (void)snprintf(text, sizeof text, "%s%sdetect_leaks=0", options ? options : "", options ? ":" : "");
     (void)setenv("ASAN_OPTIONS", text, 1);
     (void)setenv("SDL_RENDER_DRIVER", "software", 1);
@@ -95,8 +189,7 @@ const char *test_name(void) {
 }
 
 bool test_has_sanitizer(void) {
-    const char *binary = getenv("GRAY_TEST_BINARY");
-    return binary && (strstr(binary, "asan") || strstr(binary, "tsan"));
+    return strcmp(GRAY_CONFIG, "asan") == 0 || strcmp(GRAY_CONFIG, "tsan") == 0;
 }
 
 const char *test_folder(void) {
@@ -148,19 +241,70 @@ char *test_read_file(const char *path, size_t *size) {
     return data;
 }
 
-void test_shell(const char *line, int status, const char *says) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; } >out.txt 2>&1", test_folder(), binary, line) < 0)
+bool test_same_files(const char *one, const char *other) {
+    size_t a = 0, b = 0;
+    char *x = test_read_file(test_path(one), &a), *y = test_read_file(test_path(other), &b);
+    bool same = x && y && a == b && memcmp(x, y, a) == 0;
+    free(x);
+    free(y);
+    return same;
+}
+
+double test_clock(void) {
+    struct timespec time;
+    (void)clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+static int shell_status(int how) {
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+int test_status_of(pid_t child) {
+    int how = 0;
+    while (waitpid(child, &how, 0) < 0 && errno == EINTR)
+        continue;
+    return shell_status(how);
+}
+
+const char *test_program(void) {
+    const char *binary = getenv("GRAY_TEST_BINARY");
+    if (!binary || access(binary, X_OK) != 0) {
+        test_fail(__FILE__, __LINE__, "the program under test is not there");
+        _exit(STATUS_FAILED);
+    }
+    return binary;
+}
+
+int test_run_shell(const char *line, const char *redirections) {
+    char *command = NULL;
+    if (asprintf(&command,
+                 "await() { until eval \"$1\"; do sleep 0.01; done; }\n"
+                 "cd '%s' && export gray='%s' && { %s\n} %s",
+                 test_folder(), test_program(), line, redirections) < 0)
         exit(1);
-    int how = system(command), got = WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
-    char *said = test_read_file(test_path("out.txt"), NULL);
-    if (got != status || !said || !strstr(said, says))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\":\n%s", line, got, status, says,
+    (void)fflush(stdout);
+    int how = system(command);
+    free(command);
+    return shell_status(how);
+}
+
+/* says: NULL: nothing may be printed. */
+static void expect_shell(const char *line, int status, const char *says, const char *redirections, const char *name) {
+    int got = test_run_shell(line, redirections);
+    char *said = test_read_file(test_path(name), NULL);
+    if (got != status || !said || (says ? !strstr(said, says) : said[0] != '\0'))
+        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\":\n%s", line, got, status, says ? says : "",
                   said ? said : "");
     free(said);
-    free(command);
+}
+
+void test_shell(const char *line, int status, const char *says) {
+    expect_shell(line, status, says, ">out.txt 2>&1", "out.txt");
+}
+
+void test_shell_errors(const char *line, int status, const char *says) {
+    expect_shell(line, status, says, "2>err.txt", "err.txt");
 }
 
 /* Collects two streams of a child until both end. */
@@ -193,12 +337,7 @@ static void collect(int out, int err, struct test_result *result) {
 
 static struct test_result run_program(const char *folder, const char *arguments, const char *environment) {
     struct test_result result = {0};
-    char binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    if (!realpath(named ? named : "build/release/gray", binary)) {
-        test_fail(__FILE__, __LINE__, "the program under test is not there");
-        _exit(STATUS_FAILED);
-    }
+    const char *binary = test_program();
     int out[2], err[2];
     if (pipe2(out, O_CLOEXEC) != 0 || pipe2(err, O_CLOEXEC) != 0)
         _exit(STATUS_FAILED);
@@ -208,7 +347,7 @@ static struct test_result run_program(const char *folder, const char *arguments,
         static char *words[4096];
         char *copy = strdup(arguments);
         int count = 0;
-        words[count++] = binary;
+        words[count++] = (char *)(uintptr_t)binary;
         for (char *word = strtok(copy, " "); word && count < 4095; word = strtok(NULL, " "))
             words[count++] = word;
         words[count] = NULL;
@@ -226,9 +365,7 @@ static struct test_result run_program(const char *folder, const char *arguments,
     (void)close(out[1]);
     (void)close(err[1]);
     collect(out[0], err[0], &result);
-    int status;
-    (void)waitpid(child, &status, 0);
-    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.status = test_status_of(child);
     return result;
 }
 
@@ -236,6 +373,12 @@ struct test_result test_gray(const char *folder, const char *arguments) {
     if (!folder)
         folder = test_folder();
     return run_program(folder, arguments, NULL);
+}
+
+void test_free_result(struct test_result *result) {
+    free(result->out);
+    free(result->err);
+    *result = (struct test_result){0};
 }
 
 struct test_result test_gray_scene(const char *scene_text, const char *arguments, const char *environment) {
@@ -272,12 +415,6 @@ double test_uniform(struct test_random *random, double lo, double hi) {
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
     z ^= z >> 31;
     return lo + (hi - lo) * ((double)(z >> 11) * 0x1p-53);
-}
-
-static double now(void) {
-    struct timespec time;
-    (void)clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
 static void pause_milliseconds(long milliseconds) {
@@ -390,15 +527,15 @@ static int signal_descendants(int number, const pid_t *spared, int spared_count)
 /* Ends every process below this one, which adopts orphans: first with SIGTERM, for servers that have files to remove,
  * then with SIGKILL. Returns when none is left, or after 10 seconds. */
 static void end_descendants(void) {
-    double begun = now();
+    double begun = test_clock();
     bool asked = false;
-    while (now() - begun < 10) {
+    while (test_clock() - begun < 10) {
         pid_t got;
         while ((got = waitpid(-1, NULL, WNOHANG)) > 0)
             continue;
         if (got < 0 && errno == ECHILD)
             return;
-        if (!asked || now() - begun > 0.3)
+        if (!asked || test_clock() - begun > 0.3)
             (void)signal_descendants(asked ? SIGKILL : SIGTERM, NULL, 0);
         asked = true;
         pause_milliseconds(5);
@@ -432,18 +569,34 @@ struct running {
     double started;
 };
 
+/* Of the test in a slot; shared with its reaper and the test itself. */
+struct outcome {
+    int status;          /* as waitpid gives it; -1: none yet */
+    double processor;    /* seconds of the test and its processes */
+    bool starts_program; /* with --fast: it was about to start one, and was ended */
+};
+
+/* Why tests were skipped. */
+struct reason {
+    char *text;
+    int count;
+};
+
 struct runner {
     char folder[256]; /* of this run */
-    int *statuses;    /* of the tests in `slots`, as waitpid gives them; shared with the reapers; -1: none yet */
+    struct outcome *outcomes;
     sigset_t awaited; /* signals that the runner waits for, blocked otherwise */
     FILE *log;        /* or NULL */
     char *title;      /* the words of the command line, which ps shows; a reaper has another one */
     size_t title_size;
     bool keep;    /* folders of failed tests are kept */
+    bool fast;    /* tests that start a program are left out */
     bool strays;  /* a reaper was killed: its descendants must be ended */
     int ended_by; /* a signal, or 0 */
     double begun, next_progress, progress_seconds;
-    int chosen, begun_tests, ended, passed, failed, skipped;
+    int chosen, begun_tests, ended, passed, failed, skipped, left_out;
+    struct reason *reasons;
+    int reason_count;
     struct running slots[JOBS_MAX];
 };
 
@@ -488,6 +641,9 @@ static _Noreturn void run_test(const struct runner *runner, const struct running
     if (runner->log)
         (void)fclose(runner->log);
     current_name = slot->test->name;
+    test_process = getpid();
+    if (runner->fast)
+        starts_program = &runner->outcomes[slot - runner->slots].starts_program;
     slot->test->run();
     fflush(stdout);
     exit(failures ? STATUS_FAILED : STATUS_PASSED);
@@ -508,6 +664,13 @@ static int await_test(pid_t test) {
         if (sigwaitinfo(&awaited, NULL) == SIGTERM)
             return -1;
     }
+}
+
+static double processor_of_children(void) {
+    struct rusage usage = {0};
+    (void)getrusage(RUSAGE_CHILDREN, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 /* Never returns. SIGTERM, which is blocked, asks to end the test; the kernel sends it when the runner is gone. */
@@ -533,8 +696,9 @@ static _Noreturn void reap_test(struct runner *runner, int index, pid_t runner_p
         if (test > 0)
             status = await_test(test);
     }
-    runner->statuses[index] = status;
+    runner->outcomes[index].status = status;
     end_descendants();
+    runner->outcomes[index].processor = processor_of_children();
     bool passed = status >= 0 && WIFEXITED(status) && WEXITSTATUS(status) != STATUS_FAILED;
     if (passed || !runner->keep)
         remove_at(AT_FDCWD, above);
@@ -543,37 +707,88 @@ static _Noreturn void reap_test(struct runner *runner, int index, pid_t runner_p
     _exit(0);
 }
 
-static void show_output(struct runner *runner, const struct running *slot) {
-    char buffer[4096];
-    (void)lseek(slot->output, 0, SEEK_SET);
-    for (ssize_t got; (got = read(slot->output, buffer, sizeof buffer)) > 0;)
-        print_text(runner, false, buffer, (size_t)got);
+/* What the test has printed; from malloc. */
+static char *read_output(const struct running *slot, size_t *size) {
+    off_t end = lseek(slot->output, 0, SEEK_END);
+    char *text = calloc(1, end > 0 ? (size_t)end + 1 : 1);
+    ssize_t got = text && end > 0 ? pread(slot->output, text, (size_t)end, 0) : 0;
+    *size = got > 0 ? (size_t)got : 0;
+    return text;
+}
+
+static void note_reason(struct runner *runner, const char *output) {
+    const char *found = NULL;
+    for (const char *next = output; next && (next = strstr(next, SKIPPED)) != NULL;)
+        found = next += sizeof SKIPPED - 1;
+    if (!found)
+        return;
+    size_t length = strcspn(found, "\n");
+    for (int i = 0; i < runner->reason_count; i++) {
+        struct reason *reason = &runner->reasons[i];
+        if (strlen(reason->text) == length && strncmp(reason->text, found, length) == 0) {
+            reason->count++;
+            return;
+        }
+    }
+    struct reason *more = realloc(runner->reasons, (size_t)(runner->reason_count + 1) * sizeof *more);
+    char *text = strndup(found, length);
+    if (!more || !text)
+        exit(1);
+    runner->reasons = more;
+    runner->reasons[runner->reason_count++] = (struct reason){text, 1};
+}
+
+/* One line for all skipped tests, and one for those that --fast leaves out. */
+static void show_skipped(struct runner *runner) {
+    char number[32];
+    for (int i = 0; i < runner->reason_count; i++) {
+        const struct reason *reason = &runner->reasons[i];
+        if (i == 0)
+            print_line(runner, false, "%d skipped: ", runner->skipped);
+        print_text(runner, false, reason->text, strlen(reason->text));
+        (void)snprintf(number, sizeof number, " (%d)%s", reason->count, i + 1 < runner->reason_count ? "; " : "\n");
+        print_text(runner, false, number, strlen(number));
+    }
+    if (runner->fast)
+        print_line(runner, false, "%d left out, which start a program\n", runner->left_out);
+}
+
+/* Prints how a test has ended, and counts it. */
+static void report_test(struct runner *runner, const struct running *slot, const struct outcome *outcome) {
+    int status = outcome->status, code = status >= 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    bool passed = code == STATUS_PASSED, skipped = code == STATUS_SKIPPED;
+    size_t size;
+    char *output = read_output(slot, &size);
+    print_line(runner, passed || skipped, "%-8s %s (%.1f s, processor %.1f s)\n",
+               passed    ? "ok"
+               : skipped ? "skipped"
+                         : "FAILED",
+               slot->test->name, test_clock() - slot->started, outcome->processor);
+    if (status < 0)
+        print_line(runner, false, "    its reaper was killed, or could not start it\n");
+    else if (code < 0)
+        print_line(runner, false, "    ended by signal %d (%s)%s\n", WTERMSIG(status), strsignal(WTERMSIG(status)),
+                   WTERMSIG(status) == SIGALRM ? ": over its time limit" : "");
+    if (skipped)
+        note_reason(runner, output);
+    else if (output && (!passed || slot->test->kind == TEST_SLOW))
+        print_text(runner, false, output, size);
+    runner->passed += passed;
+    runner->skipped += skipped;
+    runner->failed += !passed && !skipped;
+    free(output);
 }
 
 static void end_test(struct runner *runner, int index) {
     struct running *slot = &runner->slots[index];
-    int status = runner->statuses[index];
-    int code = status >= 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    bool passed = code == STATUS_PASSED, skipped = code == STATUS_SKIPPED,
-         counts = runner->ended_by == 0 || status >= 0;
+    const struct outcome *outcome = &runner->outcomes[index];
     slot->reaper = 0;
-    if (counts) {
-        print_line(runner, passed, "%-8s %s (%.1f s)\n",
-                   passed    ? "ok"
-                   : skipped ? "skipped"
-                             : "FAILED",
-                   slot->test->name, now() - slot->started);
-        if (status < 0)
-            print_line(runner, false, "    its reaper was killed, or could not start it\n");
-        else if (code < 0)
-            print_line(runner, false, "    ended by signal %d (%s)%s\n", WTERMSIG(status), strsignal(WTERMSIG(status)),
-                       WTERMSIG(status) == SIGALRM ? ": over its time limit" : "");
-        if (!passed || slot->test->kind == TEST_SLOW)
-            show_output(runner, slot);
+    if (outcome->starts_program) {
+        runner->left_out++;
         runner->ended++;
-        runner->passed += passed;
-        runner->skipped += skipped;
-        runner->failed += !passed && !skipped;
+    } else if (runner->ended_by == 0 || outcome->status >= 0) {
+        report_test(runner, slot, outcome);
+        runner->ended++;
     }
     (void)close(slot->output);
     slot->test = NULL;
@@ -585,9 +800,9 @@ static void begin_test(struct runner *runner, struct test *test) {
         index++;
     struct running *slot = &runner->slots[index];
     pid_t runner_pid = getpid();
-    *slot = (struct running){.test = test, .started = now()};
+    *slot = (struct running){.test = test, .started = test_clock()};
     slot->output = memfd_create("output", MFD_CLOEXEC);
-    runner->statuses[index] = -1;
+    runner->outcomes[index] = (struct outcome){.status = -1};
     runner->begun_tests++;
     (void)fflush(NULL);
     slot->reaper = fork();
@@ -624,9 +839,9 @@ static int active_tests(const struct runner *runner) {
 }
 
 static void show_progress(struct runner *runner) {
-    if (now() >= runner->next_progress) {
-        printf("   %d of %d tests, %.0f s\n", runner->ended, runner->chosen, now() - runner->begun);
-        runner->next_progress = now() + runner->progress_seconds;
+    if (test_clock() >= runner->next_progress) {
+        printf("   %d of %d tests, %.0f s\n", runner->ended, runner->chosen, test_clock() - runner->begun);
+        runner->next_progress = test_clock() + runner->progress_seconds;
     }
     if (runner->log)
         (void)fflush(runner->log);
@@ -636,7 +851,7 @@ static void show_progress(struct runner *runner) {
 
 /* Until a child ends, a signal comes or a line of progress is due. */
 static void await_signal(struct runner *runner) {
-    double wait = runner->strays ? 0.01 : runner->next_progress - now();
+    double wait = runner->strays ? 0.01 : runner->next_progress - test_clock();
     wait = wait < 0 ? 0 : wait;
     const struct timespec timeout = {(time_t)wait, (long)((wait - (double)(time_t)wait) * 1e9)};
     int number = sigtimedwait(&runner->awaited, NULL, &timeout);
@@ -646,7 +861,7 @@ static void await_signal(struct runner *runner) {
 
 static void run_tests(struct runner *runner, struct test **tests, int jobs) {
     bool ending = false;
-    runner->begun = now();
+    runner->begun = test_clock();
     runner->next_progress = runner->begun + runner->progress_seconds;
     for (;;) {
         while (!runner->ended_by && runner->begun_tests < runner->chosen && active_tests(runner) < jobs)
@@ -682,10 +897,10 @@ static void listen_to_signals(struct runner *runner) {
 static bool start_runner(struct runner *runner) {
     const char *base = getenv("TMPDIR"), *progress = getenv("GRAY_TEST_PROGRESS");
     runner->progress_seconds = progress && atof(progress) > 0 ? atof(progress) : 15;
-    runner->statuses =
-        mmap(NULL, JOBS_MAX * sizeof *runner->statuses, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    runner->outcomes =
+        mmap(NULL, JOBS_MAX * sizeof *runner->outcomes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     (void)snprintf(runner->folder, sizeof runner->folder, "%.200s/gray-XXXXXX", base && base[0] ? base : "/tmp");
-    if (runner->statuses == MAP_FAILED || !mkdtemp(runner->folder) || chmod(runner->folder, 0711) != 0) {
+    if (runner->outcomes == MAP_FAILED || !mkdtemp(runner->folder) || chmod(runner->folder, 0711) != 0) {
         (void)fprintf(stderr, "%s: cannot be made: %s\n", runner->folder, strerror(errno));
         return false;
     }
@@ -697,6 +912,7 @@ static bool start_runner(struct runner *runner) {
 /* The status of the program; a runner that was ended by a signal ends by that signal. */
 static int finish_runner(struct runner *runner) {
     end_descendants();
+    show_skipped(runner);
     if (runner->keep && runner->failed > 0 && rmdir(runner->folder) != 0)
         print_line(runner, false, "the folders of tests that failed are in %s\n", runner->folder);
     else
@@ -750,47 +966,117 @@ static struct test **choose_tests(enum test_kind kind, const char *const *patter
     return chosen;
 }
 
+static const char help[] =
+    "run [option ...] [word ...]: runs the tests whose name or file contains a word, or whose name matches it as a\n"
+    "pattern of the shell, or all; without those of -WORD.\n"
+    "  -j N        N tests at a time (2)\n"
+    "  --fast      leaves out tests that start a program\n"
+    "  --long      the tests of make test-long\n"
+    "  --examples  the tests of this runner\n"
+    "  --list      only prints names and files\n"
+    "  --keep      keeps the folders of tests that fail\n"
+    "  --log FILE  writes all lines into FILE, and on the screen what fails and is skipped\n"
+    "  --help      prints this\n"
+    "Environment: GRAY_TEST_BINARY=FILE is the program under test; GRAY_TEST_PROGRESS=S prints progress every S "
+    "seconds;\n"
+    "GRAY_CI=1 makes a test fail that lacks what tools/setup.sh --tests installs.\n"
+    "Status: 0 nothing failed, 1 a test failed, 2 wrong usage.\n";
+
+/* What the command line asks for. */
+struct request {
+    enum test_kind kind;
+    const char **words;
+    int word_count, jobs;
+    const char *log;
+    bool list, keep, fast, help;
+};
+
+/* One word, with its value where it has one: false if it is no option and no word for a test. */
+static bool read_word(struct request *request, const char *word, const char *value, int *used) {
+    char *end;
+    *used = 1;
+    if (strcmp(word, "-j") == 0 && value) {
+        request->jobs = (int)strtol(value, &end, 10);
+        *used = 2;
+        return end != value && *end == '\0';
+    }
+    if (strcmp(word, "--log") == 0 && value) {
+        request->log = value;
+        *used = 2;
+    } else if (strcmp(word, "--long") == 0) {
+        request->kind = TEST_SLOW;
+    } else if (strcmp(word, "--examples") == 0) {
+        request->kind = TEST_EXAMPLE;
+    } else if (strcmp(word, "--list") == 0) {
+        request->list = true;
+    } else if (strcmp(word, "--keep") == 0) {
+        request->keep = true;
+    } else if (strcmp(word, "--fast") == 0) {
+        request->fast = true;
+    } else if (strcmp(word, "--help") == 0) {
+        request->help = true;
+    } else if (strncmp(word, "--", 2) == 0 || (word[0] == '-' && strlen(word) <= 2)) {
+        return false;
+    } else {
+        request->words[request->word_count++] = word;
+    }
+    return true;
+}
+
+/* The program under test is the one beside the folder of the runner (build/CONFIG/tests/run), unless the environment
+ * names another. */
+static void name_program(void) {
+    const char *named = getenv("GRAY_TEST_BINARY");
+    char beside[4096], path[4096];
+    ssize_t length = readlink("/proc/self/exe", beside, sizeof beside - 16);
+    beside[length > 0 ? length : 0] = '\0';
+    char *slash = strrchr(beside, '/');
+    if (slash)
+        (void)strcpy(slash, "/../gray");
+    if (realpath(named ? named : beside, path))
+        (void)setenv("GRAY_TEST_BINARY", path, 1);
+}
+
+static int run_chosen(struct runner *runner, const struct request *request, struct test **chosen) {
+    if (request->list) {
+        for (int i = 0; i < runner->chosen; i++)
+            printf("%s\t%s\n", chosen[i]->name, chosen[i]->file);
+        return 0;
+    }
+    if (request->log && !(runner->log = fopen(request->log, "we"))) {
+        (void)fprintf(stderr, "%s: cannot be written: %s\n", request->log, strerror(errno));
+        return 1;
+    }
+    name_program();
+    if (!start_runner(runner))
+        return 1;
+    run_tests(runner, chosen, request->jobs < 1 ? 1 : request->jobs > JOBS_MAX ? JOBS_MAX : request->jobs);
+    return finish_runner(runner);
+}
+
 int main(int argc, char **argv) {
     static struct runner runner;
-    const char **patterns = calloc((size_t)argc, sizeof *patterns), *log = NULL;
-    enum test_kind kind = TEST_FAST;
-    bool list = false;
-    int jobs = 2, pattern_count = 0, status = 0;
-    if (!patterns)
+    struct request request = {.jobs = 2, .words = calloc((size_t)argc, sizeof *request.words)};
+    if (!request.words)
         return 1;
-    for (int i = 1; i < argc; i++) {
-        if (strcmp(argv[i], "-j") == 0 && i + 1 < argc)
-            jobs = atoi(argv[++i]);
-        else if (strcmp(argv[i], "--log") == 0 && i + 1 < argc)
-            log = argv[++i];
-        else if (strcmp(argv[i], "--long") == 0)
-            kind = TEST_SLOW;
-        else if (strcmp(argv[i], "--examples") == 0)
-            kind = TEST_EXAMPLE;
-        else if (strcmp(argv[i], "--list") == 0)
-            list = true;
-        else if (strcmp(argv[i], "--keep") == 0)
-            runner.keep = true;
-        else
-            patterns[pattern_count++] = argv[i];
+    for (int i = 1, used; i < argc; i += used) {
+        if (!read_word(&request, argv[i], argv[i + 1], &used)) {
+            (void)fprintf(stderr, "run: %s is no option, or its value is missing or wrong; --help lists them\n",
+                          argv[i]);
+            return 2;
+        }
     }
-    jobs = jobs < 1 ? 1 : jobs > JOBS_MAX ? JOBS_MAX : jobs;
-    struct test **chosen = choose_tests(kind, patterns, pattern_count, &runner.chosen);
-    free(patterns);
+    if (request.help) {
+        (void)fputs(help, stdout);
+        return 0;
+    }
+    struct test **chosen = choose_tests(request.kind, request.words, request.word_count, &runner.chosen);
+    runner.keep = request.keep;
+    runner.fast = request.fast;
     runner.title = argv[0];
     runner.title_size = (size_t)(argv[argc - 1] + strlen(argv[argc - 1]) - argv[0]);
-    if (log && !list && !(runner.log = fopen(log, "we"))) {
-        (void)fprintf(stderr, "%s: cannot be written: %s\n", log, strerror(errno));
-        status = 1;
-    } else if (list) {
-        for (int i = 0; i < runner.chosen; i++)
-            printf("%s\t%s\n", chosen[i]->name, chosen[i]->file);
-    } else if (!chosen || !start_runner(&runner)) {
-        status = 1;
-    } else {
-        run_tests(&runner, chosen, jobs);
-        status = finish_runner(&runner);
-    }
+    int status = chosen ? run_chosen(&runner, &request, chosen) : 1;
+    free(request.words);
     free(chosen);
     return status;
 }

@@ -1,15 +1,17 @@
 /* A small test harness. TEST(name) registers itself; CHECK and friends report and count. A test's name is its claim.
- * Run: build/CONFIG/tests/run [-j N] [--long] [--list] [--keep] [--log FILE] [pattern ...]; the last line is
- * "N passed, N failed, N skipped". Every test runs in a process of its own with a time limit, so that a crash or a hang
- * is one failed test; its standard input is empty and no signal is ignored. Its output is shown if it does not pass. A
- * line reports the progress of the run every 15 seconds, or every GRAY_TEST_PROGRESS seconds. With --log all lines go
- * to FILE; those of passed tests and the last line go only there. */
+ * Run: build/CONFIG/tests/run [option ...] [word ...] (--help); the last line is "N passed, N failed, N skipped", and a
+ * line before it has the reasons of what was skipped. Every test runs in a process of its own with a time limit, so
+ * that a crash or a hang is one failed test; its standard input is empty and no signal is ignored. Its output is shown
+ * if it fails. A line reports the progress of the run every 15 seconds, or every GRAY_TEST_PROGRESS seconds. With --log
+ * all lines go to FILE; those of passed and skipped tests and the last line go only there. With --fast a test ends when
+ * it is about to start a program, and does not count. */
 #ifndef GRAY_TESTS_HARNESS_H
 #define GRAY_TESTS_HARNESS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 enum test_kind {
     TEST_FAST,
@@ -39,6 +41,13 @@ bool test_is_named(const char *pattern);
 
 void test_fail(const char *file, int line, const char *format, ...) __attribute__((format(printf, 3, 4)));
 _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 1, 2))); /* ends this test as skipped */
+/* Ends this test because something is missing that tools/setup.sh --tests installs: as skipped, but as failed when
+ * GRAY_CI is set and not empty. The text is the whole reason: "ffmpeg is not installed". */
+_Noreturn void test_lacks(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* The test needs these programs (names with blanks between them) on PATH. */
+void test_need_tools(const char *names);
+/* The test needs gray-mpi beside the program, and mpirun. */
+void test_need_mpi(void);
 
 #define CHECK(condition)                                                                                               \
     do {                                                                                                               \
@@ -70,9 +79,9 @@ _Noreturn void test_skip(const char *format, ...) __attribute__((format(printf, 
 /* The name of the test that runs. */
 const char *test_name(void);
 
-/* For tests with the program in a real window: skips the test if gray-gui, Xvfb, xvfb-run or xdotool is missing. From
- * then on windows are drawn without OpenGL, whose threads the thread sanitizer does not know, and the libraries of the
- * desktop may leak. Leaks of the supervisor itself are found by the tests with a simulated window. */
+/* For tests with the program in a real window, which need gray-gui, Xvfb, xvfb-run and xdotool. From then on windows
+ * are drawn without OpenGL, whose threads the thread sanitizer does not know, and the libraries of the desktop may
+ * leak. Leaks of the supervisor itself are found by the tests with a simulated window. */
 void test_need_window(void);
 
 /* A new empty folder for this test; the working directory stays the repository root. The folder is removed when the
@@ -89,6 +98,15 @@ void test_write_text(const char *path, const char *text);
 /* Whole file, NUL-terminated, from malloc; NULL when it cannot be read. */
 char *test_read_file(const char *path, size_t *size);
 
+/* The program under test, as an absolute path: GRAY_TEST_BINARY, or the one that was built with the runner. */
+const char *test_program(void);
+/* Monotonic seconds, for limits after which a test gives up. */
+double test_clock(void);
+/* Waits for a child: its exit status, or 128 + signal. */
+int test_status_of(pid_t child);
+/* Whether two files of test_folder() are there and have the same bytes. */
+bool test_same_files(const char *one, const char *other);
+
 /* Runs ./gray (of this config) in `folder` (NULL: test_folder()) with the words of `arguments` (split at blanks, no
  * quoting) and waits at most `seconds`. out and err are NUL-terminated, from malloc. */
 struct test_result {
@@ -96,9 +114,16 @@ struct test_result {
     char *out, *err;
 };
 struct test_result test_gray(const char *folder, const char *arguments);
-/* A line of the shell in test_folder(), where $gray is the program under test, ends with `status`; out.txt has what it
- * prints, `says` among it. */
+void test_free_result(struct test_result *result);
+/* Runs a line of the shell in test_folder(), where $gray is the program under test, with redirections of the whole line
+ * ("2>err.txt"); its exit status, or 128 + signal. In the line, await CONDITION waits until a command succeeds, as long
+ * as the test may take. */
+int test_run_shell(const char *line, const char *redirections);
+/* A line of the shell ends with `status`; out.txt has what it prints, `says` among it. */
 void test_shell(const char *line, int status, const char *says);
+/* A line of the shell ends with `status`; err.txt has what it prints on standard error, `says` among it, or nothing if
+ * `says` is NULL. */
+void test_shell_errors(const char *line, int status, const char *says);
 /* The same with an environment addition "NAME=value" (or NULL) and a scene text written to scene.lua first (or NULL).
  */
 struct test_result test_gray_scene(const char *scene_text, const char *arguments, const char *environment);

@@ -5,8 +5,8 @@ cd "$(dirname "$0")/.." || exit 1
 command -v clang >/dev/null && command -v llvm-cov >/dev/null && command -v llvm-profdata >/dev/null ||
     { echo "make coverage needs clang and llvm" >&2; exit 1; }
 jobs=$(nproc 2>/dev/null || echo 2)
-to=build/coverage
-make -s -j"$jobs" config=coverage build-tests all || exit 1
+to=${BUILD:-build}/coverage
+make -s -j"$jobs" config=coverage ${BUILD:+BUILD="$to"} build-tests all || exit 1
 # Every call starts from zero, unless GRAY_COVERAGE_ADD adds to existing results.
 [ -n "$GRAY_COVERAGE_ADD" ] || rm -rf $to/raw
 GRAY_TEST_BINARY=$to/gray $to/tests/run -j "$jobs" "$@" >$to/test.log 2>&1

@@ -1,25 +1,30 @@
 #!/bin/sh
-# Installs missing packages from the Debian archive of the machine, after a message: those that the build needs, and
-# optional libraries (a window (SDL2), JPEG and EXR pictures, glTF meshes, fonts). If an optional one cannot be installed,
-# it prints its name and continues. Does nothing if everything is installed. For a user who may not install packages, it
-# prints one line with the command. On systems not derived from Debian it lists the packages to install by hand.
+# Installs missing packages from the Debian archive of the machine, after a line for each group of them: those that the
+# build needs, and optional libraries (a window (SDL2), JPEG and EXR pictures, glTF meshes, fonts). If an optional one
+# cannot be installed, it prints its name and continues. Does nothing if everything is installed. For a user who may not
+# install packages, it prints one line with the command. On systems not derived from Debian it lists the packages to
+# install by hand.
 # Usage: tools/setup.sh [--minimal | --check | --tests]
 #   --minimal   only the packages that the build needs
 #   --check     only prints the missing packages; exit status 1 if the build needs one of them
-#   --tests     the packages that the build needs, and those of some tests (clang); without them these tests are skipped
+#   --tests     everything that make test can use: also clang, a screen without a monitor, MPI, readers of animations
 set -u
 mode=${1:-}
 missing=""
-optional=""
+wanted="" # lines "GROUP PACKAGE"
 need() { # need PACKAGE COMMAND...: the command shows whether it is installed
     package=$1
     shift
     "$@" >/dev/null 2>&1 || missing="$missing $package"
 }
-want() {
-    package=$1
-    shift
-    "$@" >/dev/null 2>&1 || optional="$optional $package"
+want() { # want GROUP PACKAGE COMMAND...
+    row="$1 $2"
+    shift 2
+    "$@" >/dev/null 2>&1 || wanted="$wanted$row
+"
+}
+packages_of() { # packages_of [GROUP]
+    printf '%s' "$wanted" | awk -v group="${1:-}" 'group == "" || $1 == group { printf " %s", $2 }'
 }
 
 have_lua() {
@@ -27,6 +32,10 @@ have_lua() {
         pkg-config --exists "$name" && return 0
     done
     return 1
+}
+
+have_mpi() {
+    pkg-config --exists ompi-c || pkg-config --exists mpich
 }
 
 # Headers of the C library: a compiler alone cannot build anything.
@@ -41,18 +50,29 @@ need pkg-config command -v pkg-config
 need liblua5.4-dev have_lua
 need libpng-dev pkg-config --exists libpng
 need zlib1g-dev pkg-config --exists zlib
-case $mode in
---minimal) ;;
---tests) want clang command -v clang ;;
-*)
-    want libsdl2-dev pkg-config --exists sdl2
-    want libjpeg-dev pkg-config --exists libjpeg
-    want libjansson-dev pkg-config --exists jansson
-    want libfreetype-dev pkg-config --exists freetype2
-    want libopenexr-dev pkg-config --exists OpenEXR
-    want libwebp-dev pkg-config --exists libwebpmux
-    ;;
-esac
+if [ "$mode" != --minimal ]; then
+    want window libsdl2-dev pkg-config --exists sdl2
+    want libraries libjpeg-dev pkg-config --exists libjpeg
+    want libraries libjansson-dev pkg-config --exists jansson
+    want libraries libfreetype-dev pkg-config --exists freetype2
+    want libraries libopenexr-dev pkg-config --exists OpenEXR
+    want libraries libwebp-dev pkg-config --exists libwebpmux
+fi
+if [ "$mode" = --tests ]; then
+    want compiler clang command -v clang
+    want window xvfb command -v xvfb-run
+    want window xauth command -v xauth
+    want window xdotool command -v xdotool
+    want machines libopenmpi-dev have_mpi
+    want machines openmpi-bin command -v mpirun
+    want animations ffmpeg command -v ffmpeg
+    want animations apngdis command -v apngdis
+    want tools gzip command -v gzip
+    want tools procps command -v pgrep
+    want tools mount command -v mount
+    want tools btrfs-progs command -v mkfs.btrfs
+fi
+optional=$(packages_of)
 
 [ -n "$missing$optional" ] || exit 0
 [ -n "$missing" ] || failure=0
@@ -79,30 +99,55 @@ if [ "$(id -u)" -ne 0 ]; then
     fi
 fi
 
-# The lists of a fresh machine may be absent or old: they are fetched when the first try fails.
+said=$(mktemp) || exit 1
+trap 'rm -f "$said"' EXIT
+as_installer() {
+    # shellcheck disable=SC2086
+    $as_root env DEBIAN_FRONTEND=noninteractive "$@" </dev/null >"$said" 2>&1
+}
 install() { # install SECONDS OPTION... PACKAGE...
     seconds=$1
     shift
-    # shellcheck disable=SC2086
-    $as_root env DEBIAN_FRONTEND=noninteractive timeout "$seconds" \
-        apt-get install -y --no-install-recommends "$@" >&2
+    as_installer timeout "$seconds" apt-get install -y --no-install-recommends "$@"
 }
+
+# The lists of a fresh machine may be absent or old: they are fetched when the first try fails.
 if [ -n "$missing" ]; then
     echo "installing with apt-get:$missing" >&2
     # shellcheck disable=SC2086
-    install 3600 $missing || { $as_root apt-get update >&2 && install 3600 $missing; } ||
-        { echo "the packages could not be installed:$missing" >&2; exit 1; }
+    install 3600 $missing || { as_installer apt-get update && install 3600 $missing; } ||
+        { cat "$said" >&2; echo "the packages could not be installed:$missing" >&2; exit 1; }
 fi
-if [ -n "$optional" ]; then
-    # Never waits long for a network, never fails: together, and if that is not possible one by one.
-    quick="-o Acquire::Retries=0 -o Acquire::http::Timeout=10 -o Acquire::https::Timeout=10"
+
+# Optional packages never wait long for a network and never fail: a group together, and if that is not possible one by
+# one.
+quick="-o Acquire::Retries=0 -o Acquire::http::Timeout=10 -o Acquire::https::Timeout=10"
+archive=unknown
+install_optional() { # install_optional PACKAGE...
+    [ $archive != silent ] || return 1
+    # shellcheck disable=SC2086
+    install 600 $quick "$@" && return 0
+    if [ $archive = unknown ]; then
+        # shellcheck disable=SC2086
+        as_installer timeout 60 apt-get $quick -o APT::Update::Error-Mode=any update && archive=read || archive=silent
+        # shellcheck disable=SC2086
+        install 600 $quick "$@" && archive=read && return 0
+        [ $archive = read ] || return 1
+    fi
+    for package in "$@"; do
+        # shellcheck disable=SC2086
+        install 240 $quick "$package" || echo "$package could not be installed: $without" >&2
+    done
+}
+if [ "$mode" = --tests ]; then
+    for group in $(printf '%s' "$wanted" | awk '!seen[$1]++ { print $1 }'); do
+        echo "installing with apt-get for the tests ($group):$(packages_of "$group")" >&2
+        # shellcheck disable=SC2046
+        install_optional $(packages_of "$group") || echo "the archive does not answer: $without" >&2
+    done
+elif [ -n "$optional" ]; then
     echo "installing with apt-get (optional):$optional" >&2
     # shellcheck disable=SC2086
-    if ! install 600 $quick $optional; then
-        $as_root timeout 60 apt-get $quick update >&2
-        for package in $optional; do
-            install 240 $quick "$package" || echo "$package could not be installed: $without" >&2
-        done
-    fi
+    install_optional $optional || echo "the archive does not answer: $without" >&2
 fi
 exit 0

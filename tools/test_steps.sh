@@ -2,7 +2,7 @@
 # tools/test_steps.sh PID PARENT [--long [NAME ...]]: the steps of make test. Checks the layers, compiles all sources with
 # clang, builds and runs the tests of the release build, then some of the same tests with the address and undefined
 # behaviour sanitizers. Warnings are errors, unless WERROR is set and empty. --long: all other tests. Ends with one line
-# "N passed, N failed, N skipped". A line at least every GRAY_TEST_PROGRESS seconds (15) reports the current step.
+# "N passed, N failed, N skipped". With GRAY_CI=1 what is skipped because a tool is missing fails. A line at least every GRAY_TEST_PROGRESS seconds (15) reports the current step.
 # It leads a session, which ends when process PID (tools/test.sh) has ended or has lost its parent PARENT (if not empty).
 interval=${GRAY_TEST_PROGRESS:-15}
 
@@ -60,8 +60,17 @@ jobs=$(nproc 2>/dev/null || echo 2)
 tests=$((jobs + 2)) # at once: many wait for the disk
 passed=0 failed=0 skipped=0
 
+# The folder of a configuration: what make takes for BUILD.
+folder_of() {
+    case $1 in
+    release) echo "${BUILD:-build/release}" ;;
+    *) echo "${BUILD:-build}/$1" ;;
+    esac
+}
+
+# The folder is named only if the caller has named one.
 build() {
-    step "building $1" make -s -j"$jobs" config="$1" WERROR="${WERROR-1}" build-tests all || { echo "the $1 build failed" >&2; finish 1; }
+    step "building $1" make -s -j"$jobs" config="$1" ${BUILD:+BUILD="$(folder_of "$1")"} WERROR="${WERROR-1}" build-tests all || { echo "the $1 build failed" >&2; finish 1; }
 }
 
 # Runs a test binary, which prints failures and progress; adds up its final counts.
@@ -69,11 +78,12 @@ run() {
     config=$1
     shift
     echo "== $config: $*"
-    log=build/$config/test.log
+    folder=$(folder_of "$config")
+    log=$folder/test.log
     rm -f "$log"
     ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-        TSAN_OPTIONS=halt_on_error=1 GRAY_TEST_BINARY="build/$config/gray" \
-        "build/$config/tests/run" --log "$log" -j "$tests" "$@"
+        TSAN_OPTIONS=halt_on_error=1 GRAY_TEST_BINARY="$folder/gray" \
+        "$folder/tests/run" --log "$log" -j "$tests" "$@"
     status=$?
     counts=$(tail -n 1 "$log" 2>/dev/null)
     case $counts in
@@ -94,12 +104,18 @@ check() {
     if step "$@"; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
 }
 
+# lacks TOOL WHAT: a step that cannot be done.
+lacks() {
+    echo "skipped: $2 needs $1, which is not installed"
+    if [ -n "${GRAY_CI:-}" ]; then failed=$((failed + 1)); else skipped=$((skipped + 1)); fi
+}
+
 check "checking layers" tools/layers.sh
 if command -v clang >/dev/null; then
-    check "reading the sources with clang" make -s -j"$jobs" config=clang WERROR="${WERROR-1}" read-sources
+    check "reading the sources with clang" make -s -j"$jobs" config=clang ${BUILD:+BUILD="$(folder_of clang)"} \
+        WERROR="${WERROR-1}" read-sources
 else
-    echo "skipped: reading the sources with clang, which is not installed"
-    skipped=$((skipped + 1))
+    lacks clang "reading the sources"
 fi
 build release
 build asan
@@ -121,8 +137,7 @@ else
         if command -v clang >/dev/null; then # four hours for all targets together
             check fuzzing make -s fuzz FUZZ_SECONDS="${FUZZ_SECONDS:-850}"
         else
-            echo "fuzzing needs clang"
-            skipped=$((skipped + 1))
+            lacks clang fuzzing
         fi
     fi
 fi

@@ -19,7 +19,6 @@
 static const char magic[8] = "GRAYTILE";
 
 enum {
-    FORMAT = 6,
     RECORD_DONE = 1,
     RECORD_PICTURE = 2,
     RECORD_TILE = 3,
@@ -249,7 +248,7 @@ static bool write_all(struct text_writer *writer, const struct tile_done *done, 
                       const struct tile_picture *picture, const struct film *film, struct error *error) {
     struct byte_writer output = {writer->buffer};
     put(&output, magic, sizeof magic);
-    put_u32(&output, FORMAT);
+    put_u32(&output, TILE_FILE_FORMAT);
     put_u32(&output, FILM_TILE);
     bool ok = file_output_write(&writer->file, writer->buffer, sizeof magic + 8, error);
     for (size_t i = 0; ok && i < done_count; i++)
@@ -480,7 +479,7 @@ static bool read_file(const char *path, uint64_t size, struct tile_file *out, st
     if (!input.at || memcmp(input.at, magic, sizeof magic) != 0)
         return error_set(error, ERROR_SCENE, "%s: is not a file of tiles", path);
     input.at += sizeof magic;
-    if (get_u32(&input) != FORMAT || get_u32(&input) != FILM_TILE)
+    if (get_u32(&input) != TILE_FILE_FORMAT || get_u32(&input) != FILM_TILE)
         return error_set(error, ERROR_SCENE, "%s: is a file of tiles in another format, of another version of gray",
                          path);
     reader.at = sizeof magic + 8;

@@ -11,7 +11,7 @@
 #include "base/hash.h"
 #include "film/film.h"
 
-enum { TILE_FILE_NAME = 4096, TILE_FILE_VERSION_TEXT = 32 };
+enum { TILE_FILE_NAME = 4096, TILE_FILE_VERSION_TEXT = 32, TILE_FILE_FORMAT = 6 };
 
 /* The key of a picture: equal keys, equal bytes. */
 struct tile_key {

@@ -124,7 +124,7 @@ static void talk_to_child(struct supervisor *supervisor) {
 /* An existing child continues; without one, a new one is started. */
 static void run_children(struct supervisor *supervisor) {
     struct error error;
-    supervisor->viewer.script_began = progress_clock();
+    supervisor->viewer.window.script_began = progress_clock();
     bool there = supervisor->child > 0;
     while (supervisor->next_script < supervisor->options->script_count && !supervisor->stop) {
         supervisor->broken = false;
@@ -272,10 +272,10 @@ static int run(struct supervisor *supervisor, const struct farm_transport *trans
     const struct options *options = supervisor->options;
     struct error error;
     supervisor->control = mem_share(sizeof *supervisor->control);
-    supervisor->viewer.control = supervisor->control;
-    supervisor->viewer.logs_notes = options->verbose;
-    supervisor->viewer.sends_memory = true;
-    supervisor->viewer.frames = options->script.frames.selection;
+    supervisor->viewer.window.control = supervisor->control;
+    supervisor->viewer.window.logs_notes = options->verbose;
+    supervisor->viewer.window.sends_memory = true;
+    supervisor->viewer.window.frames = options->script.frames.selection;
     output_init(&supervisor->output, options, supervisor->control);
     supervisor->output.wait_for_text = supervisor_wait_for_reader;
     supervisor->output.wait_context = supervisor;

@@ -110,7 +110,7 @@ static void answer_begin(struct supervisor *supervisor, const struct message *me
         settle(supervisor, output->pictures);
     const struct viewer_picture picture = {&output->current.request, output->current.memory.block,
                                            output->current.name};
-    supervisor->viewer.number = film ? output->pictures : supervisor->viewer.number;
+    supervisor->viewer.window.number = film ? output->pictures : supervisor->viewer.window.number;
     if (film && supervisor->window &&
         !viewer_begin(&supervisor->viewer, supervisor->window, &picture, progress_clock(), &error)) {
         output_abandon(output);
@@ -127,7 +127,7 @@ static void send_command(struct supervisor *supervisor, const struct preview_com
     forget_stop(supervisor);
     bool large = command->kind == COMMAND_PASS && command->view.width > 0;
     if (!channel_send(&supervisor->channel, MESSAGE_PREVIEW_COMMAND, command, sizeof *command,
-                      large ? supervisor->viewer.large.memory.descriptor : -1))
+                      large ? supervisor->viewer.window.large.memory.descriptor : -1))
         note_unsent(supervisor);
 }
 
@@ -193,7 +193,7 @@ void supervisor_open_window(struct supervisor *supervisor) {
     const char *script =
         options->scripts[supervisor->next_script < options->script_count ? supervisor->next_script : 0];
     struct error ignored; /* the first picture tries again, and reports the error */
-    if (!supervisor->window || supervisor->viewer.open || supervisor->deadline > 0 || supervisor->early_refused)
+    if (!supervisor->window || supervisor->viewer.window.open || supervisor->deadline > 0 || supervisor->early_refused)
         return;
     supervisor->early_refused =
         !viewer_open(&supervisor->viewer, supervisor->window, script, options->width ? (uint32_t)options->width : 640,
@@ -201,14 +201,14 @@ void supervisor_open_window(struct supervisor *supervisor) {
 }
 
 void supervisor_step_window(struct supervisor *supervisor) {
-    if (!supervisor->waits && progress_clock() - supervisor->viewer.script_began > patience_open)
+    if (!supervisor->waits && progress_clock() - supervisor->viewer.window.script_began > patience_open)
         supervisor_open_window(supervisor);
-    supervisor->viewer.waits = supervisor->waits;
+    supervisor->viewer.window.waits = supervisor->waits;
     struct viewer *viewer = &supervisor->viewer;
     int nothing = CANCEL_NOTHING;
     if (viewer->player.seeking) /* it may have changed */
         atomic_store(&supervisor->control->next_frame, viewer_next_frame(viewer));
-    while (viewer->open && supervisor->deadline <= 0) {
+    while (viewer->window.open && supervisor->deadline <= 0) {
         switch (viewer_step(viewer, progress_clock())) {
         case VIEWER_NOTHING:
             return;

@@ -67,9 +67,9 @@ static bool find_names(struct pixel_trace *pixel_trace, const struct inspected *
     for (size_t i = 0; i < count; i++)
         if (i == 0 || all[i] != all[i - 1])
             names->primitives[names->count++] = (uint32_t)all[i];
-    return world_find_paths(picture->job->world, picture->root,
-                            (struct primitive_list){names->primitives, names->count}, &pixel_trace->arena, names->paths,
-                            error);
+    return world_find_node_paths(picture->job->world, picture->root,
+                                 (struct primitive_list){names->primitives, names->count}, &pixel_trace->arena,
+                                 names->paths, error);
 }
 
 struct trace_context {

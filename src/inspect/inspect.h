@@ -6,7 +6,7 @@
 #include "render/pixel_trace.h"
 #include "render/render.h"
 #include "session/text.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 /* A picture to be rendered: its name, its world, and the tree from which the world was built. */
 struct inspected {

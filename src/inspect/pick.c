@@ -7,7 +7,7 @@
 #include "csg/csg.h"
 #include "inspect/inspect.h"
 #include "render/camera.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -73,7 +73,7 @@ static bool choose_node(struct picking *p, const struct hit *hit, int32_t up) {
     p->out->up = up;
     p->out->below = p->whole - p->depth;
     p->out->levels = p->depth - 1;
-    (void)world_path_text(p->steps, p->depth, p->out->path, sizeof p->out->path);
+    (void)node_path_text(p->steps, p->depth, p->out->node_path, sizeof p->out->node_path);
     return true;
 }
 
@@ -157,7 +157,7 @@ static bool box_node(struct picking *p, const struct node *root, struct error *e
         return box_operand(p, p->steps[p->depth - 1].node, &above) || error_no_memory(error, "the box of a node");
     }
     p->box = box_empty();
-    if (!world_visit_paths(p->world, root, join_boxes, p, error))
+    if (!world_visit_node_paths(p->world, root, join_boxes, p, error))
         return false;
     set_corners(p->out, &p->box, NULL);
     return true;
@@ -222,7 +222,7 @@ static uint32_t idle_parts(const struct material *material, const struct hit *hi
 static bool describe(struct picking *p, const struct node *root, const struct hit *hit, int32_t up,
                      struct error *error) {
     struct picked *out = p->out;
-    if (!world_visit_paths(p->world, root, find_route, p, error))
+    if (!world_visit_node_paths(p->world, root, find_route, p, error))
         return false;
     out->hit = p->route > 0;
     if (!out->hit)

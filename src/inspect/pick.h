@@ -5,14 +5,14 @@
 #include "math/affine.h"
 #include "render/render.h"
 #include "scene/change_material.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 /* The result of a click. */
 enum { PICK_PATH = 512, PICK_NAME = 64 };
 
 struct picked {
     bool hit;
-    char path[PICK_PATH]; /* the names and creation numbers from the root to the node */
+    char node_path[PICK_PATH]; /* the names and creation numbers from the root to the node */
     char name[PICK_NAME], shape[PICK_NAME], material[PICK_NAME];
     uint32_t serial, parent_serial; /* of the node, and of the one above it */
     char parent_name[PICK_NAME];

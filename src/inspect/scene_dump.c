@@ -84,7 +84,7 @@ static bool dump_primitives(void *context, uint32_t first, uint32_t count, const
                             uint32_t depth) {
     const struct dump *d = context;
     char path[4096];
-    (void)world_path_text(steps, depth, path, sizeof path);
+    (void)node_path_text(steps, depth, path, sizeof path);
     for (uint32_t i = first; i < first + count; i++)
         d->json ? dump_json(d, i, path) : dump_line(d, i, path);
     return true;
@@ -184,7 +184,7 @@ bool inspect_world(const struct inspected *picture, struct text_writer *writer, 
                           world->primitive_count, (unsigned long long)world->triangles, world->material_number_count,
                           world->light_count, sky_kind_name(world->sky.kind));
     }
-    bool ok = world_visit_paths(world, picture->root, dump_primitives, &d, error);
+    bool ok = world_visit_node_paths(world, picture->root, dump_primitives, &d, error);
     if (ok)
         dump_rest(&d);
     text_writer_flush(writer);

@@ -18,7 +18,7 @@ static bool reply_is_valid(const struct preview_reply *reply) {
     const struct picked *picked = &reply->picked;
     const char *const words[] = {picked->name, picked->shape, picked->material, picked->parent_name, reply->root_name};
     bool sound = (unsigned)reply->kind <= REPLY_OVERLAY && ends_with_zero(reply->text, sizeof reply->text) &&
-                 ends_with_zero(picked->path, sizeof picked->path);
+                 ends_with_zero(picked->node_path, sizeof picked->node_path);
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         sound = sound && ends_with_zero(words[i], PICK_NAME);
     return sound;

@@ -155,7 +155,7 @@ static bool make_outline(const struct view_overlay_scene *scene, const struct vi
     members.member = mem_alloc_zero((size_t)job->world->primitive_count + 1, 1);
     if (!members.member)
         return error_no_memory(error, "the outline of a node");
-    bool ok = world_visit_paths(job->world, scene->root, note_members, &members, error) &&
+    bool ok = world_visit_node_paths(job->world, scene->root, note_members, &members, error) &&
               (!members.no_memory || error_no_memory(error, "the outline of a node"));
     if (ok && !box_is_empty(&members.box)) {
         struct outline_job o = {

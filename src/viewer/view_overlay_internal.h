@@ -5,7 +5,7 @@
 #define GRAY_VIEWER_VIEW_OVERLAY_INTERNAL_H
 
 #include "viewer/preview_messages.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 struct view_overlay_scene {
     const struct render_job *job; /* with its world and the camera of the view */

@@ -47,66 +47,42 @@ static void forget_work(struct viewer *viewer) {
 }
 
 static void close_window(struct viewer *viewer) {
-    if (viewer->open)
-        viewer->driver->close(viewer->driver->context);
-    mem_free(viewer->display.image);
-    mem_free(viewer->display.light);
-    mem_free(viewer->display.drawn);
+    if (viewer->window.open)
+        viewer->window.driver->close(viewer->window.driver->context);
+    mem_free(viewer->window.image);
+    mem_free(viewer->window.light);
+    mem_free(viewer->window.drawn);
     viewer_destroy_overlay(viewer);
     viewer_destroy_large(viewer);
-    mem_free(viewer->display.panel.canvas.rgba);
-    viewer->display.image = viewer->display.drawn = viewer->display.panel.canvas.rgba = NULL;
-    viewer->display.light = NULL;
-    viewer->display.layout = (struct window_layout){0};
-    viewer->open = false;
-}
-
-/* The window and its state. */
-static void keep_window(struct viewer *viewer, const struct viewer *before) {
-    viewer->control = before->control;
-    viewer->number = before->number;
-    viewer->logs_notes = before->logs_notes;
-    viewer->frames = before->frames;
-    viewer->sends_memory = before->sends_memory;
-    viewer->waits = before->waits;
-    viewer->script_began = before->script_began;
-    viewer->display.image = before->display.image;
-    viewer->display.light = before->display.light;
-    viewer->display.drawn = before->display.drawn;
-    viewer->display.layout = before->display.layout;
-    viewer->display.panel = before->display.panel;
-    viewer->display.hides_hud = before->display.hides_hud;
-    viewer->display.dirty = before->display.dirty;
-    viewer->notice = before->notice;
-    viewer->large = before->large;
-    viewer->large.shown = false;
-    viewer->large.refused_width = 0;
-    viewer->overlay.kind = before->open && before->name[0] != '\0' ? before->overlay.kind : viewer->overlay.kind;
-    viewer->open = before->open;
+    mem_free(viewer->window.panel.canvas.rgba);
+    viewer->window.image = viewer->window.drawn = viewer->window.panel.canvas.rgba = NULL;
+    viewer->window.light = NULL;
+    viewer->window.layout = (struct window_layout){0};
+    viewer->window.open = false;
 }
 
 /* Images for the size of the request. */
 static bool make_images(struct viewer *viewer, struct error *error) {
     const struct picture_request *request = &viewer->request;
     size_t pixels = (size_t)request->width * request->height;
-    mem_free(viewer->display.image);
-    mem_free(viewer->display.light);
-    mem_free(viewer->display.drawn);
-    viewer->display.image = mem_alloc_zero(pixels, 3);
-    viewer->display.light = mem_alloc_zero(pixels, 3 * sizeof(float));
-    viewer->display.drawn = mem_alloc_zero(viewer->display.tiles, 1);
-    bool ok = viewer->display.image && viewer->display.light && viewer->display.drawn;
+    mem_free(viewer->window.image);
+    mem_free(viewer->window.light);
+    mem_free(viewer->window.drawn);
+    viewer->window.image = mem_alloc_zero(pixels, 3);
+    viewer->window.light = mem_alloc_zero(pixels, 3 * sizeof(float));
+    viewer->window.drawn = mem_alloc_zero(viewer->display.tiles, 1);
+    bool ok = viewer->window.image && viewer->window.light && viewer->window.drawn;
     return ok || error_no_memory(error, "the window");
 }
 
 /* The window stays open for a picture of another size. */
 static bool fit_images(struct viewer *viewer, struct error *error) {
-    const struct window_layout layout = viewer->display.layout;
+    const struct window_layout layout = viewer->window.layout;
     if (!make_images(viewer, error)) {
         close_window(viewer);
         return false;
     }
-    viewer->display.fits_window = viewer->display.dirty = true;
+    viewer->display.fits_window = viewer->window.dirty = true;
     if (!viewer_resize(viewer, layout.width, layout.height, layout.density))
         viewer_show_message(viewer, "gray: out of memory for a window of this size");
     return true;
@@ -115,16 +91,16 @@ static bool fit_images(struct viewer *viewer, struct error *error) {
 static bool open_window(struct viewer *viewer, const char *title, struct error *error) {
     if (!make_images(viewer, error))
         return false;
-    viewer->open =
-        viewer->driver->open(viewer->driver->context, viewer->request.width, viewer->request.height, title, error);
-    return viewer->open;
+    viewer->window.open = viewer->window.driver->open(viewer->window.driver->context, viewer->request.width,
+                                                      viewer->request.height, title, error);
+    return viewer->window.open;
 }
 
 bool viewer_open(struct viewer *viewer, const struct window_driver *driver, const char *title, uint32_t width,
                  uint32_t height, struct error *error) {
     const struct box unknown = box_empty();
     const struct camera camera = {.view = {0, 0, -1}, .up = {0, 1, 0}, .fov = 50};
-    viewer->driver = driver;
+    viewer->window.driver = driver;
     viewer->request = (struct picture_request){
         .full_width = width, .full_height = height, .width = width, .height = height, .camera = camera};
     (void)snprintf(viewer->request.file, sizeof viewer->request.file, "%s", title);
@@ -138,20 +114,23 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
     const struct picture_request *request = picture->request;
     struct film whole = pass_film(request, picture->block, 1);
     const struct box unknown = box_empty();
-    bool kept = (viewer->keep && viewer->open) || viewer_player_continues(viewer, request);
+    bool kept = (viewer->keep && viewer->window.open) || viewer_player_continues(viewer, request);
     bool resized = viewer->request.width != request->width || viewer->request.height != request->height;
     viewer_destroy_overlay(viewer);
     struct viewer before = *viewer;
-    *viewer = (struct viewer){.driver = driver,
+    bool was_picture = before.window.open && before.name[0] != '\0';
+    *viewer = (struct viewer){.window = before.window,
                               .request = *request,
                               .block = picture->block,
                               .script_exposure = request->settings.tone.exposure,
                               .pass = {.outdated = true, .from_coarse = true, .divide = FIRST_DIVIDE / 2, .began = now},
-                              .overlay.kind = request->settings.overlay,
+                              .overlay.kind = was_picture ? before.overlay.kind : request->settings.overlay,
                               .display = {.tiles = film_tile_count(&whole), .shown_at = now},
                               .stepped = now};
+    viewer->window.driver = driver;
+    viewer->window.large.shown = false;
+    viewer->window.large.refused_width = 0;
     mem_free(before.lights.items);
-    keep_window(viewer, &before);
     (void)snprintf(viewer->name, sizeof viewer->name, "%s", picture->name);
     fly_camera_begin(&viewer->fly_camera, &request->camera, &unknown);
     viewer->pass.view = current_view(viewer, FIRST_DIVIDE, true);
@@ -161,9 +140,9 @@ bool viewer_begin(struct viewer *viewer, const struct window_driver *driver, con
         forget_work(&before);
     viewer_player_begin(viewer, &before);
     resized = resized || viewer->display.tiles != before.display.tiles; /* before: maybe a window without picture */
-    if (viewer->open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
+    if (viewer->window.open ? resized && !fit_images(viewer, error) : !open_window(viewer, viewer->name, error))
         return false;
-    memset(viewer->display.drawn, 0, viewer->display.tiles);
+    memset(viewer->window.drawn, 0, viewer->display.tiles);
     return true;
 }
 
@@ -171,7 +150,7 @@ void viewer_end(struct viewer *viewer) {
     close_window(viewer);
     forget_work(viewer);
     mem_free(viewer->lights.items);
-    *viewer = (struct viewer){.control = viewer->control, .logs_notes = viewer->logs_notes};
+    *viewer = (struct viewer){.window = {.control = viewer->window.control, .logs_notes = viewer->window.logs_notes}};
 }
 
 void viewer_detach(struct viewer *viewer) {
@@ -187,11 +166,11 @@ void viewer_detach(struct viewer *viewer) {
 }
 
 void viewer_keep(struct viewer *viewer) {
-    viewer->keep = viewer->open;
+    viewer->keep = viewer->window.open;
 }
 
 bool viewer_skips(const struct viewer *viewer, unsigned number) {
-    return viewer->keep && number < viewer->number;
+    return viewer->keep && number < viewer->window.number;
 }
 
 void viewer_add_pixel_trace(struct viewer *viewer, const char *text) {
@@ -207,8 +186,8 @@ void viewer_show_message(struct viewer *viewer, const char *text) {
 }
 
 void viewer_show_notice(struct viewer *viewer, const char *text, bool warns) {
-    viewer->notice = (struct viewer_notice){.warns = warns};
-    (void)snprintf(viewer->notice.text, sizeof viewer->notice.text, "%.500s", text);
+    viewer->window.notice = (struct viewer_notice){.warns = warns};
+    (void)snprintf(viewer->window.notice.text, sizeof viewer->window.notice.text, "%.500s", text);
     viewer->display.figures_at = 0;
 }
 
@@ -241,8 +220,8 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
         return;
     /* Tiles that were finished before a pass was stopped may be denoised now. */
     if (path_film_parts(viewer->pass.film.record) != 0) {
-        memset(viewer->display.drawn, 0, viewer->display.tiles);
-        viewer->large.stale = viewer->large.shown;
+        memset(viewer->window.drawn, 0, viewer->display.tiles);
+        viewer->window.large.stale = viewer->window.large.shown;
     }
     viewer->pass.report = *report;
     if (viewer_plays(viewer)) {
@@ -316,7 +295,7 @@ static void begin_pass(struct viewer *viewer, uint32_t divide, bool plain, bool 
         viewer->pass.film = pass_film(&viewer->request, viewer->block, divide);
         viewer->pass.edited = viewer->edit.steps.now.count > 0 ||
                               is_different(viewer->request.settings.tone.exposure, viewer->script_exposure);
-        memset(viewer->display.drawn, 0, viewer->display.tiles);
+        memset(viewer->window.drawn, 0, viewer->display.tiles);
         if (viewer->pass.film.marked)
             memset(viewer->pass.film.marked, 0, (size_t)viewer->pass.film.width * viewer->pass.film.height);
     }
@@ -449,7 +428,8 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     viewer->stepped = now;
     if (viewer->block && fly_camera_step(&viewer->fly_camera, seconds < 0.1 ? seconds : 0.1))
         viewer_change_view(viewer);
-    while (viewer->action == VIEWER_NOTHING && !viewer->quit && viewer->driver->poll(viewer->driver->context, &event))
+    while (viewer->action == VIEWER_NOTHING && !viewer->quit &&
+           viewer->window.driver->poll(viewer->window.driver->context, &event))
         viewer_handle_event(viewer, &event);
     /* A fine pass of an outdated view is being stopped: it would show the previous view. */
     bool stale = viewer->pass.outdated && !viewer->pass.view.plain;
@@ -460,7 +440,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now) {
     viewer->action = VIEWER_NOTHING;
     if (action != VIEWER_NOTHING)
         return action;
-    if (viewer->logs_notes && viewer->note[0] != '\0')
+    if (viewer->window.logs_notes && viewer->note[0] != '\0')
         return VIEWER_LOG_NOTE;
     if (viewer->quit)
         return VIEWER_QUIT;

@@ -28,7 +28,7 @@ enum viewer_action {
     VIEWER_STOP_PASS,     /* the current pass is obsolete */
     VIEWER_SEND_COMMAND,  /* viewer->command must be sent */
     VIEWER_WRITE_PICTURE, /* the script's own picture is complete for the first time: write it */
-    VIEWER_SAVE_IMAGE,    /* the displayed image must be saved: viewer->display.image */
+    VIEWER_SAVE_IMAGE,    /* the displayed image must be saved: viewer->window.image */
     VIEWER_SAVE_CAMERA,   /* the camera must be saved */
     VIEWER_SAVE_EDITS,    /* the edits must be saved */
     VIEWER_LOG_NOTE,      /* viewer->note is a line for the log */
@@ -127,18 +127,11 @@ struct viewer_overlay {
     uint32_t side_count, side_room;
 };
 
-/* The content of the screen. */
+/* The content of the screen, of this picture. */
 struct viewer_display {
-    uint8_t *image; /* 3 bytes for each pixel of the whole part; owned */
-    float *light;   /* the same before exposure and tone; owned */
-    uint8_t *drawn; /* by tile: the state in which it is on the image, or 0; owned */
-    size_t tiles;   /* room in drawn */
-    struct window_layout layout;
-    struct panel panel; /* its canvas is owned */
-    int panel_height;   /* of the panel of the selection, in the last frame */
-    bool hides_hud;     /* nothing is drawn over the picture */
-    bool dirty;         /* the image was changed since it was shown */
-    bool hud_dirty;     /* the drawing over it is out of date */
+    size_t tiles;     /* room in window.drawn */
+    int panel_height; /* of the panel of the selection, in the last frame */
+    bool hud_dirty;   /* the drawing over the image is out of date */
     double shown_at, figures_at;
     bool fits_window; /* the window should get the size of the picture */
 };
@@ -186,9 +179,10 @@ struct viewer_notice {
     double until; /* 0: it is new */
 };
 
-/* Zero value: no window. */
-struct viewer {
+/* The window and its state: what stays from one picture to the next. */
+struct viewer_window {
     const struct window_driver *driver;
+    bool open;
     const struct control *control; /* or NULL; set by the caller, not owned */
     unsigned number;               /* of the picture among those of a run, from 1; kept by the caller */
     bool logs_notes;               /* whether to make notes; set by the caller */
@@ -196,7 +190,20 @@ struct viewer {
     double script_began;           /* when the scripts began to run; set by the caller */
     bool sends_memory;             /* whether a larger pass has sent memory; set by the caller */
     struct frame_selection frames; /* of animations; set by the caller */
-    bool open;
+    uint8_t *image;                /* 3 bytes for each pixel of the whole part; owned */
+    float *light;                  /* the same before exposure and tone; owned */
+    uint8_t *drawn;                /* by tile: the state in which it is on the image, or 0; owned */
+    bool dirty;                    /* the image was changed since it was shown */
+    struct window_layout layout;
+    struct panel panel; /* its canvas is owned */
+    bool hides_hud;     /* nothing is drawn over the picture */
+    struct viewer_notice notice;
+    struct viewer_large large;
+};
+
+/* Zero value: no window. The members after `window` begin anew with each picture. */
+struct viewer {
+    struct viewer_window window;
     bool keep; /* the scripts run again: camera and edits are kept, earlier pictures are skipped */
 
     struct picture_request request;
@@ -206,9 +213,8 @@ struct viewer {
     struct preview_reply scene; /* its root, as reported last */
     bool written;               /* the script's picture is written */
     char message[512];          /* an error, or empty */
-    struct viewer_notice notice;
-    char note[160]; /* for the log, or empty */
-    double built;   /* when the world was built; 0: already reported */
+    char note[160];             /* for the log, or empty */
+    double built;               /* when the world was built; 0: already reported */
 
     struct fly_camera fly_camera;
     bool camera_moved; /* it differs from the script's */
@@ -220,7 +226,6 @@ struct viewer {
     struct viewer_display display;
     struct viewer_input input;
     struct viewer_player player;
-    struct viewer_large large;
 
     double stepped;                 /* time of the last call of viewer_step */
     struct preview_command command; /* for VIEWER_SEND_COMMAND */

@@ -13,8 +13,8 @@
 static const double redraw_pause = 0.016, figures_pause = 0.25, notice_seconds = 5;
 
 bool viewer_resize(struct viewer *viewer, int width, int height, double density) {
-    struct window_layout *layout = &viewer->display.layout;
-    struct canvas *canvas = &viewer->display.panel.canvas;
+    struct window_layout *layout = &viewer->window.layout;
+    struct canvas *canvas = &viewer->window.panel.canvas;
     double w = viewer->request.width, h = viewer->request.height;
     if (width < 1 || height < 1)
         return true;
@@ -46,11 +46,11 @@ bool viewer_resize(struct viewer *viewer, int width, int height, double density)
 
 static void tone_pixel(const struct viewer *viewer, const struct tone *tone, size_t pixel) {
     float rgb[3];
-    memcpy(rgb, viewer->display.light + 3 * pixel, sizeof rgb);
+    memcpy(rgb, viewer->window.light + 3 * pixel, sizeof rgb);
     if (viewer->overlay.has_lines)
         overlay_blend(viewer->overlay.lines[pixel], rgb);
     for (size_t c = 0; c < 3; c++)
-        viewer->display.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
+        viewer->window.image[3 * pixel + c] = png_write_byte(tone_apply(tone, (double)rgb[c]));
 }
 
 void viewer_draw_again(struct viewer *viewer, size_t pixel) {
@@ -62,8 +62,8 @@ void viewer_redraw(struct viewer *viewer) {
     struct tone tone = picture_tone(&viewer->request);
     for (size_t i = 0; i < (size_t)viewer->request.width * viewer->request.height; i++)
         tone_pixel(viewer, &tone, i);
-    viewer->display.dirty = true;
-    viewer->large.stale = viewer->large.shown;
+    viewer->window.dirty = true;
+    viewer->window.large.stale = viewer->window.large.shown;
 }
 
 /* One pixel of the film is a square of the canvas. */
@@ -78,15 +78,15 @@ static void draw_pixel(struct viewer *viewer, const struct tone *tone, uint32_t 
         for (uint32_t u = x * divide; u < (x + 1) * divide && u < request->width; u++) {
             size_t pixel = (size_t)v * request->width + u;
             if (red) {
-                memcpy(viewer->display.image + 3 * pixel, marked_colour, 3);
+                memcpy(viewer->window.image + 3 * pixel, marked_colour, 3);
                 continue;
             }
-            memcpy(viewer->display.light + 3 * pixel, colour, 3 * sizeof *colour);
+            memcpy(viewer->window.light + 3 * pixel, colour, 3 * sizeof *colour);
             bool lined = viewer->overlay.has_lines && viewer->overlay.lines[pixel][3] < 1;
             if (!begun || lined)
                 tone_pixel(viewer, tone, pixel);
             else
-                memcpy(viewer->display.image + 3 * pixel, viewer->display.image + 3 * first, 3);
+                memcpy(viewer->window.image + 3 * pixel, viewer->window.image + 3 * first, 3);
             first = lined || begun ? first : pixel;
             begun = begun || !lined;
         }
@@ -105,7 +105,7 @@ void viewer_draw_tiles(struct viewer *viewer) {
     for (uint32_t tile = 0; tile < film_tile_count(film); tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
         bool shows = film_tile_shows(state), in_progress = state == FILM_TILE_TAKEN && !viewer->pass.view.plain;
-        if (shows ? viewer->display.drawn[tile] == state : !in_progress || !film->marked)
+        if (shows ? viewer->window.drawn[tile] == state : !in_progress || !film->marked)
             continue;
         struct film_rectangle r = film_tile_rectangle(film, tile);
         for (uint32_t y = r.y0 - film->y0; y < r.y1 - film->y0; y++) {
@@ -116,8 +116,8 @@ void viewer_draw_tiles(struct viewer *viewer) {
             }
         }
         if (shows)
-            viewer->display.drawn[tile] = state;
-        viewer->display.dirty = true;
+            viewer->window.drawn[tile] = state;
+        viewer->window.dirty = true;
     }
 }
 
@@ -130,7 +130,7 @@ static void format_count(char *out, size_t size, double count, const char *what)
 }
 
 static uint32_t building_step(const struct viewer *viewer) {
-    return viewer->control ? atomic_load_explicit(&viewer->control->build_step, memory_order_relaxed) : 0;
+    return viewer->window.control ? atomic_load_explicit(&viewer->window.control->build_step, memory_order_relaxed) : 0;
 }
 
 /* The finished share: of the picture itself by its work, with the remaining time once it is known
@@ -138,7 +138,7 @@ static uint32_t building_step(const struct viewer *viewer) {
  */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {
     const struct progress_estimate *progress_estimate =
-        viewer->control && !viewer->pass.view.plain ? &viewer->control->progress_estimate : NULL;
+        viewer->window.control && !viewer->pass.view.plain ? &viewer->window.control->progress_estimate : NULL;
     double share = progress_estimate ? progress_estimate_share(progress_estimate) : -1,
            left = progress_estimate ? progress_estimate_left(progress_estimate, now) : -1;
     char time[48];
@@ -162,12 +162,12 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
         (void)snprintf(figures->state, sizeof figures->state,
                        viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%", 100 * figures->share);
     } else if (step > 0) {
-        figures->share = 0.001 * atomic_load_explicit(&viewer->control->build_done, memory_order_relaxed);
+        figures->share = 0.001 * atomic_load_explicit(&viewer->window.control->build_done, memory_order_relaxed);
         (void)snprintf(figures->state, sizeof figures->state, "building, step %u: %.0f %%", step, 100 * figures->share);
     } else if (!viewer->block) {
-        text_duration(viewer->script_began > 0 ? now - viewer->script_began : 0, time, sizeof time);
+        text_duration(viewer->window.script_began > 0 ? now - viewer->window.script_began : 0, time, sizeof time);
         (void)snprintf(figures->state, sizeof figures->state,
-                       viewer->waits ? "waiting for a change" : "the script runs, %s", time);
+                       viewer->window.waits ? "waiting for a change" : "the script runs, %s", time);
     } else if (viewer->pass.report.threads == 0 && done == 0) {
         (void)snprintf(figures->state, sizeof figures->state, "building");
     } else if (viewer_is_enlarging(viewer)) {
@@ -212,8 +212,8 @@ static void set_title(struct viewer *viewer, const struct figures *figures) {
     (void)snprintf(title, sizeof title, "%.200s  %s  %s  %s%s%s  %s  %s  %s%s%s%.400s", viewer->request.file,
                    figures->size, figures->state, figures->frame, figures->frame[0] != '\0' ? "  " : "", figures->rays,
                    figures->triangles, figures->voxels, figures->frames, viewer->input.grabbed ? "  (Esc leaves)" : "",
-                   viewer->notice.text[0] != '\0' ? "  " : "", viewer->notice.text);
-    viewer->driver->title(viewer->driver->context, viewer->message[0] != '\0' ? viewer->message : title);
+                   viewer->window.notice.text[0] != '\0' ? "  " : "", viewer->window.notice.text);
+    viewer->window.driver->title(viewer->window.driver->context, viewer->message[0] != '\0' ? viewer->message : title);
 }
 
 static void end_notice(struct viewer_notice *notice, double now) {
@@ -226,16 +226,16 @@ static void end_notice(struct viewer_notice *notice, double now) {
 }
 
 void viewer_show(struct viewer *viewer, double now) {
-    const struct window_driver *driver = viewer->driver;
+    const struct window_driver *driver = viewer->window.driver;
     bool due = now - viewer->display.figures_at >= figures_pause;
-    if (!viewer->display.panel.canvas.rgba || viewer_awaits_frame(viewer, now) ||
+    if (!viewer->window.panel.canvas.rgba || viewer_awaits_frame(viewer, now) ||
         (!due &&
-         !((viewer->display.dirty || viewer->display.hud_dirty) && now - viewer->display.shown_at >= redraw_pause)))
+         !((viewer->window.dirty || viewer->display.hud_dirty) && now - viewer->display.shown_at >= redraw_pause)))
         return;
     bool over = due || viewer->display.hud_dirty;
-    if (viewer->large.shown && viewer->large.stale && viewer->block && viewer->pass.view.width > 0)
+    if (viewer->window.large.shown && viewer->window.large.stale && viewer->block && viewer->pass.view.width > 0)
         viewer_draw_large(viewer);
-    end_notice(&viewer->notice, now);
+    end_notice(&viewer->window.notice, now);
     if (over) {
         struct figures figures;
         viewer->display.hud_dirty = false; /* a used part of the panel requires another frame */
@@ -245,17 +245,17 @@ void viewer_show(struct viewer *viewer, double now) {
             set_title(viewer, &figures);
         viewer->display.figures_at = due ? now : viewer->display.figures_at;
     }
-    const struct window_layout *layout = &viewer->display.layout;
-    const struct viewer_large *large = &viewer->large;
-    struct window_content frame = {.picture = large->shown ? large->image : viewer->display.image,
+    const struct window_layout *layout = &viewer->window.layout;
+    const struct viewer_large *large = &viewer->window.large;
+    struct window_content frame = {.picture = large->shown ? large->image : viewer->window.image,
                                    .width = large->shown ? large->width : viewer->request.width,
                                    .height = large->shown ? large->height : viewer->request.height,
-                                   .picture_changed = viewer->display.dirty,
+                                   .picture_changed = viewer->window.dirty,
                                    .left = (int)layout->left,
                                    .top = (int)layout->top,
                                    .shown_width = (int)layout->shown_width,
                                    .shown_height = (int)layout->shown_height,
-                                   .overlay = viewer->display.panel.canvas.rgba,
+                                   .overlay = viewer->window.panel.canvas.rgba,
                                    .window_width = (uint32_t)layout->width,
                                    .window_height = (uint32_t)layout->height,
                                    .overlay_changed = over};
@@ -272,5 +272,5 @@ void viewer_show(struct viewer *viewer, double now) {
         viewer->built = 0;
     }
     viewer->display.shown_at = now;
-    viewer->display.dirty = false;
+    viewer->window.dirty = false;
 }

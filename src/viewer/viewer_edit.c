@@ -29,7 +29,7 @@ bool viewer_camera_frame(const struct viewer *viewer, struct camera_frame *frame
 
 /* Pixels of the window per pixel of the picture. */
 static double zoom(const struct viewer *viewer) {
-    return viewer->display.layout.shown_width / viewer->request.width;
+    return viewer->window.layout.shown_width / viewer->request.width;
 }
 
 bool viewer_project(const struct viewer *viewer, const struct camera_frame *frame, struct vec3 point, double *x,
@@ -37,8 +37,8 @@ bool viewer_project(const struct viewer *viewer, const struct camera_frame *fram
     double u, v;
     if (!camera_project(frame, point, &u, &v))
         return false;
-    *x = viewer->display.layout.left + (u - viewer->request.x0) * zoom(viewer);
-    *y = viewer->display.layout.top + (v - viewer->request.y0) * zoom(viewer);
+    *x = viewer->window.layout.left + (u - viewer->request.x0) * zoom(viewer);
+    *y = viewer->window.layout.top + (v - viewer->request.y0) * zoom(viewer);
     return true;
 }
 
@@ -183,9 +183,9 @@ void viewer_drag_selection(struct viewer *viewer, double dx, double dy) {
         double length = vec3_length(axis);
         if (!(length > 0))
             return;
-        map = transform_rotate_about(axis, -180 * length / viewer->display.layout.shown_height);
+        map = transform_rotate_about(axis, -180 * length / viewer->window.layout.shown_height);
     } else {
-        map = transform_scale(vec3_all(el_exp(-2 * dy / viewer->display.layout.shown_height)));
+        map = transform_scale(vec3_all(el_exp(-2 * dy / viewer->window.layout.shown_height)));
     }
     if (viewer->edit.selection.kind == SELECTED_LIGHT) {
         viewer_light_turn(viewer, &map, viewer->edit.tool == TOOL_SIZE);
@@ -207,8 +207,8 @@ void viewer_push_selection(struct viewer *viewer, double steps) {
 
 /* From pixels of the window to those of the whole picture. False: outside it. */
 static bool pixel_at(const struct viewer *viewer, double x, double y, double *u, double *v) {
-    *u = floor((x - viewer->display.layout.left) / zoom(viewer));
-    *v = floor((y - viewer->display.layout.top) / zoom(viewer));
+    *u = floor((x - viewer->window.layout.left) / zoom(viewer));
+    *v = floor((y - viewer->window.layout.top) / zoom(viewer));
     bool inside = *u >= 0 && *v >= 0 && *u < viewer->request.width && *v < viewer->request.height;
     *u += viewer->request.x0;
     *v += viewer->request.y0;
@@ -219,7 +219,7 @@ void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
     uint32_t number;
     viewer->edit.joins = false;
     viewer->display.hud_dirty = true;
-    if (!viewer->display.hides_hud && !operand && viewer_near_light(viewer, x, y, &number)) {
+    if (!viewer->window.hides_hud && !operand && viewer_near_light(viewer, x, y, &number)) {
         viewer_select_light(viewer, number);
         return;
     }
@@ -312,8 +312,8 @@ static struct picked new_picked(const struct viewer *viewer, const struct change
     pick_copy_name(picked.name, added_kind_name(change->added));
     pick_copy_name(picked.shape, added_kind_name(change->added));
     pick_copy_name(picked.material, "phong");
-    (void)snprintf(picked.path, sizeof picked.path, "%s#%u / added %s#%u", viewer->scene.root_name, change->serial,
-                   picked.name, added_number(picked.serial));
+    (void)snprintf(picked.node_path, sizeof picked.node_path, "%s#%u / added %s#%u", viewer->scene.root_name,
+                   change->serial, picked.name, added_number(picked.serial));
     for (int i = 0; i < 8; i++)
         picked.corners[i] =
             vec3_add(layout, vec3_make(i & 1 ? size : -size, i & 2 ? size : -size, i & 4 ? size : -size));
@@ -466,7 +466,7 @@ static bool free_name(const char *picture, const char *what, const char *extensi
 static void image_row(void *context, uint32_t y, uint8_t *line) {
     const struct viewer *viewer = context;
     size_t bytes = 3 * (size_t)viewer->request.width;
-    memcpy(line, viewer->display.image + y * bytes, bytes);
+    memcpy(line, viewer->window.image + y * bytes, bytes);
 }
 
 bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name,

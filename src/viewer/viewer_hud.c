@@ -18,7 +18,7 @@ static void draw_selection(struct viewer *viewer, const struct camera_frame *fra
         return;
     double x, y;
     if (viewer_project(viewer, frame, viewer_moved_point(viewer, picked->position), &x, &y))
-        canvas_ring(&viewer->display.panel.canvas, x, y, 3 * viewer->display.panel.canvas.scale, outline);
+        canvas_ring(&viewer->window.panel.canvas, x, y, 3 * viewer->window.panel.canvas.scale, outline);
     /* Large parts of an operand may be invisible: its box shows its position. */
     if (viewer_draw_outline(viewer, outline) && picked->solid == 0)
         return;
@@ -49,7 +49,7 @@ enum { MENU(LIST_MEMBER) };
 
 static void draw_menu(struct viewer *viewer) {
     static const char *const words[] = {MENU(LIST_WORD)};
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     bool used[LIST_COUNT(MENU)] = {false};
     unsigned on = (viewer->pass.halted ? 1u << MENU_STOP : 0) |
                   (viewer->overlay.kind == OVERLAY_OF_BOXES ? 1u << MENU_BOXES : 0) |
@@ -69,7 +69,7 @@ static void draw_menu(struct viewer *viewer) {
         viewer->action = VIEWER_SAVE_CAMERA;
     else if (used[MENU_SAVE_CHANGES])
         viewer->action = VIEWER_SAVE_EDITS;
-    viewer->display.hides_hud = viewer->display.hides_hud || used[MENU_HIDE];
+    viewer->window.hides_hud = viewer->window.hides_hud || used[MENU_HIDE];
     if (used[MENU_BOXES] || used[MENU_GRID])
         viewer_choose_overlay(viewer, used[MENU_BOXES] ? OVERLAY_OF_BOXES : OVERLAY_OF_GRID);
     viewer->lights.listed = viewer->lights.listed != used[MENU_LIGHTS];
@@ -78,7 +78,7 @@ static void draw_menu(struct viewer *viewer) {
 /* The animation: a row at the bottom. Its controls come first, because they also exist between two frames, when others
  * do not, and so keep their numbers. Returns its top. */
 static int draw_timeline(struct viewer *viewer, const struct figures *figures) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     struct viewer_player *player = &viewer->player;
     int scale = panel->canvas.scale, height = 15 * scale, top = panel->canvas.height - height, x = 2 * scale;
     if (player->count == 0)
@@ -115,7 +115,7 @@ enum { WORK(LIST_MEMBER) };
 
 static void draw_work(struct viewer *viewer) {
     static const char *const words[] = {WORK(LIST_WORD)};
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int scale = panel->canvas.scale, y = 17 * scale, wide = 10 * CANVAS_CELL * scale;
     bool used[LIST_COUNT(WORK)] = {false};
     panel_ground(panel, 0, 15 * scale, panel->canvas.width, 15 * scale);
@@ -146,7 +146,7 @@ static void draw_work(struct viewer *viewer) {
 }
 
 static int draw_figures(struct viewer *viewer, const struct figures *figures, int top) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale, x = 2 * scale;
     const char *const rows[] = {figures->rays, figures->triangles, figures->voxels, figures->frames};
     int count = panel->canvas.height >= 24 * line ? 4 : 0, width = 33 * CANVAS_CELL * scale;
@@ -161,7 +161,7 @@ static int draw_figures(struct viewer *viewer, const struct figures *figures, in
 
 /* The trace of a pixel, from the scrolled line on; after the end it starts again. */
 static void draw_pixel_trace(struct viewer *viewer, int top) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int scale = panel->canvas.scale, line = panel_line_height(panel), y = top + 2 * scale;
     const char *at = viewer->trace.text;
     if (at[0] == '\0')
@@ -203,12 +203,12 @@ static int draw_lines(struct panel *panel, const char *line, bool warns, int bot
 
 void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
     struct camera_frame frame;
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     panel_begin(panel);
     int bottom = panel->canvas.height;
-    if (!viewer->display.hides_hud) {
-        bool room = viewer->display.panel.canvas.height >= 24 * panel_line_height(&viewer->display.panel);
-        int top = (room && viewer->block ? 30 : 15) * viewer->display.panel.canvas.scale;
+    if (!viewer->window.hides_hud) {
+        bool room = viewer->window.panel.canvas.height >= 24 * panel_line_height(&viewer->window.panel);
+        int top = (room && viewer->block ? 30 : 15) * viewer->window.panel.canvas.scale;
         if (viewer->block && viewer_camera_frame(viewer, &frame)) {
             draw_selection(viewer, &frame);
             viewer_draw_lights(viewer, &frame);
@@ -221,10 +221,10 @@ void viewer_draw_hud(struct viewer *viewer, const struct figures *figures) {
         if (viewer->block)
             viewer_draw_selection_panel(viewer, top);
         if (viewer->block && viewer->trace.text[0] == '\0')
-            viewer_draw_light_list(viewer, below + viewer->display.panel.canvas.scale);
-        draw_pixel_trace(viewer, below + viewer->display.panel.canvas.scale);
+            viewer_draw_light_list(viewer, below + viewer->window.panel.canvas.scale);
+        draw_pixel_trace(viewer, below + viewer->window.panel.canvas.scale);
     }
     bottom = draw_lines(panel, viewer->message, true, bottom);
-    (void)draw_lines(panel, viewer->notice.text, viewer->notice.warns, bottom);
-    panel_end(&viewer->display.panel);
+    (void)draw_lines(panel, viewer->window.notice.text, viewer->window.notice.warns, bottom);
+    panel_end(&viewer->window.panel);
 }

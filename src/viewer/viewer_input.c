@@ -32,7 +32,7 @@ void viewer_render(struct viewer *viewer) {
 static void grab(struct viewer *viewer, bool on) {
     viewer->input.grabbed = on;
     memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
-    viewer->driver->grab(viewer->driver->context, on);
+    viewer->window.driver->grab(viewer->window.driver->context, on);
 }
 
 /* Keys with an effect while they are pressed. True: it was one. */
@@ -127,7 +127,7 @@ static bool handle_plain_key(struct viewer *viewer, int key) {
         viewer_set_exposure(viewer, viewer->request.settings.tone.exposure + (key == '-' ? -0.25 : 0.25));
         return true;
     case 'f':
-        viewer->driver->full_screen(viewer->driver->context);
+        viewer->window.driver->full_screen(viewer->window.driver->context);
         return true;
     case 'b':
         viewer_choose_overlay(viewer, OVERLAY_OF_BOXES);
@@ -136,7 +136,7 @@ static bool handle_plain_key(struct viewer *viewer, int key) {
         viewer_choose_overlay(viewer, OVERLAY_OF_GRID);
         return true;
     case WINDOW_TAB:
-        viewer->display.hides_hud = !viewer->display.hides_hud;
+        viewer->window.hides_hud = !viewer->window.hides_hud;
         viewer->display.hud_dirty = true;
         return true;
     default:
@@ -182,7 +182,7 @@ static bool handle_edit_key(struct viewer *viewer, const struct window_event *ev
         choose_tool(viewer, TOOL_TURN);
         return true;
     case 'p':
-        viewer_request_pixel_trace(viewer, viewer->display.panel.mouse_x, viewer->display.panel.mouse_y);
+        viewer_request_pixel_trace(viewer, viewer->window.panel.mouse_x, viewer->window.panel.mouse_y);
         return true;
     case ',':
     case '.':
@@ -248,17 +248,17 @@ static void handle_key(struct viewer *viewer, const struct window_event *event) 
 
 /* A movement over a short distance is still a click. */
 static bool is_drag(struct viewer *viewer) {
-    double x = viewer->display.panel.mouse_x - viewer->input.press_x,
-           y = viewer->display.panel.mouse_y - viewer->input.press_y;
-    double limit = 3 * viewer->display.layout.density;
+    double x = viewer->window.panel.mouse_x - viewer->input.press_x,
+           y = viewer->window.panel.mouse_y - viewer->input.press_y;
+    double limit = 3 * viewer->window.layout.density;
     viewer->input.dragged = viewer->input.dragged || x * x + y * y > limit * limit;
     return viewer->input.dragged;
 }
 
 static void handle_motion(struct viewer *viewer, const struct window_event *event) {
-    double x = event->dx / viewer->display.layout.shown_height, y = event->dy / viewer->display.layout.shown_height;
-    viewer->display.panel.mouse_x = event->x;
-    viewer->display.panel.mouse_y = event->y;
+    double x = event->dx / viewer->window.layout.shown_height, y = event->dy / viewer->window.layout.shown_height;
+    viewer->window.panel.mouse_x = event->x;
+    viewer->window.panel.mouse_y = event->y;
     viewer->display.hud_dirty = viewer->display.hud_dirty || !viewer->input.grabbed;
     if (!viewer->block || (!viewer->input.grabbed && !(viewer->input.pressed && is_drag(viewer))))
         return;
@@ -285,7 +285,7 @@ static void press_picture(struct viewer *viewer, const struct window_event *even
 }
 
 static void handle_button(struct viewer *viewer, const struct window_event *event, bool down) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     bool covered = panel_covers(panel, event->x, event->y);
     if (!viewer->input.grabbed) {
         panel->mouse_x = event->x;
@@ -338,7 +338,7 @@ void viewer_handle_event(struct viewer *viewer, const struct window_event *event
     case WINDOW_LEAVE:
         memset(viewer->fly_camera.down, 0, sizeof viewer->fly_camera.down);
         viewer->input.pressed = false;
-        viewer->display.panel.held = 0;
+        viewer->window.panel.held = 0;
         return;
     case WINDOW_SIZE:
         if (!viewer_resize(viewer, (int)event->x, (int)event->y, event->density))

@@ -14,7 +14,7 @@ enum { LARGE_PIXELS = 1 << 26 };
 
 /* The size of the picture in the window; false: it has no more pixels than the picture itself. */
 static bool wanted_size(const struct viewer *viewer, uint32_t *width, uint32_t *height) {
-    const struct window_layout *layout = &viewer->display.layout;
+    const struct window_layout *layout = &viewer->window.layout;
     if (!(layout->shown_width > viewer->request.width && layout->shown_height >= viewer->request.height) ||
         layout->shown_width * layout->shown_height > LARGE_PIXELS)
         return false;
@@ -31,15 +31,15 @@ bool viewer_large_is_outdated(const struct viewer *viewer) {
 
 bool viewer_wants_large(const struct viewer *viewer) {
     uint32_t width, height;
-    const struct viewer_large *large = &viewer->large;
+    const struct viewer_large *large = &viewer->window.large;
     return viewer->pass.result == RESULT_COMPLETE && viewer->pass.view.width == 0 && viewer->block &&
-           viewer->sends_memory && wanted_size(viewer, &width, &height) &&
+           viewer->window.sends_memory && wanted_size(viewer, &width, &height) &&
            !(large->refused_width == width && large->refused_height == height);
 }
 
 void viewer_drop_large(struct viewer *viewer) {
-    viewer->display.dirty = viewer->display.dirty || viewer->large.shown;
-    viewer->large.shown = false;
+    viewer->window.dirty = viewer->window.dirty || viewer->window.large.shown;
+    viewer->window.large.shown = false;
     if (viewer->pass.view.width == 0)
         return;
     viewer->pass.view.width = viewer->pass.view.height = 0;
@@ -48,10 +48,10 @@ void viewer_drop_large(struct viewer *viewer) {
 }
 
 void viewer_destroy_large(struct viewer *viewer) {
-    share_destroy(&viewer->large.memory);
-    mem_free(viewer->large.image);
-    mem_free(viewer->large.drawn);
-    viewer->large = (struct viewer_large){0};
+    share_destroy(&viewer->window.large.memory);
+    mem_free(viewer->window.large.image);
+    mem_free(viewer->window.large.drawn);
+    viewer->window.large = (struct viewer_large){0};
 }
 
 /* Memory for a film and an image of this size. */
@@ -74,7 +74,7 @@ static bool make_room(struct viewer_large *large, const struct picture_request *
 }
 
 bool viewer_begin_large(struct viewer *viewer) {
-    struct viewer_large *large = &viewer->large;
+    struct viewer_large *large = &viewer->window.large;
     struct picture_request request;
     uint32_t width, height;
     if (!wanted_size(viewer, &width, &height))
@@ -96,7 +96,7 @@ bool viewer_begin_large(struct viewer *viewer) {
 }
 
 static void tone_large(struct viewer *viewer, const struct tone *tone, uint32_t x, uint32_t y) {
-    const struct viewer_large *large = &viewer->large;
+    const struct viewer_large *large = &viewer->window.large;
     size_t at = (size_t)y * large->width + x;
     uint32_t u = (uint32_t)((uint64_t)x * viewer->request.width / large->width);
     uint32_t v = (uint32_t)((uint64_t)y * viewer->request.height / large->height);
@@ -110,10 +110,10 @@ static void tone_large(struct viewer *viewer, const struct tone *tone, uint32_t 
 
 /* The picture at its own resolution. */
 static void copy_picture(struct viewer *viewer) {
-    const struct viewer_large *large = &viewer->large;
+    const struct viewer_large *large = &viewer->window.large;
     uint32_t width = viewer->request.width, height = viewer->request.height;
     for (uint32_t y = 0; y < large->height; y++) {
-        const uint8_t *row = viewer->display.image + 3 * (size_t)width * ((uint64_t)y * height / large->height);
+        const uint8_t *row = viewer->window.image + 3 * (size_t)width * ((uint64_t)y * height / large->height);
         uint8_t *out = large->image + 3 * (size_t)large->width * y;
         for (uint32_t x = 0; x < large->width; x++)
             memcpy(out + 3 * (size_t)x, row + 3 * ((uint64_t)x * width / large->width), 3);
@@ -122,14 +122,14 @@ static void copy_picture(struct viewer *viewer) {
 
 void viewer_draw_large(struct viewer *viewer) {
     static const uint8_t marked_colour[3] = {255, 0, 0};
-    struct viewer_large *large = &viewer->large;
+    struct viewer_large *large = &viewer->window.large;
     const struct film *film = &viewer->pass.film;
     struct tone tone = picture_tone(&viewer->request);
     if (large->stale) {
         copy_picture(viewer);
         memset(large->drawn, 0, large->tiles);
         large->stale = false;
-        viewer->display.dirty = true;
+        viewer->window.dirty = true;
     }
     for (uint32_t tile = 0; tile < large->tiles; tile++) {
         uint8_t state = atomic_load_explicit(&film->tiles[tile], memory_order_acquire);
@@ -147,6 +147,6 @@ void viewer_draw_large(struct viewer *viewer) {
             }
         }
         large->drawn[tile] = shows ? state : large->drawn[tile];
-        viewer->display.dirty = true;
+        viewer->window.dirty = true;
     }
 }

@@ -60,10 +60,10 @@ static double largest(struct vec3 v) {
 
 /* The part of the picture beside the menu and within the margin. */
 static bool free_part(const struct viewer *viewer, double *left, double *top, double *right, double *bottom) {
-    const struct window_layout *layout = &viewer->display.layout;
-    int scale = viewer->display.panel.canvas.scale;
+    const struct window_layout *layout = &viewer->window.layout;
+    int scale = viewer->window.panel.canvas.scale;
     double margin = MARGIN * scale,
-           menu = (viewer->display.panel.canvas.height >= 24 * panel_line_height(&viewer->display.panel) ? 30 : 15);
+           menu = (viewer->window.panel.canvas.height >= 24 * panel_line_height(&viewer->window.panel) ? 30 : 15);
     *left = fmax(layout->left, 0) + margin;
     *top = fmax(layout->top, menu * scale) + margin;
     *right = fmin(layout->left + layout->shown_width, layout->width) - margin;
@@ -105,7 +105,7 @@ bool viewer_light_marker(const struct viewer *viewer, const struct camera_frame 
 
 bool viewer_near_light(const struct viewer *viewer, double x, double y, uint32_t *number) {
     struct camera_frame frame;
-    double best = MARKER * viewer->display.panel.canvas.scale, u, v;
+    double best = MARKER * viewer->window.panel.canvas.scale, u, v;
     bool found = false, seen;
     if (!viewer_camera_frame(viewer, &frame))
         return false;

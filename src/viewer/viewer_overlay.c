@@ -53,8 +53,8 @@ static void take_lines(struct viewer *viewer, const struct view_overlay_buffers 
         if (other || (!had && viewer->overlay.lines[i][3] < 1))
             viewer_draw_again(viewer, i);
     }
-    viewer->display.dirty = true;
-    viewer->large.stale = viewer->large.shown;
+    viewer->window.dirty = true;
+    viewer->window.large.stale = viewer->window.large.shown;
 }
 
 static bool add_side(struct viewer *viewer, uint32_t x, uint32_t y, bool upright) {
@@ -120,8 +120,8 @@ void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_reques
 }
 
 bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour) {
-    const struct canvas *canvas = &viewer->display.panel.canvas;
-    const struct window_layout *buffers = &viewer->display.layout;
+    const struct canvas *canvas = &viewer->window.panel.canvas;
+    const struct window_layout *buffers = &viewer->window.layout;
     double zoom = buffers->shown_width / viewer->request.width;
     int thick = canvas->scale + 1, long_side = (int)(zoom + 0.999);
     if (!viewer->overlay.outline_fresh || viewer->pass.outdated || viewer->edit.pending.count > 0 ||

@@ -23,7 +23,7 @@ void viewer_draw_edge(struct viewer *viewer, const struct camera_frame *frame, s
     for (int i = 0; i <= PIECES; i++) {
         bool has = viewer_project(viewer, frame, vec3_add_scaled(a, vec3_sub(b, a), (double)i / PIECES), &x1, &y1);
         if (has && had)
-            canvas_line(&viewer->display.panel.canvas, x0, y0, x1, y1, colour);
+            canvas_line(&viewer->window.panel.canvas, x0, y0, x1, y1, colour);
         had = has;
         x0 = x1;
         y0 = y1;
@@ -81,7 +81,7 @@ static void draw_form(struct viewer *viewer, const struct camera_frame *frame, c
 }
 
 void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame) {
-    const struct canvas *canvas = &viewer->display.panel.canvas;
+    const struct canvas *canvas = &viewer->window.panel.canvas;
     double x, y, r = 4 * canvas->scale;
     for (uint32_t i = 1; i <= viewer->lights.known; i++) {
         bool chosen = viewer->edit.selection.kind == SELECTED_LIGHT && viewer->edit.selection.light == i, seen;
@@ -106,7 +106,7 @@ void viewer_draw_lights(struct viewer *viewer, const struct camera_frame *frame)
 /* The list of the lights. */
 
 void viewer_draw_light_list(struct viewer *viewer, int top) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int scale = panel->canvas.scale, step = panel_line_height(panel) + 3 * scale, width = 24 * CANVAS_CELL * scale;
     int rows = (panel->canvas.height - top - 2 * step) / step, y = top + 2 * scale;
     if (!viewer->lights.listed || rows < 2 || 2 * width > panel->canvas.width)
@@ -144,8 +144,8 @@ static void draw_text(struct viewer *viewer, struct column *column, const char *
          text += (int)strlen(text) < column->columns ? (int)strlen(text) : column->columns) {
         char row[128];
         (void)snprintf(row, sizeof row, "%.*s", column->columns, text);
-        panel_text(&viewer->display.panel, column->x, column->y, row);
-        column->y += panel_line_height(&viewer->display.panel);
+        panel_text(&viewer->window.panel, column->x, column->y, row);
+        column->y += panel_line_height(&viewer->window.panel);
     }
 }
 
@@ -227,7 +227,7 @@ static void use_button(struct viewer *viewer, enum tool_button button) {
 
 static void draw_tools(struct viewer *viewer, struct column *column) {
     static const char *const words[] = {TOOL_BUTTONS(LIST_WORD)};
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int x = column->x;
     for (int i = 0; i < LIST_COUNT(TOOL_BUTTONS); i++) {
         enum tool_button button = (enum tool_button)i;
@@ -244,7 +244,7 @@ static void draw_tools(struct viewer *viewer, struct column *column) {
 
 /* Three sliders. */
 static bool draw_sliders(struct viewer *viewer, struct column *column, double top, struct vec3 *colour) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
     double parts[3] = {colour->x, colour->y, colour->z};
     bool changed = false;
@@ -261,7 +261,7 @@ static bool draw_sliders(struct viewer *viewer, struct column *column, double to
 
 /* One slider for a number that is no share: logarithmic, or from 1 on. */
 static bool draw_number(struct viewer *viewer, struct column *column, enum material_part part, double *number) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int width = column->columns * CANVAS_CELL * panel->canvas.scale;
     double low, high, at = part == MATERIAL_PART_SHININESS ? el_log2(1 + *number) : *number;
     material_part_range(part, &low, &high);
@@ -276,7 +276,7 @@ static bool draw_number(struct viewer *viewer, struct column *column, enum mater
 
 /* Rows of buttons, one for each part. */
 static void choose_part(struct viewer *viewer, struct column *column) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int scale = panel->canvas.scale, x = column->x, right = column->x + column->columns * CANVAS_CELL * scale;
     for (int i = 0; i < MATERIAL_PART_PARTS; i++) {
         const char *name = material_part_name((enum material_part)i);
@@ -293,7 +293,7 @@ static void choose_part(struct viewer *viewer, struct column *column) {
 }
 
 static void draw_inputs(struct viewer *viewer, struct column *column) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     char row[128];
     double numbers[3];
     if (viewer->edit.selection.picked.material_serial != 0) {
@@ -327,7 +327,7 @@ static void draw_node(struct viewer *viewer, struct column *column) {
     const struct picked *picked = &viewer->edit.selection.picked;
     struct vec3 layout = viewer_moved_point(viewer, picked->position);
     char row[256];
-    draw_text(viewer, column, picked->path);
+    draw_text(viewer, column, picked->node_path);
     (void)snprintf(row, sizeof row, "%s, %s", picked->shape, picked->material);
     draw_text(viewer, column, row);
     draw_point(viewer, column, "at", layout);
@@ -340,7 +340,7 @@ static void draw_node(struct viewer *viewer, struct column *column) {
 
 static void draw_light(struct viewer *viewer, struct column *column) {
     const struct light_info *light = viewer_light(viewer, viewer->edit.selection.light);
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     char row[128];
     if (!light)
         return;
@@ -372,7 +372,7 @@ static void draw_light(struct viewer *viewer, struct column *column) {
 
 /* In a small window there is only one line. */
 static void draw_shortly(struct viewer *viewer) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     const struct picked *picked = &viewer->edit.selection.picked;
     int scale = panel->canvas.scale, line = panel_line_height(panel), top = panel->canvas.height - line - 2 * scale;
     char row[256];
@@ -387,7 +387,7 @@ static void draw_shortly(struct viewer *viewer) {
 }
 
 void viewer_draw_selection_panel(struct viewer *viewer, int top) {
-    struct panel *panel = &viewer->display.panel;
+    struct panel *panel = &viewer->window.panel;
     int scale = panel->canvas.scale, columns = 38, width = (columns * CANVAS_CELL + 4) * scale;
     int usual = 12 * panel_line_height(panel),
         height = viewer->display.panel_height > 0 ? viewer->display.panel_height : usual;

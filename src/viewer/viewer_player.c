@@ -53,7 +53,7 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
     *player = before->player;
     if (!continues)
         *player = (struct viewer_player){.loops = frame->loops, .restarts_clock = true};
-    select_frames(player, &viewer->frames, frame);
+    select_frames(player, &viewer->window.frames, frame);
     player->playing = player->count > 1 && (player->playing || !continues);
     uint32_t last = number_of(player, player->count - 1);
     player->wanted = player->wanted > last ? last : player->wanted;
@@ -71,7 +71,7 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
 }
 
 bool viewer_player_continues(const struct viewer *before, const struct picture_request *request) {
-    return before->open && before->player.count > 0 && request->frame.number > 0 &&
+    return before->window.open && before->player.count > 0 && request->frame.number > 0 &&
            (before->player.seeking || before->keep);
 }
 

@@ -5,7 +5,7 @@
 #include "world/flatten_internal.h"
 
 #include "base/mem.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "light/light_mesh.h"
 #include "light/sky.h"
 #include "material/material_eval.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -236,8 +236,7 @@ static bool noise_frame(void *context, uint32_t index, uint8_t *rgb, struct erro
 }
 
 TEST(ffmpeg_reads_what_is_written_where_it_is_installed) {
-    if (system("ffmpeg -version >/dev/null 2>&1") != 0)
-        test_skip("ffmpeg is not installed");
+    test_need_tools("ffmpeg");
     static uint8_t wanted[3 * PIXELS];
     struct animation_source noise = pictures;
     struct error error;
@@ -273,8 +272,7 @@ TEST(ffmpeg_reads_what_is_written_where_it_is_installed) {
 
 /* apngdis composes the frames and writes them as PNG files. */
 TEST(apngdis_finds_the_bytes_of_every_frame_where_it_is_installed) {
-    if (system("command -v apngdis >/dev/null 2>&1") != 0)
-        test_skip("apngdis is not installed");
+    test_need_tools("apngdis");
     static uint8_t wanted[3 * PIXELS];
     struct animation_source sources[2] = {pictures, pictures};
     struct error error;
@@ -485,8 +483,8 @@ TEST(any_division_of_an_animation_gives_the_bytes_of_one_run) {
 
 /* The first run is stopped while it has the lock. */
 #define HELD(options)                                                                                                  \
-    "size='--size 240x160'; $gray -q -j 1 scene.lua $size -o x.gif " options " & p=$!; for i in $(seq 1000); do test " \
-    "-e x.gif.frames/lock && break; sleep 0.01; done; kill -STOP $p; "
+    "size='--size 240x160'; $gray -q -j 1 scene.lua $size -o x.gif " options " & p=$!; "                               \
+    "await 'test -e x.gif.frames/lock'; kill -STOP $p; "
 
 TEST(a_second_run_of_an_animation_is_refused_and_the_first_one_is_not_disturbed) {
     static const char refused[] = "gray: x.gif.frames: another run writes its frames into this folder\n";
@@ -520,11 +518,10 @@ TEST(jobs_share_the_folder_of_an_animation_and_a_whole_run_waits_for_none_of_the
 
 /* A stand-in that never ends. */
 TEST(a_signal_ends_the_program_that_makes_the_video_and_the_frames_are_kept) {
-    gives(
-        "mkdir bin && printf '#!/bin/sh\\ncat >/dev/null; touch %s/started\\nexec sleep 100\\n' $PWD > bin/ffmpeg && "
-        "chmod +x bin/ffmpeg && PATH=$PWD/bin:$PATH $gray scene.lua -o x.mp4 & p=$!; for i in $(seq 1000); do test -e "
-        "started && break; sleep 0.01; done; kill -TERM $p; wait $p; s=$?; test -e x.mp4 && exit 1; exit $s",
-        130, "gray: interrupted\ngray: notice: x.mp4.frames holds 12 frames\n");
+    gives("mkdir bin && printf '#!/bin/sh\\ncat >/dev/null; touch %s/started\\nexec sleep 100\\n' $PWD > bin/ffmpeg && "
+          "chmod +x bin/ffmpeg && PATH=$PWD/bin:$PATH $gray scene.lua -o x.mp4 & p=$!; await 'test -e started'; "
+          "kill -TERM $p; wait $p; s=$?; test -e x.mp4 && exit 1; exit $s",
+          130, "gray: interrupted\ngray: notice: x.mp4.frames holds 12 frames\n");
     gives("$gray -q scene.lua -o 'y.####.png' && cmp x.mp4.frames/000012.png y.0012.png", 0, "");
 }
 
@@ -540,8 +537,7 @@ TEST(a_job_array_makes_an_animation_with_the_bytes_of_one_run) {
 }
 
 TEST(ranks_make_an_animation_with_the_bytes_of_one_run) {
-    if (system("test -x $(dirname ${GRAY_TEST_BINARY:-build/release/gray})/gray-mpi && command -v mpirun >/dev/null"))
-        test_skip("there is no gray-mpi beside the program, or no mpirun");
+    test_need_mpi();
     test_write_text(test_path("farm.sh"), "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                                           "OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp} "
                                           "mpirun --oversubscribe -n 3 $gray --mpi -q -j 1 \"$@\"\n");
@@ -553,7 +549,7 @@ TEST(ranks_make_an_animation_with_the_bytes_of_one_run) {
     gives("export gray; sh farm.sh scene.lua -D FAIL=8 -o e.gif", 1, "no (frame 8)");
     gives("ls e.gif.frames | grep -c png", 0, "7");
     gives("export gray; sh farm.sh scene.lua -o r.gif --checkpoint auto --checkpoint-every 0 & p=$!; "
-          "for i in $(seq 400); do test -e r.gif.frames/000003.png && break; sleep 0.02; done; "
+          "await 'test -e r.gif.frames/000003.png || test -e r.gif'; "
           "kill -9 $(pgrep -P $p | tail -n 1); wait $p; "
           "test -e r.gif || sh farm.sh scene.lua -o r.gif --resume; cmp r.gif one.gif",
           0, "");
@@ -692,8 +688,9 @@ TEST(files_of_one_pixel_and_of_odd_sizes_are_written) {
 }
 
 TEST(videos_have_the_same_bytes_each_time) {
+    test_need_tools("ffmpeg");
     if (system("ffmpeg -hide_banner -encoders 2>/dev/null | grep -q libx264") != 0)
-        test_skip("ffmpeg with libx264 is not installed");
+        test_lacks("ffmpeg has no libx264");
     gives("$gray -q scene.lua -o x.mp4 && $gray -q scene.lua -o y.mp4 && cmp x.mp4 y.mp4", 0, "");
     gives("PATH=/nowhere $gray -q scene.lua -o z.mp4", 3, "z.mp4: there is no program ffmpeg on PATH");
     gives("ls z.mp4.frames | grep -c png", 0, "12");

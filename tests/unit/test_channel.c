@@ -203,7 +203,7 @@ TEST(replies_of_a_window_without_an_end_are_refused) {
     memset(reply.text, 'x', sizeof reply.text);
     unread(&reply, sizeof reply);
     reply = sound;
-    memset(reply.picked.path, 'x', sizeof reply.picked.path);
+    memset(reply.picked.node_path, 'x', sizeof reply.picked.node_path);
     unread(&reply, sizeof reply);
     reply = sound;
     reply.kind = (enum preview_reply_kind)1000;

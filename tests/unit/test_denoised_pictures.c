@@ -25,40 +25,21 @@
 #define PLAIN SCENE "}\n"
 #define DENOISED SCENE ", denoise = true}\n"
 
-/* A line of shell in the folder of the test; $gray is the program, err.txt takes standard error. */
-static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; } 2>err.txt", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
-}
-
-static void gives(const char *line, int status, const char *says) {
-    int got = shell(line);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    if (got != status || !said || (says ? !strstr(said, says) : said[0] != '\0'))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\"; standard error:\n%s", line, got, status,
-                  says ? says : "", said ? said : "");
-    free(said);
-}
-
 TEST(a_denoised_picture_is_another_one_with_the_same_bytes_however_it_was_made) {
     test_write_text(test_path("scene.lua"), PLAIN);
     test_write_text(test_path("field.lua"), DENOISED);
-    gives("$gray -q scene.lua -o raw.pfm && $gray -q scene.lua --denoise -o one.pfm && ! cmp -s raw.pfm one.pfm", 0,
-          NULL);
-    gives("$gray -q field.lua -j 3 -o two.pfm && cmp one.pfm two.pfm", 0, NULL);
-    gives("$gray -q scene.lua --denoise=gray --no-fork -o three.pfm && cmp one.pfm three.pfm", 0, NULL);
-    gives("for i in 1 2 3; do $gray -q scene.lua --denoise -o four.pfm --shard $i/3; done; "
-          "$gray -q merge four.pfm.*.part && cmp one.pfm four.pfm",
-          0, NULL);
-    gives("$gray -q scene.lua --denoise --aov raw,variance -o five.pfm && cmp one.pfm five.pfm && cmp raw.pfm "
-          "five.raw.pfm && test -s five.variance.pfm",
-          0, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua -o raw.pfm && $gray -q scene.lua --denoise -o one.pfm && ! cmp -s raw.pfm one.pfm", 0,
+        NULL);
+    test_shell_errors("$gray -q field.lua -j 3 -o two.pfm && cmp one.pfm two.pfm", 0, NULL);
+    test_shell_errors("$gray -q scene.lua --denoise=gray --no-fork -o three.pfm && cmp one.pfm three.pfm", 0, NULL);
+    test_shell_errors("for i in 1 2 3; do $gray -q scene.lua --denoise -o four.pfm --shard $i/3; done; "
+                      "$gray -q merge four.pfm.*.part && cmp one.pfm four.pfm",
+                      0, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua --denoise --aov raw,variance -o five.pfm && cmp one.pfm five.pfm && cmp raw.pfm "
+        "five.raw.pfm && test -s five.variance.pfm",
+        0, NULL);
 }
 
 /* Of a PFM file of that width: whether its rectangle is the other file. */
@@ -79,16 +60,18 @@ static bool is_part(const char *whole, int width, int height, int x0, int y0, co
 
 TEST(a_crop_is_denoised_as_the_whole_picture) {
     test_write_text(test_path("scene.lua"), PLAIN);
-    gives("$gray -q scene.lua --denoise -o whole.pfm && $gray -q scene.lua --denoise --crop 41,33,20,11 -o part.pfm", 0,
-          NULL);
+    test_shell_errors(
+        "$gray -q scene.lua --denoise -o whole.pfm && $gray -q scene.lua --denoise --crop 41,33,20,11 -o part.pfm", 0,
+        NULL);
     CHECK(is_part("whole.pfm", 90, 70, 41, 33, "part.pfm", 20, 11));
-    gives("for i in 1 2; do $gray -q scene.lua --denoise --crop 41,33,20,11 -o merged.pfm --shard $i/2; done; "
-          "$gray -q merge merged.pfm.*.part && cmp part.pfm merged.pfm",
-          0, NULL);
-    gives("$gray -q scene.lua --denoise --crop 41,33,20,11 --aov raw,depth -o layers.pfm && "
-          "$gray -q scene.lua --crop 41,33,20,11 --aov depth -o raw.pfm && cmp raw.pfm layers.raw.pfm && "
-          "cmp raw.depth.pfm layers.depth.pfm",
-          0, NULL);
+    test_shell_errors(
+        "for i in 1 2; do $gray -q scene.lua --denoise --crop 41,33,20,11 -o merged.pfm --shard $i/2; done; "
+        "$gray -q merge merged.pfm.*.part && cmp part.pfm merged.pfm",
+        0, NULL);
+    test_shell_errors("$gray -q scene.lua --denoise --crop 41,33,20,11 --aov raw,depth -o layers.pfm && "
+                      "$gray -q scene.lua --crop 41,33,20,11 --aov depth -o raw.pfm && cmp raw.pfm layers.raw.pfm && "
+                      "cmp raw.depth.pfm layers.depth.pfm",
+                      0, NULL);
 }
 
 /* relMSE of a picture of size x size pixels: the mean of (x - r)^2 / (r^2 + .01). */
@@ -122,9 +105,10 @@ TEST(denoising_leaves_less_than_a_fifth_of_the_error_of_glass_between_bright_and
         "1.5))})\n"
         "gr.render{node = n, file = 'g.png', width = 48, height = 48, integrator = 'path', max_depth = 6, eye = {0, 0, "
         "4}, target = {0, 0, 0}, fov = 35, background = {0, 0, 0}}\n");
-    gives("$gray -q glass.lua --spp 512 --seed 9 -o reference.pfm && for i in 1 2 3; do $gray -q glass.lua --spp 16 "
-          "--seed $i --denoise --aov raw -o $i.pfm || exit 1; done",
-          0, NULL);
+    test_shell_errors(
+        "$gray -q glass.lua --spp 512 --seed 9 -o reference.pfm && for i in 1 2 3; do $gray -q glass.lua --spp 16 "
+        "--seed $i --denoise --aov raw -o $i.pfm || exit 1; done",
+        0, NULL);
     for (int seed = 1; seed <= 3; seed++) {
         char names[2][32];
         (void)snprintf(names[0], sizeof names[0], "%d.pfm", seed);
@@ -138,23 +122,26 @@ TEST(denoising_leaves_less_than_a_fifth_of_the_error_of_glass_between_bright_and
 TEST(denoise_none_leaves_the_noise_of_a_scene_that_asks_for_denoising) {
     test_write_text(test_path("scene.lua"), PLAIN);
     test_write_text(test_path("asks.lua"), DENOISED);
-    gives("$gray -q scene.lua -o raw.pfm && $gray -q asks.lua -o denoised.pfm && ! cmp -s raw.pfm denoised.pfm && "
-          "$gray -q asks.lua --denoise=none -o none.pfm && cmp raw.pfm none.pfm",
-          0, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua -o raw.pfm && $gray -q asks.lua -o denoised.pfm && ! cmp -s raw.pfm denoised.pfm && "
+        "$gray -q asks.lua --denoise=none -o none.pfm && cmp raw.pfm none.pfm",
+        0, NULL);
 }
 
 TEST(merge_denoises_parts_with_features_unless_denoise_none_leaves_the_noise) {
     test_write_text(test_path("scene.lua"), PLAIN);
-    gives("$gray -q scene.lua -o raw.pfm && $gray -q scene.lua --denoise -o denoised.pfm && for i in 1 2; do $gray -q "
-          "scene.lua --denoise -o a.pfm --shard $i/2 && $gray -q scene.lua -o b.pfm --shard $i/2 || exit 1; done",
-          0, NULL);
-    gives("$gray merge -q a.pfm.*.part && cmp a.pfm denoised.pfm && $gray merge -q --denoise a.pfm.*.part && "
-          "cmp a.pfm denoised.pfm && $gray merge -q --denoise=none a.pfm.*.part && cmp a.pfm raw.pfm && "
-          "$gray merge -q --denoise=none b.pfm.*.part && cmp b.pfm raw.pfm && rm b.pfm",
-          0, NULL);
-    gives("$gray merge --denoise b.pfm.*.part", 2,
-          "b.pfm: its parts cannot be denoised: they were rendered without --denoise\n");
-    gives("test -e b.pfm", 1, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua -o raw.pfm && $gray -q scene.lua --denoise -o denoised.pfm && for i in 1 2; do $gray -q "
+        "scene.lua --denoise -o a.pfm --shard $i/2 && $gray -q scene.lua -o b.pfm --shard $i/2 || exit 1; done",
+        0, NULL);
+    test_shell_errors(
+        "$gray merge -q a.pfm.*.part && cmp a.pfm denoised.pfm && $gray merge -q --denoise a.pfm.*.part && "
+        "cmp a.pfm denoised.pfm && $gray merge -q --denoise=none a.pfm.*.part && cmp a.pfm raw.pfm && "
+        "$gray merge -q --denoise=none b.pfm.*.part && cmp b.pfm raw.pfm && rm b.pfm",
+        0, NULL);
+    test_shell_errors("$gray merge --denoise b.pfm.*.part", 2,
+                      "b.pfm: its parts cannot be denoised: they were rendered without --denoise\n");
+    test_shell_errors("test -e b.pfm", 1, NULL);
 }
 
 /* The line about samples is printed when rendering is over. Denoising then takes seconds. */
@@ -164,76 +151,85 @@ TEST(a_signal_ends_denoising_at_once) {
         static const char *const names[] = {"TERM", "HUP"};
         char line[512];
         (void)snprintf(line, sizeof line,
-                       "$gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; for i in "
-                       "$(seq 2000); do grep -q 'per pixel' said && break; sleep 0.01; done; kill -%s $p; wait "
+                       "$gray scene.lua --denoise --time-limit 0.01 --size 800x600 -o big.png 2>said & p=$!; "
+                       "await 'grep -q \"per pixel\" said'; kill -%s $p; wait "
                        "$p; s=$?; cat said >&2; test -e big.png && exit 1; exit $s",
                        names[i]);
-        gives(line, 130, "gray: interrupted, big.png is not written\n");
+        test_shell_errors(line, 130, "gray: interrupted, big.png is not written\n");
     }
 }
 
 /* A stand-in that never answers. What was rendered is kept, and another denoiser continues with it. */
 TEST(a_signal_ends_the_program_that_denoises_and_the_tiles_are_kept) {
     test_write_text(test_path("scene.lua"), PLAIN);
-    gives("mkdir bin tmp && printf '#!/bin/sh\\ntouch ../../started\\nexec sleep 100\\n' > bin/oidnDenoise && chmod +x "
-          "bin/oidnDenoise && $gray -q scene.lua --denoise -o one.pfm && $gray -q scene.lua -o raw.png",
-          0, NULL);
-    gives(
-        "PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray scene.lua --denoise=oidn -o a.pfm --checkpoint c & p=$!; for i in "
-        "$(seq 1000); do test -e started && break; sleep 0.01; done; kill -TERM $p; wait $p; s=$?; test -e a.pfm && "
+    test_shell_errors(
+        "mkdir bin tmp && printf '#!/bin/sh\\ntouch ../../started\\nexec sleep 100\\n' > bin/oidnDenoise && chmod +x "
+        "bin/oidnDenoise && $gray -q scene.lua --denoise -o one.pfm && $gray -q scene.lua -o raw.png",
+        0, NULL);
+    test_shell_errors(
+        "PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray scene.lua --denoise=oidn -o a.pfm --checkpoint c & p=$!; "
+        "await 'test -e started'; kill -TERM $p; wait $p; s=$?; test -e a.pfm && "
         "exit 1; rmdir tmp && exit $s",
         130,
         "gray: interrupted, a.pfm is not written\ngray: notice: c holds 9 of 9 tiles of a.pfm (--resume continues)\n");
-    gives("$gray -q scene.lua --denoise -o a.pfm --checkpoint c --resume && cmp a.pfm one.pfm && rm started && mkdir "
-          "tmp && ! test -e c",
-          0, NULL);
-    gives("PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray scene.lua --denoise=oidn -o a.png --partial & p=$!; for i in "
-          "$(seq 1000); do test -e started && break; sleep 0.01; done; kill -TERM $p; wait $p; s=$?; test -e a.png && "
-          "exit 1; cmp a.partial.png raw.png && exit $s",
-          130, "gray: notice: a.partial.png holds 9 of 9 tiles\n");
+    test_shell_errors(
+        "$gray -q scene.lua --denoise -o a.pfm --checkpoint c --resume && cmp a.pfm one.pfm && rm started && mkdir "
+        "tmp && ! test -e c",
+        0, NULL);
+    test_shell_errors("PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray scene.lua --denoise=oidn -o a.png --partial & p=$!; "
+                      "await 'test -e started'; kill -TERM $p; wait $p; s=$?; test -e a.png && "
+                      "exit 1; cmp a.partial.png raw.png && exit $s",
+                      130, "gray: notice: a.partial.png holds 9 of 9 tiles\n");
 }
 
 /* The stand-in looks at its arguments and its files, and answers with the albedo. */
 TEST(open_image_denoise_is_given_three_pictures_and_its_answer_is_the_picture) {
     test_write_text(test_path("scene.lua"), PLAIN);
-    gives("mkdir bin && printf '#!/bin/sh\\ntest \"$*\" = \"--hdr colour.pfm --alb albedo.pfm --nrm normal.pfm -o "
-          "denoised.pfm\" && head -c 2 colour.pfm | grep -q PF && test -s normal.pfm && cp albedo.pfm denoised.pfm\\n' "
-          "> bin/oidnDenoise && chmod +x bin/oidnDenoise",
-          0, NULL);
-    gives("mkdir tmp; PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray -q scene.lua --denoise=oidn -o out.pfm && rmdir tmp", 0,
-          NULL);
-    gives("$gray -q scene.lua --denoise -o own.pfm && ! cmp -s own.pfm out.pfm", 0, NULL);
-    gives("printf '#!/bin/sh\\nexit 3\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
-          "--denoise=oidn: oidnDenoise failed (status 3)\n");
-    gives("printf '#!/bin/sh\\nexit 0\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
-          "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read\n");
-    gives("printf '#!/bin/sh\necho text > denoised.pfm\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua "
-          "--denoise=oidn",
-          3, "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read\n");
-    gives("printf '#!/bin/sh\nprintf \"PF\\n1 1\\n-1.0\\n0123456789ab\" > denoised.pfm\n' > bin/oidnDenoise; "
-          "PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn",
-          3, "oidnDenoise made a picture of 1 x 1 pixels instead of ");
-    gives("PATH=$PWD/none $gray -q scene.lua --denoise=oidn", 3,
-          "--denoise=oidn: there is no program oidnDenoise on PATH\n");
-    gives("$gray --denoise=other scene.lua", 2, "--denoise needs one of auto|none|gray|oidn, not 'other'");
+    test_shell_errors(
+        "mkdir bin && printf '#!/bin/sh\\ntest \"$*\" = \"--hdr colour.pfm --alb albedo.pfm --nrm normal.pfm -o "
+        "denoised.pfm\" && head -c 2 colour.pfm | grep -q PF && test -s normal.pfm && cp albedo.pfm denoised.pfm\\n' "
+        "> bin/oidnDenoise && chmod +x bin/oidnDenoise",
+        0, NULL);
+    test_shell_errors(
+        "mkdir tmp; PATH=$PWD/bin:$PATH TMPDIR=$PWD/tmp $gray -q scene.lua --denoise=oidn -o out.pfm && rmdir tmp", 0,
+        NULL);
+    test_shell_errors("$gray -q scene.lua --denoise -o own.pfm && ! cmp -s own.pfm out.pfm", 0, NULL);
+    test_shell_errors(
+        "printf '#!/bin/sh\\nexit 3\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
+        "--denoise=oidn: oidnDenoise failed (status 3)\n");
+    test_shell_errors(
+        "printf '#!/bin/sh\\nexit 0\\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn", 3,
+        "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read\n");
+    test_shell_errors(
+        "printf '#!/bin/sh\necho text > denoised.pfm\n' > bin/oidnDenoise; PATH=$PWD/bin:$PATH $gray -q scene.lua "
+        "--denoise=oidn",
+        3, "--denoise=oidn: oidnDenoise wrote no PFM file that gray can read\n");
+    test_shell_errors(
+        "printf '#!/bin/sh\nprintf \"PF\\n1 1\\n-1.0\\n0123456789ab\" > denoised.pfm\n' > bin/oidnDenoise; "
+        "PATH=$PWD/bin:$PATH $gray -q scene.lua --denoise=oidn",
+        3, "oidnDenoise made a picture of 1 x 1 pixels instead of ");
+    test_shell_errors("PATH=$PWD/none $gray -q scene.lua --denoise=oidn", 3,
+                      "--denoise=oidn: there is no program oidnDenoise on PATH\n");
+    test_shell_errors("$gray --denoise=other scene.lua", 2, "--denoise needs one of auto|none|gray|oidn, not 'other'");
 }
 
 TEST(the_raw_layer_is_the_picture_without_denoising_in_every_format) {
     test_write_text(test_path("scene.lua"), PLAIN);
-    gives("for e in png pfm hdr; do for more in --seed=1 --deep '--exposure=1 --tone=filmic' --colour=classic; do "
-          "$gray -q scene.lua --denoise --aov raw $more -o layers.$e && $gray -q scene.lua $more -o noisy.$e && "
-          "cmp noisy.$e layers.raw.$e || exit 9; done; done; ! cmp -s layers.png layers.raw.png",
-          0, NULL);
+    test_shell_errors(
+        "for e in png pfm hdr; do for more in --seed=1 --deep '--exposure=1 --tone=filmic' --colour=classic; do "
+        "$gray -q scene.lua --denoise --aov raw $more -o layers.$e && $gray -q scene.lua $more -o noisy.$e && "
+        "cmp noisy.$e layers.raw.$e || exit 9; done; done; ! cmp -s layers.png layers.raw.png",
+        0, NULL);
 }
 
 TEST(layers_of_light_belong_to_the_path_tracer) {
     test_write_text(test_path("scene.lua"), PLAIN);
-    gives("$gray -q scene.lua --aov all && ls out.transmission_indirect.png out.raw.png out.depth.png >ls.txt", 0,
-          NULL);
+    test_shell_errors(
+        "$gray -q scene.lua --aov all && ls out.transmission_indirect.png out.raw.png out.depth.png >ls.txt", 0, NULL);
     test_write_text(test_path("whitted.lua"), "gr.render(gr.node('r'), 'w.png', 4, 4, {0, 0, 5}, {0, 0, -1}, "
                                               "{0, 1, 0}, 40, {1, 1, 1}, {})\n");
-    gives("$gray -q whitted.lua --aov all && test ! -e w.raw.png && test -e w.lights.png", 0, NULL);
-    gives("$gray -q whitted.lua --aov emission", 2, "--aov emission is a layer of --integrator path only");
+    test_shell_errors("$gray -q whitted.lua --aov all && test ! -e w.raw.png && test -e w.lights.png", 0, NULL);
+    test_shell_errors("$gray -q whitted.lua --aov emission", 2, "--aov emission is a layer of --integrator path only");
 }
 
 static const float *layer(const struct stage *s, enum aov aov, size_t at) {

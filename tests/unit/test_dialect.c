@@ -22,15 +22,6 @@ static void gives(const char *arguments, int status, const char *text) {
     free(result.err);
 }
 
-static bool same_files(const char *a, const char *b) {
-    size_t a_size = 0, b_size = 0;
-    char *a_bytes = test_read_file(test_path(a), &a_size), *b_bytes = test_read_file(test_path(b), &b_size);
-    bool same = a_bytes && b_bytes && a_size == b_size && memcmp(a_bytes, b_bytes, a_size) == 0;
-    free(a_bytes);
-    free(b_bytes);
-    return same;
-}
-
 static void check_pixel(const struct test_picture *picture, uint32_t x, uint32_t y, int r, int g, int b) {
     const uint8_t *p = picture->rgb + 3 * ((size_t)y * picture->width + x);
     if (abs(p[0] - r) > 1 || abs(p[1] - g) > 1 || abs(p[2] - b) > 1)
@@ -50,7 +41,7 @@ TEST(a_dialect_defines_functions_methods_and_an_end) {
                  "b:set_material(gr.material({1, 0.5, 0}))\n" RENDER("r", "b.png"));
     gives("-q b.lua", 0, "");
     gives("-q --dialect d.lua a.lua", 0, "");
-    CHECK(same_files("a.png", "b.png"));
+    CHECK(test_same_files("a.png", "b.png"));
     gives("-q a.lua", 1, "a.lua:1: ");
 }
 
@@ -61,7 +52,7 @@ TEST(a_method_of_a_dialect_may_use_the_one_it_replaces) {
     put("b.lua", "local b = gr.sphere('ball') b:translate(0.5, 0, 0)\n" RENDER("b", "b.png"));
     gives("-q --dialect ./d.lua a.lua", 0, "");
     gives("-q b.lua", 0, "");
-    CHECK(same_files("a.png", "b.png"));
+    CHECK(test_same_files("a.png", "b.png"));
 }
 
 TEST(a_dialect_of_camel_case_gives_the_bytes_of_the_scene_in_gr) {
@@ -73,7 +64,7 @@ TEST(a_dialect_of_camel_case_gives_the_bytes_of_the_scene_in_gr) {
         "s:add_child(gr.nh_sphere('b', {0, 0, 0}, 1):set_material(gr.material({1, .5, .2})))\n" RENDER("s", "b.png"));
     gives("-q --dialect camel a.lua", 0, "");
     gives("-q b.lua", 0, "");
-    CHECK(same_files("a.png", "b.png"));
+    CHECK(test_same_files("a.png", "b.png"));
 }
 
 TEST(a_dialect_of_icesl_renders_what_is_emitted) {
@@ -165,7 +156,7 @@ TEST(a_dialect_belongs_to_the_scene_in_parts_and_checkpoints) {
     gives("-q --dialect d.lua --shard 1/2 a.lua -o p.png", 0, "");
     gives("-q --dialect d.lua --shard 2/2 a.lua -o p.png", 0, "");
     gives("-q merge p.png.1-of-2.part p.png.2-of-2.part", 0, "");
-    CHECK(same_files("whole.png", "p.png"));
+    CHECK(test_same_files("whole.png", "p.png"));
     put("d.lua", "radius = 1.5\n");
     CHECK(unlink(test_path("p.png")) == 0 && unlink(test_path("p.png.2-of-2.part")) == 0);
     gives("-q --dialect d.lua --shard 2/2 a.lua -o p.png", 0, "");

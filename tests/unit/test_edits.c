@@ -404,7 +404,7 @@ TEST(picking_returns_the_path_of_a_node_its_position_and_its_box) {
     const struct render_job job = {
         .world = &s.world, .camera = s.camera, .settings = s.settings, .width = 100, .height = 80};
     CHECK(pick_at(&job, s.root, (struct pick_query){50, 40, 0}, &picked, &s.error));
-    CHECK(picked.hit && strstr(picked.path, "/ group#") && strstr(picked.path, "/ ball#"));
+    CHECK(picked.hit && strstr(picked.node_path, "/ group#") && strstr(picked.node_path, "/ ball#"));
     CHECK_TEXT(picked.name, "ball");
     CHECK_TEXT(picked.shape, "sphere");
     CHECK(picked.serial == ball->serial && picked.parent_serial == group->serial && picked.levels == 2);

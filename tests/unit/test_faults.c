@@ -60,14 +60,7 @@ TEST(processes_that_count_apart_do_not_fail_for_each_other) {
 }
 
 static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/debug/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; }", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    return test_run_shell(line, "");
 }
 
 static char *content(const char *name, size_t *size) {

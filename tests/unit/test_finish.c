@@ -270,21 +270,6 @@ TEST(the_mask_is_blue_noise) {
     "  ambient = {.2, .2, .2}, background = {.3, .5, 2}"
 #define FINISHED SCENE ", bloom = .5, vignette = .4, gray = true, edges = true, fxaa = true, dither = 'blue'}\n"
 
-static void gives(const char *line, int status, const char *says) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    CHECK(asprintf(&command, "cd '%s' && gray='%s' && { %s; } 2>err.txt", test_folder(), binary, line) > 0);
-    int how = system(command);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    int got = WIFEXITED(how) ? WEXITSTATUS(how) : -1;
-    if (got != status || !said || (says && !strstr(said, says)) || (!says && said[0] != '\0'))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\"; standard error:\n%s", line, got, status,
-                  says ? says : "", said ? said : "");
-    free(said);
-    free(command);
-}
-
 static void put_scenes(void) {
     test_write_text(test_path("scene.lua"), FINISHED);
     test_write_text(test_path("plain.lua"), SCENE "}\n");
@@ -292,33 +277,37 @@ static void put_scenes(void) {
 
 TEST(options_and_fields_of_finishing_are_the_same) {
     put_scenes();
-    gives("$gray -q scene.lua && mv out.png a.png && $gray -q plain.lua --bloom .5 --vignette .4 --gray --edges --fxaa "
-          "--dither blue && cmp out.png a.png && $gray -q plain.lua && ! cmp -s out.png a.png",
-          0, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua && mv out.png a.png && $gray -q plain.lua --bloom .5 --vignette .4 --gray --edges --fxaa "
+        "--dither blue && cmp out.png a.png && $gray -q plain.lua && ! cmp -s out.png a.png",
+        0, NULL);
     static const char *const each[] = {"--bloom .5", "--vignette .4", "--gray",          "--edges",
                                        "--fxaa",     "--dither blue", "--dither ordered"};
     for (size_t i = 0; i < sizeof each / sizeof *each; i++) {
         char line[200];
         (void)snprintf(line, sizeof line, "$gray -q plain.lua %s -o b.png && ! cmp -s out.png b.png", each[i]);
-        gives(line, 0, NULL);
+        test_shell_errors(line, 0, NULL);
     }
 }
 
 TEST(finished_pictures_of_shards_and_of_resumed_runs_have_the_bytes_of_one_run) {
     put_scenes();
-    gives("$gray -q scene.lua -o one.png", 0, NULL);
-    gives("for i in 1 2 3; do $gray -q scene.lua --shard $i/3; done; $gray merge out.png.*.part && cmp out.png one.png",
-          0, NULL);
-    gives("$gray -q -j 1 scene.lua -ss 12 -full -o two.png", 0, NULL);
-    gives("$gray -q -j 1 scene.lua -ss 12 -full --checkpoint c --checkpoint-every 0 & p=$!; sleep 0.2; kill -9 $p; "
-          "wait $p 2>/dev/null; $gray -q scene.lua -ss 12 -full --checkpoint c --resume && cmp out.png two.png",
-          0, NULL);
+    test_shell_errors("$gray -q scene.lua -o one.png", 0, NULL);
+    test_shell_errors(
+        "for i in 1 2 3; do $gray -q scene.lua --shard $i/3; done; $gray merge out.png.*.part && cmp out.png one.png",
+        0, NULL);
+    test_shell_errors("$gray -q -j 1 scene.lua -ss 12 -full -o two.png", 0, NULL);
+    test_shell_errors(
+        "$gray -q -j 1 scene.lua -ss 12 -full --checkpoint c --checkpoint-every 0 & p=$!; sleep 0.2; kill -9 $p; "
+        "wait $p 2>/dev/null; $gray -q scene.lua -ss 12 -full --checkpoint c --resume && cmp out.png two.png",
+        0, NULL);
 }
 
 TEST(parts_of_other_finishing_do_not_belong_together) {
     put_scenes();
-    gives("$gray -q plain.lua --shard 1/2 && $gray -q plain.lua --fxaa --shard 2/2; $gray merge out.png.*.part", 1,
-          "it was made with different options");
+    test_shell_errors(
+        "$gray -q plain.lua --shard 1/2 && $gray -q plain.lua --fxaa --shard 2/2; $gray merge out.png.*.part", 1,
+        "it was made with different options");
 }
 
 /* The rows of a PNG file that belong to a rectangle of a larger one. */
@@ -333,7 +322,7 @@ static void expect_cut(const char *part, const char *whole, uint32_t x0, uint32_
 
 TEST(a_finished_crop_is_exactly_that_part_of_the_finished_picture) {
     put_scenes();
-    gives(
+    test_shell_errors(
         "$gray -q scene.lua -write-pre-aa p- -write-aa-targets t- && $gray -q scene.lua --crop 61,30,90,99 -o cut.png "
         "-write-pre-aa p- -write-aa-targets t-",
         0, NULL);
@@ -344,12 +333,14 @@ TEST(a_finished_crop_is_exactly_that_part_of_the_finished_picture) {
 
 TEST(floats_have_finished_light_but_no_edges_and_no_dithering) {
     put_scenes();
-    gives("$gray -q scene.lua -o a.pfm && $gray -q plain.lua --bloom .5 --vignette .4 --gray -o b.pfm && cmp a.pfm "
-          "b.pfm && $gray -q plain.lua -o c.pfm && ! cmp -s a.pfm c.pfm && $gray -q plain.lua --edges --fxaa --dither "
-          "ordered -o d.pfm && cmp c.pfm d.pfm",
-          0, NULL);
-    gives("$gray -q plain.lua --deep -o a.png && $gray -q plain.lua --deep --dither blue -o b.png && cmp a.png b.png",
-          0, NULL);
+    test_shell_errors(
+        "$gray -q scene.lua -o a.pfm && $gray -q plain.lua --bloom .5 --vignette .4 --gray -o b.pfm && cmp a.pfm "
+        "b.pfm && $gray -q plain.lua -o c.pfm && ! cmp -s a.pfm c.pfm && $gray -q plain.lua --edges --fxaa --dither "
+        "ordered -o d.pfm && cmp c.pfm d.pfm",
+        0, NULL);
+    test_shell_errors(
+        "$gray -q plain.lua --deep -o a.png && $gray -q plain.lua --deep --dither blue -o b.png && cmp a.png b.png", 0,
+        NULL);
 }
 
 /* The colours of a PFM file, top row first. */
@@ -368,7 +359,7 @@ TEST(finishing_of_path_traced_pictures_is_that_of_their_light) {
     struct error error;
     const struct finish finish = {.bloom = 0.5, .vignette = 0.4};
     put_scenes();
-    gives(
+    test_shell_errors(
         "o='-q plain.lua --integrator path --spp 4 --size 90x70'; for d in '' --denoise; do $gray $o $d -o a$d.pfm && "
         "$gray $o $d --bloom .5 --vignette .4 -o b$d.pfm || exit 1; done; $gray $o -o a.png && for f in edges fxaa "
         "gray "
@@ -400,8 +391,8 @@ TEST(wrong_values_of_finishing_are_refused) {
         char text[2048], line[200];
         (void)snprintf(text, sizeof text, SCENE ", %s}\n", wrong[i].field);
         test_write_text(test_path("scene.lua"), text);
-        gives("$gray -q scene.lua", 1, wrong[i].says);
+        test_shell_errors("$gray -q scene.lua", 1, wrong[i].says);
         (void)snprintf(line, sizeof line, "$gray -q scene.lua %s", wrong[i].option);
-        gives(line, 2, wrong[i].says_of_option);
+        test_shell_errors(line, 2, wrong[i].says_of_option);
     }
 }

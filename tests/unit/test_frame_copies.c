@@ -400,8 +400,7 @@ TEST(copies_of_frames_are_in_streams_shards_and_resumed_runs) {
 }
 
 TEST(ranks_copy_frames_that_show_the_same) {
-    if (system("test -x $(dirname ${GRAY_TEST_BINARY:-build/release/gray})/gray-mpi && command -v mpirun >/dev/null"))
-        test_skip("there is no gray-mpi beside the program, or no mpirun");
+    test_need_mpi();
     gives(held,
           "$gray -q scene.lua -D forced=true -o one.gif && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
           "OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp} mpirun --oversubscribe -n 3 $gray --mpi --verbose -j 1 "

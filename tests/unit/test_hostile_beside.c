@@ -402,7 +402,7 @@ static int save(bool (*one)(const struct viewer *, const struct file_target *, c
     struct error error;
     viewer.request.width = 4;
     viewer.request.height = 3;
-    viewer.display.image = image;
+    viewer.window.image = image;
     (void)snprintf(viewer.request.file, sizeof viewer.request.file, "x.png");
     for (int i = 0; i < 3; i++) {
         if (!one(&viewer, &picture, name, &error))

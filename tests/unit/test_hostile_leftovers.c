@@ -152,9 +152,9 @@ TEST_LONG(hostile_a_run_removes_what_was_left_more_than_a_minute_ago) {
     test_write_text(path, scene);
     free(scene);
     (void)snprintf(path, sizeof path, "%s/%s", in, LEFT);
-    CHECK_EQ_INT(attack_wait(attack_start(in, "-q scene.lua", 0), 60), 0);
+    CHECK_EQ_INT(attack_wait(attack_start(in, "-q scene.lua", 0), ATTACK_PATIENCE), 0);
     CHECK(access(path, F_OK) == 0);
     attack_rest(63);
-    CHECK_EQ_INT(attack_wait(attack_start(in, "-q scene.lua", 0), 60), 0);
+    CHECK_EQ_INT(attack_wait(attack_start(in, "-q scene.lua", 0), ATTACK_PATIENCE), 0);
     CHECK(access(path, F_OK) != 0);
 }

@@ -123,9 +123,9 @@ static bool starts_process(unsigned long long number) {
         ;
 }
 
-/* The next stop of a traced program, at most 20 s later; false: it has ended. */
+/* The next stop of a traced program; false: it has ended. */
 static bool next_stop(pid_t program, int *how) {
-    double limit = attack_now() + 20;
+    double limit = attack_now() + ATTACK_PATIENCE;
     for (int i = 0;; i++) {
         pid_t found = waitpid(program, how, WNOHANG);
         if (found == program)
@@ -134,7 +134,7 @@ static bool next_stop(pid_t program, int *how) {
             return false;
         if (attack_now() > limit) { /* it waits inside a call */
             (void)kill(program, SIGKILL);
-            limit += 20;
+            limit += ATTACK_PATIENCE;
         }
         if (i > 200)
             attack_rest(0.0002);
@@ -412,7 +412,7 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
         fflush(stdout);
         pid_t thrower = fork();
         if (thrower == 0) {
-            for (double limit = attack_now() + 60; attack_now() < limit;)
+            for (double limit = attack_now() + ATTACK_PATIENCE; attack_now() < limit;)
                 change(race, RENAME_NOREPLACE); /* never over a file that gray has restored: such a loss would look like
                                                 a fault of gray */
             _exit(0);
@@ -420,7 +420,7 @@ TEST(hostile_folders_that_change_all_the_time_let_no_picture_out) {
         (void)snprintf(words, sizeof words, "-q -j 1 %s scene.lua", race->options ? race->options : "");
         int status = 0;
         for (double limit = attack_now() + 2.5; status >= 0 && status <= 3 && attack_now() < limit;)
-            status = attack_wait(attack_start(in, words, user), 20);
+            status = attack_wait(attack_start(in, words, user), ATTACK_PATIENCE);
         (void)kill(thrower, SIGKILL);
         (void)waitpid(thrower, NULL, 0);
         struct attack_tree new = attack_tree(root);
@@ -449,7 +449,7 @@ static void check_later(uid_t user) {
         attack_set_clock(120);
         _exit(file_output_check(&target, &error) ? 0 : 1);
     }
-    CHECK_EQ_INT(attack_wait(child, 60), 0);
+    CHECK_EQ_INT(attack_wait(child, ATTACK_PATIENCE), 0);
 }
 
 static void kill_before_any_call(void) {
@@ -540,7 +540,7 @@ TEST(hostile_several_runs_that_write_one_picture_leave_it_whole) {
             programs[i] = attack_start(in, "-q -j 1 scene.lua", 0);
         int worst = 0;
         for (int i = 0; i < 4; i++) {
-            int status = attack_wait(programs[i], 100);
+            int status = attack_wait(programs[i], ATTACK_PATIENCE);
             worst = status < 0 || status > worst ? status : worst;
         }
         struct attack_tree tree = attack_tree(root);

@@ -9,13 +9,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 static void free_result(struct test_result *result) {
-    free(result->out);
-    free(result->err);
+    test_free_result(result);
 }
 
 /* --- internal values --- */
@@ -65,17 +65,8 @@ TEST(hostile_no_value_of_the_program_reaches_a_script_after_its_end) {
 
 #define PICTURE(name) "gr.render(gr.sphere('s'), '" name "', 8, 8, {0,0,5}, {0,0,-1}, {0,1,0}, 40, {1,1,1}, {})\n"
 
-/* Runs a shell line in the test's folder, where $gray is the program; the status, or 128 and the signal. */
 static int shell(const char *line) {
-    char *text = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    if (!realpath(named ? named : "build/release/gray", binary) ||
-        asprintf(&text, "cd '%s' && gray='%s' && { %s\n}", test_folder(), binary, line) < 0)
-        exit(1);
-    (void)fflush(stdout);
-    int status = system(text);
-    free(text);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return test_run_shell(line, "");
 }
 
 static const char *const lost = "gray: standard output cannot be written\n";
@@ -576,12 +567,11 @@ TEST(hostile_words_of_a_scene_and_of_the_program_keep_their_order) {
 }
 
 /* Runs the program in the test's folder with standard error in a pipe that nobody reads; returns the status after a
- * signal, or -1 if it has not ended in a minute. */
+ * signal. */
 static int status_unread(const char *script, int signal_number) {
-    char binary[4096];
+    const char *binary = test_program();
     int ends[2], how = 0;
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) && pipe(ends) == 0);
+    CHECK(pipe(ends) == 0);
     (void)fflush(stdout);
     pid_t child = fork();
     if (child == 0) {
@@ -595,19 +585,14 @@ static int status_unread(const char *script, int signal_number) {
         _exit(98);
     }
     (void)close(ends[1]);
+    /* The script has begun to write; it soon waits. */
+    for (int size = 0; size == 0 && ioctl(ends[0], FIONREAD, &size) == 0;)
+        (void)usleep(10000);
     (void)usleep(700000);
     (void)kill(child, signal_number);
-    pid_t gone = 0;
-    for (int i = 0; i < 600 && gone == 0; i++) {
-        (void)usleep(100000);
-        gone = waitpid(child, &how, WNOHANG);
-    }
-    if (gone == 0) {
-        (void)kill(child, SIGKILL);
-        (void)waitpid(child, &how, 0);
-    }
+    CHECK(waitpid(child, &how, 0) == child);
     (void)close(ends[0]);
-    return gone == child && WIFEXITED(how) ? WEXITSTATUS(how) : -1;
+    return WIFEXITED(how) ? WEXITSTATUS(how) : -1;
 }
 
 TEST(hostile_a_reader_of_standard_error_that_stops_does_not_hold_the_program) {

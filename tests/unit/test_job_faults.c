@@ -198,7 +198,7 @@ static bool answer(enum question question, const struct render_request *request,
             if (!pick_at(job, request->root, (struct pick_query){pixel % SIDE + 0.5, pixel / SIDE + 0.5, pixel % 3 - 1},
                          &picked, error))
                 return false;
-            add_text(sum, picked.path);
+            add_text(sum, picked.node_path);
         }
         return true;
     case ASK_SHARD:

@@ -97,7 +97,7 @@ static char *some_exr(size_t *size) {
     char path[512];
     struct error error = {0};
     if (!exr_can_write())
-        test_skip("this build has no OpenEXR");
+        test_lacks("gray was built without OpenEXR");
     (void)snprintf(path, sizeof path, "%s/a.exr", test_folder());
     CHECK(exr_write(FILE_AT(path), WIDTH, HEIGHT, light_row, NULL, &error));
     return test_read_file(path, size);

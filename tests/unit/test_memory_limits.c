@@ -236,7 +236,7 @@ TEST(a_gltf_file_that_needs_more_memory_than_allowed_is_one_line) {
         {"sparse.glb", MESH},  {"external.gltf", MESH}, {"claimed.gltf", MESH},
     };
     if (strcmp(gltf_library(), "none") == 0)
-        test_skip("this build reads no glTF");
+        test_lacks("gray was built without jansson");
     guard();
     write_repeated("values.gltf", "{\"asset\":{\"version\":\"2.0\"},\"x\":[0", ",0", 2000000, "]}");
     write_repeated("objects.gltf", "{\"asset\":{\"version\":\"2.0\"},\"x\":[0", ",{}", 300000, "]}");
@@ -318,7 +318,7 @@ TEST(a_picture_file_that_needs_more_memory_than_allowed_is_one_line) {
 TEST(an_exr_that_needs_more_memory_than_allowed_is_one_line) {
     static const struct attack attacks[] = {{"large.exr", IMAGE}, {"sparse.exr", IMAGE}};
     if (!exr_can_write())
-        test_skip("this build reads no EXR");
+        test_lacks("gray was built without OpenEXR");
     struct test_result made = test_gray_scene(
         "gr.render{node=gr.node'n', file='large.exr', width=1200, height=1000, eye={0,0,9}}", "-q scene.lua", NULL);
     CHECK_EQ_INT(made.status, 0);
@@ -337,7 +337,7 @@ TEST(an_exr_that_needs_more_memory_than_allowed_is_one_line) {
 TEST(a_font_that_needs_more_memory_than_allowed_is_one_line) {
     static const struct attack attacks[] = {{"sparse.ttf", "gr.glyphs('%s', '')"}};
     if (!FONTS_READABLE)
-        test_skip("this build reads no fonts");
+        test_lacks("gray was built without FreeType");
     guard();
     write_sparse("sparse.ttf", "\0\1\0\0", 4, 200 << 20);
     check_attacks(attacks, 1);
@@ -558,7 +558,7 @@ TEST(a_picture_that_needs_more_memory_than_allowed_is_one_line) {
 TEST(files_of_tiles_of_any_size_take_the_memory_of_one_record) {
     static const char text[] = "gr.render{node=gr.node('n'), file='o.png', width=8, height=8, eye={0, 0, 9}}";
     static const char *const names[] = {"o.png.checkpoint", "o.png.1-of-2.part"};
-    static const uint8_t head[16] = {'G', 'R', 'A', 'Y', 'T', 'I', 'L', 'E', 1, 0, 0, 0, FILM_TILE};
+    static const uint8_t head[16] = {'G', 'R', 'A', 'Y', 'T', 'I', 'L', 'E', TILE_FILE_FORMAT, 0, 0, 0, FILM_TILE};
     guard();
     long without = memory_of_nothing();
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

@@ -29,46 +29,21 @@
 #define ONE SCENE "picture('out.png', 330, 250)\n"
 #define THREE SCENE "picture('a.png', 130, 70)\npicture('b.png', 90, 110)\npicture('c.png', 100, 100)\n"
 
-/* A line of shell in the folder of the test; $gray is the program, err.txt takes standard error of the whole line. */
+/* err.txt takes standard error of the whole line. */
 static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && gray='%s' && { %s; } 2>err.txt", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
-}
-
-static char *path_in(const char *name) {
-    char *path = NULL;
-    if (asprintf(&path, "%s/%s", test_folder(), name) < 0)
-        exit(1);
-    return path;
+    return test_run_shell(line, "2>err.txt");
 }
 
 static void put(const char *name, const char *text) {
-    char *path = path_in(name);
-    test_write_text(path, text);
-    free(path);
+    test_write_text(test_path(name), text);
 }
 
 static bool exists(const char *name) {
-    char *path = path_in(name);
-    bool there = access(path, F_OK) == 0;
-    free(path);
-    return there;
+    return access(test_path(name), F_OK) == 0;
 }
 
 static void gives(const char *line, int status, const char *says) {
-    int got = shell(line);
-    char *path = path_in("err.txt"), *said = test_read_file(path, NULL);
-    if (got != status || !said || (says && !strstr(said, says)) || (!says && said[0] != '\0'))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\"; standard error:\n%s", line, got, status,
-                  says ? says : "", said ? said : "");
-    free(said);
-    free(path);
+    test_shell_errors(line, status, says);
 }
 
 TEST(any_number_of_shards_gives_the_bytes_of_one_run) {
@@ -110,14 +85,13 @@ TEST(shards_have_tiles_of_about_the_same_number) {
     for (int i = 1; i <= 5; i++) {
         char name[64];
         (void)snprintf(name, sizeof name, "out.png.%d-of-5.part", i);
-        char *path = path_in(name);
+        const char *path = test_path(name);
         struct tile_file file;
         struct error error;
         CHECK(tile_file_read(path, &file, &error));
         min = file.tiles < min ? file.tiles : min;
         max = file.tiles > max ? file.tiles : max;
         tile_file_close(&file);
-        free(path);
     }
     CHECK_EQ_INT(min, 17); /* 11 x 8 tiles */
     CHECK_EQ_INT(max, 18);
@@ -205,11 +179,8 @@ TEST(killed_runs_of_paths_that_go_on_give_the_bytes_of_one_run) {
 
 /* Starts the program in the folder of the test; its words as in test_gray. */
 static pid_t start_gray(const char *arguments) {
-    char binary[4096], *words[64], *copy = strdup(arguments);
-    const char *named = getenv("GRAY_TEST_BINARY");
-    int count = 0;
-    CHECK(copy && realpath(named ? named : "build/release/gray", binary) != NULL);
-    words[count++] = binary;
+    char *words[64] = {(char *)(uintptr_t)test_program()}, *copy = strdup(arguments);
+    int count = 1;
     for (char *word = strtok(copy, " "); word && count < 63; word = strtok(NULL, " "))
         words[count++] = word;
     words[count] = NULL;
@@ -217,29 +188,11 @@ static pid_t start_gray(const char *arguments) {
     pid_t child = fork();
     if (child == 0) {
         if (chdir(test_folder()) == 0)
-            (void)execv(binary, words);
+            (void)execv(words[0], words);
         _exit(127);
     }
     free(copy);
     return child;
-}
-
-static double clock_now(void) {
-    struct timespec time;
-    (void)clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-static bool same_files(const char *a, const char *b) {
-    char *path_a = path_in(a), *path_b = path_in(b);
-    size_t size_a = 0, size_b = 1;
-    char *bytes_a = test_read_file(path_a, &size_a), *bytes_b = test_read_file(path_b, &size_b);
-    bool same = bytes_a && bytes_b && size_a == size_b && memcmp(bytes_a, bytes_b, size_a) == 0;
-    free(bytes_a);
-    free(bytes_b);
-    free(path_a);
-    free(path_b);
-    return same;
 }
 
 /* The moment of a kill: before anything was saved, between tiles, or after the picture was written. */
@@ -253,7 +206,7 @@ struct kills {
  * on this machine; updated. */
 static void kill_once(double moment, double *length, struct kills *kills) {
     int how;
-    double at = moment * *length, begun = clock_now();
+    double at = moment * *length, begun = test_clock();
     const struct timespec pause = {(time_t)at, (long)((at - floor(at)) * 1e9)};
     pid_t run = start_gray(KILLED_RUN);
     (void)nanosleep(&pause, NULL);
@@ -263,17 +216,17 @@ static void kill_once(double moment, double *length, struct kills *kills) {
     kills->before += !done && !kept;
     kills->among += !done && kept;
     kills->after += done;
-    double resumed = clock_now(), rest = done ? 0 : kept ? 1 - moment : 1;
+    double resumed = test_clock(), rest = done ? 0 : kept ? 1 - moment : 1;
     run = start_gray(KILLED_RUN);
     (void)waitpid(run, &how, 0);
     CHECK(WIFEXITED(how) && WEXITSTATUS(how) == 0);
     /* A run that starts again takes the complete duration; one that ended before the kill took less than the moment. */
     if (rest == 1)
-        *length += 0.2 * (clock_now() - resumed - *length);
+        *length += 0.2 * (test_clock() - resumed - *length);
     else if (done)
         *length += 0.05 * ((resumed - begun) * 0.8 - *length);
     else
-        *length += 0.05 * ((resumed - begun + clock_now() - resumed) * 0.95 - *length);
+        *length += 0.05 * ((resumed - begun + test_clock() - resumed) * 0.95 - *length);
 }
 
 TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
@@ -281,17 +234,15 @@ TEST_LONG(a_thousand_killed_runs_that_go_on_give_the_bytes_of_one_run) {
     struct kills kills = {0};
     put("scene.lua", SCENE "picture('out.png', 200, 160)\n");
     gives("$gray scene.lua -q -full -ss 5 -j 1 -o whole.png", 0, NULL);
-    double length = clock_now();
+    double length = test_clock();
     gives("$gray " KILLED_RUN " && rm out.png", 0, NULL);
-    length = clock_now() - length;
+    length = test_clock() - length;
     for (int i = 0; i < 1000; i++) {
         kill_once(test_uniform(&random, 0, 1), &length, &kills);
-        if (!same_files("out.png", "whole.png"))
+        if (!test_same_files("out.png", "whole.png"))
             test_fail(__FILE__, __LINE__, "picture %d differs", i);
         CHECK(!exists("c.tiles"));
-        char *path = path_in("out.png");
-        (void)unlink(path);
-        free(path);
+        (void)unlink(test_path("out.png"));
     }
     CHECK(shell(NO_LEFTOVERS) == 0);
     fprintf(stderr, "    %d kills came before a checkpoint was there, %d among the tiles, %d after the picture\n",
@@ -305,11 +256,10 @@ static void check_one_hash(const char *options) {
     CHECK(folder && asprintf(&line, "bash %s/tools/one_hash.sh $gray %s/tests/scripts/one_hash.lua %s >table.txt",
                              folder, folder, options) > 0);
     gives(line, 0, NULL);
-    char *path = path_in("table.txt"), *table = test_read_file(path, NULL);
+    char *table = test_read_file(test_path("table.txt"), NULL);
     fprintf(stderr, "%s", table ? table : "");
     CHECK(table && strstr(table, "\none hash: "));
     free(table);
-    free(path);
     free(line);
     free(folder);
 }
@@ -326,7 +276,7 @@ static void leave_checkpoint(const char *options) {
     char line[1024];
     (void)snprintf(line, sizeof line,
                    "$gray scene.lua -q -full -ss 9 --checkpoint c.tiles --checkpoint-every 0 %s & pid=$!; "
-                   "for i in $(seq 400); do test -s c.tiles && break; sleep 0.02; done; kill -9 $pid; wait $pid; "
+                   "await 'test -s c.tiles'; kill -9 $pid; wait $pid; "
                    "test -s c.tiles",
                    options);
     CHECK_EQ_INT(shell(line), 0);
@@ -379,7 +329,7 @@ TEST(a_signal_writes_the_checkpoint_at_once) {
     gives("for moment in " MOMENTS "; do "
           "$gray scene.lua -full -ss 24 --checkpoint c.tiles --checkpoint-every 1000 2>said.txt & pid=$!; "
           "sleep $moment; kill -USR1 $pid; "
-          "for i in $(seq 20); do test -s c.tiles && break; sleep 0.02; done; "
+          "for i in $(seq 50); do test -s c.tiles && break; sleep 0.02; done; "
           "test -s c.tiles && written=1; kill -TERM $pid; wait $pid; status=$?; test $written && break; rm -f c.tiles; "
           "done; cat said.txt >&2; test $written && exit $status",
           130, "c.tiles holds ");
@@ -477,8 +427,7 @@ TEST(a_part_that_is_there_is_not_made_again) {
 /* Several processes, if the program with MPI was built and mpirun is installed. */
 
 static void need_mpi(void) {
-    if (shell("test -x $(dirname $gray)/gray-mpi && command -v mpirun >out.txt") != 0)
-        test_skip("there is no gray-mpi beside the program, or no mpirun");
+    test_need_mpi();
     put("farm.sh", "ranks=$1; shift\n"
                    "exec env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
                    "OMPI_MCA_btl_vader_backing_directory=${TMPDIR:-/tmp} "
@@ -548,8 +497,8 @@ TEST(a_rank_that_falls_out_is_done_without) {
     gives("$gray scene.lua -q -full -ss 6 -o whole.png", 0, NULL);
     /* The newest render process is killed, not its supervisor, which returns its tiles. */
     gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 & pid=$!; "
-          "for i in $(seq 400); do c=; for p in $(pgrep -P $pid); do c=$(pgrep -P $p | head -n 1); done; "
-          "test $c && break; sleep 0.02; done; sleep 0.2; kill -9 $c; wait $pid; status=$?; "
+          "await 'c=; for p in $(pgrep -P $pid); do c=$(pgrep -P $p | head -n 1); done; test \"$c\"'; sleep 0.2; kill "
+          "-9 $c; wait $pid; status=$?; "
           "cmp out.png whole.png && exit 0; exit $status",
           0, "");
 }
@@ -559,7 +508,7 @@ TEST(a_farm_that_was_killed_goes_on_from_its_checkpoint) {
     put("scene.lua", ONE);
     gives("$gray scene.lua -q -full -ss 6 -o whole.png", 0, NULL);
     gives("export gray; sh farm.sh 3 scene.lua -full -ss 6 --checkpoint c.tiles --checkpoint-every 0 & pid=$!; "
-          "for i in $(seq 400); do test -s c.tiles && break; sleep 0.02; done; kill -9 $(pgrep -P $pid | tail -n 1); "
+          "await 'test -s c.tiles'; kill -9 $(pgrep -P $pid | tail -n 1); "
           "wait $pid; test -e out.png || test -s c.tiles",
           0, "");
     gives("export gray; test -e out.png || sh farm.sh 2 scene.lua -full -ss 6 --checkpoint c.tiles --resume; "
@@ -612,7 +561,7 @@ static struct tile_picture picture_of(const struct film *film) {
 
 TEST(a_file_of_tiles_gives_back_what_was_put_in) {
     struct test_random random = {7};
-    char *path = path_in("x.tiles");
+    const char *path = test_path("x.tiles");
     for (int round = 0; round < 20; round++) {
         uint32_t x0 = (uint32_t)test_uniform(&random, 0, 70), y0 = (uint32_t)test_uniform(&random, 0, 70);
         uint32_t width = (uint32_t)test_uniform(&random, 1, 140), height = (uint32_t)test_uniform(&random, 1, 90);
@@ -667,7 +616,6 @@ TEST(a_file_of_tiles_gives_back_what_was_put_in) {
         free(film.pixels);
         free(back.pixels);
     }
-    free(path);
 }
 
 /* Whether a file of these bytes is read; if not, the error names it. */
@@ -691,11 +639,11 @@ TEST(a_file_of_tiles_that_is_cut_or_changed_anywhere_is_refused) {
     size_t size;
     for (uint32_t i = 0; i < film_tile_count(&film); i++)
         atomic_store(&film.tiles[i], FILM_TILE_DONE);
-    char *path = path_in("x.tiles");
+    const char *path = test_path("x.tiles");
     CHECK(tile_file_write(FILE_AT(path), NULL, 0, &picture, &film, &error));
     char *bytes = test_read_file(path, &size);
     int accepted = 0;
-    char *changed = path_in("y.tiles");
+    const char *changed = test_path("y.tiles");
     for (size_t cut = 0; cut < size; cut += cut < 2000 ? 1 : 97)
         accepted += is_taken(changed, bytes, cut);
     for (size_t at = 0; at < size; at += at < 2000 || at + 200 > size ? 1 : 31) {
@@ -706,6 +654,4 @@ TEST(a_file_of_tiles_that_is_cut_or_changed_anywhere_is_refused) {
     CHECK_EQ_INT(accepted, 0);
     free(bytes);
     free(film.pixels);
-    free(changed);
-    free(path);
 }

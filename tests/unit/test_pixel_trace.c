@@ -4,7 +4,7 @@
 #include "render/pixel_trace.h"
 #include "tests/harness.h"
 #include "tests/stage.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -221,7 +221,7 @@ TEST(a_pixel_trace_that_is_too_long_counts_what_it_leaves_out) {
 static bool note_path(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     char(*texts)[200] = context;
     for (uint32_t i = first; i < first + count; i++)
-        (void)world_path_text(steps, depth, texts[i], sizeof texts[i]);
+        (void)node_path_text(steps, depth, texts[i], sizeof texts[i]);
     return true;
 }
 
@@ -239,7 +239,7 @@ TEST(paths_to_instances_name_every_node_and_index_on_them) {
     other->placements = positions;
     CHECK(stage_build(&s, s.root, ACCEL_AUTO));
     char texts[16][200] = {{0}};
-    CHECK(world_visit_paths(&s.world, s.root, note_path, texts, &s.error));
+    CHECK(world_visit_node_paths(&s.world, s.root, note_path, texts, &s.error));
     CHECK_EQ_INT(s.world.primitive_count, 12); /* ball, its cube, the cube; four times */
     char expected[200];
     (void)snprintf(expected, sizeof expected, "%s#0 / %s#1 / %s#3 / %s#4", s.root->name, pair->name, ball->name,
@@ -250,13 +250,13 @@ TEST(paths_to_instances_name_every_node_and_index_on_them) {
     CHECK_TEXT(texts[11], expected);
     const uint32_t wanted[2] = {1, 11};
     const char *found[2];
-    CHECK(world_find_paths(&s.world, s.root, (struct primitive_list){wanted, 2}, &s.arena, found, &s.error));
+    CHECK(world_find_node_paths(&s.world, s.root, (struct primitive_list){wanted, 2}, &s.arena, found, &s.error));
     CHECK_TEXT(found[0], texts[1]);
     CHECK_TEXT(found[1], texts[11]);
     /* A short buffer truncates the text; the full length is returned. */
     struct scene_step step = {s.root, 0};
     char small[4];
-    CHECK_EQ_INT(world_path_text(&step, 1, small, sizeof small), strlen(s.root->name) + 2);
+    CHECK_EQ_INT(node_path_text(&step, 1, small, sizeof small), strlen(s.root->name) + 2);
     CHECK_EQ_INT(strlen(small), 3);
     stage_end(&s);
 }
@@ -264,8 +264,7 @@ TEST(paths_to_instances_name_every_node_and_index_on_them) {
 /* --- the program --- */
 
 static void release(struct test_result result) {
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 /* Compares "x":X,"y":Y ... "bytes":[R,G,B] of the first `count` traces with the picture; lines printed by the scene and

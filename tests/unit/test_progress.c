@@ -269,8 +269,7 @@ static struct test_result statistics_of(const char *arguments) {
 }
 
 static void release(struct test_result result) {
-    free(result.out);
-    free(result.err);
+    test_free_result(&result);
 }
 
 TEST(a_preview_is_a_quarter_of_the_size_with_one_sample_and_no_secondary_rays) {

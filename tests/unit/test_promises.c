@@ -39,7 +39,7 @@ static void expect(const char *files, const char *scene, const char *words, int 
     uid_t users[2] = {0, getuid() == 0 ? attack_user() : 0};
     for (int i = 0; i < (users[1] ? 2 : 1); i++) {
         fresh_folder(files, scene);
-        int how = attack_wait(attack_start(in, words, users[i]), 60);
+        int how = attack_wait(attack_start(in, words, users[i]), ATTACK_PATIENCE);
         char *said = attack_output("err.txt");
         if (how != status || strncmp(said, says, strlen(says)) != 0)
             test_fail(__FILE__, __LINE__, "%s as %d: %d, %.300s", scene, (int)users[i], how, said);
@@ -68,7 +68,7 @@ static pid_t child_of(pid_t process) {
 /* The render process of a program. */
 static pid_t wait_for_child(pid_t program) {
     pid_t child = 0;
-    for (double limit = attack_now() + 20; child <= 0 && attack_now() < limit; attack_rest(0.01))
+    for (double limit = attack_now() + ATTACK_PATIENCE; child <= 0 && attack_now() < limit; attack_rest(0.01))
         child = child_of(program);
     CHECK(child > 0);
     return child;
@@ -79,7 +79,8 @@ static pid_t wait_for_child(pid_t program) {
 TEST(rendering_is_not_counted_as_time_of_the_script) {
     fresh_folder("", "p('x.png', 80, 80) p('y.png', 80, 80)");
     double before = seconds_of_children();
-    CHECK_EQ_INT(attack_wait(attack_start(in, "-q -j 1 -full -ss 16 --script-time 0.2 scene.lua", 0), 100), 0);
+    CHECK_EQ_INT(attack_wait(attack_start(in, "-q -j 1 -full -ss 16 --script-time 0.2 scene.lua", 0), ATTACK_PATIENCE),
+                 0);
     CHECK(seconds_of_children() - before > 0.3); /* otherwise it is not displayed */
     expect("", "p('x.png', 9, 9) while true do end", "-q --script-time 0.2 scene.lua", 1, "scene.lua:");
 }
@@ -139,14 +140,14 @@ TEST(hidden_files_beside_and_above_a_scene_cannot_be_read) {
         "dir d; dir .h; dir ../.h; text seen.lua; text .hid.lua; text d/seen.lua; text d/.hid.lua; text .h/in.lua; "
         "text ../seen.lua; text ../.hid.lua; text ../.h/in.lua; link link.lua .hid.lua; link folder .h";
     fresh_folder(files, scene);
-    int status = attack_wait(attack_start(in, "-q scene.lua", 0), 60);
+    int status = attack_wait(attack_start(in, "-q scene.lua", 0), ATTACK_PATIENCE);
     char *said = attack_output("err.txt");
     if (status != 0)
         test_fail(__FILE__, __LINE__, "%d: %s", status, said);
     free(said);
     /* A hidden folder that the command line names is reached. */
     test_write_text(test_path("other.lua"), "assert(io.open('1/.h/in.lua')):close()");
-    status = attack_wait(attack_start(test_folder(), "-q --allow-read 1/.h other.lua", 0), 60);
+    status = attack_wait(attack_start(test_folder(), "-q --allow-read 1/.h other.lua", 0), ATTACK_PATIENCE);
     CHECK_EQ_INT(status, 0);
 }
 
@@ -155,9 +156,9 @@ TEST(the_root_is_no_folder_of_a_scene) {
     fresh_folder("", "assert(io.open('etc/passwd') == nil and "
                      "io.open('/etc/passwd') == nil and io.open('../etc/passwd') == nil)");
     (void)snprintf(words, sizeof words, "-q %s/scene.lua", in);
-    CHECK_EQ_INT(attack_wait(attack_start("/", words, 0), 60), 0);
+    CHECK_EQ_INT(attack_wait(attack_start("/", words, 0), ATTACK_PATIENCE), 0);
     (void)snprintf(words, sizeof words, "-q --allow-read / %s/scene.lua", in);
-    CHECK_EQ_INT(attack_wait(attack_start("/", words, 0), 60), 1);
+    CHECK_EQ_INT(attack_wait(attack_start("/", words, 0), ATTACK_PATIENCE), 1);
 }
 
 TEST(only_regular_files_are_read_and_nothing_waits) {
@@ -221,7 +222,7 @@ TEST(links_that_are_exchanged_all_the_time_lead_no_reader_out) {
         (void)fflush(stdout);
         pid_t thrower = fork();
         if (thrower == 0) {
-            for (double limit = attack_now() + 30; attack_now() < limit;) {
+            for (double limit = attack_now() + ATTACK_PATIENCE; attack_now() < limit;) {
                 (void)rename(a, d);
                 (void)rename(d, a);
                 (void)rename(b, d);
@@ -229,7 +230,7 @@ TEST(links_that_are_exchanged_all_the_time_lead_no_reader_out) {
             }
             _exit(0);
         }
-        int status = attack_wait(attack_start(in, "-q --transform-order new scene.lua", users[i]), 60);
+        int status = attack_wait(attack_start(in, "-q --transform-order new scene.lua", users[i]), ATTACK_PATIENCE);
         (void)kill(thrower, SIGKILL);
         (void)waitpid(thrower, NULL, 0);
         char *said = attack_output("err.txt"), *printed = attack_output("out.txt");
@@ -310,7 +311,7 @@ TEST(a_rendering_process_keeps_nothing_it_inherited_and_gains_no_privileges) {
     if (stream)
         (void)closedir(stream);
     (void)kill(program, SIGINT);
-    CHECK_EQ_INT(attack_wait(program, 20), 130);
+    CHECK_EQ_INT(attack_wait(program, ATTACK_PATIENCE), 130);
 }
 
 TEST(a_build_with_sanitizers_says_that_it_has_no_filter) {
@@ -369,7 +370,8 @@ TEST(a_crash_of_the_rendering_process_leaves_the_terminal_as_it_was) {
     size_t used = read_terminal(master, bytes, sizeof bytes, 0, 0.5);
     CHECK(child > 0 && kill(child, SIGSEGV) == 0);
     int status = -1;
-    for (double limit = attack_now() + 20; status < 0 && attack_now() < limit;) { /* it may wait for its reader */
+    for (double limit = attack_now() + ATTACK_PATIENCE;
+         status < 0 && attack_now() < limit;) { /* it may wait for its reader */
         used = read_terminal(master, bytes, sizeof bytes, used, 0.1);
         int how;
         if (waitpid(program, &how, WNOHANG) == program)
@@ -400,7 +402,7 @@ static void record_calls(char *calls, size_t size) {
     size_t used = 0;
     int how = 0;
     pid_t program = attack_start_traced(in, "-q -j 1 scene.lua", 0);
-    for (double limit = attack_now() + 60; attack_now() < limit;) {
+    for (double limit = attack_now() + ATTACK_PATIENCE; attack_now() < limit;) {
         pid_t found = waitpid(program, &how, WNOHANG);
         if (found < 0 || (found == program && !WIFSTOPPED(how)))
             break;

@@ -22,31 +22,18 @@
     "gr.render(r, '%s', %d, %d, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"                              \
     "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n"
 
-static const char *path_in(const char *name) {
-    static char path[4096];
-    (void)snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return path;
-}
-
 static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && export gray='%s' && { %s; }", test_folder(), binary, line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    return test_run_shell(line, "");
 }
 
 static void put_scene(const char *name, const char *picture, int width, int height) {
     char text[1024];
     (void)snprintf(text, sizeof text, SCENE, picture, width, height);
-    test_write_text(path_in(name), text);
+    test_write_text(test_path(name), text);
 }
 
 static void expect_text(const char *name, const char *text) {
-    char *have = test_read_file(path_in(name), NULL);
+    char *have = test_read_file(test_path(name), NULL);
     if (!have || strcmp(have, text) != 0)
         test_fail(__FILE__, __LINE__, "%s is \"%.300s\", not \"%s\"", name, have ? have : "(not there)", text);
     free(have);
@@ -54,7 +41,6 @@ static void expect_text(const char *name, const char *text) {
 
 /* In a separate mount namespace, which takes its mounts with it. 77: not possible here. */
 static const char with_quota[] =
-    "for tool in unshare mkfs.btrfs btrfs; do command -v $tool >/dev/null || exit 77; done\n"
     "[ -n \"$inside\" ] || { unshare -m true || exit 77; inside=1 exec unshare -m sh \"$0\"; }\n"
     "truncate -s 120M image && mkfs.btrfs -q image && mkdir disk || exit 77\n"
     "mount -o loop image disk && btrfs quota enable disk || exit 77\n"
@@ -68,17 +54,18 @@ static const char with_quota[] =
     "$gray -q scene.lua -o free.pfm; cmp disk/own/out.pfm free.pfm >>err.txt 2>&1; echo $? >>status.txt; umount disk\n";
 
 TEST(a_quota_that_is_used_up_leaves_the_old_picture_and_no_temporary_file) {
+    test_need_tools("unshare mount mkfs.btrfs");
     put_scene("scene.lua", "disk/own/out.pfm", 330, 250);
-    test_write_text(path_in("quota.sh"), with_quota);
+    test_write_text(test_path("quota.sh"), with_quota);
     int status = shell("sh quota.sh 2>said.txt");
     if (status == 77)
-        test_skip("this user, kernel or machine has no file system with a quota to mount (btrfs-progs, loop devices)");
+        test_skip("this user, kernel or machine has no file system with a quota to mount");
     CHECK_EQ_INT(status, 0);
     expect_text("err.txt", "scene.lua: disk/own/out.pfm: cannot be written: Disk quota exceeded\n");
     expect_text("kept.txt", OLD_PICTURE);
     expect_text("names.txt", "out.pfm\nout.pfm\n");
     expect_text("status.txt", "3\n3\n0\n0\n");
-    char *part = test_read_file(path_in("part.txt"), NULL);
+    char *part = test_read_file(test_path("part.txt"), NULL);
     CHECK(part && strstr(part, "disk/own/b.pfm.1-of-1.part: cannot be written: Disk quota exceeded\n"));
     free(part);
 }
@@ -89,7 +76,7 @@ TEST(a_quota_may_be_met_by_any_call_to_the_system) {
 #endif
     put_scene("scene.lua", "sub/out.png", 12, 9);
     CHECK_EQ_INT(shell("GRAY_FAULT_COUNT=$PWD/counts $gray -q -j 1 scene.lua && mv sub/out.png whole.png"), 0);
-    char *text = test_read_file(path_in("counts"), NULL), line[700];
+    char *text = test_read_file(test_path("counts"), NULL), line[700];
     long long allocations = 0, calls = 0;
     CHECK(text && sscanf(text, "%lld %lld", &allocations, &calls) == 2 && calls > 20);
     free(text);
@@ -133,7 +120,7 @@ static const char without_writing[] =
 static void expect_shut(const char *script, const char *why) {
     char lines[400];
     put_scene("scene.lua", "shut/out.png", 33, 25);
-    test_write_text(path_in("shut.sh"), script);
+    test_write_text(test_path("shut.sh"), script);
     int status = shell("sh shut.sh 2>said.txt");
     if (status == 77)
         test_skip("this user may not give up rights or mount");

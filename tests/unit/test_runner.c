@@ -22,8 +22,15 @@ TEST_EXAMPLE(example_passes) {
     CHECK(test_folder()[0] == '/');
 }
 
-TEST_EXAMPLE(example_takes_a_second) {
-    (void)usleep(1000000);
+/* The output of the run has a line of progress. */
+TEST_EXAMPLE(example_waits_for_a_line) {
+    char path[4096];
+    (void)snprintf(path, sizeof path, "%s/said.txt", getenv("GRAY_EXAMPLE_RUN"));
+    for (bool found = false; !found; (void)usleep(10000)) {
+        char *text = test_read_file(path, NULL);
+        found = text && (strstr(text, "\n   1 of 2 tests, ") || strstr(text, "\n   0 of 1 tests, "));
+        free(text);
+    }
 }
 
 /* A private folder that contains a read-only folder, and a file in TMPDIR. */
@@ -38,6 +45,25 @@ static void leave_files(void) {
 TEST_EXAMPLE(example_skips) {
     leave_files();
     test_skip("as it should");
+}
+
+TEST_EXAMPLE(example_lacks_a_tool) {
+    test_need_tools("sh a-tool-that-no-machine-has");
+}
+
+TEST_EXAMPLE(example_starts_a_program) {
+    CHECK(system("exit 3") != 0);
+    test_fail(__FILE__, __LINE__, "it went on");
+}
+
+/* In another process, as tests do that talk to the program. */
+TEST_EXAMPLE(example_starts_a_program_itself) {
+    pid_t child = fork();
+    if (child == 0) {
+        (void)execl("/bin/false", "false", (char *)NULL);
+        _exit(127);
+    }
+    CHECK_EQ_INT(test_status_of(child), 0);
 }
 
 TEST_EXAMPLE(example_fails) {
@@ -73,13 +99,11 @@ TEST_EXAMPLE(example_finds_signals_at_their_defaults) {
 static void leave_processes(void) {
     test_write_text(test_path("scene.lua"), "gr.render(gr.node('n'), 'out.png', 8000, 8000, {0, 0, 1}, {0, 0, -1}, "
                                             "{0, 1, 0}, 40, {1, 1, 1}, {})");
-    const char *named = getenv("GRAY_TEST_BINARY");
-    char binary[4096], *command;
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
+    char *command;
     CHECK(asprintf(&command,
                    "cd '%s'; sleep 1000 & setsid sleep 1001 & (trap '' TERM HUP INT; setsid sleep 1002 &) & "
                    "sh -c 'kill -s STOP $$' & '%s' -q -full -ss 60 scene.lua & sleep 0.1",
-                   test_folder(), binary) > 0);
+                   test_folder(), test_program()) > 0);
     CHECK(system(command) == 0);
     free(command);
 }
@@ -100,12 +124,6 @@ TEST_EXAMPLE(example_waits_with_processes) {
 }
 
 /* Runs of the examples. */
-
-static double clock_now(void) {
-    struct timespec time;
-    (void)clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 /* Processes that have the word of this test. */
 static int marked_processes(void) {
@@ -176,9 +194,7 @@ static pid_t start(const char *line) {
 }
 
 static int wait_for(pid_t child) {
-    int how;
-    (void)waitpid(child, &how, 0);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    return test_status_of(child);
 }
 
 /* The last result stays valid until the next call. */
@@ -196,8 +212,8 @@ static void expect(bool is, const char *what, const char *when) {
 
 /* No process may remain, after some seconds or immediately. */
 static void expect_nothing_left(double seconds, const char *when) {
-    double begun = clock_now();
-    while ((marked_processes() > 0 || files_in(temporary()) > 0) && clock_now() - begun < seconds)
+    double begun = test_clock();
+    while ((marked_processes() > 0 || files_in(temporary()) > 0) && test_clock() - begun < seconds)
         (void)usleep(20000);
     int processes = marked_processes(), files = files_in(temporary());
     if (processes > 0 || files > 0)
@@ -205,8 +221,8 @@ static void expect_nothing_left(double seconds, const char *when) {
 }
 
 static bool await_file(const char *path) {
-    double begun = clock_now();
-    while (access(path, F_OK) != 0 && clock_now() - begun < 60)
+    double begun = test_clock();
+    while (access(path, F_OK) != 0 && test_clock() - begun < 120)
         (void)usleep(5000);
     return access(path, F_OK) == 0;
 }
@@ -300,7 +316,9 @@ static void end_runner(int number, bool reaper) {
     (void)unlink(ready);
     (void)setenv("GRAY_EXAMPLE_READY", ready, 1);
     pid_t runner = start("exec $run --examples -j 3 example_waits example_crashes");
-    expect(await_file(ready) && marked_processes() >= 8, "the processes did not start", when);
+    expect(await_file(ready), "the test did not start", when);
+    while (marked_processes() < 8)
+        (void)usleep(20000);
     if (reaper) { /* the runner continues without them */
         CHECK(signal_children(runner, "", SIGKILL));
         CHECK_EQ_INT(wait_for(runner), 1);
@@ -309,7 +327,7 @@ static void end_runner(int number, bool reaper) {
         CHECK_EQ_INT(wait_for(runner), 128 + number);
     }
     /* After SIGKILL the reapers end the tests on their own. */
-    expect_nothing_left(number == SIGKILL && !reaper ? 20 : 0, when);
+    expect_nothing_left(number == SIGKILL && !reaper ? 120 : 0, when);
     free(ready);
 }
 
@@ -334,7 +352,8 @@ TEST(a_runner_whose_reader_is_gone_ends) {
 }
 
 TEST(a_runner_says_how_far_it_is) {
-    CHECK_EQ_INT(wait_for(start("export GRAY_TEST_PROGRESS=0.2; exec $run --examples -j 2 takes_a_second passes")), 0);
+    CHECK_EQ_INT(wait_for(start("export GRAY_TEST_PROGRESS=0.2; exec $run --examples -j 2 waits_for_a_line passes")),
+                 0);
     expect(strstr(said(), "\n   1 of 2 tests, ") != NULL, "no line of progress", "0.2 s");
     expect(ends_with(said(), "\n2 passed, 0 failed, 0 skipped\n"), "another last line", "0.2 s");
     char line[1024];
@@ -348,6 +367,44 @@ TEST(a_runner_says_how_far_it_is) {
     expect(log && strstr(log, "ok       example_passes") && ends_with(log, "\n1 passed, 1 failed, 0 skipped\n"),
            "the log is not whole", "--log");
     free(log);
+}
+
+TEST(skipped_tests_are_one_line_with_their_reasons) {
+    CHECK_EQ_INT(
+        wait_for(start("exec $run --examples --log $GRAY_EXAMPLE_RUN/log example_skips example_lacks example_p")), 0);
+    CHECK_TEXT(said(), "2 skipped: a-tool-that-no-machine-has is not installed (1); as it should (1)\n");
+    char *log = test_read_file(test_path("log"), NULL);
+    CHECK(log && strstr(log, "skipped  example_skips") && ends_with(log, "\n1 passed, 0 failed, 2 skipped\n"));
+    free(log);
+}
+
+TEST(a_missing_tool_fails_in_continuous_integration_and_another_skip_does_not) {
+    CHECK_EQ_INT(wait_for(start("export GRAY_CI=1; exec $run --examples example_skips example_lacks")), 1);
+    expect(strstr(said(), "FAILED   example_lacks_a_tool") != NULL, "not failed", "GRAY_CI=1");
+    expect(ends_with(said(), "\n1 skipped: as it should (1)\n0 passed, 1 failed, 1 skipped\n"), "another end",
+           "GRAY_CI=1");
+}
+
+TEST(a_fast_run_leaves_out_every_test_that_starts_a_program) {
+    CHECK_EQ_INT(wait_for(start("exec $run --examples --fast example_starts example_passes example_finds")), 0);
+    expect(ends_with(said(), "\n3 left out, which start a program\n1 passed, 0 failed, 0 skipped\n"), "another end",
+           "--fast");
+    expect_nothing_left(0, "--fast");
+    CHECK_EQ_INT(wait_for(start("exec $run --examples example_starts")), 1);
+    expect(ends_with(said(), "\n0 passed, 2 failed, 0 skipped\n"), "another end", "without --fast");
+}
+
+TEST(a_runner_explains_its_options_and_refuses_others_in_one_line) {
+    CHECK_EQ_INT(wait_for(start("exec $run --help")), 0);
+    CHECK(strstr(said(), "--fast") && strstr(said(), "--long") && strstr(said(), "-WORD"));
+    static const char *const wrong[] = {"--slow", "-q", "-j", "-j many", "--log"};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char line[100];
+        (void)snprintf(line, sizeof line, "exec $run --examples example_passes %s", wrong[i]);
+        CHECK_EQ_INT(wait_for(start(line)), 2);
+        const char *text = said();
+        expect(strchr(text, '\n') == text + strlen(text) - 1 && strstr(text, "--help"), "not one line", wrong[i]);
+    }
 }
 
 /* make test, with a makefile and a runner that the test controls. */
@@ -364,13 +421,14 @@ static void make_tree(void) {
             ">$d/Makefile && mkdir $d/bin && ln -sf /bin/* /usr/bin/* $d/bin && "
             "printf '#!/bin/sh\\n' >$d/clang && chmod +x $d/clang && ln -sf ../clang $d/bin/clang && "
             "chmod +x $d/tools/setup.sh $d/tools/layers.sh $d/build/*/tests/run && "
-            "ln -s $(realpath ${GRAY_TEST_BINARY:-build/release/gray}) $d/build/release/gray && "
+            "ln -s $GRAY_TEST_BINARY $d/build/release/gray && "
             "ln -s ../release/gray $d/build/asan/gray")) == 0);
 }
 
 TEST(make_test_says_how_far_it_is_while_building_and_testing) {
     make_tree();
-    CHECK_EQ_INT(wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build='sleep 1' example=example_takes_a_second "
+    CHECK_EQ_INT(wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export example=example_waits_for_a_line "
+                                "build='until grep -q building $$GRAY_EXAMPLE_RUN/said.txt; do sleep 0.05; done' "
                                 "GRAY_TEST_PROGRESS=0.3; exec make -s test")),
                  0);
     const char *text = said();
@@ -399,6 +457,20 @@ TEST(make_test_counts_what_clang_refuses_and_says_what_it_leaves_out_without_cla
                  0);
     expect(strstr(said(), "clang, which is not installed\n") && ends_with(said(), "\n3 passed, 0 failed, 1 skipped\n"),
            "not skipped", "make test without clang");
+    CHECK(wait_for(start("cd $GRAY_EXAMPLE_RUN/tree; export build=: example=example_passes GRAY_CI=1 PATH=$PWD/bin; "
+                         "exec make -s test")) != 0);
+    expect(strstr(said(), "\n3 passed, 1 failed, 0 skipped\n") != NULL, "not failed", "GRAY_CI=1, no clang");
+}
+
+TEST(make_test_sets_up_the_machine_except_with_setup_0) {
+    make_tree();
+    const char *line = "cd $GRAY_EXAMPLE_RUN/tree; export build=: example=example_passes; "
+                       "echo 'echo set up \"$@\"' >tools/setup.sh; exec make -s test";
+    CHECK_EQ_INT(wait_for(start(line)), 0);
+    expect(strncmp(said(), "set up --tests\n", 15) == 0, "no set-up", "make test");
+    CHECK(setenv("SETUP", "0", 1) == 0);
+    CHECK_EQ_INT(wait_for(start(line)), 0);
+    expect(!strstr(said(), "set up"), "a set-up", "SETUP=0 make test");
 }
 
 /* Compiles a source of a separate tree with the project's makefile. */
@@ -434,6 +506,45 @@ TEST(a_switch_that_forgets_a_kind_compiles_in_make_and_not_in_make_test) {
           before.st_mtim.tv_nsec == after.st_mtim.tv_nsec);
 }
 
+/* A tree with the project's makefile, and programs of one line. */
+static void make_sources(void) {
+    CHECK(wait_for(start("mkdir -p $GRAY_EXAMPLE_RUN/own/src/host $GRAY_EXAMPLE_RUN/own/lua; "
+                         "cp Makefile $GRAY_EXAMPLE_RUN/own; cd $GRAY_EXAMPLE_RUN/own; "
+                         "echo 'int main(void) { return 0; }' >src/host/program.c; "
+                         "for f in gui mpi; do echo \"extern int $f;\" >src/host/main_$f.c; done; "
+                         "touch lua/a.lua; find . | sort >../before")) == 0);
+}
+
+TEST(a_build_in_another_folder_leaves_the_sources_as_they_were) {
+    make_sources();
+    CHECK_EQ_INT(wait_for(start("cd $GRAY_EXAMPLE_RUN/own; make -s BUILD=$GRAY_EXAMPLE_RUN/b || exit 1; "
+                                "find . | sort | cmp - ../before && ../b/gray && test -e ../b/lua/a.lua && "
+                                "test -e ../b/src/host/program.o && make -s clean BUILD=$GRAY_EXAMPLE_RUN/b && "
+                                "find . | sort | cmp - ../before && test -z \"$(ls -A ../b)\"")),
+                 0);
+    CHECK_TEXT(said(), "");
+    CHECK_EQ_INT(wait_for(start("cd $GRAY_EXAMPLE_RUN/own; make -s && ./gray && ./rt && make -s clean && "
+                                "find . | sort | cmp - ../before")),
+                 0);
+    CHECK(wait_for(start("cd $GRAY_EXAMPLE_RUN/own; exec make -s BUILD=.")) != 0);
+    expect(strstr(said(), "BUILD is the folder of the sources") != NULL, "not refused", "BUILD=.");
+}
+
+/* Files of others in the same folders stay, and the folders of gray alone go when they are empty. */
+TEST(uninstalling_removes_what_installing_has_written) {
+    const char *lines =
+        "make='make -s -o all BUILD='$(dirname $GRAY_TEST_BINARY)' PREFIX=/usr DESTDIR='$GRAY_EXAMPLE_RUN; "
+        "to=$GRAY_EXAMPLE_RUN/usr; "
+        "mkdir -p $to/bin && touch $to/bin/other && $make install && $to/bin/gray --version && "
+        "test -e $to/share/gray/lua/readobj.lua && test -e $to/share/doc/gray/LICENSE && "
+        "touch $to/share/gray/lua/own.lua && $make uninstall && (cd $to && find . -type f | sort) && "
+        "test ! -e $to/share/doc/gray && test ! -e $to/share/gray/lua/dialects && "
+        "rm $to/share/gray/lua/own.lua && $make install && $make uninstall && test ! -e $to/share/gray && "
+        "(cd $to && find . -type f)";
+    CHECK_EQ_INT(wait_for(start(lines)), 0);
+    expect(ends_with(said(), "\n./bin/other\n./share/gray/lua/own.lua\n./bin/other\n"), "other files", "uninstall");
+}
+
 /* Kills make, or the script it runs, during the build or the tests. */
 static void end_make_test(const char *command, bool builds, int number, bool group, bool script) {
     char when[200], *ready = strdup(test_path("ready")), line[1024];
@@ -453,7 +564,7 @@ static void end_make_test(const char *command, bool builds, int number, bool gro
         CHECK(kill(group ? -run : run, number) == 0);
     }
     CHECK(wait_for(run) != 0);
-    expect_nothing_left(script || number == SIGKILL ? 20 : 0, when);
+    expect_nothing_left(script || number == SIGKILL ? 120 : 0, when);
     free(ready);
 }
 

@@ -403,44 +403,31 @@ TEST(every_script_of_tests_errors_says_what_it_should) {
     CHECK(count > 80);
 }
 
-static double processor_seconds(void) {
-    return (double)clock() / CLOCKS_PER_SEC;
-}
+/* Work that grew with the square of these numbers would take longer than a test may. */
 
-TEST(a_hundred_thousand_nodes_take_less_than_a_second) {
+TEST(a_million_nodes_are_made) {
     struct listener listener = {.renders = 0};
-    double start = processor_seconds();
     expect_text_done(&listener,
                      "local r, s = gr.node('r'), gr.sphere('s')\n"
-                     "for i = 1, 100000 do local n = gr.node('n' .. i) n:scale(1, 2, 3) n:translate(i, 0, 0)\n"
+                     "for i = 1, 1000000 do local n = gr.node('n') n:scale(1, 2, 3) n:translate(i, 0, 0)\n"
                      "n:add_child(s) r:add_child(n) end",
                      NULL);
-    double seconds = processor_seconds() - start;
-    if (seconds > 1 && strcmp(GRAY_CONFIG, "release") == 0)
-        test_fail(__FILE__, __LINE__, "%g s", seconds);
 }
 
-TEST(a_million_vertices_are_read_in_half_a_second) {
+TEST(a_million_vertices_are_read) {
     struct listener listener = {.renders = 0};
-    expect_text_done(
-        &listener,
-        "local verts = {} for i = 1, 1000000 do verts[i] = {i, 2 * i, 0.5 * i} end\n"
-        "local start = os.clock() gr.mesh('points', verts, {})\n"
-        "seconds = os.clock() - start assert(seconds < 0.5 or not release, seconds)",
-        &(struct script_options){
-            .transform_order = SCRIPT_ORDER_NEW,
-            .defines = (struct script_define[]){{"release", strcmp(GRAY_CONFIG, "release") == 0 ? "true" : "false"}},
-            .define_count = 1});
+    expect_text_done(&listener,
+                     "local verts = {} for i = 1, 1000000 do verts[i] = {i, 2 * i, 0.5 * i} end\n"
+                     "gr.mesh('points', verts, {})",
+                     NULL);
 }
 
 TEST(pairs_of_a_large_table_is_not_quadratic) {
     struct listener listener = {.renders = 0};
-    double start = processor_seconds();
     expect_text_done(&listener,
-                     "local t, n = {}, 0 for i = 1, 200000 do t['k' .. i] = i end\n"
-                     "for k, v in pairs(t) do n = n + v end assert(n == 200000 * 200001 // 2)",
+                     "local t, n = {}, 0 for i = 1, 1000000 do t['k' .. i] = i end\n"
+                     "for k, v in pairs(t) do n = n + v end assert(n == 1000000 * 1000001 // 2)",
                      NULL);
-    CHECK(processor_seconds() - start < 10);
 }
 
 static void white_row(void *context, uint32_t y, uint8_t *line) {

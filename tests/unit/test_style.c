@@ -209,21 +209,6 @@ TEST(lines_are_where_objects_normals_and_depths_change_and_nowhere_else) {
 
 /* --- whole pictures --- */
 
-static void gives(const char *line, int status, const char *says) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    CHECK(asprintf(&command, "cd '%s' && gray='%s' && { %s; } 2>err.txt", test_folder(), binary, line) > 0);
-    int how = system(command);
-    char *said = test_read_file(test_path("err.txt"), NULL);
-    int got = WIFEXITED(how) ? WEXITSTATUS(how) : -1;
-    if (got != status || !said || (says && !strstr(said, says)) || (!says && said[0] != '\0'))
-        test_fail(__FILE__, __LINE__, "%s\nstatus %d, not %d, or not \"%s\"; standard error:\n%s", line, got, status,
-                  says ? says : "", said ? said : "");
-    free(said);
-    free(command);
-}
-
 /* A ball that shines in white, before white: the path tracer has no noise, and only lines are dark. */
 #define SHINING                                                                                                        \
     "local r = gr.node('r')\n"                                                                                         \
@@ -266,7 +251,7 @@ TEST(drawn_pictures_of_threads_shards_and_crops_have_the_same_bytes) {
                        "$gray merge -write-pre-aa p- c.png.*.part && cmp a.png c.png && cmp p-a.png p-c.png && "
                        "$gray $o --crop 37,21,60,50 -o d.png",
                        styles[i]);
-        gives(line, 0, NULL);
+        test_shell_errors(line, 0, NULL);
         struct test_picture whole = test_read_picture(test_path("a.png")), part = test_read_picture(test_path("d.png"));
         for (uint32_t y = 0; whole.rgb && part.rgb && y < 50; y++)
             CHECK(memcmp(part.rgb + (size_t)3 * 60 * y, whole.rgb + 3 * ((size_t)(y + 21) * W + 37), 180) == 0);
@@ -277,10 +262,12 @@ TEST(drawn_pictures_of_threads_shards_and_crops_have_the_same_bytes) {
 
 TEST(wrong_values_of_styles_are_refused) {
     test_write_text(test_path("scene.lua"), BALL);
-    gives("$gray -q scene.lua --style crayon", 2, "--style needs one of none|ink|toon|gooch, not 'crayon'");
-    gives("$gray -q scene.lua --line-width 33", 2, "--line-width needs a number from 0 to 32, not '33'");
-    gives("$gray -q scene.lua --toon-steps 0", 2, "--toon-steps needs a whole number from 1 to 64, not '0'");
-    gives("$gray -q scene.lua --style ink --integrator path", 1,
-          "styles are for the integrator 'whitted', not for 'path'; --line-width draws lines over its pictures");
-    gives("$gray -q scene.lua --style none --integrator path --spp 1", 0, NULL);
+    test_shell_errors("$gray -q scene.lua --style crayon", 2, "--style needs one of none|ink|toon|gooch, not 'crayon'");
+    test_shell_errors("$gray -q scene.lua --line-width 33", 2, "--line-width needs a number from 0 to 32, not '33'");
+    test_shell_errors("$gray -q scene.lua --toon-steps 0", 2,
+                      "--toon-steps needs a whole number from 1 to 64, not '0'");
+    test_shell_errors(
+        "$gray -q scene.lua --style ink --integrator path", 1,
+        "styles are for the integrator 'whitted', not for 'path'; --line-width draws lines over its pictures");
+    test_shell_errors("$gray -q scene.lua --style none --integrator path --spp 1", 0, NULL);
 }

@@ -43,7 +43,7 @@ static void add_number(struct maker *m, uint64_t value, int size) {
 static void begin(struct maker *m) {
     *m = (struct maker){0};
     add(m, "GRAYTILE", 8);
-    add_number(m, 6, 4);
+    add_number(m, TILE_FILE_FORMAT, 4);
     add_number(m, FILM_TILE, 4);
 }
 

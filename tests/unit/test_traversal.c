@@ -6,7 +6,7 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "world/mesh_lights_internal.h"
-#include "world/path.h"
+#include "world/node_path.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -154,7 +154,7 @@ static bool plant(struct forest *f, uint64_t seed) {
 static bool note_texts(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
     char(*texts)[PATH_TEXT] = context;
     for (uint32_t i = first; i < first + count; i++)
-        (void)world_path_text(steps, depth, texts[i], PATH_TEXT);
+        (void)node_path_text(steps, depth, texts[i], PATH_TEXT);
     return true;
 }
 
@@ -172,7 +172,7 @@ static void check_forest(struct forest *f, uint32_t *primitive, uint32_t *shared
     static uint8_t listed[PATHS];
     CHECK(world->primitive_count <= PATHS);
     memset(listed, 0, sizeof listed);
-    CHECK(world_visit_paths(world, f->stage.root, note_texts, texts, &f->stage.error));
+    CHECK(world_visit_node_paths(world, f->stage.root, note_texts, texts, &f->stage.error));
     CHECK(light_lists_mark(world, f->list, 3, listed, 1, f->stage.root));
     uint32_t next = 0;
     for (uint32_t i = 0; i < f->expected_count; i++) {
@@ -223,7 +223,7 @@ TEST(picking_names_the_path_of_what_a_ray_meets_and_no_ray_meets_anything_outsid
         if (!plant(&f, seed))
             continue;
         CHECK(node_bounds(s->root, &bounds, &s->error));
-        CHECK(world_visit_paths(&s->world, s->root, note_texts, texts, &s->error));
+        CHECK(world_visit_node_paths(&s->world, s->root, note_texts, texts, &s->error));
         CHECK(world_scratch_init(&scratch, &s->world));
         const struct render_job job = {
             .world = &s->world, .camera = s->camera, .settings = s->settings, .width = 64, .height = 64};
@@ -241,7 +241,7 @@ TEST(picking_names_the_path_of_what_a_ray_meets_and_no_ray_meets_anything_outsid
             if (vec3_length(vec3_sub(hit.point, picked.position)) > 1e-9)
                 continue; /* at an edge */
             hits++;
-            CHECK_TEXT(picked.path, texts[hit.primitive]);
+            CHECK_TEXT(picked.node_path, texts[hit.primitive]);
             CHECK_EQ_INT(picked.serial, primitive_node(&s->world, hit.primitive)->serial);
         }
         world_scratch_destroy(&scratch);

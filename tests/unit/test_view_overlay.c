@@ -32,7 +32,7 @@ TEST(a_node_shows_where_the_ray_through_the_middle_of_a_pixel_meets_it_first) {
     struct render_job job = stage_job(&s, WIDTH, HEIGHT);
     struct view_overlay_buffers buffers = {.shows = shows};
     uint64_t route = 0;
-    CHECK(world_visit_paths(&s.world, s.root, path_of_second, &route, &s.error));
+    CHECK(world_visit_node_paths(&s.world, s.root, path_of_second, &route, &s.error));
     for (int by_path = 0; by_path < 2; by_path++) {
         const struct view_overlay_request request = {
             .outline = true, .serial = behind->serial, .route = by_path ? route : 0};

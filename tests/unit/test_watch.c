@@ -14,11 +14,7 @@
 #include <unistd.h>
 
 static const char *at(const char *name) {
-    static char paths[4][4096];
-    static int next;
-    char *path = paths[next++ & 3];
-    (void)snprintf(path, sizeof paths[0], "%s/%s", test_folder(), name);
-    return path;
+    return test_path(name);
 }
 
 struct output_of_tests {
@@ -129,10 +125,9 @@ TEST(watch_of_a_run_that_failed_minds_files_that_appear) {
 /* The program. */
 
 static pid_t start(const char *words) {
-    char binary[4096], line[9000];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    (void)snprintf(line, sizeof line, "cd '%s' && exec '%s' %s >out.txt 2>err.txt", test_folder(), binary, words);
+    char line[9000];
+    (void)snprintf(line, sizeof line, "cd '%s' && exec '%s' %s >out.txt 2>err.txt", test_folder(), test_program(),
+                   words);
     pid_t child = fork();
     if (child == 0) {
         (void)execl("/bin/sh", "sh", "-c", line, (char *)NULL);
@@ -153,7 +148,7 @@ static int count_of(const char *word) {
 /* Waits until standard error contains `word` this many times; the harness ends a test that takes too long. */
 static void wait_for(const char *word, int times) {
     const struct timespec pause = {0, 5000000};
-    for (int i = 0; i < 4000 && count_of(word) < times; i++)
+    while (count_of(word) < times)
         (void)nanosleep(&pause, NULL);
     CHECK(count_of(word) == times);
 }

@@ -333,7 +333,7 @@ static void render_tile(struct table *t, uint32_t tile, float light, uint8_t sta
 static int pixels_with(const struct table *t, uint8_t level) {
     int count = 0;
     for (int i = 0; i < 100 * 70; i++)
-        count += t->viewer.display.image[3 * i] == level;
+        count += t->viewer.window.image[3 * i] == level;
     return count;
 }
 
@@ -445,15 +445,7 @@ TEST(window_keys_fly_only_while_the_mouse_turns_the_camera) {
 /* The program in a real window. */
 
 static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    if (asprintf(&command, "cd '%s' && gray='%s' && export gray && { %s; } >out.txt 2>err.txt", test_folder(), binary,
-                 line) < 0)
-        exit(1);
-    int how = system(command);
-    free(command);
-    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+    return test_run_shell(line, ">out.txt 2>err.txt");
 }
 
 static void need_display(void) {
@@ -466,7 +458,7 @@ static void need_display(void) {
                     "gr.render(r, 'out.png', 200, 150, {0, 0, 6}, {0, 0, -1}, {0, 1, 0}, 40, {0.2, 0.2, 0.2},\n"
                     "  {gr.light({4, 5, 6}, {0.9, 0.9, 0.9}, {1, 0, 0})})\n");
     (void)snprintf(path, sizeof path, "%s/wait.sh", test_folder());
-    test_write_text(path, "for i in $(seq 300); do eval \"$1\" && exit 0; sleep 0.05; done; exit 1\n");
+    test_write_text(path, "for i in $(seq 3000); do eval \"$1\" && exit 0; sleep 0.05; done; exit 1\n");
 }
 
 static void gives(const char *line, int status) {
@@ -560,13 +552,13 @@ TEST(window_centres_the_picture_for_any_size_and_density) {
     struct table t;
     begin(&t);
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
-    const struct window_layout *layout = &t.viewer.display.layout;
+    const struct window_layout *layout = &t.viewer.window.layout;
     CHECK(layout->left == 0 && layout->top == 0 && layout->shown_width == 400 && layout->shown_height == 280);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 1600, .y = 700, .density = 2};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 300 && layout->top == 0 && layout->shown_width == 1000 && layout->shown_height == 700);
-    CHECK_EQ_INT(t.viewer.display.panel.canvas.scale, 2); /* letters of the same visible size as before */
-    CHECK(t.viewer.display.panel.canvas.width == 1600 && t.viewer.display.panel.canvas.height == 700);
+    CHECK_EQ_INT(t.viewer.window.panel.canvas.scale, 2); /* letters of the same visible size as before */
+    CHECK(t.viewer.window.panel.canvas.width == 1600 && t.viewer.window.panel.canvas.height == 700);
     t.fake.queue[t.fake.count++] = (struct window_event){.kind = WINDOW_SIZE, .x = 50, .y = 90, .density = 1};
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(layout->left == 0 && layout->top == 27 && layout->shown_width == 50 && layout->shown_height == 35);
@@ -579,7 +571,7 @@ TEST(window_shows_how_long_the_picture_will_take) {
     struct table t;
     struct control control = {.build_step = 0};
     begin(&t);
-    t.viewer.control = &control;
+    t.viewer.window.control = &control;
     progress_estimate_reset(&control.progress_estimate, true);
     control.progress_estimate.begun = t.now - 30;
     progress_estimate_report(&control.progress_estimate, 1, 3, t.now);
@@ -604,7 +596,7 @@ TEST(window_shows_how_far_building_is_and_errors) {
     struct table t;
     struct control control = {.build_step = 3, .build_done = 250};
     begin(&t);
-    t.viewer.control = &control;
+    t.viewer.window.control = &control;
     t.now += 1;
     CHECK_EQ_INT(step(&t), VIEWER_NOTHING);
     CHECK(strstr(t.fake.title, "building, step 3: 25 %") != NULL);
@@ -685,7 +677,7 @@ TEST(panel_sliders_follow_the_mouse_that_holds_them_and_stop_at_their_ends) {
 
 static const struct picked a_ball = {
     .hit = true,
-    .path = "root#0 / ball#2",
+    .node_path = "root#0 / ball#2",
     .name = "ball",
     .shape = "sphere",
     .material = "phong",

@@ -13,9 +13,9 @@
  * takes time) until a file of changes contains the pattern; n is its number. `drag DX DY`: with the left button, from
  * the middle of the picture. */
 static const char helpers[] =
-    "titled() { for i in $(seq 400); do xdotool search --name \"$1\" >/dev/null && return 0; sleep 0.05; done; "
+    "titled() { for i in $(seq 3000); do xdotool search --name \"$1\" >/dev/null && return 0; sleep 0.05; done; "
     "echo the title never said $1 >&2; exit 9; }\n"
-    "there() { for i in $(seq 400); do test -s \"$1\" && return 0; sleep 0.05; done; echo no $1 >&2; exit 8; }\n"
+    "there() { for i in $(seq 3000); do test -s \"$1\" && return 0; sleep 0.05; done; echo no $1 >&2; exit 8; }\n"
     "saved() { ls out-view*.png 2>/dev/null | wc -l; }\n"
     "finds() { for i in $(seq 200); do k=$(saved); xdotool key s; for j in $(seq 60); do [ $(saved) -gt $k ] && break; "
     "sleep 0.05; done; for view in $(ls -t out-view*.png 2>/dev/null | head -2); do cmp -s $view $1 && return 0; done; "
@@ -40,14 +40,7 @@ static void file(const char *name, const char *text) {
 }
 
 static int shell(const char *line) {
-    char *command = NULL, binary[4096];
-    const char *named = getenv("GRAY_TEST_BINARY");
-    CHECK(realpath(named ? named : "build/release/gray", binary) != NULL);
-    CHECK(asprintf(&command, "cd %s && gray=%s && export gray && { %s; } >out.txt 2>err.txt", test_folder(), binary,
-                   line) > 0);
-    int status = system(command);
-    free(command);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return test_run_shell(line, ">out.txt 2>err.txt");
 }
 
 /* Runs the steps, which may call the helpers, with the window of the scene. */

@@ -140,14 +140,6 @@ static int viewer_with(const struct deed *deeds) {
 }
 
 /* Two of them can be used at a time. */
-static bool same_files(const char *one, const char *other) {
-    size_t a, b;
-    char *x = test_read_file(test_path(one), &a), *y = test_read_file(test_path(other), &b);
-    bool same = x && y && a == b && memcmp(x, y, a) == 0;
-    free(x);
-    free(y);
-    return same;
-}
 
 TEST(window_goes_on_after_a_stop_to_the_picture_of_one_that_was_never_stopped) {
     const struct deed plain[] = {{"ready", KEY('s'), 0}, {NULL, KEY('q'), 0}};
@@ -159,7 +151,7 @@ TEST(window_goes_on_after_a_stop_to_the_picture_of_one_that_was_never_stopped) {
     CHECK_EQ_INT(viewer_with(plain), 0);
     CHECK(rename(test_path("out.png"), test_path("whole.png")) == 0);
     CHECK_EQ_INT(viewer_with(stopped), 0);
-    CHECK(same_files("out.png", "whole.png") && same_files("out-view1.png", "out-view2.png"));
+    CHECK(test_same_files("out.png", "whole.png") && test_same_files("out-view1.png", "out-view2.png"));
 }
 
 TEST(window_stops_building_after_an_edit_and_goes_on_with_it_or_without) {
@@ -188,8 +180,8 @@ TEST(window_stops_building_after_an_edit_and_goes_on_with_it_or_without) {
     deeds[count++] = (struct deed){"ready", KEY('s'), 0};
     deeds[count++] = (struct deed){NULL, KEY('q'), 0};
     CHECK_EQ_INT(viewer_with(deeds), 0);
-    CHECK(same_files("out.png", "out-view1.png") && same_files("out.png", "out-view3.png"));
-    CHECK(!same_files("out.png", "out-view4.png"));
+    CHECK(test_same_files("out.png", "out-view1.png") && test_same_files("out.png", "out-view3.png"));
+    CHECK(!test_same_files("out.png", "out-view4.png"));
 }
 
 static void picture_without_window(const char *overlay, const char *name) {
@@ -209,11 +201,11 @@ TEST(window_shows_and_saves_the_lines_that_overlay_draws) {
     CHECK_EQ_INT(viewer_with(deeds), 0);
     picture_without_window("boxes", "boxes.png");
     picture_without_window("grid", "grid.png");
-    CHECK(same_files("out-view1.png", "boxes.png") && same_files("out-view2.png", "grid.png"));
-    CHECK(same_files("out-view3.png", "out.png") && !same_files("out.png", "boxes.png"));
+    CHECK(test_same_files("out-view1.png", "boxes.png") && test_same_files("out-view2.png", "grid.png"));
+    CHECK(test_same_files("out-view3.png", "out.png") && !test_same_files("out.png", "boxes.png"));
     /* Requested on the command line, they are part of the script's picture. */
     CHECK_EQ_INT(viewer_over(nothing, "boxes", NULL), 0);
-    CHECK(same_files("out.png", "boxes.png"));
+    CHECK(test_same_files("out.png", "boxes.png"));
 }
 
 TEST(window_outlines_what_is_picked_by_its_silhouette) {
@@ -279,7 +271,7 @@ static bool saved_frame(const char *file, int number, int view) {
     free(result.out);
     free(result.err);
     (void)snprintf(arguments, sizeof arguments, "w%d.png", number);
-    return same_files(saved, arguments);
+    return test_same_files(saved, arguments);
 }
 
 TEST(window_plays_an_animation_to_its_end_and_goes_back_to_frames_before) {
@@ -323,7 +315,7 @@ TEST(window_larger_than_the_picture_shows_it_with_the_pixels_of_the_window) {
                  "gr.render{node = r, file = 'out.png', width = 64, height = 48, eye = {0, 0, 3}, view = {0, 0, -1}}\n",
         .large = large};
     CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
-    CHECK(same_files("out.png", "out-view1.png"));
+    CHECK(test_same_files("out.png", "out-view1.png"));
     struct test_result result = test_gray(NULL, "-q --progress=none scene.lua --size 640x480 -o whole.png");
     CHECK_EQ_INT(result.status, 0);
     struct test_picture whole = test_read_picture(test_path("whole.png")),
@@ -368,8 +360,8 @@ TEST(window_ends_with_the_denoised_picture_of_paths_also_after_a_restart) {
     CHECK_EQ_INT(viewer_that(deeds, &setting, NULL), 0);
     struct test_result result = test_gray(NULL, "-q --progress=none scene.lua --denoise -o whole.png");
     CHECK_EQ_INT(result.status, 0);
-    CHECK(same_files("out.png", "whole.png"));
-    CHECK(same_files("out-view1.png", "whole.png"));
+    CHECK(test_same_files("out.png", "whole.png"));
+    CHECK(test_same_files("out-view1.png", "whole.png"));
     free(result.out);
     free(result.err);
 }

@@ -3,8 +3,8 @@
 #include "tests/harness.h"
 #include "tests/stage.h"
 #include "tests/unit/script_host.h"
+#include "world/node_path.h"
 #include "world/packet.h"
-#include "world/path.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* The primitives of a node are the next ones in the list that name this node. */
-#include "world/path.h"
+#include "world/node_path.h"
 
 #include "scene/change.h"
 
@@ -18,8 +18,8 @@ uint32_t world_primitives_of(const struct world *world, const struct node *node,
     return is_primitive_node ? primitive_prototype(world, next)->parts : 0;
 }
 
-bool world_visit_paths(const struct world *world, const struct node *root, world_path_visit *visit, void *context,
-                       struct error *error) {
+bool world_visit_node_paths(const struct world *world, const struct node *root, node_path_visit *visit, void *context,
+                            struct error *error) {
     struct scene_traversal t = world_traversal(world, root, 0);
     enum scene_event event = SCENE_END;
     uint32_t next = 0;
@@ -34,7 +34,7 @@ bool world_visit_paths(const struct world *world, const struct node *root, world
     return event != SCENE_NO_MEMORY || error_no_memory(error, "the paths to the nodes");
 }
 
-size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size) {
+size_t node_path_text(const struct scene_step *steps, uint32_t depth, char *out, size_t size) {
     size_t used = 0;
     char suffix[16] = "";
     for (uint32_t i = 0; i < depth; i++) {
@@ -51,42 +51,43 @@ size_t world_path_text(const struct scene_step *steps, uint32_t depth, char *out
     return used;
 }
 
-struct wanted_paths {
-    const uint32_t *wanted;
-    uint32_t count, next;
+struct node_path_search {
+    struct primitive_list primitives;
+    uint32_t next;
     struct arena *arena;
     const char **out;
     bool failed;
 };
 
-static bool keep_path(void *context, uint32_t first, uint32_t count, const struct scene_step *steps, uint32_t depth) {
-    struct wanted_paths *paths = context;
+static bool keep_node_path(void *context, uint32_t first, uint32_t count, const struct scene_step *steps,
+                           uint32_t depth) {
+    struct node_path_search *search = context;
     const char *text = NULL;
-    while (paths->next < paths->count && paths->wanted[paths->next] < first + count) {
-        if (paths->wanted[paths->next] >= first && !text) {
-            size_t size = world_path_text(steps, depth, NULL, 0) + 1;
-            char *copy = arena_alloc(paths->arena, size);
-            paths->failed = !copy;
+    while (search->next < search->primitives.count && search->primitives.numbers[search->next] < first + count) {
+        if (search->primitives.numbers[search->next] >= first && !text) {
+            size_t size = node_path_text(steps, depth, NULL, 0) + 1;
+            char *copy = arena_alloc(search->arena, size);
+            search->failed = !copy;
             if (!copy)
                 return false;
-            (void)world_path_text(steps, depth, copy, size);
+            (void)node_path_text(steps, depth, copy, size);
             text = copy;
         }
-        paths->out[paths->next++] = text;
+        search->out[search->next++] = text;
     }
-    return paths->next < paths->count;
+    return search->next < search->primitives.count;
 }
 
-bool world_find_paths(const struct world *world, const struct node *root, struct primitive_list wanted,
-                      struct arena *arena, const char **out, struct error *error) {
-    struct wanted_paths paths = {.wanted = wanted.numbers, .count = wanted.count, .arena = arena, .out = out};
-    for (uint32_t i = 0; i < wanted.count; i++)
+bool world_find_node_paths(const struct world *world, const struct node *root, struct primitive_list primitives,
+                           struct arena *arena, const char **out, struct error *error) {
+    struct node_path_search search = {.primitives = primitives, .arena = arena, .out = out};
+    for (uint32_t i = 0; i < primitives.count; i++)
         out[i] = NULL;
-    if (wanted.count == 0)
+    if (primitives.count == 0)
         return true;
-    if (!world_visit_paths(world, root, keep_path, &paths, error))
+    if (!world_visit_node_paths(world, root, keep_node_path, &search, error))
         return false;
-    return !paths.failed || error_no_memory(error, "the paths to the nodes");
+    return !search.failed || error_no_memory(error, "the paths to the nodes");
 }
 
 /* --- inside of combined solids --- */
@@ -114,25 +115,25 @@ bool world_visit_operands(const struct node *solid, world_operand_visit *visit, 
     return event != SCENE_NO_MEMORY;
 }
 
-struct wanted_operand {
+struct operand_search {
     struct scene_step *steps;
     uint32_t capacity, origin, depth;
 };
 
 static bool keep_operand(void *context, uint32_t first, uint32_t end, const struct scene_step *steps, uint32_t depth) {
-    struct wanted_operand *wanted = context;
+    struct operand_search *search = context;
     /* Shapes are reported after their descendants, so the first one with the leaf is its origin. */
-    if (wanted->origin < first || wanted->origin >= end || depth > wanted->capacity)
-        return wanted->origin >= end;
-    memcpy(wanted->steps, steps, depth * sizeof *steps);
-    wanted->depth = depth;
+    if (search->origin < first || search->origin >= end || depth > search->capacity)
+        return search->origin >= end;
+    memcpy(search->steps, steps, depth * sizeof *steps);
+    search->depth = depth;
     return false;
 }
 
 bool world_operand_path(const struct node *solid, uint32_t origin, struct scene_step *steps, uint32_t capacity,
                         uint32_t *length) {
-    struct wanted_operand wanted = {.steps = steps, .capacity = capacity, .origin = origin};
-    bool ok = world_visit_operands(solid, keep_operand, &wanted);
-    *length = wanted.depth;
+    struct operand_search search = {.steps = steps, .capacity = capacity, .origin = origin};
+    bool ok = world_visit_operands(solid, keep_operand, &search);
+    *length = search.depth;
     return ok;
 }
