@@ -128,8 +128,8 @@ static bool is_frame(const struct picture_work *work) {
     return work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE;
 }
 
-/* The scene notes what the script changes from frame to frame; changes of the window and of gr.change_... are others.
- */
+/* The scene notes what the script changes from frame to frame; changes of the window and of gr.change_... are
+ * others. */
 static bool notes_changes(const struct picture_work *work) {
     const struct render_process *process = work->process;
     return process->animates && work->request->frame.number > 0 && !work->asked.in_window && !work->request->changed &&

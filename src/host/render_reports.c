@@ -102,8 +102,8 @@ void render_process_report_world(const struct render_process *process, const cha
     render_process_report_scene(process, LINE_DETAIL, line);
 }
 
-/* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its storage.
- */
+/* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its
+ * storage. */
 static const char *shown_name(const struct picture_work *work, char room[NAME_LIMIT]) {
     const struct options *options = work->process->options;
     const struct frame *frame = &work->asked.frame;

@@ -43,8 +43,7 @@ enum node_cull { NODE_CULLS(LIST_MEMBER) };
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
 
 /* docs/language.md 12.4: the composition of later calls. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept
- * apart.
- */
+ * apart. */
 #define TRANSFORM_ORDERS(X)                                                                                            \
     X(ORDER_NEW, "new")                                                                                                \
     X(ORDER_OLD, "old")                                                                                                \

@@ -44,8 +44,7 @@ struct lens {
     double screen;       /* distance along the view where both eyes see the same place of the picture */
 };
 
-/* The camera at time 1 if it moves; it has its given values at time 0, and all three change linearly.
- */
+/* The camera at time 1 if it moves; it has its given values at time 0, and all three change linearly. */
 struct camera_motion {
     bool moves;
     struct vec3 eye, view, up;

@@ -147,8 +147,8 @@ static bool build_again(struct preview_state *work, struct error *error) {
     return ok;
 }
 
-/* The world of the changes; if the user stops its building it remains stale, and `reply` reports this. False: an error.
- */
+/* The world of the changes; if the user stops its building it remains stale, and `reply` reports this. False: an
+ * error. */
 static bool need_world(struct preview_state *work, struct preview_reply *reply, struct error *error) {
     if (!work->stale || build_again(work, error))
         return true;

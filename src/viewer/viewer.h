@@ -105,7 +105,7 @@ struct viewer_lights {
     struct light_info *items; /* owned; those from `known` on were not reported yet */
     uint32_t room, count, known;
     double colour_max;   /* of the sliders of a light's colour */
-    bool listed;         /* whether whether a list of them is shown ... */
+    bool listed;         /* whether a list of them is shown ... */
     uint32_t list_first; /* ... and its first light */
 };
 
@@ -274,8 +274,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now);
 bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 bool viewer_save_camera(const struct viewer *viewer, const struct file_target *picture, char *name,
                         struct error *error);
-/* dir/foo-changes1.lua: if the scene requires it, the picture has the camera, the exposure and all changes.
- */
+/* dir/foo-changes1.lua: if the scene requires it, the picture has the camera, the exposure and all changes. */
 bool viewer_save_edits(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 
 #endif

@@ -134,8 +134,7 @@ static uint32_t building_step(const struct viewer *viewer) {
 }
 
 /* The finished share: of the picture itself by its work, with the remaining time once it is known
- * (render/time_estimate.h); coarse ones by their tiles.
- */
+ * (render/time_estimate.h); coarse ones by their tiles. */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {
     const struct progress_estimate *progress_estimate =
         viewer->window.control && !viewer->pass.view.plain ? &viewer->window.control->progress_estimate : NULL;

@@ -81,8 +81,7 @@ bool flatten_csg(struct flattening *f, const struct node *node, const struct pos
 bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
                    struct box *limit);
 /* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
- * of
- * (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
+ * of (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
  * *out on; everything else has 1. */
 bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);
