@@ -156,7 +156,7 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
     if (viewer_plays(viewer)) {
         (void)snprintf(figures->state, sizeof figures->state, "playing");
     } else if (viewer->player.seeking) {
-        (void)snprintf(figures->state, sizeof figures->state, "going to frame %u", viewer->player.wanted);
+        (void)snprintf(figures->state, sizeof figures->state, "going to frame %u", viewer->player.target);
     } else if (viewer->pass.halted && viewer->block) {
         (void)snprintf(figures->state, sizeof figures->state,
                        viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%", 100 * figures->share);

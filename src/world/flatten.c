@@ -242,7 +242,7 @@ static bool make_prototype(struct flattening *f, const struct node *node, const 
     } else {
         struct prototype prototype = {.geometry = geometry_of_shape(&node->shape), .cull = node->cull, .parts = 1};
         const struct material *inherited = state ? state->inherited : NULL;
-        if ((!f->unasked && !flatten_mesh_accel(f, &node->shape)) ||
+        if ((!f->unqueried && !flatten_mesh_accel(f, &node->shape)) ||
             !flatten_material(f, node, inherited, &prototype.material, &prototype.slot_count) ||
             !add_prototype(f, node, &prototype))
             return false;

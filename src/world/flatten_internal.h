@@ -59,7 +59,7 @@ struct flattening {
     world_warning *warn;          /* or NULL */
     void *warn_context;
     struct error *error;
-    bool unasked; /* no ray will query this world: its meshes get no index */
+    bool unqueried; /* no ray will query this world: its meshes get no index */
     struct primitive *primitives;
     struct box *limits; /* of each primitive, when there are any; else NULL */
     uint32_t primitive_capacity, prototype_capacity, linear_capacity, moving_capacity, link_capacity;

@@ -117,7 +117,7 @@ typedef void world_warning(void *context, const char *text);
 struct world_cache {
     struct accel_cache accel;
     struct kept_tables *tables;
-    uint64_t taken; /* number of worlds that took over tables */
+    uint64_t reused; /* number of worlds that took over tables */
 };
 
 /* The input of a world; it is only read, except that the scene records which nodes it has warned of, and with a cache
