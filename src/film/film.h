@@ -141,6 +141,6 @@ bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint3
 /* The order of tiles: the picture does not depend on it, but the view during rendering and the time estimate do. */
 
 /* out[k] is the k-th tile to be made; room for film_tile_count(film). False: no memory. */
-bool tile_order(const struct film *film, enum order order, uint32_t *out);
+bool film_tile_order(const struct film *film, enum tile_order order, uint32_t *out);
 
 #endif

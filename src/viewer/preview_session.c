@@ -29,7 +29,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->width = film->full_width;
     job->height = film->full_height;
     job->settings.show_refined = true;
-    job->settings.order = ORDER_CENTRE;
+    job->settings.tile_order = TILE_ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
     job->settings.passes = view->divide <= 1 && !view->plain;
     settings_set_draft(&job->settings, view->plain ? DRAFT_QUICK : DRAFT_NONE);
