@@ -33,8 +33,8 @@ struct box_tree {
     struct box bounds;
 };
 
-/* boxes[i] belongs to item i < 2^31; empty boxes are left out, infinite ones are fine. False: no memory or cancelled.
- */
+/* boxes[i] belongs to item i < 2^31; empty boxes are left out, infinite ones are fine. False: no memory or
+ * cancelled. */
 bool box_tree_build(struct box_tree *tree, const struct box *boxes, uint32_t count, struct pool *pool,
                     struct error *error);
 /* Sets new boxes for the items of a tree (a refit). The same items must be empty as before. The structure of the tree

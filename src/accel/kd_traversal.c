@@ -1,8 +1,8 @@
 /* Traversal of the kd-tree with a stack. The plane of a node is crossed at t = (split - origin) / direction, which is
  * wrong by less than 2^-50 of itself; and a point of the ray may be off the item it belongs to by the caller's slack,
  * which is slack / |direction| along the ray. Both sides of a plane therefore get the interval up to t plus, and from t
- * minus, these two: they overlap, nothing is lost between them, and if a ray lies in a plane, both sides are visited.
- */
+ * minus, these two: they overlap, nothing is lost between them, and if a ray lies in a plane, both sides are
+ * visited. */
 #include "accel/kd_tree.h"
 
 static void push(struct kd_traversal *traversal, uint32_t node, double enter, double leave) {

@@ -4,8 +4,7 @@
  * Parallel and deterministic: ranges above a size that depends only on the data are partitioned by all threads
  * together, round by round, until the rest can be distributed; the parts are built by jobs, joined, improved by
  * reinsertion on one thread, weighed bottom-up by jobs and then at the top, and written by jobs to offsets from a
- * prefix sum. The binary hierarchy is a third as large as the result, and is freed together with the references.
- */
+ * prefix sum. The binary hierarchy is a third as large as the result, and is freed together with the references. */
 #include "accel/triangle_build_internal.h"
 
 #include "accel/triangle_tree_internal.h"

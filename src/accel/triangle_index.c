@@ -175,8 +175,8 @@ static bool fill_one_voxel(struct triangle_index *index, const struct triangle_s
     return complete;
 }
 
-/* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the end.
- */
+/* Count, prefix sum, fill: references of every voxel in ascending order of triangles, those of the big ones at the
+ * end. */
 static bool fill_voxels(struct triangle_index *index, const struct triangle_set *set, struct pool *pool,
                         struct error *error) {
     struct hierarchy *lists = mem_alloc_zero(index->voxel_count + 1, sizeof *lists);

@@ -27,8 +27,7 @@ struct triangle_cost {
 
 /* `voxels`: the approximate number of voxels of the frame; 0: chosen by the cost model of accel_cost.h. Owner: the
  * caller, triangle_index_destroy. False: no memory or cancelled. pool may be NULL; the bytes of the index do not depend
- * on it.
- */
+ * on it. */
 bool triangle_index_build(struct triangle_index **out, const struct triangle_set *set, uint32_t voxels,
                           struct pool *pool, struct error *error);
 void triangle_index_destroy(struct triangle_index *index); /* NULL is fine */

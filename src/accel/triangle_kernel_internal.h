@@ -60,8 +60,8 @@
 /* The minimum of L in the slack, local units, so that a degenerate triangle is never a certain hit. Edge functions of a
  * certain hit are so large that their products do not cancel: the products are below 4 (S + L)^2 and cancellation
  * begins at 2^-49 of them, but their difference is at least 95 (S + L) L e. (The error of the double arithmetic, 2^-48
- * (S + L) times the distance of the origin, is small: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19 L.)
- */
+ * (S + L) times the distance of the origin, is small: with 2 L^2 M >= |det| >= 5 E that distance is less than 2^19
+ * L.) */
 #define MIN_EXTENT 0x1p-24f
 
 /* The vertices of this few triangles stay in the caches, and the index of this many does not. */
@@ -165,8 +165,7 @@ static inline simd8 sides_load(const struct wide_node *node, size_t row) {
 }
 
 /* The edge functions of triangle_cross, rounded, and the distance to the corners along the ray's axis; lane 3 is not
- * used.
- */
+ * used. */
 struct edges {
     wide4 e, p, q, along;
 };

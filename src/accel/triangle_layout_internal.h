@@ -21,8 +21,8 @@ enum {
     STACK_ENTRIES = MAX_BRANCH_DEPTH * (WIDTH - 1) + WIDTH /* the largest stack of a search */
 };
 
-/* Local units. The rounding of a traversal is below 2^-16 (a few hundred steps at most, each off by 2^-24 of 4 or so).
- */
+/* Local units. The rounding of a traversal is below 2^-16 (a few hundred steps at most, each off by 2^-24 of 4 or
+ * so). */
 #define VOXEL_MARGIN 0x1p-13f
 
 /* Boxes in nodes are larger by this on every side, local units. It covers the rounding to single precision of the ray,

@@ -1,5 +1,5 @@
 /* The step of a search at a node, after the tests of the children's boxes: the nearest child is visited next, the
- * others go on the stack. * The nearest child is not found by sorting: the node has a list of its lanes for the octant
+ * others go on the stack. The nearest child is not found by sorting: the node has a list of its lanes for the octant
  * of the direction (triangle_layout_internal.h). So there are no comparisons, and the only branch is whether any child
  * was hit; the list is correct nearly as often as sorting (T. Fuetterling et al., "Accelerated Single Ray Tracing for
  * Wide Vector Units", HPG 2017, order lanes in a similar way). The next child does not come from the stack just
@@ -13,8 +13,8 @@
 enum { STACK_ROOM = STACK_ENTRIES + WIDTH }; /* pushing writes whole vectors */
 
 /* References still to be visited, and where the ray enters them (only kept for a nearest search). Their number is a
- * separate variable, so that it stays in a register. enter[top], above them, is where the ray enters the visited node.
- */
+ * separate variable, so that it stays in a register. enter[top], above them, is where the ray enters the visited
+ * node. */
 struct node_stack {
     float enter[STACK_ROOM];
     uint32_t reference[STACK_ROOM];

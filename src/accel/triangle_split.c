@@ -1,6 +1,6 @@
 /* Splits the triangles of a range by the binned surface area heuristic: Ingo Wald, "On fast Construction of
- * SAH-based Bounding Volume Hierarchies", RT 2007. The cost of a leaf counts blocks of eight triangles, not triangles.
- */
+ * SAH-based Bounding Volume Hierarchies", RT 2007. The cost of a leaf counts blocks of eight triangles, not
+ * triangles. */
 #include "accel/triangle_split_internal.h"
 
 enum { BINS = 16 };

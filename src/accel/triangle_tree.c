@@ -196,8 +196,7 @@ static uint32_t promise(const struct tree *tree, uint32_t number) {
     return bits;
 }
 
-/* About `wanted` most promising branches, the best first: words whose lower half is a branch. NULL: no memory.
- */
+/* About `wanted` most promising branches, the best first: words whose lower half is a branch. NULL: no memory. */
 static uint64_t *best_candidate(const struct tree *tree, uint32_t wanted, uint32_t *count) {
     uint32_t number_of[1 << KEY_BITS] = {0}, min = (1 << KEY_BITS) - 1, found = 0;
     for (uint32_t i = 0; i < tree->count; i++)

@@ -46,8 +46,8 @@ static inline uint8_t branch_height(const struct branch *a, const struct branch 
 bool tree_add(struct tree *tree, const struct range *range, uint32_t parent, uint32_t *out);
 /* Splits a range that is `depth` branches below its root. */
 void tree_part(struct reference *references, const struct range *range, uint32_t depth, struct range part[2]);
-/* A whole hierarchy over a range, whose root would lie `depth` branches below another. False: no memory, or cancelled.
- */
+/* A whole hierarchy over a range, whose root would lie `depth` branches below another. False: no memory, or
+ * cancelled. */
 bool tree_build(struct tree *tree, struct reference *references, const struct range *range, uint32_t depth,
                 const struct pool *pool, uint32_t *root);
 

@@ -16,8 +16,8 @@ enum error_kind {
 
 struct error {
     enum error_kind kind;
-    bool elsewhere; /* ERROR_SCENE: a name on the command line is wrong, not the script; the message has no script line
-                     */
+    bool elsewhere; /* ERROR_SCENE: a name on the command line is wrong, not the script; the message has no script
+                     * line */
     bool refused;   /* of ERROR_SCENE: a picture cannot be written under this name, which --lenient does not change */
     bool limit;     /* of ERROR_SCENE: a resource limit of scenes is reached, which no script can catch */
     char text[1024];
@@ -27,8 +27,7 @@ struct error {
  * format that begins with "gray:" makes a text that does: a name that does so is marked (base/terminal_text.h). */
 bool error_set(struct error *error, enum error_kind kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* "out of memory for WHAT"; with `limit` and the reason if the charged account (base/mem.h) has refused memory.
- */
+/* "out of memory for WHAT"; with `limit` and the reason if the charged account (base/mem.h) has refused memory. */
 bool error_no_memory(struct error *error, const char *what);
 /* After a failure to read a file: makes it "PATH: needs more than the 64 MiB of --script-memory" if memory was refused
  * since mem_refusals() was `before`; a library may have given another reason. Returns false. */

@@ -640,8 +640,8 @@ void file_output_abandon(struct file_output *file) {
         close_all(file);
 }
 
-/* It gets a temporary name first, which no other process uses, so that the inspected file is the one that is removed.
- */
+/* It gets a temporary name first, which no other process uses, so that the inspected file is the one that is
+ * removed. */
 bool file_output_remove(const struct file_target *target, struct file_identity identity, struct error *error) {
     struct file_output file;
     struct stat status;

@@ -92,8 +92,8 @@ struct file_output {
 };
 bool file_output_open(struct file_output *file, const struct file_target *target, struct error *error);
 bool file_output_write(struct file_output *file, const void *data, size_t size, struct error *error);
-/* fsync, the final name (mode bits of a replaced file are kept, but for x, setuid and the like), fsync of the folder.
- */
+/* fsync, the final name (mode bits of a replaced file are kept, but for x, setuid and the like), fsync of the
+ * folder. */
 bool file_output_commit(struct file_output *file, struct error *error);
 void file_output_abandon(struct file_output *file); /* removes the temporary file; may be called on a closed one */
 

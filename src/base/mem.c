@@ -73,8 +73,8 @@ void mem_unreserve(uint64_t size) {
 }
 
 #ifdef GRAY_FAULTS
-/* Bytes in blocks now, and their maximum since mem_peak_begin; counted only in builds with fault injection, for tests.
- */
+/* Bytes in blocks now, and their maximum since mem_peak_begin; counted only in builds with fault injection, for
+ * tests. */
 static _Atomic uint64_t bytes_held, bytes_max;
 
 static void *taken(void *block) {

@@ -2,8 +2,7 @@
  * the folders of the list it is refused, before that part is looked up in the file system: the result does not depend
  * on what exists there. Opening: openat2 below that folder's descriptor with RESOLVE_BENEATH and RESOLVE_NO_SYMLINKS
  * (Linux 5.6, openat2(2)); a canonical path contains no links, so a link must have been created in between, and the
- * kernel refuses it. On kernels without openat2 the path of the opened descriptor is checked instead.
- */
+ * kernel refuses it. On kernels without openat2 the path of the opened descriptor is checked instead. */
 #define _GNU_SOURCE
 #include "base/path_policy.h"
 

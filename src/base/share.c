@@ -17,8 +17,8 @@ static bool no_memory(struct error *error, size_t size, const char *why) {
     return error_set(error, ERROR_MACHINE, "out of memory: the picture needs %.1f MB: %s", 1e-6 * (double)size, why);
 }
 
-/* A size above the machine's memory would not fail in time: the kernel hands out pages until it has to kill a process.
- */
+/* A size above the machine's memory would not fail in time: the kernel hands out pages until it has to kill a
+ * process. */
 static bool fits_machine(size_t size) {
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
     return pages <= 0 || page <= 0 || size / (size_t)page < (size_t)pages;

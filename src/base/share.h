@@ -1,7 +1,6 @@
 /* Memory that two processes share through a descriptor, for blocks whose size is known only after the fork (the film).
  * The process that creates it sends the descriptor to the other; the size is sealed, so neither process can shrink it
- * while the other uses it.
- */
+ * while the other uses it. */
 #ifndef GRAY_BASE_SHARE_H
 #define GRAY_BASE_SHARE_H
 

@@ -288,7 +288,7 @@ static void scan_file(struct search *search, const char *path, int depth) {
 
 static void conclude(const struct evidence *evidence, struct order_finding *finding) {
     bool old = evidence->is_old && !evidence->is_new;
-    finding->order = old ? ORDER_OLD : ORDER_NEW;
+    finding->order = old ? TRANSFORM_ORDER_OLD : TRANSFORM_ORDER_NEW;
     finding->only_named_pictures = evidence->renders && !evidence->renders_otherwise;
     const char *reason = old ? evidence->old_reason : evidence->is_new ? evidence->new_reason : "";
     snprintf(finding->reason, sizeof finding->reason, "%s", reason);
@@ -346,7 +346,7 @@ bool order_detect(const char *path, const char *library_folder, const struct pat
     struct search search = {.path_policy = path_policy};
     const char *slash = strrchr(path, '/');
     size_t folder = slash ? (size_t)(slash - path) + 1 : 0;
-    *finding = (struct order_finding){.order = ORDER_NEW};
+    *finding = (struct order_finding){.order = TRANSFORM_ORDER_NEW};
     if (folder >= PATHS)
         return true;
     memcpy(search.folder, path, folder);
@@ -361,7 +361,7 @@ bool order_detect(const char *path, const char *library_folder, const struct pat
         if (file_canonical(start, siblings.folder, sizeof siblings.folder))
             (void)file_list(start, SIBLINGS, ask_sibling, &siblings);
         if (siblings.votes_old > siblings.votes_new) {
-            finding->order = ORDER_OLD;
+            finding->order = TRANSFORM_ORDER_OLD;
             memcpy(finding->reason, siblings.reason, sizeof finding->reason);
         }
     }

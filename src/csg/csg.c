@@ -323,8 +323,8 @@ static bool test_next_leaves(struct sweep *s) {
     return true;
 }
 
-/* The end of the group that begins at `first`: error intervals are joined as long as they overlap. 0: scratch overflow.
- */
+/* The end of the group that begins at `first`: error intervals are joined as long as they overlap. 0: scratch
+ * overflow. */
 static uint32_t group_end(struct sweep *s, uint32_t first) {
     uint32_t end = first + 1;
     double extent = 0;

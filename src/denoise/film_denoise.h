@@ -5,8 +5,8 @@
 #include "denoise/denoise.h"
 #include "film/path_film.h"
 
-/* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the film.
- */
+/* For films whose record has features (PATH_PART_FEATURES). The pixels of the film for the denoiser; borrows the
+ * film. */
 struct denoise_source film_denoise_source(struct film *film);
 /* Replaces the colours of the film by denoised ones, for display. Its sums do not change: more samples may follow, and
  * files are written from the sums. Errors: no memory, cancelled; then the film is unchanged. */

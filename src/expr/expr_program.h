@@ -42,8 +42,8 @@ struct expr_program {
 };
 
 /* A loop of a program. Its body is a program of its own, without inputs and outputs. The first registers of the body
- * are the states, then the values from outside, then the number of the step; they keep their values through the body.
- */
+ * are the states, then the values from outside, then the number of the step; they keep their values through the
+ * body. */
 struct expr_loop {
     struct expr_program body;
     uint32_t first, last; /* steps */

@@ -1,7 +1,7 @@
 /* Bounds and slopes over eight boxes, compiled for the instruction set of the file that includes this one: arithmetic,
  * roots, choices, sines and exponentials on vectors of boxes, everything else box by box with expr_rooted_apply. The
- * formulas are those of expr_derivative.c and expr_interval.c. Results have the same bits for every width of vectors.
- */
+ * formulas are those of expr_derivative.c and expr_interval.c. Results have the same bits for every width of
+ * vectors. */
 #include "expr/expr_slopes_internal.h"
 #include "expr/expr_vector_internal.h"
 #include "math/elementary_lanes.h"

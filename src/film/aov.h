@@ -1,6 +1,6 @@
 /* Render layers (AOVs): the hit of the first sample of every pixel, and the cost of the pixel. Each layer has three
- * numbers per pixel; aov_colour converts them to colours, files of linear light (.pfm, .hdr, .exr) have them unchanged.
- */
+ * numbers per pixel; aov_colour converts them to colours, files of linear light (.pfm, .hdr, .exr) have them
+ * unchanged. */
 #ifndef GRAY_FILM_AOV_H
 #define GRAY_FILM_AOV_H
 

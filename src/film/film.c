@@ -270,10 +270,10 @@ bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint3
     return true;
 }
 
-/* ORDER_SPREAD: the sort key of tile i is i times the golden ratio, modulo 1. At any time the finished tiles are evenly
- * distributed over the rows of the picture and within them (Weyl's sequence; no irrational number is further from all
- * fractions), so that their cost represents that of the others. ORDER_CENTRE: by the distance of their middles from
- * that of the rendered part, in units of its half sides. */
+/* TILE_ORDER_SPREAD: the sort key of tile i is i times the golden ratio, modulo 1. At any time the finished tiles are
+ * evenly distributed over the rows of the picture and within them (Weyl's sequence; no irrational number is further
+ * from all fractions), so that their cost represents that of the others. TILE_ORDER_CENTRE: by the distance of their
+ * middles from that of the rendered part, in units of its half sides. */
 
 static uint32_t spread_key(uint32_t tile) {
     return tile * UINT32_C(2654435769); /* 2^32 over the golden ratio */
@@ -286,7 +286,7 @@ static uint32_t centre_key(const struct film *film, uint32_t tile) {
     return (uint32_t)((dx * dx + dy * dy) * 0x1p30);
 }
 
-bool tile_order(const struct film *film, enum order order, uint32_t *out) {
+bool film_tile_order(const struct film *film, enum tile_order order, uint32_t *out) {
     uint32_t count = film_tile_count(film);
     uint64_t *keys = mem_alloc_zero((size_t)count + 1, sizeof *keys);
     if (!keys)
@@ -294,12 +294,12 @@ bool tile_order(const struct film *film, enum order order, uint32_t *out) {
     for (uint32_t i = 0; i < count; i++) {
         uint64_t key = 0;
         switch (order) {
-        case ORDER_ROWS:
+        case TILE_ORDER_ROWS:
             break;
-        case ORDER_SPREAD:
+        case TILE_ORDER_SPREAD:
             key = spread_key(i);
             break;
-        case ORDER_CENTRE:
+        case TILE_ORDER_CENTRE:
             key = centre_key(film, i);
             break;
         }

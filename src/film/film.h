@@ -52,8 +52,8 @@ enum film_tile {
     FILM_TILE_ELSEWHERE, /* another shard's, or passed on */
     FILM_TILE_LATER,     /* in a farm: not handed out yet */
     FILM_TILE_TAKEN,     /* in progress, here or, in a farm, elsewhere */
-    /* With the number of a check added (--noise): the pixels have the samples of that check, until the state changes.
-     */
+    /* With the number of a check added (--noise): the pixels have the samples of that check, until the state
+     * changes. */
     FILM_TILE_BEGUN = 0x40,
     /* With the number of the pass added: some samples are in the pixels, more will come. */
     FILM_TILE_PASSED = 0x80
@@ -141,6 +141,6 @@ bool shard_choose(const uint64_t *cost, struct film *film, uint32_t shard, uint3
 /* The order of tiles: the picture does not depend on it, but the view during rendering and the time estimate do. */
 
 /* out[k] is the k-th tile to be made; room for film_tile_count(film). False: no memory. */
-bool tile_order(const struct film *film, enum order order, uint32_t *out);
+bool film_tile_order(const struct film *film, enum tile_order order, uint32_t *out);
 
 #endif

@@ -1,8 +1,8 @@
 /* Tile files: tiles of a picture, finished ones and those with some of their samples, for later (checkpoints) or for
  * merging (parts of a picture that several machines render). A file identifies the scene and options of its tiles, so
  * that foreign tiles are never merged. Every record has a checksum, and the file has an end record, so that damaged
- * files are refused. The checksums are not signatures: they detect accidents, not forgeries; reading any file is safe.
- */
+ * files are refused. The checksums are not signatures: they detect accidents, not forgeries; reading any file is
+ * safe. */
 #ifndef GRAY_FILM_TILE_FILE_H
 #define GRAY_FILM_TILE_FILE_H
 

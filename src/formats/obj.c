@@ -9,8 +9,8 @@
  * so these are checked at the end: for each of the three lists only the largest index and its line need to be kept.
  * Invariant: the index lists of uvs and normals are either absent or as long as that of vertices; they appear with the
  * first corner that names one and say MISSING for all corners before. Memory: lists grow by half, and the shortest way
- * to cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is usual.
- */
+ * to cost much is a corner of two bytes in three lists, so nine times the file's size is an upper bound; two is
+ * usual. */
 
 #include "base/file.h"
 #include "base/hash.h"

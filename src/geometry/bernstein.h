@@ -1,6 +1,6 @@
 /* Polynomials in Bernstein form: sum of b[i] C(n,i) x^i (1-x)^(n-i) on [0, 1]. The form of splines; the coefficients
- * bound the polynomial (convex hull) and count its roots (variation diminishing), and rounding in them moves it little.
- */
+ * bound the polynomial (convex hull) and count its roots (variation diminishing), and rounding in them moves it
+ * little. */
 #ifndef GRAY_GEOMETRY_BERNSTEIN_H
 #define GRAY_GEOMETRY_BERNSTEIN_H
 

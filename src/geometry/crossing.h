@@ -62,8 +62,8 @@ static inline bool geom_scratch_push(struct geom_scratch *scratch, struct crossi
 
 /* --- The line of a ray, normalised for a shape: the origin is moved along it to near the shape, the direction is a
  * unit vector, and s counts object units from there. So the numbers in a root finder do not depend on the distance of
- * the ray's origin, nor on the length of its direction. Scaling by powers of two scales s and changes nothing else ---
- */
+ * the ray's origin, nor on the length of its direction. Scaling by powers of two scales s and changes nothing else
+ * --- */
 
 struct line {
     struct vec3 origin, direction;

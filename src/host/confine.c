@@ -3,8 +3,8 @@
  * and the first arguments of each system call, read from the table below: a call that is not listed fails with ENOSYS,
  * so a C library that tries a newer call falls back; a call that only an attack would make ends the process.
  *
- * The sanitizers need ptrace, personality and more of /proc than this leaves, so their builds run without the filter.
- */
+ * The sanitizers need ptrace, personality and more of /proc than this leaves, so their builds run without the
+ * filter. */
 #define _GNU_SOURCE
 #include "host/confine.h"
 

@@ -131,8 +131,7 @@ static int perform(struct options *options, const struct program_parts *parts, s
 }
 
 /* The programs with MPI and with a window are separate programs beside this one, so that this one does not load their
- * libraries.
- */
+ * libraries. */
 static int exec_variant(const char *which, const char *missing, char **argv) {
     char program[4096];
     size_t length = 0;

@@ -128,12 +128,12 @@ static bool is_frame(const struct picture_work *work) {
     return work->request->frame.number > 0 || work->process->options->animation != ANIMATION_NONE;
 }
 
-/* The scene notes what the script changes from frame to frame; changes of the window and of gr.change_... are others.
- */
+/* The scene notes what the script changes from frame to frame; changes of the window and of gr.change_... are
+ * others. */
 static bool notes_changes(const struct picture_work *work) {
     const struct render_process *process = work->process;
-    return process->animates && work->request->frame.number > 0 && !work->asked.in_window && !work->request->changed &&
-           !process->options->script.lenient;
+    return process->animates && work->request->frame.number > 0 && !work->picture_request.in_window &&
+           !work->request->changed && !process->options->script.lenient;
 }
 
 static bool build_world(struct picture_work *work, const struct scene_light *lights, uint32_t light_count,
@@ -189,7 +189,7 @@ static bool make_in_window(struct picture_work *work, double build_seconds, stru
     struct preview_session preview = {.services = work->process->services,
                                       .pool = work->process->pool,
                                       .request = work->request,
-                                      .asked = &work->asked,
+                                      .picture_request = &work->picture_request,
                                       .job = &work->job,
                                       .world = &work->world,
                                       .context = work,
@@ -211,7 +211,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     struct render_process *process = work->process;
     struct render_job *job = &work->job;
     struct picture_report *report = &work->report;
-    bool in_window = work->asked.in_window;
+    bool in_window = work->picture_request.in_window;
     double begun = progress_clock(), worked = progress_processor_clock();
     if (build_world(work, work->request->lights, work->request->light_count, error))
         job->world = &work->world;
@@ -274,13 +274,13 @@ static bool make_picture(struct picture_work *work, struct error *error) {
 
 /* The memory outside the arenas: the film plus half of its size for writing it, unless the command line chooses its
  * size, and the stacks of the workers. */
-static bool reserve_memory(struct render_process *process, const struct picture_request *asked,
+static bool reserve_memory(struct render_process *process, const struct picture_request *picture,
                            const struct settings *settings, struct error *error) {
     enum { STACK_OF_A_LEVEL = 8 << 10 };
     size_t film = 0;
-    if (asked->check)
+    if (picture->check)
         return true;
-    if (!picture_film_size(asked, &film, error))
+    if (!picture_film_size(picture, &film, error))
         return false;
     uint64_t levels = (uint64_t)settings->reflect_limit + (uint64_t)settings->refract_limit;
     uint64_t bytes = (uint64_t)pool_workers(process->pool) * levels * STACK_OF_A_LEVEL;
@@ -309,19 +309,19 @@ static struct picture_request picture_request_of(const struct options *options, 
 }
 
 /* Enlarges the part that is rendered, within the picture. */
-static void add_rim(struct picture_request *asked, uint32_t rim) {
-    const struct film_rectangle shown = asked->shown;
-    uint32_t right = asked->full_width - shown.x1, below = asked->full_height - shown.y1;
-    asked->x0 = shown.x0 > rim ? shown.x0 - rim : 0;
-    asked->y0 = shown.y0 > rim ? shown.y0 - rim : 0;
-    asked->width = shown.x1 + (right > rim ? rim : right) - asked->x0;
-    asked->height = shown.y1 + (below > rim ? rim : below) - asked->y0;
+static void add_rim(struct picture_request *picture, uint32_t rim) {
+    const struct film_rectangle shown = picture->shown;
+    uint32_t right = picture->full_width - shown.x1, below = picture->full_height - shown.y1;
+    picture->x0 = shown.x0 > rim ? shown.x0 - rim : 0;
+    picture->y0 = shown.y0 > rim ? shown.y0 - rim : 0;
+    picture->width = shown.x1 + (right > rim ? rim : right) - picture->x0;
+    picture->height = shown.y1 + (below > rim ? rim : below) - picture->y0;
 }
 
 /* Of a frame that a later one may be equal to; else zero. With --lenient, scripts change their scene for a picture. */
 static struct digest digest_of_frame(const struct picture_work *work) {
-    bool never = !is_frame(work) || work->asked.check || work->asked.in_window || work->request->changed ||
-                 work->process->options->script.lenient;
+    bool never = !is_frame(work) || work->picture_request.check || work->picture_request.in_window ||
+                 work->request->changed || work->process->options->script.lenient;
     return never ? (struct digest){0} : render_request_digest(work->request);
 }
 
@@ -335,49 +335,50 @@ static bool repeats_frame(const struct picture_work *work) {
 static bool begin_picture(struct picture_work *work, bool *already, struct error *error) {
     struct render_process *process = work->process;
     struct render_job *job = &work->job;
-    struct picture_request *asked = &work->asked;
+    struct picture_request *picture = &work->picture_request;
     struct film *film = &work->film;
     const char *file = work->request->file;
-    *asked = picture_request_of(process->options, job, work->request->frame);
+    *picture = picture_request_of(process->options, job, work->request->frame);
     struct render_area area;
     char warning[256] = "";
     size_t length = strlen(file);
-    if (length >= sizeof asked->file)
+    if (length >= sizeof picture->file)
         return error_set(error, ERROR_SCENE, "the name of the picture is longer than %zu bytes",
-                         sizeof asked->file - 1);
-    memcpy(asked->file, file, length);
+                         sizeof picture->file - 1);
+    memcpy(picture->file, file, length);
     memcpy(work->name, file, length + 1);
     if (work->request->frame.number > 0 && length + 128 < NAME_LIMIT) /* longer names have no number here */
         (void)picture_files_number_frame(work->request->frame.number, work->name, error);
-    asked->keep = work->request->keep;
+    picture->keep = work->request->keep;
     if (!render_prepare(job, &area, warning, error))
         return false;
-    asked->x0 = area.x0, asked->y0 = area.y0, asked->width = area.width, asked->height = area.height;
+    picture->x0 = area.x0, picture->y0 = area.y0, picture->width = area.width, picture->height = area.height;
     if (warning[0] != '\0')
         render_process_warn(process, warning);
-    asked->shown = (struct film_rectangle){asked->x0, asked->y0, asked->x0 + asked->width, asked->y0 + asked->height};
-    uint32_t rim = path_film_parts(asked->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
-    add_rim(asked, rim + finish_rim(&job->settings.finish, asked->full_height));
+    picture->shown =
+        (struct film_rectangle){picture->x0, picture->y0, picture->x0 + picture->width, picture->y0 + picture->height};
+    uint32_t rim = path_film_parts(picture->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
+    add_rim(picture, rim + finish_rim(&job->settings.finish, picture->full_height));
     if (job->settings.view_is_target)
-        asked->camera.view = vec3_sub(job->camera.view, job->camera.eye);
-    asked->files = file_read_log_sum(&process->read_log);
+        picture->camera.view = vec3_sub(job->camera.view, job->camera.eye);
+    picture->files = file_read_log_sum(&process->read_log);
     if (process->read_log.incomplete)
         return error_no_memory(error, "the list of files that were read");
-    if (!reserve_memory(process, asked, &job->settings, error))
+    if (!reserve_memory(process, picture, &job->settings, error))
         return false;
     work->shows = digest_of_frame(work);
-    asked->repeats = repeats_frame(work);
+    picture->repeats = repeats_frame(work);
     if (!settle(process, error))
         return false;
-    if (!process->services->begin(process->services->context, asked, film, already, error)) {
+    if (!process->services->begin(process->services->context, picture, film, already, error)) {
         error->refused = error->kind == ERROR_SCENE;
         return false;
     }
     /* Also for queries without a film. */
-    film->x0 = asked->x0;
-    film->y0 = asked->y0;
-    film->full_width = asked->full_width;
-    film->full_height = asked->full_height;
+    film->x0 = picture->x0;
+    film->y0 = picture->y0;
+    film->full_width = picture->full_width;
+    film->full_height = picture->full_height;
     return true;
 }
 
@@ -419,8 +420,9 @@ static void init_work(struct picture_work *work, struct render_process *process,
 static bool is_written_early(const struct picture_work *work) {
     const struct script_options *options = &work->process->options->script;
     const struct frame *frame = &work->request->frame;
-    return work->process->animates && frame->number > 0 && !work->asked.check && !work->asked.in_window &&
-           !options->no_sandbox && frame_after(&options->frames.selection, frame) > 0;
+    return work->process->animates && frame->number > 0 && !work->picture_request.check &&
+           !work->picture_request.in_window && !options->no_sandbox &&
+           frame_after(&options->frames.selection, frame) > 0;
 }
 
 static bool render_job_run(struct render_process *process, const struct render_request *request, struct error *error) {
@@ -447,7 +449,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
     if (!early)
         clear_picture(&work);
-    if (ok && !work.asked.check)
+    if (ok && !work.picture_request.check)
         ok = services->done(services->context, &work.report, early, error);
     else
         services->abandon(services->context);

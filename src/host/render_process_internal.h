@@ -54,7 +54,7 @@ struct picture_work {
     struct render_process *process;
     const struct render_request *request;
     struct render_job job;
-    struct picture_request asked;
+    struct picture_request picture_request;
     struct film film;
     struct world world;
     struct digest shows; /* of a frame, without its nodes; zero: none is equal to it */

@@ -138,11 +138,11 @@ void render_process_report_world(const struct render_process *process, const cha
     render_process_report_scene(process, LINE_DETAIL, line);
 }
 
-/* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its storage.
- */
+/* The name that -o gives the picture; that of the script if -o names many pictures or a stream. `room` is its
+ * storage. */
 static const char *shown_name(const struct picture_work *work, char room[NAME_LIMIT]) {
     const struct options *options = work->process->options;
-    const struct frame *frame = &work->asked.frame;
+    const struct frame *frame = &work->picture_request.frame;
     if (!options->output || options_output_is_stream(options) || options->animation != ANIMATION_NONE)
         return work->name;
     if (!output_name_numbered(options->output))
@@ -158,7 +158,7 @@ void render_process_report_samples(const struct picture_work *work) {
     const struct render_statistics *rays = &work->report.rays;
     char line[2 * NAME_LIMIT + 256], words[256], room[NAME_LIMIT];
     bool has_limit = settings->noise > 0 || settings->time_limit > 0;
-    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->asked.in_window ||
+    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->picture_request.in_window ||
         rays->pixels == 0)
         return;
     double mean = (double)rays->samples / (double)rays->pixels;

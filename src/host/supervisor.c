@@ -112,7 +112,7 @@ static void talk_to_child(struct supervisor *supervisor) {
         if (result == CHANNEL_END)
             return;
         if (result == CHANNEL_MESSAGE)
-            supervisor_take_message(supervisor, &message);
+            supervisor_handle_message(supervisor, &message);
         else
             supervisor->broken = true;
         if (supervisor->waits)

@@ -90,8 +90,7 @@ static _Noreturn void give_up(const struct process_work *work, const struct erro
 
 /* Whether the child of a farm has hung for too long: it used no processor time although a processor was available.
  * While a picture is open, the child always has work. A script may wait for the reader of its output, but it must not
- * be stopped. Time in which this process was stopped itself does not count.
- */
+ * be stopped. Time in which this process was stopped itself does not count. */
 bool supervisor_child_is_stalled(struct supervisor *supervisor) {
     double limit = supervisor->options->farm_stall, now = progress_clock(), pause = limit / 32;
     double passed = now - supervisor->stall.checked;

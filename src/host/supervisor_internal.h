@@ -103,7 +103,7 @@ int supervisor_script_patience(const struct supervisor *supervisor);
 bool supervisor_child_is_stalled(struct supervisor *supervisor);
 
 /* supervisor_messages.c */
-void supervisor_take_message(struct supervisor *supervisor, const struct message *message);
+void supervisor_handle_message(struct supervisor *supervisor, const struct message *message);
 void supervisor_send_answer(struct supervisor *supervisor, enum message_kind kind, bool ok, bool already,
                             const struct error *error, int descriptor);
 void supervisor_step_window(struct supervisor *supervisor);

@@ -307,7 +307,7 @@ static void note_read(struct supervisor *supervisor, const struct message_read *
 }
 
 /* A message out of turn (a second picture before the first is finished ...) is not answered: it breaks the protocol. */
-void supervisor_take_message(struct supervisor *supervisor, const struct message *message) {
+void supervisor_handle_message(struct supervisor *supervisor, const struct message *message) {
     const struct picture *current = &supervisor->output.current;
     struct preview_reply reply;
     struct error ignored;
@@ -334,7 +334,7 @@ void supervisor_take_message(struct supervisor *supervisor, const struct message
         if (!current->open || !supervisor->window || supervisor->viewer.pass.state == PASS_WAITING ||
             !preview_reply_read(message, &reply))
             break;
-        viewer_take_reply(&supervisor->viewer, &reply, progress_clock());
+        viewer_receive_reply(&supervisor->viewer, &reply, progress_clock());
         if (supervisor->deadline > 0)
             end_picture(supervisor, true);
         return;

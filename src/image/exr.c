@@ -159,8 +159,7 @@ static int channel_number(const char *name) {
     return strcmp(name, "Y") == 0 ? 0 : 3;
 }
 
-/* The source of the values: rows on demand, stored in `lines`, which has room for one chunk; or channels in memory.
- */
+/* The source of the values: rows on demand, stored in `lines`, which has room for one chunk; or channels in memory. */
 struct source {
     float_rows *rows;
     void *rows_context;

@@ -1,7 +1,7 @@
 /* A picture as a texture: an immutable asset with its mip levels. Texels have the values of the file (no gamma), 8 or
  * 16 bits per channel, always expanded to RGBA; lookups are in premultiplied doubles so that transparent texels have no
- * colour. u counts from the left edge to the right in [0,1], v from the top edge down. Owner: the asset store, counted.
- */
+ * colour. u counts from the left edge to the right in [0,1], v from the top edge down. Owner: the asset store,
+ * counted. */
 #ifndef GRAY_IMAGE_IMAGE_H
 #define GRAY_IMAGE_IMAGE_H
 
@@ -54,8 +54,8 @@ const char *image_name(const struct image *image);
 struct rgba image_texel(const struct image *image, uint32_t x, uint32_t y);
 /* The largest value of a colour channel; 1 except for high dynamic range images. */
 double image_brightest(const struct image *image);
-/* The largest red, green and blue of all texels, and the smallest alpha. The first call reads all texels; thread-safe.
- */
+/* The largest red, green and blue of all texels, and the smallest alpha. The first call reads all texels;
+ * thread-safe. */
 struct rgba image_largest(const struct image *image);
 /* Where a lookup is, u and v finite of any size, and how wide its footprint is in u and v (0: unknown, level 0 is
  * used). */

@@ -11,8 +11,8 @@ enum { PALETTE_COLOURS = 256 };
 struct palette {
     uint8_t colours[PALETTE_COLOURS][3];
     int count;
-    int spread; /* amplitude of the dither in levels; 0: every colour of the pictures is in the palette, up to 4 levels
-                 */
+    int spread; /* amplitude of the dither in levels; 0: every colour of the pictures is in the palette, up to 4
+                 * levels */
 };
 
 /* Counts the colours of pictures; one is several megabytes. */

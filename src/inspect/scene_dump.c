@@ -1,5 +1,4 @@
-/* The flattened world as it was built: one line for each primitive, in flattening order, then materials and lights.
- */
+/* The flattened world as it was built: one line for each primitive, in flattening order, then materials and lights. */
 #include "inspect/inspect.h"
 #include "mesh/mesh.h"
 

@@ -213,8 +213,7 @@ double light_divided_extent(const struct light *light);
 bool light_emitter_make(const struct light *light, uint32_t i, uint32_t j, uint32_t parts, struct light_emitter *out);
 /* LOCAL: its brightness in the unit direction, relative to the maximum. */
 double light_emitter_shine(const struct light_emitter *emitter, struct vec3 direction);
-/* LOCAL: whether it emits within the cone about `axis`, if it does not along the axis and some directions around it.
- */
+/* LOCAL: whether it emits within the cone about `axis`, if it does not along the axis and some directions around it. */
 bool light_emitter_shines_near(const struct light_emitter *emitter, struct vec3 axis, double cos_half);
 /* Colour times unit is the power of a photon before shine: an estimate, to share photons by. */
 struct vec3 light_emitter_colour(const struct light_emitter *emitter);

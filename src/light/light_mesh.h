@@ -1,6 +1,6 @@
 /* The triangles of a mesh light, in world space. As a whole (light_mesh_sample) a triangle is chosen in proportion to
- * its area times the luminance of its emission; light samplers choose each triangle for itself (light_triangle_sample).
- */
+ * its area times the luminance of its emission; light samplers choose each triangle for itself
+ * (light_triangle_sample). */
 #ifndef GRAY_LIGHT_LIGHT_MESH_H
 #define GRAY_LIGHT_LIGHT_MESH_H
 

@@ -19,8 +19,8 @@ static inline double weight_of_area(double weight, struct vec3 normal, struct ve
     return squared > 0 ? weight * cosine / (squared * sqrt(squared)) : 0;
 }
 
-/* The square of twice `half` about `centre` across the context's axis becomes the parallelogram that holds all targets.
- */
+/* The square of twice `half` about `centre` across the context's axis becomes the parallelogram that holds all
+ * targets. */
 static inline void light_context_square(struct light_context *out, struct vec3 centre, double half) {
     out->edge1 = vec3_scale(out->right, 2 * half);
     out->edge2 = vec3_scale(out->up, 2 * half);

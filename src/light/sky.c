@@ -87,8 +87,8 @@ static double january_first(int year) {
 }
 
 /* The position of the sun by the Solar Calculator of NOAA (gml.noaa.gov/grad/solcalc, calcdetails.html), whose formulas
- * are those of J. Meeus, "Astronomical Algorithms", 2nd ed., chapters 25 and 28: angles in radians, without refraction.
- */
+ * are those of J. Meeus, "Astronomical Algorithms", 2nd ed., chapters 25 and 28: angles in radians, without
+ * refraction. */
 struct vec3 sky_sun(const struct sky_time *time, double latitude, double longitude) {
     const double degree = PI / 180;
     double julian = january_first(time->year) + (time->day - 1) + (time->hour - time->zone) / 24;

@@ -4,8 +4,8 @@
  * Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, with the masking of
  * both directions together (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 2014,
  * equation 99). Facets are sampled by their visibility from wo, so the weight of a sample is the masking of the other
- * direction. Fresnel reflectance and total reflection are those of the facet. Light that meets a second facet is lost.
- */
+ * direction. Fresnel reflectance and total reflection are those of the facet. Light that meets a second facet is
+ * lost. */
 #include "material/bsdf.h"
 
 #include "material/classic.h"
@@ -357,8 +357,8 @@ static double radiance_factor(const struct bsdf *bsdf, enum bsdf_mode mode, bool
     return transmits && mode == BSDF_RADIANCE ? bsdf->eta * bsdf->eta : 1;
 }
 
-/* The expected fraction of its weight that a lobe contributes, always above 0: facets multiply it by Fresnel's share.
- */
+/* The expected fraction of its weight that a lobe contributes, always above 0: facets multiply it by Fresnel's
+ * share. */
 static double expected_share(const struct bsdf *bsdf, const struct lobe *lobe) {
     unsigned flags = lobe_flags(lobe->kind);
     if (lobe->share > 0)

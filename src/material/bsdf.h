@@ -139,13 +139,13 @@ struct bsdf_sample {
     unsigned flags;     /* BSDF_REFLECTS or BSDF_TRANSMITS, BSDF_DELTA */
 };
 /* A direction for a point of the unit square, of one of the lobes, chosen approximately in proportion to their
- * contributions. False: no direction, which counts as black (a sample below the surface, a lobe without contribution).
- */
+ * contributions. False: no direction, which counts as black (a sample below the surface, a lobe without
+ * contribution). */
 bool bsdf_sample(const struct bsdf *bsdf, uint32_t lobes, enum bsdf_mode mode, struct vec3 wo, struct sample2 u,
                  struct bsdf_sample *out);
 
-/* For integrators that follow traced lobes one by one. At total reflection a smooth refracting lobe joins the mirror.
- */
+/* For integrators that follow traced lobes one by one. At total reflection a smooth refracting lobe joins the
+ * mirror. */
 struct bsdf_branch {
     struct vec3 weight; /* not black */
     double expected;    /* approximately the mean weight of samples, above 0: for the choice of a branch */

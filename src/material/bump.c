@@ -104,8 +104,8 @@ static bool slopes_by_differences(const struct bump *bump, const struct texture 
     return true;
 }
 
-/* The same formula with the tangents of the object's space. A recorded function has derivatives, except where it jumps.
- */
+/* The same formula with the tangents of the object's space. A recorded function has derivatives, except where it
+ * jumps. */
 static void turn_by_texture(const struct bump *bump, const struct texture *textures, const struct hit *hit,
                             struct vec3 *normal) {
     const struct texture *texture = texture_at(textures, bump->texture);

@@ -1,7 +1,6 @@
 /* A decorator of the language is one function here: it replaces an input by a texture that contains the previous
  * texture. So a chain of decorators becomes one tree for each input, and only inputs with textures take time at a hit.
- * The language and the readers of files build their materials by these functions.
- */
+ * The language and the readers of files build their materials by these functions. */
 #include "material/material_inputs.h"
 
 void material_derive(struct material *material, enum material_kind kind, const struct material *base) {

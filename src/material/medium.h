@@ -1,7 +1,7 @@
 /* The effect of media on the light along a ray: absorption inside transparent solids (the current medium of the ray's
- * stack) and fog outside. This is the only query for integrators. * Rays have kinds, and each medium states which of
- * them it affects. Shadow rays are never affected: transparent solids cast full shadows, and the classic fogs attenuate
- * lines of sight, not the light of lamps. */
+ * stack) and fog outside. This is the only query for integrators. Rays have kinds, and each medium states which of them
+ * it affects. Fog attenuates only lines of sight, not the light of lamps. Absorption also affects photons and, in the
+ * path tracer, the shadow rays that begin inside of a solid; Whitted's shadow rays do not ask. */
 #ifndef GRAY_MATERIAL_MEDIUM_H
 #define GRAY_MATERIAL_MEDIUM_H
 

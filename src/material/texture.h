@@ -115,8 +115,8 @@ struct phong {
     int glossy_samples;
 };
 
-/* Inputs of materials, with the names that scripts use. Opacity is that of a surface with holes: 1 without a texture.
- */
+/* Inputs of materials, with the names that scripts use. Opacity is that of a surface with holes: 1 without a
+ * texture. */
 #define MATERIAL_INPUTS(X)                                                                                             \
     X(INPUT_KD, "kd")                                                                                                  \
     X(INPUT_KS, "ks")                                                                                                  \

@@ -18,8 +18,8 @@
  * (cube root, remainder) are at the end.
  *
  * Invariant: no operation here depends on the processor, the compiler or the library. The build must keep
- * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in elementary_tables_internal.h.
- */
+ * contraction off; a pair (hi, lo) always means the exact sum hi + lo. The numbers are in
+ * elementary_tables_internal.h. */
 #include "math/elementary.h"
 
 #include <math.h>
@@ -214,8 +214,8 @@ double el_pow(double x, double y) {
             sign = -1.0;
         x = -x;
     }
-    /* Beyond these sizes of y the answer is 1, or leaves the range; and below nothing here can overflow or underflow.
-     */
+    /* Beyond these sizes of y the answer is 1, or leaves the range; and below nothing here can overflow or
+     * underflow. */
     if (fabs(y) > 0x1.0p66) {
         if (x == 1.0)
             return sign;

@@ -1,7 +1,7 @@
 /* The basis of elementary functions and roots: bit patterns, and arithmetic without error.
  * Sums and products of two doubles without error, as unevaluated pairs: the exact value is hi + lo, hi the nearest
- * double. T. J. Dekker, "A floating-point technique for extending the available precision", 1971; Knuth's sum; no fma.
- */
+ * double. T. J. Dekker, "A floating-point technique for extending the available precision", 1971; Knuth's sum; no
+ * fma. */
 #ifndef GRAY_MATH_EXACT_H
 #define GRAY_MATH_EXACT_H
 

@@ -10,8 +10,8 @@
  *  - The zero polynomial, a NaN or an infinite coefficient, a NaN bound or lo > hi: no roots.
  * Accuracy: roots_quadratic to about two last places whatever cancels in the discriminant. The others as far as
  * rounding in the evaluation of the polynomial allows: a well separated root to some last places times its condition
- * number, a root of multiplicity m to about 2^(-52/m) of its size; two roots closer than that may be missed together.
- */
+ * number, a root of multiplicity m to about 2^(-52/m) of its size; two roots closer than that may be missed
+ * together. */
 #ifndef GRAY_MATH_ROOTS_H
 #define GRAY_MATH_ROOTS_H
 

@@ -74,8 +74,8 @@ static inline double vec3_length(struct vec3 a) {
     struct vec3 b = {ldexp(a.x, -exponent), ldexp(a.y, -exponent), ldexp(a.z, -exponent)};
     return ldexp(sqrt(vec3_dot(b, b)), exponent);
 }
-/* Unit vector of the same direction; the zero vector stays zero. Powers of two in the length do not change the result.
- */
+/* Unit vector of the same direction; the zero vector stays zero. Powers of two in the length do not change the
+ * result. */
 static inline struct vec3 vec3_normalize(struct vec3 a) {
     double length = vec3_length(a);
     if (!(length > 0) || !isfinite(length))

@@ -44,8 +44,7 @@ struct mesh_input {
 
 /* Triangulates n-gons (concave ones by ear clipping in their best plane, convex ones fast; thousands of corners fine),
  * drops degenerate faces without a message (counted). NULL and error on no memory. Deterministic. Not more than 2^31
- * triangles.
- */
+ * triangles. */
 struct mesh *mesh_create(const struct mesh_input *input, struct error *error);
 struct mesh *mesh_share(struct mesh *mesh); /* one more owner */
 void mesh_release(struct mesh *mesh);
@@ -75,8 +74,7 @@ uint32_t mesh_face_count(const struct mesh *mesh);
 const uint32_t *mesh_face(const struct mesh *mesh, uint32_t face, uint32_t *corners);
 size_t mesh_memory(const struct mesh *mesh); /* bytes, index included */
 /* The exact content as a key, so that equal tables give the same mesh (hash of everything in the input except the
- * name).
- */
+ * name). */
 uint64_t mesh_input_hash(const struct mesh_input *input);
 bool mesh_equals_input(const struct mesh *mesh, const struct mesh_input *input); /* vertices and faces the same */
 

@@ -338,8 +338,7 @@ static float pilot_squared(const struct photon_map *map, const float at[3], floa
 
 /* Neighbours in the tree are neighbours in space: the last result, plus the distance, bounds the next one. A photon
  * that is much closer to the last searched one than that one's radius gets the same radius: its own is between half of
- * it and one and a half times it.
- */
+ * it and one and a half times it. */
 static void find_radii(void *context, uint32_t chunk, int worker) {
     (void)worker;
     struct builder *b = context;

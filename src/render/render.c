@@ -376,7 +376,7 @@ static bool plan_work(struct renderer *renderer) {
     const struct film *film = job->film;
     uint32_t count = film_tile_count(film), tail = (count + TAIL_SHARE - 1) / TAIL_SHARE, begun = 0;
     renderer->order = mem_alloc_zero(count, sizeof *renderer->order);
-    if (!renderer->order || !tile_order(film, job->settings.order, renderer->order))
+    if (!renderer->order || !film_tile_order(film, job->settings.tile_order, renderer->order))
         return false;
     find_begun_tiles(renderer);
     if (job->handout) {

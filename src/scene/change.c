@@ -485,11 +485,11 @@ bool changes_lay_over(struct change_range changes, const struct change_target *t
         ok = lay(&l);
     }
     if (!ok)
-        changes_take_off(out);
+        changes_remove(out);
     return ok;
 }
 
-void changes_take_off(struct changed_scene *changed) {
+void changes_remove(struct changed_scene *changed) {
     for (uint32_t i = changed->node_count; i-- > 0;) {
         struct changed_node *note = &changed->nodes[i];
         memcpy(note->node, &note->before, COMMON_PART);

@@ -91,7 +91,7 @@ struct changed_material {
     struct material *material;
     struct material before;
 };
-/* The changes applied to a scene. Owner: the caller; changes_take_off removes and frees all of them. */
+/* The changes applied to a scene. Owner: the caller; changes_remove removes and frees all of them. */
 struct changed_scene {
     struct scene_light *lights; /* the list of the picture */
     uint32_t light_count;
@@ -114,7 +114,7 @@ struct change_target {
 /* In order, one after the other; new nodes live in the arena of the scene. Errors: no memory. */
 bool changes_lay_over(struct change_range changes, const struct change_target *target, change_warning *warn,
                       void *context, struct changed_scene *out, struct error *error);
-void changes_take_off(struct changed_scene *changed);
+void changes_remove(struct changed_scene *changed);
 /* A base before all changes; NULL: it was not changed. */
 const struct material *changes_before(const struct changed_scene *changed, uint32_t serial);
 

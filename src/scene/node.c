@@ -176,13 +176,13 @@ void scene_forget_changes(struct scene *scene) {
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by) {
     note_pose(scene, node);
     switch (scene->order) {
-    case ORDER_NEW:
+    case TRANSFORM_ORDER_NEW:
         node->parent_from_node = transform_compose(by, &node->parent_from_node);
         return true;
-    case ORDER_OLD:
+    case TRANSFORM_ORDER_OLD:
         node->parent_from_node = transform_compose(&node->parent_from_node, by);
         return true;
-    case ORDER_SEPARATE:
+    case TRANSFORM_ORDER_SEPARATE:
         return compose_separately(scene, node, step, by);
     }
     return true;

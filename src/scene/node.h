@@ -43,12 +43,11 @@ enum node_cull { NODE_CULLS(LIST_MEMBER) };
 enum node_csg { NODE_UNION, NODE_INTERSECTION, NODE_DIFFERENCE, NODE_INVERSE, NODE_CLIPPED, NODE_BOUNDED };
 
 /* docs/language.md 12.4: the composition of later calls. NEW: M = T * M; OLD: M = M * T; SEPARATE: T * R * S kept
- * apart.
- */
+ * apart. */
 #define TRANSFORM_ORDERS(X)                                                                                            \
-    X(ORDER_NEW, "new")                                                                                                \
-    X(ORDER_OLD, "old")                                                                                                \
-    X(ORDER_SEPARATE, "separate")
+    X(TRANSFORM_ORDER_NEW, "new")                                                                                      \
+    X(TRANSFORM_ORDER_OLD, "old")                                                                                      \
+    X(TRANSFORM_ORDER_SEPARATE, "separate")
 enum transform_order { TRANSFORM_ORDERS(LIST_MEMBER) };
 
 struct node;
@@ -74,7 +73,7 @@ struct node {
     uint32_t child_count;
     struct node_child *first_child, *last_child;
     const struct placements *placements; /* or NULL: the children are instantiated once for each of them */
-    struct transform *separate;          /* ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
+    struct transform *separate;          /* TRANSFORM_ORDER_SEPARATE only: translation, rotation, scaling; else NULL */
     struct transform parent_from_node;
     struct vec3 velocity;         /* in the parent's space, of every second */
     const struct node_spin *spin; /* or NULL */
@@ -239,7 +238,7 @@ enum node_step { NODE_TRANSLATE, NODE_ROTATE, NODE_SCALE, NODE_STEPS };
 /* A NODE_CSG over these, which are copied. */
 struct node *scene_combine(struct scene *scene, const char *name, enum node_csg operation, struct node *const *operands,
                            uint32_t count, struct error *error);
-/* Applies one transform in the scene's order. False: no memory (only ORDER_SEPARATE needs any). */
+/* Applies one transform in the scene's order. False: no memory (only TRANSFORM_ORDER_SEPARATE needs any). */
 bool node_transform(struct scene *scene, struct node *node, enum node_step step, const struct transform *by);
 /* Forgets all transforms. */
 void node_reset_transform(struct scene *scene, struct node *node);

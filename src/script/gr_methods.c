@@ -297,7 +297,7 @@ static bool gr_pose(struct script_context *context, const struct script_value *a
     static const enum node_step forward[] = {NODE_SCALE, NODE_ROTATE, NODE_TRANSLATE};
     node_reset_transform(&context->scene, node);
     for (int i = 0; i < NODE_STEPS; i++) {
-        enum node_step kind = forward[context->scene.order == ORDER_OLD ? NODE_STEPS - 1 - i : i];
+        enum node_step kind = forward[context->scene.order == TRANSFORM_ORDER_OLD ? NODE_STEPS - 1 - i : i];
         if (!node_transform(&context->scene, node, kind, &steps[kind]))
             return error_no_memory(error, "a transform");
     }

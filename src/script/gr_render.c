@@ -431,7 +431,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
     bool done = turns ? render_turntable(context, &request, error)
                       : script_of(context)->host->render(script_of(context)->host->context, &request, error);
     limits_resume(&context->sandbox.limits);
-    changes_take_off(&changed);
+    changes_remove(&changed);
     script_of(context)->pictures += done;
     return done;
 }

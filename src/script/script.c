@@ -218,19 +218,19 @@ static bool choose_order(struct script *script, struct error *error) {
     script->only_named_pictures = finding.only_named_pictures;
     switch (sandbox->options->transform_order) {
     case SCRIPT_ORDER_NEW:
-        scene->order = ORDER_NEW;
+        scene->order = TRANSFORM_ORDER_NEW;
         return true;
     case SCRIPT_ORDER_OLD:
-        scene->order = ORDER_OLD;
+        scene->order = TRANSFORM_ORDER_OLD;
         return true;
     case SCRIPT_ORDER_SEPARATE:
-        scene->order = ORDER_SEPARATE;
+        scene->order = TRANSFORM_ORDER_SEPARATE;
         return true;
     case SCRIPT_ORDER_AUTO:
         break;
     }
     scene->order = finding.order;
-    if (finding.order != ORDER_OLD)
+    if (finding.order != TRANSFORM_ORDER_OLD)
         return true;
     char text[PATH_SIZE + 600];
     snprintf(text, sizeof text,

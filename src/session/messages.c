@@ -1,7 +1,6 @@
 /* Nothing that comes from the render process is used before message_is_valid has checked it. The film of a picture in a
  * window is followed in its memory by the layers, and these by the overlay: lines, four floats a pixel, and the
- * outline, a byte.
- */
+ * outline, a byte. */
 #define _GNU_SOURCE
 #include "session/messages.h"
 

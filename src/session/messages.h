@@ -28,8 +28,7 @@ enum message_kind {
     MESSAGE_READ,          /* struct message_read: a file was read; no answer */
     MESSAGE_FRAME,         /* no body: the script begins another frame, its time counts from here; no answer */
     MESSAGE_AGAIN,  /* no body: all scripts have ended; answered, possibly much later, by MESSAGE_ANSWER: ok: run them
-                     * again
-                     */
+                     * again */
     MESSAGE_FILM,   /* struct message_answer, and on success the descriptor of the film's memory */
     MESSAGE_ANSWER, /* struct message_answer */
     MESSAGE_PREVIEW_COMMAND, /* with the descriptor of a film's memory for a larger pass */

@@ -1,5 +1,5 @@
-/* Standard output and standard error: how the supervisor writes to them, and how it shares standard error with scenes.
- */
+/* Standard output and standard error: how the supervisor writes to them, and how it shares standard error with
+ * scenes. */
 #ifndef GRAY_SESSION_STANDARD_STREAMS_H
 #define GRAY_SESSION_STANDARD_STREAMS_H
 

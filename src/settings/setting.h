@@ -67,8 +67,7 @@ void setting_store(const struct setting *row, void *base, double number);
 /* The default in words: that of the row, or made of its default. */
 const char *setting_initial_words(const struct setting *row, char out[64]);
 /* Adds the value to a digest. The denoisers count as one here and where settings are compared: their films are the
- * same.
- */
+ * same. */
 struct digest setting_digest(const struct setting *row, const void *base, struct digest before);
 
 /* All settings of a picture, but the lens, the shutter, the motion of the camera and the table of the tone curve. */

@@ -44,8 +44,7 @@ struct lens {
     double screen;       /* distance along the view where both eyes see the same place of the picture */
 };
 
-/* The camera at time 1 if it moves; it has its given values at time 0, and all three change linearly.
- */
+/* The camera at time 1 if it moves; it has its given values at time 0, and all three change linearly. */
 struct camera_motion {
     bool moves;
     struct vec3 eye, view, up;
@@ -123,10 +122,10 @@ enum style { STYLES(LIST_MEMBER) };
 #define LINE_WIDTH_DEFAULT 2.0 /* with a style */
 enum { LINE_WIDTH_MAX = 32, TOON_STEPS_MAX = 64 };
 #define TILE_ORDERS(X)                                                                                                 \
-    X(ORDER_SPREAD, "spread")                                                                                          \
-    X(ORDER_CENTRE, "centre")                                                                                          \
-    X(ORDER_ROWS, "rows")
-enum order { TILE_ORDERS(LIST_MEMBER) };
+    X(TILE_ORDER_SPREAD, "spread")                                                                                     \
+    X(TILE_ORDER_CENTRE, "centre")                                                                                     \
+    X(TILE_ORDER_ROWS, "rows")
+enum tile_order { TILE_ORDERS(LIST_MEMBER) };
 
 /* The search structure over primitives and inside meshes; the results are the same. AUTO: the fastest; GRID: the
  * uniform grid of Amanatides and Woo; BVH: a hierarchy; KDTREE: a kd-tree; NONE: everything is tested. */
@@ -332,8 +331,9 @@ enum option_group {
       OTHER_PROGRAMS, "Position of the first sample of a pixel.")                                                      \
     X(CHOICE, bool, ambient_plain, SAMPLES, false, 0, 0, AMBIENT_MEANINGS, "--ambient", NULL, NULL, NULL, NULL,        \
       OTHER_PROGRAMS, "Multiply ambient light by kd, or add it unchanged.")                                            \
-    X(CHOICE, enum order, order, RUN, ORDER_SPREAD, 0, 0, TILE_ORDERS, "--tile-order", NULL, NULL, NULL, NULL,         \
-      EXECUTION, "Order in which tiles are rendered (in a window always from the centre); the picture is the same.")   \
+    X(CHOICE, enum tile_order, tile_order, RUN, TILE_ORDER_SPREAD, 0, 0, TILE_ORDERS, "--tile-order", NULL, NULL,      \
+      NULL, NULL, EXECUTION,                                                                                           \
+      "Order in which tiles are rendered (in a window always from the centre); the picture is the same.")              \
     X(LAYERS, uint32_t, aov, RUN, 0, 0, AOV_ALL, NO_WORDS, "--aov", "LIST", NULL, NULL, NULL, FILES,                   \
       "For dir/foo.png also write dir/foo.NAME.png for each NAME of LIST, separated by commas:" AOV_NAMES " or all.")  \
     X(CHOICE, enum overlay, overlay, RUN, OVERLAY_NONE, 0, 0, OVERLAYS, "--overlay", NULL, NULL, NULL, NULL, FILES,    \

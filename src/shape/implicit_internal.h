@@ -40,8 +40,8 @@ static inline void *implicit_aligned(void *memory) {
     return (void *)(((uintptr_t)memory + IMPLICIT_ALIGNMENT - 1) / IMPLICIT_ALIGNMENT * IMPLICIT_ALIGNMENT);
 }
 
-/* Parts of crossings: on a side of the bounds its axis, on a ball, between regions. All others are numbers of regions.
- */
+/* Parts of crossings: on a side of the bounds its axis, on a ball, between regions. All others are numbers of
+ * regions. */
 enum { IMPLICIT_PART_WHOLE = 0x7fffffe0, IMPLICIT_PART_BOX = 0x7ffffff0, IMPLICIT_PART_BALL = IMPLICIT_PART_BOX + 3 };
 
 /* Larger memory for bounds is taken from the scratch, not from the stack. */

@@ -242,8 +242,8 @@ void quadric_describe(const struct quadric *q, const struct ray *ray, const stru
             double value = quadric_value(q, p);
             gradient = quadric_gradient(q, p);
             gg = vec3_dot(gradient, gradient);
-            /* At the tip of a cone the step would diverge: it must be small relative to the distance to the next root.
-             */
+            /* At the tip of a cone the step would diverge: it must be small relative to the distance to the next
+             * root. */
             double bend = fabs(q->c[0]) + fabs(q->c[1]) + fabs(q->c[2]) + fabs(q->c[3]) + fabs(q->c[4]) + fabs(q->c[5]);
             if (step == 2 || !(4 * fabs(value) * bend < gg))
                 break;

@@ -8,8 +8,8 @@
 #include "math/ray.h"
 
 /* c[0] x^2 + c[1] y^2 + c[2] z^2 + c[3] xy + c[4] xz + c[5] yz + c[6] x + c[7] y + c[8] z + c[9] < 0, inside the limits
- * (min < max, each side may be infinite). With `open` the faces of the limits are not there. Not all of c[0..8] zero.
- */
+ * (min < max, each side may be infinite). With `open` the faces of the limits are not there. Not all of c[0..8]
+ * zero. */
 struct quadric {
     double c[10];
     struct box limits;

@@ -102,8 +102,7 @@ enum shape_area shape_area(const struct shape *shape);
 /* Closed: every line crosses it an even number of times, so it has an inside (CSG operand, media). A solid without end
  * (a half-space) is closed too: a line that begins or ends inside crosses it at t = -INFINITY or INFINITY. */
 bool shape_is_closed(const struct shape *shape);
-/* The position of the whole shape relative to the outside at any of its points: CONVEXITY_BEHIND for convex ones.
- */
+/* The position of the whole shape relative to the outside at any of its points: CONVEXITY_BEHIND for convex ones. */
 enum hit_convexity shape_convexity(const struct shape *shape);
 /* Why it is not closed, as the end of a sentence; NULL if it is closed. For a mesh, mesh_open_edge gives details. */
 const char *shape_why_open(const struct shape *shape);

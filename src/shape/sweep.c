@@ -242,8 +242,8 @@ static void consider(const struct view *view, double x, struct stretch *out) {
         out->leave = b + half, out->x_leave = x;
 }
 
-/* A step of Newton's towards f' = 0, f = b - sign sqrt(D), if it makes |f'| smaller. D and b are Bernstein on [lo, hi].
- */
+/* A step of Newton's towards f' = 0, f = b - sign sqrt(D), if it makes |f'| smaller. D and b are Bernstein on [lo,
+ * hi]. */
 static double polish(const double *d, int degree, const double *b, int b_degree, double sign, double x) {
     double d1[6], d2[5], b1[3], b2[2] = {0};
     bernstein_derivative(d, degree, d1);

@@ -44,8 +44,7 @@ void fly_camera_orbit(struct fly_camera *fly_camera, double x, double y);
 /* Narrows (steps > 0) or widens the angle of view, by a tenth each. */
 void fly_camera_zoom(struct fly_camera *fly_camera, double steps);
 /* Rolls to the right by degrees; fly_camera_level rolls until the horizon is level (y is up), and keeps the view
- * direction.
- */
+ * direction. */
 void fly_camera_roll(struct fly_camera *fly_camera, double degrees);
 void fly_camera_level(struct fly_camera *fly_camera);
 void fly_camera_home(struct fly_camera *fly_camera);

@@ -29,7 +29,7 @@ static void set_pass(struct render_job *job, const struct render_job *own, const
     job->width = film->full_width;
     job->height = film->full_height;
     job->settings.show_refined = true;
-    job->settings.order = ORDER_CENTRE;
+    job->settings.tile_order = TILE_ORDER_CENTRE;
     job->settings.tone.exposure = view->exposure;
     job->settings.passes = view->divide <= 1 && !view->plain;
     settings_set_draft(&job->settings, view->plain ? DRAFT_QUICK : DRAFT_NONE);
@@ -68,10 +68,10 @@ static bool lay_film(const struct preview_state *work, void *large, struct film 
     const struct preview_session *preview = work->preview;
     struct picture_request request;
     if (work->view.width == 0) {
-        *film = pass_film(preview->asked, preview->job->film->pixels, work->view.divide);
+        *film = pass_film(preview->picture_request, preview->job->film->pixels, work->view.divide);
         return true;
     }
-    if (!large || !picture_request_enlarge(preview->asked, work->view.width, work->view.height, &request))
+    if (!large || !picture_request_enlarge(preview->picture_request, work->view.width, work->view.height, &request))
         return error_set(error, ERROR_MACHINE, "the memory of the picture cannot be reached");
     *film = pass_film(&request, large, 1);
     return true;
@@ -147,8 +147,8 @@ static bool build_again(struct preview_state *work, struct error *error) {
     return ok;
 }
 
-/* The world of the changes; if the user stops its building it remains stale, and `reply` reports this. False: an error.
- */
+/* The world of the changes; if the user stops its building it remains stale, and `reply` reports this. False: an
+ * error. */
 static bool need_world(struct preview_state *work, struct preview_reply *reply, struct error *error) {
     if (!work->stale || build_again(work, error))
         return true;
@@ -169,7 +169,7 @@ static bool change_scene(struct preview_state *work, const struct preview_comman
         (void)snprintf(reply->text, sizeof reply->text, "there are too many changes");
         return true;
     }
-    changes_take_off(&work->changed);
+    changes_remove(&work->changed);
     if (!changes_lay_over((struct change_range){work->changes.items, work->changes.count},
                           &(struct change_target){request->scene, request->root, request->lights, request->light_count},
                           preview->warn, preview->context, &work->changed, error))
@@ -246,7 +246,7 @@ static bool make_overlay(struct preview_state *work, const struct pass_view *vie
     struct preview_session *preview = work->preview;
     struct render_job job = view_job(work, view);
     struct view_overlay_buffers buffers;
-    view_overlay_buffers(preview->asked, job.film->pixels, &buffers);
+    view_overlay_buffers(preview->picture_request, job.film->pixels, &buffers);
     if (request->lines.limit == 0 || request->lines.cell == 0) /* no lines are requested */
         return true;
     double begun = progress_clock();
@@ -330,7 +330,7 @@ bool preview_run(struct preview_session *preview, bool built, struct picture_rep
                  struct error *error) {
     struct preview_state work = {.preview = preview, .stale = !built, .build_seconds = build_seconds};
     bool ok = serve(&work, report, error);
-    changes_take_off(&work.changed);
+    changes_remove(&work.changed);
     change_list_destroy(&work.changes);
     return ok;
 }

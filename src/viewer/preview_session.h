@@ -13,7 +13,7 @@ struct preview_session {
     const struct host_services *services;
     struct pool *pool;
     const struct render_request *request;
-    const struct picture_request *asked;
+    const struct picture_request *picture_request;
     struct render_job *job; /* as the script requests it; with the world to use */
     struct world *world;
     void *context; /* of the functions below */

@@ -159,7 +159,7 @@ void viewer_detach(struct viewer *viewer) {
     viewer->pass.state = PASS_BUSY;
     if (viewer->pass.result == RESULT_STOPPED)
         viewer->pass.result = RESULT_NONE;
-    viewer->edit.click_waits = viewer->trace.wanted = false;
+    viewer->edit.click_waits = viewer->trace.requested = false;
     viewer->pass.halted = viewer->pass.unbuilt = false;
     viewer->edit.selection.kind = SELECTED_NOTHING;
     viewer->display.figures_at = 0;
@@ -200,7 +200,7 @@ void viewer_note_stop(struct viewer *viewer, double seconds) {
 
 /* There is no unfinished request of the user. */
 static bool is_served(const struct viewer *viewer) {
-    return !viewer->pass.outdated && !viewer->edit.click_waits && !viewer->trace.wanted &&
+    return !viewer->pass.outdated && !viewer->edit.click_waits && !viewer->trace.requested &&
            viewer->edit.pending.count == 0 && !viewer_needs_overlay(viewer);
 }
 
@@ -235,7 +235,7 @@ static void end_pass(struct viewer *viewer, const struct picture_report *report,
         viewer->pass.divide = divide < 1 ? 1 : divide > DIVIDE_LIMIT ? DIVIDE_LIMIT : (uint32_t)ceil(divide);
 }
 
-void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
+void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *reply, double now) {
     if (viewer->pass.halted && viewer->pass.halted_at > 0)
         viewer_note_stop(viewer, now - viewer->pass.halted_at);
     viewer->pass.halted_at = 0;
@@ -248,32 +248,32 @@ void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply,
         viewer->pass.outdated = true;
         viewer->built = reply->built;
         viewer->scene = *reply;
-        viewer_take_lights(viewer, reply);
+        viewer_receive_lights(viewer, reply);
         return;
     case REPLY_PASS:
         end_pass(viewer, &reply->report, now);
         if (!reply->report.stopped && viewer->command.overlay.lines.limit > 0)
-            viewer_take_overlay(viewer, &viewer->command.overlay, &reply->overlay);
+            viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_OVERLAY:
-        viewer_take_overlay(viewer, &viewer->command.overlay, &reply->overlay);
+        viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_PICKED:
-        viewer_take_picked(viewer, &reply->picked);
+        viewer_receive_picked(viewer, &reply->picked);
         viewer->command.overlay = viewer_overlay_request(viewer, false);
         viewer->command.overlay.lines.kind = OVERLAY_NONE;
-        viewer_take_overlay(viewer, &viewer->command.overlay, &reply->overlay);
+        viewer_receive_overlay(viewer, &viewer->command.overlay, &reply->overlay);
         return;
     case REPLY_CHANGED:
         if (!reply->unbuilt || reply->light_count > 0)
-            viewer_take_lights(viewer, reply);
+            viewer_receive_lights(viewer, reply);
         if (reply->text[0] != '\0')
             viewer_show_message(viewer, reply->text);
         viewer->pass.outdated = true;
         viewer_invalidate_overlay(viewer);
         return;
     case REPLY_LIGHTS:
-        viewer_take_lights(viewer, reply);
+        viewer_receive_lights(viewer, reply);
         return;
     case REPLY_PIXEL_TRACE:
         return;
@@ -341,7 +341,7 @@ static void command_pick(struct viewer *viewer) {
 }
 
 static void command_pixel_trace(struct viewer *viewer) {
-    viewer->trace.wanted = false;
+    viewer->trace.requested = false;
     viewer->trace.text[0] = '\0';
     viewer->trace.line = 0;
     viewer->command = (struct preview_command){.kind = COMMAND_PIXEL_TRACE,
@@ -362,12 +362,12 @@ static enum viewer_action next_command(struct viewer *viewer, double now) {
     uint32_t divide = viewer->pass.from_coarse ? FIRST_DIVIDE : viewer->pass.divide;
     bool coarse = viewer->pass.view.plain && viewer->pass.view.divide > MIDDLE_DIVIDE && !viewer->pass.halted;
     if (viewer->pass.halted && viewer->pass.unbuilt) /* the pending request has no answer */
-        viewer->edit.click_waits = viewer->trace.wanted = false;
+        viewer->edit.click_waits = viewer->trace.requested = false;
     if (viewer->edit.pending.count > 0 && !viewer->pass.halted) {
         command_change(viewer);
     } else if (viewer->edit.click_waits) {
         command_pick(viewer);
-    } else if (viewer->trace.wanted) {
+    } else if (viewer->trace.requested) {
         command_pixel_trace(viewer);
     } else if (!viewer->pass.outdated && !coarse && viewer_needs_overlay(viewer)) {
         command_overlay(viewer);
@@ -405,8 +405,8 @@ static enum viewer_action step_running(struct viewer *viewer) {
         viewer->pass.state = PASS_STOPPING;
         return VIEWER_STOP_PASS;
     }
-    bool wanted = viewer->pass.outdated || viewer_large_is_outdated(viewer) || viewer->player.wanted > 0 ||
-                  (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits || viewer->trace.wanted ||
+    bool wanted = viewer->pass.outdated || viewer_large_is_outdated(viewer) || viewer->player.target > 0 ||
+                  (!coarse && viewer_needs_overlay(viewer)) || viewer->edit.click_waits || viewer->trace.requested ||
                   viewer->edit.pending.count > 0 ||
                   is_different(viewer->pass.view.exposure, viewer->request.settings.tone.exposure);
     if (viewer->pass.state != PASS_RUNNING || !wanted || coarse)

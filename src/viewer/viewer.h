@@ -105,13 +105,13 @@ struct viewer_lights {
     struct light_info *items; /* owned; those from `known` on were not reported yet */
     uint32_t room, count, known;
     double colour_max;   /* of the sliders of a light's colour */
-    bool listed;         /* whether whether a list of them is shown ... */
+    bool listed;         /* whether a list of them is shown ... */
     uint32_t list_first; /* ... and its first light */
 };
 
 /* The trace of a pixel. */
 struct viewer_trace {
-    bool wanted;      /* of the pixel x, y of the whole picture; it was not sent yet */
+    bool requested;   /* of the pixel x, y of the whole picture; it was not sent yet */
     double x, y;      /* pixels of the whole picture */
     char text[16384]; /* empty: none is shown */
     int line;         /* the first one shown */
@@ -147,10 +147,10 @@ struct viewer_input {
 struct viewer_player {
     uint32_t first, step, count; /* the frames that can be shown: first, first + step ... */
     bool playing, loops;
-    uint32_t wanted;     /* the frame to go to, or 0 */
+    uint32_t target;     /* the frame to go to, or 0 */
     bool seeking;        /* it was requested, and its pass has not begun */
     bool shown;          /* playing: this frame is on the screen */
-    double asked;        /* when it was requested; 0: not measured */
+    double requested_at; /* when it was requested; 0: not measured */
     bool restarts_clock; /* the next frame is due immediately */
     bool forgives_delay; /* do not skip frames, even if the next one comes late */
     double origin;       /* when the frame with the index origin_index was due */
@@ -262,7 +262,7 @@ void viewer_show_notice(struct viewer *viewer, const char *text, bool warns);
 /* A piece of the pixel trace that was requested. */
 void viewer_add_pixel_trace(struct viewer *viewer, const char *text);
 /* A command has been executed; the render process waits for the next one. */
-void viewer_take_reply(struct viewer *viewer, const struct preview_reply *reply, double now);
+void viewer_receive_reply(struct viewer *viewer, const struct preview_reply *reply, double now);
 /* Handles events, draws, and returns the next action. To be called every few milliseconds, repeatedly until it returns
  * VIEWER_NOTHING. */
 enum viewer_action viewer_step(struct viewer *viewer, double now);
@@ -274,8 +274,7 @@ enum viewer_action viewer_step(struct viewer *viewer, double now);
 bool viewer_save_image(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 bool viewer_save_camera(const struct viewer *viewer, const struct file_target *picture, char *name,
                         struct error *error);
-/* dir/foo-changes1.lua: if the scene requires it, the picture has the camera, the exposure and all changes.
- */
+/* dir/foo-changes1.lua: if the scene requires it, the picture has the camera, the exposure and all changes. */
 bool viewer_save_edits(const struct viewer *viewer, const struct file_target *picture, char *name, struct error *error);
 
 #endif

@@ -134,8 +134,7 @@ static uint32_t building_step(const struct viewer *viewer) {
 }
 
 /* The finished share: of the picture itself by its work, with the remaining time once it is known
- * (render/time_estimate.h); coarse ones by their tiles.
- */
+ * (render/time_estimate.h); coarse ones by their tiles. */
 static void describe_pass(const struct viewer *viewer, struct figures *figures, double now) {
     const struct progress_estimate *progress_estimate =
         viewer->window.control && !viewer->pass.view.plain ? &viewer->window.control->progress_estimate : NULL;
@@ -157,7 +156,7 @@ static void describe_state(const struct viewer *viewer, struct figures *figures,
     if (viewer_plays(viewer)) {
         (void)snprintf(figures->state, sizeof figures->state, "playing");
     } else if (viewer->player.seeking) {
-        (void)snprintf(figures->state, sizeof figures->state, "going to frame %u", viewer->player.wanted);
+        (void)snprintf(figures->state, sizeof figures->state, "going to frame %u", viewer->player.target);
     } else if (viewer->pass.halted && viewer->block) {
         (void)snprintf(figures->state, sizeof figures->state,
                        viewer->pass.unbuilt ? "stopped building" : "stopped, %.0f %%", 100 * figures->share);

@@ -234,7 +234,7 @@ void viewer_click(struct viewer *viewer, double x, double y, bool operand) {
 }
 
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y) {
-    viewer->trace.wanted = pixel_at(viewer, x, y, &viewer->trace.x, &viewer->trace.y);
+    viewer->trace.requested = pixel_at(viewer, x, y, &viewer->trace.x, &viewer->trace.y);
 }
 
 void viewer_select_up(struct viewer *viewer, bool down) {
@@ -246,7 +246,7 @@ void viewer_select_up(struct viewer *viewer, bool down) {
     viewer->edit.click_waits = true;
 }
 
-void viewer_take_picked(struct viewer *viewer, const struct picked *picked) {
+void viewer_receive_picked(struct viewer *viewer, const struct picked *picked) {
     viewer->edit.selection = (struct selection){.kind = picked->hit ? SELECTED_NODE : SELECTED_NOTHING,
                                                 .picked = *picked,
                                                 .applied = transform_identity(),

@@ -22,7 +22,7 @@ void viewer_render(struct viewer *viewer); /* renders renders again, from coarse
  * render process. operand: selects the operand of a combined solid whose surface is there. */
 void viewer_click(struct viewer *viewer, double x, double y, bool operand);
 void viewer_request_pixel_trace(struct viewer *viewer, double x, double y);
-void viewer_take_picked(struct viewer *viewer, const struct picked *picked);
+void viewer_receive_picked(struct viewer *viewer, const struct picked *picked);
 void viewer_select_up(struct viewer *viewer, bool down);                 /* the node above, or the operand below */
 void viewer_drag_selection(struct viewer *viewer, double dx, double dy); /* with the tool, by pixels of the window */
 void viewer_push_selection(struct viewer *viewer,
@@ -50,7 +50,7 @@ bool viewer_project(const struct viewer *viewer, const struct camera_frame *fram
                     double *y);
 
 /* viewer_lights.c; lights are numbered from 1 */
-void viewer_take_lights(struct viewer *viewer, const struct preview_reply *reply);
+void viewer_receive_lights(struct viewer *viewer, const struct preview_reply *reply);
 const struct light_info *viewer_light(const struct viewer *viewer, uint32_t number); /* NULL: it was not reported */
 /* The position of its mark, in pixels of the window; *seen: the mark is at the light, and not at the border in its
  * direction. False: no mark. */
@@ -76,8 +76,8 @@ void viewer_choose_overlay(struct viewer *viewer, enum overlay overlay); /* or n
 void viewer_invalidate_overlay(struct viewer *viewer);                   /* the view or the scene has changed */
 bool viewer_needs_overlay(const struct viewer *viewer);
 struct view_overlay_request viewer_overlay_request(const struct viewer *viewer, bool walking);
-void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_request *asked,
-                         const struct view_overlay *overlay);
+void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
+                            const struct view_overlay *overlay);
 /* False if the outline is out of date. */
 bool viewer_draw_outline(struct viewer *viewer, struct canvas_colour colour);
 void viewer_destroy_overlay(struct viewer *viewer);

@@ -27,7 +27,7 @@ static bool make_room(struct viewer *viewer, uint32_t count) {
     return true;
 }
 
-void viewer_take_lights(struct viewer *viewer, const struct preview_reply *reply) {
+void viewer_receive_lights(struct viewer *viewer, const struct preview_reply *reply) {
     uint32_t count = reply->light_count < LIGHT_LIMIT ? reply->light_count : LIGHT_LIMIT, first = reply->first_light;
     if (!make_room(viewer, count))
         count = viewer->lights.room;

@@ -97,20 +97,20 @@ static void take_outline(struct viewer *viewer, const struct view_overlay_buffer
     viewer->overlay.side_count = ok ? viewer->overlay.side_count : 0;
 }
 
-void viewer_take_overlay(struct viewer *viewer, const struct view_overlay_request *asked,
-                         const struct view_overlay *overlay) {
+void viewer_receive_overlay(struct viewer *viewer, const struct view_overlay_request *request,
+                            const struct view_overlay *overlay) {
     struct view_overlay_buffers buffers;
     struct view_overlay_request now = viewer_overlay_request(viewer, false);
     if (overlay->stopped)
         return;
     if (overlay->has_lines || overlay->has_outline)
         view_overlay_buffers(&viewer->request, viewer->block, &buffers);
-    if (asked->lines.kind == viewer->overlay.kind && viewer->overlay.kind != OVERLAY_NONE) {
+    if (request->lines.kind == viewer->overlay.kind && viewer->overlay.kind != OVERLAY_NONE) {
         if (overlay->has_lines)
             take_lines(viewer, &buffers);
-        viewer->overlay.lines_fresh = asked->lines.cell == 1 && asked->lines.limit == OVERLAY_BOXES;
+        viewer->overlay.lines_fresh = request->lines.cell == 1 && request->lines.limit == OVERLAY_BOXES;
     }
-    if (asked->outline && asked->serial == now.serial && asked->route == now.route) {
+    if (request->outline && request->serial == now.serial && request->route == now.route) {
         viewer->overlay.side_count = 0;
         if (overlay->has_outline)
             take_outline(viewer, &buffers, overlay->outline);

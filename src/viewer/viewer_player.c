@@ -56,9 +56,9 @@ void viewer_player_begin(struct viewer *viewer, const struct viewer *before) {
     select_frames(player, &viewer->window.frames, frame);
     player->playing = player->count > 1 && (player->playing || !continues);
     uint32_t last = number_of(player, player->count - 1);
-    player->wanted = player->wanted > last ? last : player->wanted;
-    if (player->wanted == frame->number)
-        player->wanted = 0;
+    player->target = player->target > last ? last : player->target;
+    if (player->target == frame->number)
+        player->target = 0;
     player->seeking = player->shown = false;
     viewer->written = true; /* a played animation writes no files */
     if (!continues)
@@ -76,8 +76,8 @@ bool viewer_player_continues(const struct viewer *before, const struct picture_r
 }
 
 uint32_t viewer_next_frame(const struct viewer *viewer) {
-    if (viewer->player.wanted > 0)
-        return viewer->player.wanted;
+    if (viewer->player.target > 0)
+        return viewer->player.target;
     return viewer->next ? FRAMES_OVER : viewer->request.frame.number;
 }
 
@@ -112,16 +112,16 @@ void viewer_play(struct viewer *viewer, bool on) {
         viewer_draw_tiles(viewer); /* a frame that waited for its time */
     /* After the end, playing continues at the first frame. */
     if (on && !player->loops && index_of(player, viewer->request.frame.number) + 1 == player->count)
-        player->wanted = player->first;
+        player->target = player->first;
 }
 
 void viewer_go_to_frame(struct viewer *viewer, uint32_t number) {
     struct viewer_player *player = &viewer->player;
     viewer_play(viewer, false);
-    player->wanted = number;
+    player->target = number;
     player->shown_at = viewer->stepped;
     if (!player->seeking && number == viewer->request.frame.number)
-        player->wanted = 0;
+        player->target = 0;
     else
         viewer_halt(viewer, false);
     viewer->display.hud_dirty = true;
@@ -131,7 +131,7 @@ void viewer_step_frames(struct viewer *viewer, int by) {
     const struct viewer_player *player = &viewer->player;
     if (player->count == 0)
         return;
-    uint32_t now = player->wanted > 0 ? player->wanted : viewer->request.frame.number;
+    uint32_t now = player->target > 0 ? player->target : viewer->request.frame.number;
     int64_t index = (int64_t)index_of(player, now) + by, count = player->count;
     if (player->loops)
         index = (index + count) % count;
@@ -146,7 +146,7 @@ void viewer_player_loop(struct viewer *viewer) {
 
 uint32_t viewer_frame_index(const struct viewer *viewer) {
     const struct viewer_player *player = &viewer->player;
-    return index_of(player, player->wanted > 0 && !player->playing ? player->wanted : viewer->request.frame.number);
+    return index_of(player, player->target > 0 && !player->playing ? player->target : viewer->request.frame.number);
 }
 
 uint32_t viewer_frame_number(const struct viewer *viewer, double index) {
@@ -160,8 +160,8 @@ uint32_t viewer_frame_number(const struct viewer *viewer, double index) {
 void viewer_player_end_pass(struct viewer *viewer, double now) {
     struct viewer_player *player = &viewer->player;
     uint32_t divide = viewer->pass.divide;
-    double took = now - viewer->pass.began, whole = now - player->asked;
-    if (player->asked <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != divide)
+    double took = now - viewer->pass.began, whole = now - player->requested_at;
+    if (player->requested_at <= 0 || !viewer->pass.view.plain || viewer->pass.view.divide != divide)
         return;
     double beside = fmax(0, whole - took), left = fmax(pass_min, period_of(viewer) - beside - clock_step);
     double needed = divide * sqrt(took / left);
@@ -171,7 +171,7 @@ void viewer_player_end_pass(struct viewer *viewer, double now) {
     else if (ceil(1.1 * needed) < divide) /* a margin, so that it does not change to and fro */
         divide = (uint32_t)fmax(1, ceil(1.1 * needed));
     viewer->pass.divide = divide;
-    player->asked = 0;
+    player->requested_at = 0;
 }
 
 /* Shows the finished frame if it is due. */
@@ -227,20 +227,20 @@ static uint32_t frame_after_this(struct viewer *viewer) {
 enum player_decision viewer_player_decide(struct viewer *viewer, double now) {
     struct viewer_player *player = &viewer->player;
     bool waits = viewer->pass.state == PASS_WAITING && viewer->edit.pending.count == 0 && !viewer->edit.click_waits &&
-                 !viewer->trace.wanted;
+                 !viewer->trace.requested;
     if (player->count == 0 || !waits || viewer->pass.result == RESULT_NONE || viewer->pass.halted)
         return PLAYER_REFINES;
-    if (player->wanted == 0 && player->playing) {
+    if (player->target == 0 && player->playing) {
         if (!player->shown && !show_frame(viewer, now))
             return PLAYER_WAITS;
-        player->wanted = frame_after_this(viewer);
-        if (player->wanted == 0)
+        player->target = frame_after_this(viewer);
+        if (player->target == 0)
             viewer_play(viewer, false);
     }
-    if (player->wanted == 0)
+    if (player->target == 0)
         return PLAYER_REFINES;
     player->seeking = true;
-    player->asked = now;
+    player->requested_at = now;
     return PLAYER_GOES;
 }
 

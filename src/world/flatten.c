@@ -242,7 +242,7 @@ static bool make_prototype(struct flattening *f, const struct node *node, const 
     } else {
         struct prototype prototype = {.geometry = geometry_of_shape(&node->shape), .cull = node->cull, .parts = 1};
         const struct material *inherited = state ? state->inherited : NULL;
-        if ((!f->unasked && !flatten_mesh_accel(f, &node->shape)) ||
+        if ((!f->unqueried && !flatten_mesh_accel(f, &node->shape)) ||
             !flatten_material(f, node, inherited, &prototype.material, &prototype.slot_count) ||
             !add_prototype(f, node, &prototype))
             return false;
@@ -251,8 +251,7 @@ static bool make_prototype(struct flattening *f, const struct node *node, const 
     return true;
 }
 
-/* Prototypes are made at the first instance of their node, or at every one if ancestors affect them.
- */
+/* Prototypes are made at the first instance of their node, or at every one if ancestors affect them. */
 static bool find_prototype(struct flattening *f, const struct node *node, const struct pose *pose,
                            const struct graphics_state *state, uint32_t *first, uint32_t *parts) {
     if (state && (state->clips || state->inherited))
@@ -338,8 +337,7 @@ static void add_record(struct flattening *f, const struct flatten_record *record
     records[log->count++] = *record;
 }
 
-/* Data of every node on the path. Clips and bounds of an operand do not apply to the children of the node.
- */
+/* Data of every node on the path. Clips and bounds of an operand do not apply to the children of the node. */
 struct instance_frame {
     struct pose pose, of_children;
     uint32_t record;

@@ -59,7 +59,7 @@ struct flattening {
     world_warning *warn;          /* or NULL */
     void *warn_context;
     struct error *error;
-    bool unasked; /* no ray will query this world: its meshes get no index */
+    bool unqueried; /* no ray will query this world: its meshes get no index */
     struct primitive *primitives;
     struct box *limits; /* of each primitive, when there are any; else NULL */
     uint32_t primitive_capacity, prototype_capacity, linear_capacity, moving_capacity, link_capacity;
@@ -81,8 +81,7 @@ bool flatten_csg(struct flattening *f, const struct node *node, const struct pos
 bool flatten_limit(struct flattening *f, const struct node *solid, const struct transform *world_from_parent,
                    struct box *limit);
 /* Index of a node's effective material: its texture over its material; without one that of the CSG solid it is a part
- * of
- * (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
+ * of (`inherited`, may be NULL), else plain gray. A mesh with several material slots has *count of them in a row, from
  * *out on; everything else has 1. */
 bool flatten_material(struct flattening *f, const struct node *node, const struct material *inherited, uint32_t *out,
                       uint32_t *count);

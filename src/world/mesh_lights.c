@@ -63,7 +63,7 @@ static uint64_t count_triangles(const struct mesh_light_collection *g) {
     return total;
 }
 
-static bool gather(struct mesh_light_collection *g, uint64_t total, struct arena *arena, struct error *error) {
+static bool collect(struct mesh_light_collection *g, uint64_t total, struct arena *arena, struct error *error) {
     if (total > UINT32_MAX / 2)
         return error_set(error, ERROR_SCENE, "the mesh light '%.100s' has too many triangles", g->node->name);
     if (!light_mesh_begin(&g->mesh, total, arena))
@@ -158,11 +158,11 @@ static void warn_of_average(const struct mesh_light_collection *g, struct flatte
 }
 
 /* For a node that is not in the scene. */
-static bool gather_unseen(struct mesh_light_collection *g, struct flattening *f, struct error *error) {
+static bool collect_unseen(struct mesh_light_collection *g, struct flattening *f, struct error *error) {
     const struct node *node = g->node;
     struct world own = {.mesh_accel = f->world->mesh_accel, .shutter = f->world->shutter};
     struct flattening flattening = {
-        .arena = f->arena, .scene = f->scene, .world = &own, .unasked = true, .pool = f->pool, .error = error};
+        .arena = f->arena, .scene = f->scene, .world = &own, .unqueried = true, .pool = f->pool, .error = error};
     bool ok = flatten_scene(&flattening, node);
     g->world = &own;
     g->marked = NULL;
@@ -170,7 +170,7 @@ static bool gather_unseen(struct mesh_light_collection *g, struct flattening *f,
     if (ok && total == 0 && !(node->kind == NODE_GEOMETRY && node->shape.kind == SHAPE_MESH))
         ok = error_set(error, ERROR_SCENE, "node '%.100s' is a mesh light, but there is no mesh there or below it",
                        node->name);
-    ok = ok && gather(g, total, f->arena, error);
+    ok = ok && collect(g, total, f->arena, error);
     if (ok)
         warn_of_average(g, f);
     world_destroy(&own);
@@ -191,7 +191,7 @@ static bool resolve_mesh(struct flattening *f, const struct node *node, struct l
                                       .node = node,
                                       .marked = marked};
     uint64_t total = count_triangles(&g);
-    if (!(total > 0 ? gather(&g, total, f->arena, f->error) : gather_unseen(&g, f, f->error)))
+    if (!(total > 0 ? collect(&g, total, f->arena, f->error) : collect_unseen(&g, f, f->error)))
         return false;
     light_mesh_end(&g.mesh, black ? vec3_all(0) : light->colour, mesh);
     mesh->shown = total > 0;

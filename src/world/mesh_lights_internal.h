@@ -28,8 +28,7 @@ bool mesh_lights_estimate(const struct world *world, struct light *light, struct
 bool light_lists_resolve(const struct world *world, const struct scene_light *authored, struct light *lights,
                          struct arena *arena, const struct node *root, struct error *error);
 
-/* Sets lit[i] to `value` for every primitive i that comes from a listed node or one below it. False: no memory.
- */
+/* Sets lit[i] to `value` for every primitive i that comes from a listed node or one below it. False: no memory. */
 bool light_lists_mark(const struct world *world, const struct node *const *list, uint32_t count, uint8_t *lit,
                       uint8_t value, const struct node *root);
 

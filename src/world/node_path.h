@@ -6,8 +6,7 @@
 #include "scene/traversal.h"
 #include "world/world.h"
 
-/* The traversal of flattening, over a tree that has not changed since; the caller sets frame_size and ends it.
- */
+/* The traversal of flattening, over a tree that has not changed since; the caller sets frame_size and ends it. */
 struct scene_traversal world_traversal(const struct world *world, const struct node *root, size_t frame_size);
 /* The number of primitives, from number `next` on, of this node at its next visit. */
 uint32_t world_primitives_of(const struct world *world, const struct node *node, uint32_t next);

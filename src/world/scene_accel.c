@@ -38,9 +38,9 @@ static enum accel_kind choose(const struct box *boxes, uint32_t count) {
     return cost.lists < clear * cost.hierarchy ? ACCEL_GRID : ACCEL_BVH;
 }
 
-bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+bool scene_accel_build(struct scene_accel *accel, enum accel_kind requested, const struct box *boxes, uint32_t count,
                        struct pool *pool, struct error *error) {
-    accel->kind = wanted == ACCEL_AUTO ? choose(boxes, count) : wanted;
+    accel->kind = requested == ACCEL_AUTO ? choose(boxes, count) : requested;
     switch (accel->kind) {
     case ACCEL_GRID:
         return grid_build(&accel->grid, boxes, count, pool, error);
@@ -93,18 +93,19 @@ static uint32_t changes(const struct box *a, const struct box *b, uint32_t count
 }
 
 /* A hierarchy has no leaf for items that were empty. */
-static bool refit(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count) {
+static bool refit(struct accel_cache *cache, enum accel_kind requested, const struct box *boxes, uint32_t count) {
     uint32_t changed = cache->accel.kind == ACCEL_BVH ? changes(cache->boxes, boxes, count) : UINT32_MAX;
-    if (changed > count || (wanted == ACCEL_AUTO && changed > few_changes * count && choose(boxes, count) != ACCEL_BVH))
+    if (changed > count ||
+        (requested == ACCEL_AUTO && changed > few_changes * count && choose(boxes, count) != ACCEL_BVH))
         return false;
     box_tree_refit(&cache->accel.tree, boxes);
     return box_tree_cost(&cache->accel.tree) <= cost_growth * cache->cost;
 }
 
-bool accel_cache_take(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
-                      struct scene_accel *accel) {
-    bool fits = cache->full && cache->wanted == wanted && cache->count == count &&
-                (memcmp(cache->boxes, boxes, count * sizeof *boxes) == 0 || refit(cache, wanted, boxes, count));
+bool accel_cache_reuse(struct accel_cache *cache, enum accel_kind requested, const struct box *boxes, uint32_t count,
+                       struct scene_accel *accel) {
+    bool fits = cache->full && cache->requested == requested && cache->count == count &&
+                (memcmp(cache->boxes, boxes, count * sizeof *boxes) == 0 || refit(cache, requested, boxes, count));
     if (fits)
         *accel = cache->accel;
     else
@@ -115,7 +116,7 @@ bool accel_cache_take(struct accel_cache *cache, enum accel_kind wanted, const s
     return fits;
 }
 
-void accel_cache_keep(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+void accel_cache_keep(struct accel_cache *cache, enum accel_kind requested, const struct box *boxes, uint32_t count,
                       struct scene_accel *accel) {
     if (count > cache->capacity || !cache->boxes) {
         mem_free(cache->boxes);
@@ -129,7 +130,7 @@ void accel_cache_keep(struct accel_cache *cache, enum accel_kind wanted, const s
         *accel = (struct scene_accel){0};
     }
     cache->count = count;
-    cache->wanted = wanted;
+    cache->requested = requested;
     if (cache->cost == 0)
         cache->cost = box_tree_cost(&cache->accel.tree);
 }

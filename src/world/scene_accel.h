@@ -19,7 +19,7 @@ struct scene_accel {
 
 /* For ACCEL_AUTO the cost model chooses ACCEL_GRID or ACCEL_BVH. `boxes` in world space, by primitive; they are not
  * kept. Errors: no memory, cancelled; the caller then destroys partial results. */
-bool scene_accel_build(struct scene_accel *accel, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+bool scene_accel_build(struct scene_accel *accel, enum accel_kind requested, const struct box *boxes, uint32_t count,
                        struct pool *pool, struct error *error);
 void scene_accel_destroy(struct scene_accel *accel);
 size_t scene_accel_memory(const struct scene_accel *accel); /* bytes */
@@ -30,17 +30,17 @@ struct accel_cache {
     struct scene_accel accel;
     struct box *boxes; /* that it was made of, or last refitted to */
     uint32_t count, capacity;
-    enum accel_kind wanted;
+    enum accel_kind requested;
     double cost; /* of the hierarchy when it was built; 0: it was not kept yet */
 };
 
 /* Returns the stored accelerator if it fits these boxes. It is unchanged if the boxes are the same. It is refitted if
  * there are as many boxes and the cost model still chooses a hierarchy, unless its cost has grown by a quarter since it
  * was built. Searches find the same as in a new accelerator. False: it must be built. */
-bool accel_cache_take(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
-                      struct scene_accel *accel);
+bool accel_cache_reuse(struct accel_cache *cache, enum accel_kind requested, const struct box *boxes, uint32_t count,
+                       struct scene_accel *accel);
 /* Takes over an accelerator over these boxes, which are copied; without memory for them nothing is kept. */
-void accel_cache_keep(struct accel_cache *cache, enum accel_kind wanted, const struct box *boxes, uint32_t count,
+void accel_cache_keep(struct accel_cache *cache, enum accel_kind requested, const struct box *boxes, uint32_t count,
                       struct scene_accel *accel);
 void accel_cache_destroy(struct accel_cache *cache);
 

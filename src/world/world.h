@@ -117,7 +117,7 @@ typedef void world_warning(void *context, const char *text);
 struct world_cache {
     struct accel_cache accel;
     struct kept_tables *tables;
-    uint64_t taken; /* number of worlds that took over tables */
+    uint64_t reused; /* number of worlds that took over tables */
 };
 
 /* The input of a world; it is only read, except that the scene records which nodes it has warned of, and with a cache
@@ -168,8 +168,8 @@ static inline bool primitive_moves(const struct world *world, uint32_t primitive
 static inline const struct node *primitive_node(const struct world *world, uint32_t primitive) {
     return world->authored.nodes[world->primitives[primitive].prototype];
 }
-/* world_from_object at a ray's time; for static primitives, the bits are those of the composed transforms of the nodes.
- */
+/* world_from_object at a ray's time; for static primitives, the bits are those of the composed transforms of the
+ * nodes. */
 struct transform world_placement(const struct world *world, uint32_t primitive, double ray_time);
 /* The ray in the space of a primitive that moves. */
 struct ray world_ray_of_moving(const struct world *world, uint32_t primitive, const struct ray *ray);
@@ -192,8 +192,8 @@ static inline struct ray primitive_ray(const struct world *world, uint32_t primi
     return out;
 }
 
-/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening order.
- */
+/* Nearest hit in the ray's open interval, fully described. Equal t: the primitive that comes first in flattening
+ * order. */
 bool world_nearest(const struct world *world, const struct ray *ray, struct world_scratch *scratch, struct hit *hit);
 /* Only the primitive and the crossing, both undefined if there is none; for tests and counters. */
 bool world_nearest_crossing(const struct world *world, const struct ray *ray, struct world_scratch *scratch,

@@ -76,8 +76,8 @@ static bool build(struct world *world, const struct world_input *input, struct a
                                     .warn = input->warn,
                                     .warn_context = input->warn_context,
                                     .error = error};
-    bool taken;
-    if (!kept_tables_take(&flattening, input, &taken) || (!taken && !flatten_scene(&flattening, input->root)))
+    bool reused;
+    if (!kept_tables_reuse(&flattening, input, &reused) || (!reused && !flatten_scene(&flattening, input->root)))
         return false;
     struct arena *of_tables = flattening.arena;
     flattening.arena = arena;
@@ -87,12 +87,12 @@ static bool build(struct world *world, const struct world_input *input, struct a
         (input->linear_colours && !sky_decode(&world->sky, error)))
         return false;
     flattening.arena = of_tables;
-    if (!taken && (!make_boxes(&flattening) || !make_materials(&flattening)))
+    if (!reused && (!make_boxes(&flattening) || !make_materials(&flattening)))
         return false;
     add_up_meshes(world, input->scene->assets);
-    taken = input->cache && accel_cache_take(&input->cache->accel, world->mesh_accel, world->boxes,
-                                             world->primitive_count, &world->accel);
-    if (!taken &&
+    reused = input->cache && accel_cache_reuse(&input->cache->accel, world->mesh_accel, world->boxes,
+                                               world->primitive_count, &world->accel);
+    if (!reused &&
         !scene_accel_build(&world->accel, world->mesh_accel, world->boxes, world->primitive_count, pool, error))
         return false;
     return world->mesh_accel != ACCEL_AUTO || world->accel.kind != ACCEL_BVH ||

@@ -58,9 +58,9 @@ static void take_world(struct kept_tables *tables, struct world *world) {
             world->textures[i].recorded.nan->found = false;
 }
 
-bool kept_tables_take(struct flattening *f, const struct world_input *input, bool *taken) {
+bool kept_tables_reuse(struct flattening *f, const struct world_input *input, bool *reused) {
     struct world_cache *cache = input->cache;
-    *taken = false;
+    *reused = false;
     if (!cache)
         return true;
     if (!input->keeps_tables || has_mesh_light(input))
@@ -77,15 +77,15 @@ bool kept_tables_take(struct flattening *f, const struct world_input *input, boo
     bool ok = true;
     if (fits(tables, input)) {
         take_world(tables, f->world);
-        ok = flatten_update(f, &input->scene->changes, taken);
-        if (!*taken || !ok) {
+        ok = flatten_update(f, &input->scene->changes, reused);
+        if (!*reused || !ok) {
             world_destroy(f->world);
             *f->world = begun;
         }
     }
     scene_forget_changes(input->scene);
-    cache->taken += *taken;
-    if (*taken || !ok)
+    cache->reused += *reused;
+    if (*reused || !ok)
         return ok;
     empty(tables);
     f->arena = &tables->arena;

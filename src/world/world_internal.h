@@ -5,9 +5,9 @@
 #include "world/world.h"
 
 struct flattening;
-/* The tables of the frame before with the changes of the scene, in f->world. *taken: false if there are none that fit;
+/* The tables of the frame before with the changes of the scene, in f->world. *reused: false if there are none that fit;
  * then f->arena and f->log are those of new tables, if they may be kept. */
-bool kept_tables_take(struct flattening *f, const struct world_input *input, bool *taken);
+bool kept_tables_reuse(struct flattening *f, const struct world_input *input, bool *reused);
 
 /* The nearest crossing with one primitive, in its own space; scratch grows until it fits. */
 bool world_ask_nearest(const struct world *world, uint32_t index, const struct ray *ray_object,

@@ -183,8 +183,7 @@ bool world_primitive_boxes(struct world *world, const struct box *limits, struct
 }
 
 /* Placements as a translation and the number of a linear map: a million pots in rows share one map, and cost 56 bytes
- * each instead of 192 for a map with its inverse. A hash over the bits finds equal maps; the newest is tested first.
- */
+ * each instead of 192 for a map with its inverse. A hash over the bits finds equal maps; the newest is tested first. */
 
 struct linear_table {
     uint32_t *slots; /* number of a map and 1, or 0 */

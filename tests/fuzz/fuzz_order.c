@@ -14,7 +14,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size)
         memcpy(text, data, size);
     order_of_text(text, size, &finding);
-    if (finding.order != ORDER_NEW && finding.order != ORDER_OLD && finding.order != ORDER_SEPARATE)
+    if (finding.order != TRANSFORM_ORDER_NEW && finding.order != TRANSFORM_ORDER_OLD &&
+        finding.order != TRANSFORM_ORDER_SEPARATE)
         abort();
     if (!memchr(finding.reason, '\0', sizeof finding.reason) || strchr(finding.reason, '\n'))
         abort();

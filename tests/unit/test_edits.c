@@ -168,7 +168,7 @@ TEST(changes_that_are_taken_off_leave_the_scene_as_it_was) {
         CHECK(changed.light_count == 2 && changed.lights[0].light.position.z == 4 &&
               changed.lights[0].light.colour.x == 2);
         CHECK(changed.lights[1].light.position.x == 9 && changed.lights[1].light.colour.x == 0);
-        changes_take_off(&changed);
+        changes_remove(&changed);
         CHECK(memcmp(&before, &ball->parent_from_node, sizeof before) == 0);
         CHECK(!ball->singular && group->child_count == 1 && group->last_child->node == ball);
         CHECK(group->last_child->next == NULL && red->phong.kd.x == 1 && s.lights[0].colour.x == 1);
@@ -192,7 +192,7 @@ TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has
     CHECK(changes_lay_over((struct change_range){&gone, 1}, &(struct change_target){&s.scene, s.root, NULL, 0},
                            count_warning, &warnings, &changed, &error));
     CHECK(b->singular && !a->singular);
-    changes_take_off(&changed);
+    changes_remove(&changed);
     a->name = "right";
     a->serial = 1000;
     b->serial = 1001;
@@ -200,7 +200,7 @@ TEST(changes_find_a_node_that_has_another_number_now_by_its_name_if_only_one_has
                            count_warning, &warnings, &changed, &error));
     CHECK(!b->singular && !a->singular);
     CHECK_EQ_INT(warnings, 1);
-    changes_take_off(&changed);
+    changes_remove(&changed);
     stage_end(&s);
 }
 

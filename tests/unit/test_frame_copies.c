@@ -175,7 +175,7 @@ TEST(after_every_method_of_nodes_the_world_has_the_tables_of_a_new_one) {
         test_fail(__FILE__, __LINE__, "%s", error.text);
     CHECK_EQ_INT(wrong_worlds, 0);
     CHECK(listener.renders > 80);
-    CHECK(cache_of_methods.taken > 30); /* equal pictures, and those after transforms */
+    CHECK(cache_of_methods.reused > 30); /* equal pictures, and those after transforms */
     world_cache_destroy(&cache_of_methods);
     free(text);
 }

@@ -142,7 +142,7 @@ TEST(a_picture_of_little_noise_has_the_same_bytes_for_any_threads_order_and_pass
     stage_end(&s);
     begin(&s, 3);
     s.settings.noise = 0.1;
-    s.settings.order = ORDER_CENTRE;
+    s.settings.tile_order = TILE_ORDER_CENTRE;
     for (int passes = 0; passes < 2; passes++) {
         s.settings.passes = passes != 0;
         CHECK(stage_render(&s, WIDTH, HEIGHT));

@@ -21,13 +21,13 @@ TEST(every_order_of_tiles_has_each_tile_once) {
     struct film film = film_of(700, 450);
     uint32_t count = film_tile_count(&film), order[1000];
     CHECK(count == 22 * 15);
-    for (int kind = ORDER_SPREAD; kind <= ORDER_ROWS; kind++) {
+    for (int kind = TILE_ORDER_SPREAD; kind <= TILE_ORDER_ROWS; kind++) {
         uint8_t seen[1000] = {0};
-        CHECK(tile_order(&film, (enum order)kind, order));
+        CHECK(film_tile_order(&film, (enum tile_order)kind, order));
         for (uint32_t i = 0; i < count; i++) {
             CHECK(order[i] < count && !seen[order[i]]);
             seen[order[i]] = 1;
-            CHECK(kind != ORDER_ROWS || order[i] == i);
+            CHECK(kind != TILE_ORDER_ROWS || order[i] == i);
         }
     }
 }
@@ -35,7 +35,7 @@ TEST(every_order_of_tiles_has_each_tile_once) {
 TEST(tiles_from_the_centre_come_by_their_distance_from_it) {
     struct film film = film_of(352, 224); /* 11 x 7: one tile is in the middle */
     uint32_t order[77];
-    CHECK(tile_order(&film, ORDER_CENTRE, order));
+    CHECK(film_tile_order(&film, TILE_ORDER_CENTRE, order));
     CHECK_EQ_INT(order[0], 3 * 11 + 5);
     double before = 0;
     for (int i = 0; i < 77; i++) {
@@ -50,7 +50,7 @@ TEST(spread_tiles_represent_the_others_at_any_time) {
     struct film film = film_of(32 * 30, 32 * 20);
     uint32_t order[600];
     double worst = 0;
-    CHECK(tile_order(&film, ORDER_SPREAD, order));
+    CHECK(film_tile_order(&film, TILE_ORDER_SPREAD, order));
     for (int done = 50; done < 600; done += 50) {
         for (int part = 0; part < 4; part++) {
             int inside = 0;
@@ -69,11 +69,11 @@ TEST(the_order_of_tiles_changes_no_byte) {
     stage_sphere(&s, s.root, stage_glass(&s, 0.3, 0.6, 1.4));
     stage_point_light(&s, vec3_make(3, 4, 5), vec3_all(0.8));
     s.sky = (struct sky){.kind = SKY_GRADIENT};
-    for (int kind = ORDER_SPREAD; kind <= ORDER_ROWS; kind++) {
-        s.settings.order = (enum order)kind;
+    for (int kind = TILE_ORDER_SPREAD; kind <= TILE_ORDER_ROWS; kind++) {
+        s.settings.tile_order = (enum tile_order)kind;
         CHECK(stage_render(&s, 100, 80));
         for (int i = 0; i < 100 * 80; i++) {
-            if (kind == ORDER_SPREAD)
+            if (kind == TILE_ORDER_SPREAD)
                 memcpy(reference + 3 * i, s.film.pixels[i].rgb, 12);
             CHECK(memcmp(reference + 3 * i, s.film.pixels[i].rgb, 12) == 0);
         }
@@ -172,7 +172,7 @@ TEST(the_cost_of_tiles_is_that_of_finished_ones_if_these_are_spread_over_the_pic
         double scatter = 1 + (2 * random_unit(random_combine(7, i)) - 1) / 3;
         left += cost[i] = (i % ACROSS < ACROSS / 2 ? 1e6 : 1e5) * scatter;
     }
-    CHECK(tile_order(&film, ORDER_SPREAD, spread));
+    CHECK(film_tile_order(&film, TILE_ORDER_SPREAD, spread));
     CHECK_NEAR(time_estimate_work(&estimate).done, 0, 0);
     for (int i = 0; i < TILES; i++) {
         set_tile(spread[i], cost[spread[i]], 1);

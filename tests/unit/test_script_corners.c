@@ -272,7 +272,7 @@ TEST(the_transform_order_of_a_text_cut_anywhere_is_found) {
         char *copy = malloc(size ? size : 1);
         memcpy(copy, text, size);
         order_of_text(copy, size, &finding);
-        CHECK(finding.order == ORDER_NEW || finding.order == ORDER_OLD);
+        CHECK(finding.order == TRANSFORM_ORDER_NEW || finding.order == TRANSFORM_ORDER_OLD);
         free(copy);
     }
     char *many = malloc(70 * 40);

@@ -25,7 +25,7 @@ TEST(names_of_the_project_dialect_mean_new) {
     for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
         char text[200];
         (void)snprintf(text, sizeof text, "local x = unpack(t)\nx = gr.%s(a, b)", names[k]);
-        expect(ORDER_NEW, "it uses names of the project dialect (line 2)", text);
+        expect(TRANSFORM_ORDER_NEW, "it uses names of the project dialect (line 2)", text);
     }
 }
 
@@ -50,40 +50,45 @@ TEST(the_text_shows_whether_all_pictures_are_named_and_without_a_background) {
 }
 
 TEST(other_signs_of_the_new_order) {
-    expect(ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere{radius = 1} readobj()");
-    expect(ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere({radius = 1}) readobj()");
-    expect(ORDER_NEW, "it calls gr.transform_order (line 1)", "gr.transform_order('old') readobj()");
-    expect(ORDER_NEW, "gr.mesh reads a file (line 1)", "c = gr.mesh('cow', 'cow.obj') unpack(x)");
-    expect(ORDER_NEW, "gr.mesh reads a file (line 1)", "c = gr.mesh('cow', \"cow\" .. n .. '.obj')");
-    expect(ORDER_NEW, "it uses table.unpack (line 1)", "local unpack = table.unpack or unpack");
-    expect(ORDER_NEW, "a primitive is given its material (line 2)", "m = gr.material(a, b, 1)\ns = gr.sphere(m)");
-    expect(ORDER_NEW, "gr.mesh is given a material (line 2)",
+    expect(TRANSFORM_ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere{radius = 1} readobj()");
+    expect(TRANSFORM_ORDER_NEW, "it uses tables with named fields (line 1)", "gr.sphere({radius = 1}) readobj()");
+    expect(TRANSFORM_ORDER_NEW, "it calls gr.transform_order (line 1)", "gr.transform_order('old') readobj()");
+    expect(TRANSFORM_ORDER_NEW, "gr.mesh reads a file (line 1)", "c = gr.mesh('cow', 'cow.obj') unpack(x)");
+    expect(TRANSFORM_ORDER_NEW, "gr.mesh reads a file (line 1)", "c = gr.mesh('cow', \"cow\" .. n .. '.obj')");
+    expect(TRANSFORM_ORDER_NEW, "it uses table.unpack (line 1)", "local unpack = table.unpack or unpack");
+    expect(TRANSFORM_ORDER_NEW, "a primitive is given its material (line 2)",
+           "m = gr.material(a, b, 1)\ns = gr.sphere(m)");
+    expect(TRANSFORM_ORDER_NEW, "gr.mesh is given a material (line 2)",
            "m = gr.material(a, b, 1)\nx = gr.mesh(m, {{0, 0, 0}}, {})");
 }
 
 TEST(signs_of_the_old_order) {
-    expect(ORDER_OLD, "it uses readobj (line 2)", "-- cow\ncow = gr.mesh('cow', readobj('cow.obj'))");
-    expect(ORDER_OLD, "it calls unpack, not table.unpack (line 1)", "n:translate(unpack(p))");
-    expect(ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh('p', {{0, 0, 0}}, {{0, 1, 2}})");
-    expect(ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh('p', verts, faces)");
-    expect(ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh(name('p', 1), make(1, 2), faces)");
+    expect(TRANSFORM_ORDER_OLD, "it uses readobj (line 2)", "-- cow\ncow = gr.mesh('cow', readobj('cow.obj'))");
+    expect(TRANSFORM_ORDER_OLD, "it calls unpack, not table.unpack (line 1)", "n:translate(unpack(p))");
+    expect(TRANSFORM_ORDER_OLD, "gr.mesh is given vertex tables (line 1)",
+           "p = gr.mesh('p', {{0, 0, 0}}, {{0, 1, 2}})");
+    expect(TRANSFORM_ORDER_OLD, "gr.mesh is given vertex tables (line 1)", "p = gr.mesh('p', verts, faces)");
+    expect(TRANSFORM_ORDER_OLD, "gr.mesh is given vertex tables (line 1)",
+           "p = gr.mesh(name('p', 1), make(1, 2), faces)");
 }
 
 TEST(scenes_without_signs_are_new) {
-    expect(ORDER_NEW, "", "");
-    expect(ORDER_NEW, "", "s = gr.sphere('s') s:scale(1, 2, 3) s:translate(1, 0, 0)");
-    expect(ORDER_NEW, "", "c = gr.mesh('c', load_it())");
-    expect(ORDER_NEW, "", "c = gr.mesh('c', name)");
+    expect(TRANSFORM_ORDER_NEW, "", "");
+    expect(TRANSFORM_ORDER_NEW, "", "s = gr.sphere('s') s:scale(1, 2, 3) s:translate(1, 0, 0)");
+    expect(TRANSFORM_ORDER_NEW, "", "c = gr.mesh('c', load_it())");
+    expect(TRANSFORM_ORDER_NEW, "", "c = gr.mesh('c', name)");
 }
 
 TEST(comments_and_strings_are_no_signs) {
-    expect(ORDER_NEW, "", "-- readobj unpack gr.vn_mesh\n--[[ readobj\nunpack ]] --[==[ ]] readobj ]==]\nx = 1");
-    expect(ORDER_NEW, "", "x = 'readobj(1)' y = \"unpack \\\" unpack\" z = [[ unpack ]] w = [=[ ]] readobj ]=]");
-    expect(ORDER_NEW, "", "#!readobj\nx = a.unpack(1) y = a:unpack(2) z = my.readobj(3)");
-    expect(ORDER_OLD, "it uses readobj (line 4)", "x = 'a\\\nb' --[[\n]]\ny = 1 readobj()");
-    expect(ORDER_NEW, "", "x = 'never closed\n y = [[ never closed unpack");
-    expect(ORDER_NEW, "", "--[==[ never closed readobj");
-    expect(ORDER_OLD, "it calls unpack, not table.unpack (line 1)", "a[b[1]] = unpack(x)");
+    expect(TRANSFORM_ORDER_NEW, "",
+           "-- readobj unpack gr.vn_mesh\n--[[ readobj\nunpack ]] --[==[ ]] readobj ]==]\nx = 1");
+    expect(TRANSFORM_ORDER_NEW, "",
+           "x = 'readobj(1)' y = \"unpack \\\" unpack\" z = [[ unpack ]] w = [=[ ]] readobj ]=]");
+    expect(TRANSFORM_ORDER_NEW, "", "#!readobj\nx = a.unpack(1) y = a:unpack(2) z = my.readobj(3)");
+    expect(TRANSFORM_ORDER_OLD, "it uses readobj (line 4)", "x = 'a\\\nb' --[[\n]]\ny = 1 readobj()");
+    expect(TRANSFORM_ORDER_NEW, "", "x = 'never closed\n y = [[ never closed unpack");
+    expect(TRANSFORM_ORDER_NEW, "", "--[==[ never closed readobj");
+    expect(TRANSFORM_ORDER_OLD, "it calls unpack, not table.unpack (line 1)", "a[b[1]] = unpack(x)");
 }
 
 static void write_in(const char *folder, const char *name, const char *text) {
@@ -107,9 +112,9 @@ TEST(required_files_are_read_too) {
     write_in(folder, "a.lua", "require 'helper'\nlocal s = gr.sphere('s')\n");
     write_in(folder, "helper.lua", "require('deeper')\nrequire 'a'\n");
     write_in(folder, "deeper.lua", "\nfunction place(n, p) n:translate(unpack(p)) end\n");
-    expect_file("a.lua", NULL, ORDER_OLD, "it calls unpack, not table.unpack (line 2)");
+    expect_file("a.lua", NULL, TRANSFORM_ORDER_OLD, "it calls unpack, not table.unpack (line 2)");
     write_in(folder, "b.lua", "dofile('deeper.lua') g = gr.geometry('g', p)\n");
-    expect_file("b.lua", NULL, ORDER_NEW, "it uses names of the project dialect (line 1)");
+    expect_file("b.lua", NULL, TRANSFORM_ORDER_NEW, "it uses names of the project dialect (line 1)");
 }
 
 TEST(the_library_says_nothing_about_a_scene) {
@@ -119,20 +124,20 @@ TEST(the_library_says_nothing_about_a_scene) {
     CHECK(mkdir(lua, 0777) == 0);
     write_in(lua, "thing.lua", "return readobj\n");
     write_in(folder, "a.lua", "require 'thing'\nlocal s = gr.sphere('s')\n");
-    expect_file("a.lua", lua, ORDER_NEW, "");
-    expect_file("a.lua", NULL, ORDER_OLD, "it uses readobj (line 1)");
+    expect_file("a.lua", lua, TRANSFORM_ORDER_NEW, "");
+    expect_file("a.lua", NULL, TRANSFORM_ORDER_OLD, "it uses readobj (line 1)");
 }
 
 TEST(neighbours_decide_when_the_scene_says_nothing) {
     const char *folder = test_folder();
     write_in(folder, "a.lua", "local s = gr.sphere('s')\n");
-    expect_file("a.lua", NULL, ORDER_NEW, "");
+    expect_file("a.lua", NULL, TRANSFORM_ORDER_NEW, "");
     write_in(folder, "no_scene.lua", "print(unpack(x))\n");
-    expect_file("a.lua", NULL, ORDER_NEW, "");
+    expect_file("a.lua", NULL, TRANSFORM_ORDER_NEW, "");
     write_in(folder, "cow.lua", "gr.mesh('cow', readobj('cow.obj'))\n");
-    expect_file("a.lua", NULL, ORDER_OLD, "of its neighbour cow.lua: it uses readobj (line 1)");
+    expect_file("a.lua", NULL, TRANSFORM_ORDER_OLD, "of its neighbour cow.lua: it uses readobj (line 1)");
     write_in(folder, "new.lua", "gr.mesh('cow', 'cow.obj')\n");
-    expect_file("a.lua", NULL, ORDER_NEW, "");
+    expect_file("a.lua", NULL, TRANSFORM_ORDER_NEW, "");
 }
 
 /* The world position of the point (1,0,0) of the root's first child. */

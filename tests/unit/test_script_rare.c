@@ -357,11 +357,11 @@ TEST(arguments_of_mesh_calls_decide_the_transform_order) {
         enum transform_order order;
         const char *reason;
     } all[] = {
-        {"gr.mesh(gr.material({1}), {2}, {3})", ORDER_NEW, "gr.mesh is given a material (line 1)"},
-        {"gr.mesh(t[1], {2}, {3})", ORDER_OLD, "gr.mesh is given vertex tables (line 1)"},
-        {"\ngr.mesh(t[1], u, v)", ORDER_OLD, "gr.mesh is given vertex tables (line 2)"},
-        {"gr.mesh(t, u, )", ORDER_NEW, ""},
-        {"gr.mesh('a', 'b.obj')", ORDER_NEW, "gr.mesh reads a file (line 1)"},
+        {"gr.mesh(gr.material({1}), {2}, {3})", TRANSFORM_ORDER_NEW, "gr.mesh is given a material (line 1)"},
+        {"gr.mesh(t[1], {2}, {3})", TRANSFORM_ORDER_OLD, "gr.mesh is given vertex tables (line 1)"},
+        {"\ngr.mesh(t[1], u, v)", TRANSFORM_ORDER_OLD, "gr.mesh is given vertex tables (line 2)"},
+        {"gr.mesh(t, u, )", TRANSFORM_ORDER_NEW, ""},
+        {"gr.mesh('a', 'b.obj')", TRANSFORM_ORDER_NEW, "gr.mesh reads a file (line 1)"},
     };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         struct order_finding finding;
@@ -393,9 +393,10 @@ TEST(the_transform_order_is_looked_for_in_files_wherever_require_finds_them) {
     put("libx.lua", "readobj('x') gr.x()");
     put("lib/in_library.lua", "readobj('x') gr.x()");
     put("lua/shared.lua", "readobj('x') gr.x()");
-    CHECK(order_of_scene("scenes/a.lua", "require('shared')", library).order == ORDER_OLD);
-    CHECK(order_of_scene("a.lua", "require('lib.in_library') gr.mesh('a', 'b.obj')", library).order == ORDER_NEW);
-    CHECK(order_of_scene("a.lua", "require('libx')", library).order == ORDER_OLD);
+    CHECK(order_of_scene("scenes/a.lua", "require('shared')", library).order == TRANSFORM_ORDER_OLD);
+    CHECK(order_of_scene("a.lua", "require('lib.in_library') gr.mesh('a', 'b.obj')", library).order ==
+          TRANSFORM_ORDER_NEW);
+    CHECK(order_of_scene("a.lua", "require('libx')", library).order == TRANSFORM_ORDER_OLD);
     CHECK(order_of_scene("scenes/b.lua", "require('tests.scripts.classic')", library).order ==
           order_of_scene("scenes/b.lua", "dofile('tests/scripts/classic.lua')", library).order);
     CHECK(strstr(order_of_scene("missing.lua", NULL, library).reason, "of its neighbour libx.lua") != NULL);
@@ -406,7 +407,7 @@ TEST(the_transform_order_is_looked_for_in_files_wherever_require_finds_them) {
         put(name, i == 70 ? "readobj('x') gr.x()" : "gr.mesh('a', 'b.obj')");
         (void)snprintf(many + strlen(many), sizeof many - strlen(many), "require 'm%d' ", i);
     }
-    CHECK(order_of_scene("scenes/c.lua", many, library).order == ORDER_NEW);
+    CHECK(order_of_scene("scenes/c.lua", many, library).order == TRANSFORM_ORDER_NEW);
     /* A path that is nearly too long, and a name that makes it so. */
     (void)snprintf(path, sizeof path, "%s/scenes/", test_folder());
     while (strlen(path) < 4000)
@@ -423,7 +424,7 @@ TEST(old_neighbours_are_counted_and_the_first_is_named) {
     put("none.lua", "print(1)");
     make_huge("huge.lua", (1 << 20) + 1);
     struct order_finding finding = order_of_scene("zero.lua", "gr.x()", NULL);
-    CHECK(finding.order == ORDER_OLD);
+    CHECK(finding.order == TRANSFORM_ORDER_OLD);
     CHECK(strstr(finding.reason, "of its neighbour ") && strstr(finding.reason, ".lua: it uses readobj (line 1)"));
 }
 

@@ -165,7 +165,7 @@ static enum viewer_action step(struct table *t) {
 }
 
 static void print_news(struct table *t, const struct preview_reply *reply) {
-    viewer_take_reply(&t->viewer, reply, t->now);
+    viewer_receive_reply(&t->viewer, reply, t->now);
 }
 
 /* The child has built the world: the first request is the coarsest pass. */
