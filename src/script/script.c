@@ -279,7 +279,7 @@ static void render_last_picture(struct script *script, bool failed) {
     struct node *root = lenient_root(c);
     if (!root)
         return;
-    lenient_picture_name(c, name, sizeof name);
+    context_picture_name(c, "-lenient.png", name, sizeof name);
     struct render_request request = {.where = c->sandbox.files.path,
                                      .scene = &c->scene,
                                      .root = root,
