@@ -216,6 +216,7 @@ static bool choose_order(struct script *script, struct error *error) {
     if (!order_detect(path, sandbox->options->library_folder, sandbox->path_policy, &finding, error))
         return false;
     script->only_named_pictures = finding.only_named_pictures;
+    script->several_pictures = finding.several_pictures;
     switch (sandbox->options->transform_order) {
     case SCRIPT_ORDER_NEW:
         scene->order = ORDER_NEW;
