@@ -339,6 +339,7 @@ static void turn_camera(struct render_request *request, const struct render_requ
 static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
     const struct frame_options *options = &context->sandbox.options->frames;
     struct render_request request = *first;
+    struct scene_light lights[STUDIO_LIGHTS];
     struct vec3 middle = turntable_middle(first, first->camera.view);
     uint32_t count = (uint32_t)options->turntable;
     if (vec3_max_abs(first->camera.up) == 0)
@@ -352,6 +353,8 @@ static bool render_turntable(struct script_context *context, const struct render
     while ((request.frame.number = host->next_frame ? host->next_frame(host->context, &request.frame)
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
+        if (context->scene.studio && !first->changed) /* the light of a studio turns with the camera */
+            studio_light(&request, lights);
         if (!host->render(host->context, &request, error))
             return false;
     }
