@@ -13,4 +13,4 @@ scene:add_child(gr.nh_box(marble, {-20, -41, -25}, 40))
 
 local lamp = gr.area_light({-5, 7, 3}, {2, 0, 0}, {0, 0, 2}, {0.9, 0.9, 0.9}, {1, 0, 0})
 gr.render{node = scene, file = 'first.png', width = 480, height = 320, eye = {0, 1.2, 8}, view = {0, -0.18, -1}, fov = 32,
-          ambient = {0.25, 0.25, 0.25}, lights = {lamp}, background = 'gradient'}
+          ambient = {0.25, 0.25, 0.25}, lights = {lamp}}

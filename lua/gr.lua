@@ -1686,11 +1686,11 @@ function gr.fog_field(corner, size, density, colour) end
 
 ---@class gr.render.fields
 ---@field node gr.node node (a node): Root node of the picture.
----@field file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
----@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
----@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
----@field eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
 ---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
@@ -1755,25 +1755,26 @@ function gr.fog_field(corner, size, density, colour) end
 
 ---Renders a picture into a file.
 ---@param node gr.node node (a node): Root node of the picture.
----@param file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
----@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
----@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
----@param eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@param eye gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
 ---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
+---@param fields? gr.render.fields Fields that are no arguments before it
 ---@overload fun(fields: gr.render.fields)
-function gr.render(node, file, width, height, eye, view, up, fov, ambient, lights) end
+function gr.render(node, file, width, height, eye, view, up, fov, ambient, lights, fields) end
 
 ---@class gr.render_skybox.fields
 ---@field node gr.node node (a node): Root node of the picture.
----@field file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
----@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
----@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
----@field eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
 ---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
@@ -1838,18 +1839,19 @@ function gr.render(node, file, width, height, eye, view, up, fov, ambient, light
 
 ---The same as gr.render, with a sky picture.
 ---@param node gr.node node (a node): Root node of the picture.
----@param file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@param sky string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
----@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
----@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
----@param eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@param eye gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
 ---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
+---@param fields? gr.render_skybox.fields Fields that are no arguments before it
 ---@overload fun(fields: gr.render_skybox.fields)
-function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, ambient, lights) end
+function gr.render_skybox(node, file, sky, width, height, eye, view, up, fov, ambient, lights, fields) end
 
 ---@class gr.transform_order.fields
 ---@field order 'new'|'old'|'separate' order ('new'|'old'|'separate'): new: calls act in the order in which they are written; old: the last call acts first; separate: scale, then rotate, then translate.
@@ -1964,11 +1966,11 @@ function node:rotate_quat(w, x, y, z) end
 function node:translate(x, y, z) end
 
 ---@class gr.node.render.fields
----@field file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@field file? string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
 ---@field sky? string|gr.texture sky (the name of a picture file or a texture; optional): A PNG or JPEG file with six views of the sky in a 4 x 3 cross.
----@field width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
----@field height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
----@field eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@field width? integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@field height? integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@field eye? gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
 ---@field view? gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@field up? gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@field fov? number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
@@ -2032,17 +2034,18 @@ function node:translate(x, y, z) end
 ---@field up_to? gr.triple up_to (a direction {x, y, z}; default up): Its up direction at time 1.
 
 ---The same as gr.render with this node.
----@param file string file (the name of a file): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
----@param width integer width (a whole number, 1 to 1048576, in pixels): Width of the picture.
----@param height integer height (a whole number, 1 to 1048576, in pixels): Height of the picture.
----@param eye gr.triple eye (a point {x, y, z}): Position of the camera.
+---@param file string file (the name of a file; default SCRIPT.png): Picture file: .png, for linear light .pfm .hdr .exr; gray creates missing folders.
+---@param width integer width (a whole number, 1 to 1048576, in pixels; default 960): Width of the picture.
+---@param height integer height (a whole number, 1 to 1048576, in pixels; default 9/16 of width): Height of the picture.
+---@param eye gr.triple eye (a point {x, y, z}; default fits the scene): Position of the camera.
 ---@param view gr.triple view (a direction {x, y, z}; default {0, 0, -1}): Direction of view.
 ---@param up gr.triple up (a direction {x, y, z}; default {0, 1, 0}): Direction that is up in the picture.
 ---@param fov number fov (a number, > 0 and < 180, in degrees; default 50): Full vertical angle of view.
 ---@param ambient? gr.triple|string ambient (a colour {r, g, b}; default {0, 0, 0}): Ambient light.
 ---@param lights? gr.light[] lights (a table of lights; default {}): The lights.
+---@param fields? gr.node.render.fields Fields that are no arguments before it
 ---@overload fun(self: gr.node, fields: gr.node.render.fields)
-function node:render(file, width, height, eye, view, up, fov, ambient, lights) end
+function node:render(file, width, height, eye, view, up, fov, ambient, lights, fields) end
 
 ---@class gr.frames.fields
 ---@field count? integer count (a whole number, >= 1; optional): Number of frames; give either count or seconds.

@@ -79,52 +79,6 @@ static int read_rest(struct script_context *c, const struct script_parameter *p,
     return end;
 }
 
-static bool read_positional(struct script_context *c, const struct script_function *function, int first,
-                            struct script_value *args) {
-    lua_State *L = c->sandbox.lua;
-    const char *best = function->forms[0];
-    struct fit best_fit = form_fit(L, function, best, first);
-    for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++) {
-        struct fit fit = form_fit(L, function, function->forms[k], first);
-        if (fits_better(fit, best_fit)) {
-            best_fit = fit;
-            best = function->forms[k];
-        }
-    }
-    int index = 0, slot = first;
-    bool optional;
-    for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
-        /* Messages about the arguments after it contain the name; no method has one, which a test checks. */
-        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, slot))
-            c->sandbox.running.subject = argument_read_text(c, slot, &function->parameters[index]);
-    }
-    if (best_fit.leading == 0 && function->forms[1])
-        no_form_fits(c, function, first);
-    slot = first;
-    for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
-        const struct script_parameter *p = &function->parameters[index];
-        if (!optional && lua_isnoneornil(L, slot)) {
-            if (function->owner == OWNER_NODE && lua_gettop(L) < first)
-                sandbox_raise(&c->sandbox, "%s is missing; methods are called with a colon, as in n:%s(...)", p->name,
-                              function->name);
-            sandbox_raise(&c->sandbox, "%s is missing%s", p->name, lua_isnil(L, slot) ? hint_of_nil(&c->sandbox) : "");
-        }
-        /* gr.render: the name of a variable is misspelt. */
-        if (optional && function->result == RESULT_NOTHING && (p->kind == KIND_LIGHTS || p->kind == KIND_COLOUR) &&
-            lua_isnil(L, slot))
-            sandbox_raise(&c->sandbox, "%s is nil%s", p->name, hint_of_nil(&c->sandbox));
-        if (!argument_read(c, slot, p, &args[index]))
-            return false;
-    }
-    int rest_index;
-    const struct script_parameter *rest = function_rest(function, &rest_index);
-    if (rest)
-        slot = read_rest(c, rest, slot, &args[rest_index]);
-    if (lua_gettop(L) >= slot)
-        context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored", function->parameters[index].name);
-    return true;
-}
-
 /* Entries without names, if any. */
 static bool read_unnamed(struct script_context *c, const struct script_function *function, int table,
                          struct script_value *args) {
@@ -208,16 +162,88 @@ static bool read_named(struct script_context *c, const struct script_function *f
     return true;
 }
 
+/* Whether it is a table without an entry 1: it holds named fields. */
+static bool is_plain_table(lua_State *L, int index) {
+    if (!lua_istable(L, index))
+        return false;
+    bool plain = lua_rawgeti(L, index, 1) == LUA_TNIL;
+    lua_pop(L, 1);
+    return plain;
+}
+
+/* The table of fields after a positional form. */
+static bool read_more(struct script_context *c, const struct script_function *function, int table,
+                      struct script_value *args) {
+    lua_State *L = c->sandbox.lua;
+    int value = lua_gettop(L) + 1;
+    check_fields(c, function, table);
+    for (int k = function->owner == OWNER_NODE; k < function->parameter_count; k++) {
+        const struct script_parameter *p = &function->parameters[k];
+        lua_pushstring(L, p->name);
+        bool is_field = lua_rawget(L, table) != LUA_TNIL;
+        if (is_field && args[k].given)
+            sandbox_raise(&c->sandbox, "%s is given twice, as an argument and as a field", p->name);
+        if (is_field && !argument_read(c, value, p, &args[k]))
+            return false;
+        lua_pop(L, 1); /* the table keeps it */
+    }
+    return true;
+}
+
+static bool read_positional(struct script_context *c, const struct script_function *function, int first,
+                            struct script_value *args) {
+    lua_State *L = c->sandbox.lua;
+    const char *best = function->forms[0];
+    struct fit best_fit = form_fit(L, function, best, first);
+    for (int k = 1; k < FORM_LIMIT && function->forms[k]; k++) {
+        struct fit fit = form_fit(L, function, function->forms[k], first);
+        if (fits_better(fit, best_fit)) {
+            best_fit = fit;
+            best = function->forms[k];
+        }
+    }
+    int index = 0, slot = first;
+    bool optional;
+    for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
+        /* Messages about the arguments after it contain the name; no method has one, which a test checks. */
+        if (function->parameters[index].kind == KIND_TEXT && lua_isstring(L, slot))
+            c->sandbox.running.subject = argument_read_text(c, slot, &function->parameters[index]);
+    }
+    if (best_fit.leading == 0 && function->forms[1])
+        no_form_fits(c, function, first);
+    slot = first;
+    for (const char *form = best; form_next(function, &form, &index, &optional); slot++) {
+        const struct script_parameter *p = &function->parameters[index];
+        if (!optional && lua_isnoneornil(L, slot)) {
+            if (function->owner == OWNER_NODE && lua_gettop(L) < first)
+                sandbox_raise(&c->sandbox, "%s is missing; methods are called with a colon, as in n:%s(...)", p->name,
+                              function->name);
+            sandbox_raise(&c->sandbox, "%s is missing%s", p->name, lua_isnil(L, slot) ? hint_of_nil(&c->sandbox) : "");
+        }
+        /* gr.render: the name of a variable is misspelt. */
+        if (optional && function->result == RESULT_NOTHING && (p->kind == KIND_LIGHTS || p->kind == KIND_COLOUR) &&
+            lua_isnil(L, slot))
+            sandbox_raise(&c->sandbox, "%s is nil%s", p->name, hint_of_nil(&c->sandbox));
+        if (!argument_read(c, slot, p, &args[index]))
+            return false;
+    }
+    int rest_index;
+    const struct script_parameter *rest = function_rest(function, &rest_index);
+    if (rest)
+        slot = read_rest(c, rest, slot, &args[rest_index]);
+    if (function_renders(function) && is_plain_table(L, slot) && !read_more(c, function, slot++, args))
+        return false;
+    if (lua_gettop(L) >= slot)
+        context_warn_once(c, WARNED_EXTRA, "arguments after %s are ignored", function->parameters[index].name);
+    return true;
+}
+
 /* One plain table without an entry 1 holds named fields. */
 bool arguments_have_names(lua_State *L, const struct script_function *function, int first, int last) {
-    if (last != first || !lua_istable(L, first))
-        return false;
-    if (!function_takes_names(function))
-        return false;
     int rest;
-    bool named = lua_rawgeti(L, first, 1) == LUA_TNIL || function_rest(function, &rest);
-    lua_pop(L, 1);
-    return named;
+    if (last != first || !lua_istable(L, first) || !function_takes_names(function))
+        return false;
+    return is_plain_table(L, first) || function_rest(function, &rest);
 }
 
 bool arguments_read(struct script_context *context, const struct script_function *function, int first,

@@ -2,6 +2,8 @@
 #include "call/context.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 struct script_context *context_of(lua_State *L) {
     return (struct script_context *)sandbox_of(L);
@@ -78,6 +80,15 @@ void context_warn_of_bytes(struct script_context *context, const char *name, str
         context_warn_once(context, WARNED_BYTES,
                           "%s {%g, %g, %g} looks like bytes; colours are numbers from 0 to 1, as {%.3g, %.3g, %.3g}",
                           name, c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
+}
+
+void context_picture_name(const struct script_context *context, const char *end, char *out, size_t size) {
+    const char *path = context->sandbox.files.path, *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path,
+               *dot = strrchr(name, '.');
+    int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
+    while (length > 1 && name[0] == '.') /* a picture has no hidden name */
+        name++, length--;
+    (void)snprintf(out, size, "%.*s%s", length, name, end);
 }
 
 void *context_array(struct script_context *context, size_t count, size_t size) {

@@ -32,6 +32,13 @@ bool function_takes_names(const struct script_function *function) {
     return all_optional;
 }
 
+bool function_renders(const struct script_function *function) {
+    for (int k = 0; k < function->parameter_count; k++)
+        if (function->parameters[k].kind == KIND_OUTPUT)
+            return true;
+    return false;
+}
+
 bool form_next(const struct script_function *function, const char **form, int *index, bool *optional) {
     const char *word = *form;
     while (*word == ' ')

@@ -115,13 +115,6 @@ static int read_protected(lua_State *L) {
     return 0;
 }
 
-bool lenient_renders(const struct script_function *function) {
-    for (int k = 0; k < function->parameter_count; k++)
-        if (function->parameters[k].kind == KIND_OUTPUT)
-            return true;
-    return false;
-}
-
 /* Calls the function below `count` arguments at the top, which are popped. False: it raised an error, and
  * context->sandbox.raised has the line. What must not be caught is raised again. */
 static bool survives(struct script_context *c, int count) {
@@ -516,7 +509,8 @@ static bool forgive(struct script_context *c, const struct script_function *func
     lua_settop(L, named - 1);
     for (int k = 0; k < function->parameter_count; k++) {
         const struct script_parameter *p = &function->parameters[k];
-        bool may_miss = (p->flags & (OPTIONAL | GHOST_IS_NONE)) || (lenient_renders(function) && p->kind == KIND_POINT);
+        bool may_miss =
+            (p->flags & (OPTIONAL | GHOST_IS_NONE)) || (function_renders(function) && p->kind == KIND_POINT);
         if (wanted[k] && !args[k].given && !may_miss)
             return false;
     }
@@ -652,7 +646,7 @@ int lenient_call(struct script_context *c, const struct script_function *functio
         drop_fields(function, args);
         done = run(c, function, args, result);
     }
-    if (!done && lenient_renders(function)) {
+    if (!done && function_renders(function)) {
         lenient_simplify(c);
         done = run(c, function, args, result);
         struct node *root = args[index_of(function, "node")].node;

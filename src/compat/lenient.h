@@ -28,7 +28,5 @@ int lenient_call(struct script_context *context, const struct script_function *f
 void lenient_warn(struct script_context *context, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* A node that the script has created. */
 void lenient_note_node(struct script_context *context, struct node *node);
-/* Whether the function renders pictures: the only ones that write a file. */
-bool lenient_renders(const struct script_function *function);
 
 #endif

@@ -141,12 +141,3 @@ struct node *lenient_root(struct script_context *c) {
             return lenient->nodes[i];
     return NULL;
 }
-
-void lenient_picture_name(const struct script_context *c, char *out, size_t size) {
-    const char *slash = strrchr(c->sandbox.files.path, '/'), *name = slash ? slash + 1 : c->sandbox.files.path,
-               *dot = strrchr(name, '.');
-    int length = dot && dot > name ? (int)(dot - name) : (int)strlen(name);
-    while (length > 1 && name[0] == '.') /* a picture has no hidden name */
-        name++, length--;
-    snprintf(out, size, "%.*s-lenient.png", length, name);
-}

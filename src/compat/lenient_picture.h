@@ -18,7 +18,5 @@ void lenient_simplify(struct script_context *context);
 void lenient_camera(const struct node *root, struct camera *camera);
 /* The root of a picture if the script names none, or NULL. */
 struct node *lenient_root(struct script_context *context);
-/* SCENE-lenient.png */
-void lenient_picture_name(const struct script_context *context, char *out, size_t size);
 
 #endif

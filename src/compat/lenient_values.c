@@ -460,7 +460,7 @@ static void push_triple(lua_State *L, double x, double y, double z) {
 void lenient_default(struct script_context *c, const struct script_function *function,
                      const struct script_parameter *p) {
     lua_State *L = c->sandbox.lua;
-    bool is_render = lenient_renders(function);
+    bool is_render = function_renders(function);
     double x = function->owner == OWNER_NODE && !is_render ? strcmp(function->name, "scale") == 0 : 1;
     if (is_render && p->kind == KIND_WHOLE)
         x = 256;
@@ -495,7 +495,7 @@ void lenient_default(struct script_context *c, const struct script_function *fun
         push_triple(L, 1, 1, 1);
         return;
     case KIND_OUTPUT:
-        lenient_picture_name(c, name, sizeof name);
+        context_picture_name(c, "-lenient.png", name, sizeof name);
         lua_pushstring(L, name);
         return;
     case KIND_CHOICE:

@@ -29,6 +29,9 @@ enum {
 struct evidence {
     bool mentions_gr, is_new, is_old;
     bool renders, renders_otherwise; /* gr.render{...}; any other use of gr.render, or a field background or sky */
+    bool calls, several;             /* gr.render; more than once, or in a loop */
+    uint64_t blocks;                 /* that are open, the innermost in bit 0: 1 for a loop */
+    bool awaits_do;                  /* of a loop that begins */
     char new_reason[160], old_reason[160];
 };
 
@@ -111,7 +114,21 @@ static bool is_after_dot(const struct token *w, int k) {
     return token_is_symbol(&w[k - 1], '.') || token_is_symbol(&w[k - 1], ':');
 }
 
-/* gr.render{...}, gr.render({...}) and node:render{...} have the table form. */
+/* The blocks of the text, for those that are loops. */
+static void follow_blocks(const struct token *t, struct evidence *evidence) {
+    bool is_loop = token_is(t, TOKEN_NAME, "for") || token_is(t, TOKEN_NAME, "while");
+    bool is_do = token_is(t, TOKEN_NAME, "do");
+    bool repeats = token_is(t, TOKEN_NAME, "repeat");
+    bool begins = is_loop || repeats || (is_do && !evidence->awaits_do) || token_is(t, TOKEN_NAME, "if") ||
+                  token_is(t, TOKEN_NAME, "function");
+    if (begins)
+        evidence->blocks = evidence->blocks << 1 | (is_loop || repeats);
+    if (token_is(t, TOKEN_NAME, "end") || token_is(t, TOKEN_NAME, "until"))
+        evidence->blocks >>= 1;
+    evidence->awaits_do = is_loop || (evidence->awaits_do && !is_do);
+}
+
+/* gr.render{...}, gr.render({...}) and node:render{...} have the table form, as have the tables for gr.frames. */
 static void judge_picture(const struct token *w, struct evidence *evidence) {
     const struct token *t = &w[WINDOW - 1];
     bool after_name = token_is(&w[WINDOW - 2], TOKEN_NAME, "render") && is_after_dot(w, WINDOW - 2);
@@ -121,8 +138,13 @@ static void judge_picture(const struct token *w, struct evidence *evidence) {
     if (after_name || after_bracket) {
         evidence->renders = evidence->renders || token_is_symbol(t, '{');
         bool open = token_is_symbol(t, '{') || (after_name && token_is_symbol(t, '('));
+        bool again = after_name && open && (evidence->calls || evidence->blocks != 0);
+        evidence->several = evidence->several || again;
+        evidence->calls = evidence->calls || (after_name && open);
         evidence->renders_otherwise = evidence->renders_otherwise || !open;
     }
+    bool draws = token_is(t, TOKEN_NAME, "frames") && is_after_dot(w, WINDOW - 1);
+    evidence->renders = evidence->renders || (draws && token_is(&w[WINDOW - 3], TOKEN_NAME, "gr"));
     if ((is_field && token_is_symbol(t, '=')) ||
         (token_is(t, TOKEN_NAME, "render_skybox") && is_after_dot(w, WINDOW - 1)))
         evidence->renders_otherwise = true;
@@ -133,6 +155,7 @@ static void judge(const struct token *w, struct evidence *evidence, struct mater
                   struct mesh_call *call) {
     const struct token *t = &w[WINDOW - 1];
     bool after_dot = token_is_symbol(&w[WINDOW - 2], '.') || token_is_symbol(&w[WINDOW - 2], ':');
+    follow_blocks(t, evidence);
     judge_picture(w, evidence);
     if (call->depth > 0)
         follow_mesh_call(call, t, materials, evidence);
@@ -238,6 +261,8 @@ static void scan_text(struct search *search, const char *text, size_t size, int 
     struct token window[WINDOW] = {0};
     struct materials materials = {.count = 0};
     struct mesh_call call = {0};
+    uint64_t outside = search->evidence.blocks;
+    search->evidence.blocks = 0;
     do {
         memmove(window, window + 1, (WINDOW - 1) * sizeof *window);
         window[WINDOW - 1] = lexer_next(&lexer);
@@ -247,6 +272,7 @@ static void scan_text(struct search *search, const char *text, size_t size, int 
         if (file)
             follow(search, file, is_module, depth);
     } while (window[WINDOW - 1].kind != TOKEN_END);
+    search->evidence.blocks = outside;
 }
 
 static void scan_file(struct search *search, const char *path, int depth) {
@@ -290,6 +316,7 @@ static void conclude(const struct evidence *evidence, struct order_finding *find
     bool old = evidence->is_old && !evidence->is_new;
     finding->order = old ? TRANSFORM_ORDER_OLD : TRANSFORM_ORDER_NEW;
     finding->only_named_pictures = evidence->renders && !evidence->renders_otherwise;
+    finding->several_pictures = evidence->several;
     const char *reason = old ? evidence->old_reason : evidence->is_new ? evidence->new_reason : "";
     snprintf(finding->reason, sizeof finding->reason, "%s", reason);
 }

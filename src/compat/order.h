@@ -13,7 +13,8 @@
 struct order_finding {
     enum transform_order order;
     char reason[400];         /* "it uses readobj (line 3)"; "" without evidence */
-    bool only_named_pictures; /* at least one gr.render{...}, no other form, no field background or sky */
+    bool only_named_pictures; /* at least one gr.render{...} or gr.frames, no other form, no field background or sky */
+    bool several_pictures;    /* more than one call of gr.render, or one in a loop */
 };
 
 struct path_policy;

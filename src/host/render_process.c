@@ -592,6 +592,8 @@ static int run_once(struct render_process *process, const char *path, const stru
     struct script_host host = {.context = process,
                                .assets = &process->assets,
                                .settings = process->options->settings,
+                               .width = process->options->width,
+                               .height = process->options->height,
                                .render = render,
                                .message = message,
                                .cancelled = is_cancelled,

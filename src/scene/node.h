@@ -193,6 +193,7 @@ struct scene {
     bool escaped;                   /* an older object refers to a newer one */
     struct scene_changes changes;
     enum transform_order order;
+    bool studio;      /* the studio light acts: shapes without a material are light gray, without a warning */
     const char *file; /* of the script: nodes that are made get them; line 0: unknown */
     uint32_t line;
 };

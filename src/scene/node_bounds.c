@@ -8,6 +8,7 @@ enum { DEPTH_LIMIT = 2000, STEPS = 1 << 24 };
 struct measuring {
     struct scene_traversal traversal;
     long long steps; /* left */
+    bool finite;     /* endless parts do not count */
     struct error *error;
 };
 
@@ -22,6 +23,14 @@ static struct box bounds_of_shape(struct measuring *m, const struct shape *shape
     bool exact = faces > 0 && faces < m->steps / 2;
     m->steps -= exact ? faces : 0;
     return exact ? mesh_bounds_under(shape->mesh, map) : shape_bounds_under(shape, map);
+}
+
+/* A box without the endless parts, where they do not count; operands of solids keep theirs. */
+static struct box counted(const struct measuring *m, struct box box) {
+    const double limit = 1e15;
+    bool is_part = scene_traversal_operand(&m->traversal) == SCENE_CHILD;
+    bool endless = !(vec3_max_abs(box.min) <= limit && vec3_max_abs(box.max) <= limit);
+    return m->finite && is_part && endless ? box_empty() : box;
 }
 
 /* A node that is not drawn is an empty box. */
@@ -46,7 +55,7 @@ static bool enter(struct measuring *m) {
         frame->from_node = transform_compose(&identity, &frame->from_node);
     }
     if (node->kind == NODE_GEOMETRY)
-        frame->box = bounds_of_shape(m, &node->shape, &frame->from_node.forward);
+        frame->box = counted(m, bounds_of_shape(m, &node->shape, &frame->from_node.forward));
     return true;
 }
 
@@ -68,13 +77,14 @@ static struct box with_operand(const struct node *node, uint32_t number, struct 
     return box;
 }
 
-static void leave(const struct scene_traversal *t) {
+static void leave(const struct measuring *m) {
+    const struct scene_traversal *t = &m->traversal;
     const struct measure_frame *frame = scene_traversal_frame(t, 0);
     uint32_t number = scene_traversal_operand(t);
     if (t->depth == 1)
         return;
     struct measure_frame *above = scene_traversal_frame(t, 1);
-    above->box = number == SCENE_CHILD ? box_join(above->box, frame->box)
+    above->box = number == SCENE_CHILD ? box_join(above->box, counted(m, frame->box))
                                        : with_operand(t->steps[t->depth - 2].node, number, above->box, frame->box);
 }
 
@@ -112,19 +122,28 @@ static bool measure(struct measuring *m, struct box *box) {
         if (t->depth == 1)
             *box = frame->box;
         if (event == SCENE_LEAVE || node->singular)
-            leave(t);
+            leave(m);
         if (node->singular)
             scene_traversal_skip(t);
     }
     return event == SCENE_END || error_no_memory(m->error, "a box");
 }
 
-bool node_bounds(const struct node *node, struct box *out, struct error *error) {
+static bool bounds(const struct node *node, bool finite, struct box *out, struct error *error) {
     struct measuring m = {.traversal = {.operands = OPERANDS_ALL, .frame_size = sizeof(struct measure_frame)},
                           .steps = STEPS,
+                          .finite = finite,
                           .error = error};
     scene_traversal_begin(&m.traversal, node);
     bool ok = measure(&m, out);
     scene_traversal_end(&m.traversal);
     return ok;
+}
+
+bool node_bounds(const struct node *node, struct box *out, struct error *error) {
+    return bounds(node, false, out, error);
+}
+
+bool node_finite_bounds(const struct node *node, struct box *out, struct error *error) {
+    return bounds(node, true, out, error);
 }

@@ -10,5 +10,7 @@
  * is tight under any transform; nodes with millions of objects are measured more coarsely or refused, so that the query
  * is always fast. Combined solids are measured by their operands. Errors: too deep, too much, no memory. */
 bool node_bounds(const struct node *node, struct box *out, struct error *error);
+/* The same of what a picture can frame: endless parts such as planes do not count. */
+bool node_finite_bounds(const struct node *node, struct box *out, struct error *error);
 
 #endif

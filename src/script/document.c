@@ -140,7 +140,7 @@ static void write_function(struct document *document, const struct script_functi
             add(document, "%s%s%s", separator, function->parameters[index].name, optional ? "?" : "");
             separator = ", ";
         }
-        add(document, "%s)\n", takes_more(function) ? ", ..." : "");
+        add(document, "%s)\n", takes_more(function) ? ", ..." : function_renders(function) ? ", fields?" : "");
     }
     if (function_takes_names(function))
         add(document, "%s{%s = ..., ...}\n", title, function->parameters[function->owner == OWNER_NODE].name);
@@ -349,6 +349,12 @@ static void annotate_function(struct document *document, const struct script_fun
         size_t used = strlen(names);
         add(document, "---@param ... gr.node\n");
         snprintf(names + used, sizeof names - used, ", ...");
+    }
+    if (function_renders(function)) {
+        size_t used = strlen(names);
+        add(document, "---@param fields? gr.%s%s.fields Fields that are no arguments before it\n",
+            function->owner == OWNER_NODE ? "node." : "", function->name);
+        (void)snprintf(names + used, sizeof names - used, ", fields");
     }
     if (result)
         annotate_results(document, result);

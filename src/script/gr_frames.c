@@ -136,12 +136,9 @@ static void push_fields(lua_State *L) {
     lua_newtable(L);
     lua_pushliteral(L, "file");
     if (lua_rawget(L, given) == LUA_TNIL) {
-        const char *slash = strrchr(context->sandbox.files.path, '/'),
-                   *name = slash ? slash + 1 : context->sandbox.files.path;
-        const char *dot = strrchr(name, '.');
-        lua_pushlstring(L, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-        lua_pushliteral(L, ".####.png");
-        lua_concat(L, 2);
+        char name[PATH_SIZE];
+        context_picture_name(context, ".####.png", name, sizeof name);
+        lua_pushstring(L, name);
         lua_setfield(L, given + 1, "file");
     }
     lua_pop(L, 1);

@@ -9,7 +9,10 @@
 #include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
 #include "script/script_internal.h"
+#include "script/studio_internal.h"
 #include "settings/setting.h"
+
+#include <string.h>
 
 enum {
     RENDER_NODE,
@@ -66,13 +69,14 @@ enum {
 _Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
 static const struct script_parameter render_parameters[] = {
     [RENDER_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "Root node of the picture."},
-    [RENDER_FILE] = {"file", KIND_OUTPUT, 0, ANY, NULL, NULL,
+    [RENDER_FILE] = {"file", KIND_OUTPUT, OPTIONAL, ANY, NULL, "SCRIPT.png",
                      "Picture file:" PICTURE_FORMATS_HELP "; gray creates missing folders."},
     [RENDER_SKY] = {"sky", KIND_IMAGE, OPTIONAL, ANY, NULL, NULL,
                     "A PNG or JPEG file with six views of the sky in a 4 x 3 cross."},
-    [RENDER_WIDTH] = {"width", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Width of the picture."},
-    [RENDER_HEIGHT] = {"height", KIND_WHOLE, 0, 1, 1 << 20, NULL, "pixels", NULL, "Height of the picture."},
-    [RENDER_EYE] = {"eye", KIND_POINT, 0, ANY, NULL, NULL, "Position of the camera."},
+    [RENDER_WIDTH] = {"width", KIND_WHOLE, OPTIONAL, 1, 1 << 20, NULL, "pixels", "960", "Width of the picture."},
+    [RENDER_HEIGHT] = {"height", KIND_WHOLE, OPTIONAL, 1, 1 << 20, NULL, "pixels", "9/16 of width",
+                       "Height of the picture."},
+    [RENDER_EYE] = {"eye", KIND_POINT, OPTIONAL, ANY, NULL, "fits the scene", "Position of the camera."},
     [RENDER_VIEW] = {"view", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 0, -1}", "Direction of view."},
     [RENDER_UP] = {"up", KIND_DIRECTION, OPTIONAL, ANY, NULL, "{0, 1, 0}", "Direction that is up in the picture."},
     [RENDER_FOV] = {"fov", KIND_NUMBER, OPTIONAL | LOW_OPEN | HIGH_OPEN, 0, 180, NULL, "degrees", "50",
@@ -343,6 +347,7 @@ static void turn_camera(struct render_request *request, const struct render_requ
 static bool render_turntable(struct script_context *context, const struct render_request *first, struct error *error) {
     const struct frame_options *options = &context->sandbox.options->frames;
     struct render_request request = *first;
+    struct scene_light lights[STUDIO_LIGHTS];
     struct vec3 middle = turntable_middle(first, first->camera.view);
     uint32_t count = (uint32_t)options->turntable;
     if (vec3_max_abs(first->camera.up) == 0)
@@ -356,17 +361,106 @@ static bool render_turntable(struct script_context *context, const struct render
     while ((request.frame.number = host->next_frame ? host->next_frame(host->context, &request.frame)
                                                     : frame_after(&options->selection, &request.frame)) > 0) {
         turn_camera(&request, first, middle, 360.0 * (request.frame.number - 1) / count);
+        if (context->scene.studio && !first->changed) /* the light of a studio turns with the camera */
+            studio_light(&request, lights);
         if (!host->render(host->context, &request, error))
             return false;
     }
     return true;
 }
 
-static bool gr_render(struct script_context *context, const struct script_value *args, struct script_result *result,
+/* The name of a picture without `file`: that of the script, with a number if there are several. False: no memory. */
+static bool name_picture(struct script_context *context, struct script_value *file) {
+    struct script *script = script_of(context);
+    char end[32], name[PATH_SIZE];
+    uint32_t number = ++script->unnamed;
+    bool numbered = script->several_pictures || number > 1;
+    (void)snprintf(end, sizeof end, numbered ? "-%u.png" : ".png", (unsigned)number);
+    context_picture_name(context, end, name, sizeof name);
+    *file = (struct script_value){.given = true, .text = arena_format(&context->sandbox.call, "%s", name)};
+    return file->text != NULL;
+}
+
+static void set_number(struct script_value *value, double number) {
+    *value = value->given ? *value : (struct script_value){.given = true, .number = number};
+}
+
+static void set_vector(struct script_value *value, struct vec3 vector) {
+    *value = value->given ? *value : (struct script_value){.given = true, .vector = vector};
+}
+
+/* The fields of a camera that shows the whole scene. */
+static void fit_camera(const struct script_context *context, struct script_value *args) {
+    enum { FIELD_OF_VIEW = 30 };
+    const struct script_host *host = script_of(context)->host;
+    double width = host->width > 0 ? host->width : args[RENDER_WIDTH].number;
+    double height = host->height > 0 ? host->height : args[RENDER_HEIGHT].number;
+    set_number(&args[RENDER_FOV], FIELD_OF_VIEW);
+    const struct framing framing = {.view = args[RENDER_VIEW].vector,
+                                    .up = args[RENDER_UP].vector,
+                                    .fov = args[RENDER_FOV].number,
+                                    .aspect = width / height,
+                                    .target = args[RENDER_TARGET].given ? &args[RENDER_TARGET].vector : NULL};
+    struct framed framed = studio_frame(args[RENDER_NODE].node, &framing);
+    bool has_direction = args[RENDER_VIEW].given || args[RENDER_VIEW_TO].given;
+    set_vector(&args[RENDER_EYE], framed.eye);
+    if (has_direction)
+        set_vector(&args[RENDER_VIEW], vec3_sub(framed.target, framed.eye));
+    else
+        set_vector(&args[RENDER_TARGET], framed.target);
+    if (has_direction && !args[RENDER_FOCUS_POINT].given)
+        set_number(&args[RENDER_FOCUS], framed.distance);
+    set_number(&args[RENDER_VIEW_HEIGHT], framed.view_height);
+}
+
+/* Fills in what a picture may leave out. Positional pictures of --lenient have a camera of their own. */
+static bool complete(struct script_context *context, struct script_value *args, struct error *error) {
+    enum { WIDTH = 960 };
+    if (!args[RENDER_FILE].given && !name_picture(context, &args[RENDER_FILE]))
+        return error_no_memory(error, "a picture");
+    set_number(&args[RENDER_WIDTH], args[RENDER_HEIGHT].given ? ceil(args[RENDER_HEIGHT].number * 16 / 9) : WIDTH);
+    set_number(&args[RENDER_HEIGHT], ceil(args[RENDER_WIDTH].number * 9 / 16));
+    if (!args[RENDER_EYE].given && !(context->lenient && !script_of(context)->only_named_pictures))
+        fit_camera(context, args);
+    return true;
+}
+
+/* Lights a picture that would have no light at all, with one notice. */
+static bool light_dark_picture(struct script_context *context, const struct script_value *args,
+                               struct render_request *request, struct scene_light lights[STUDIO_LIGHTS],
+                               struct error *error) {
+    struct script *script = script_of(context);
+    struct scene *scene = &context->scene;
+    bool studio = script->only_named_pictures && !args[RENDER_LIGHTS].given && !args[RENDER_AMBIENT].given &&
+                  !args[RENDER_BACKGROUND].given && !args[RENDER_SKY].given;
+    if (studio && !studio_is_dark(request->root, &studio, error))
+        return false;
+    if (scene->studio != studio)
+        scene_note_change(scene);
+    scene->studio = studio;
+    if (!studio)
+        return true;
+    studio_light(request, lights);
+    if (script->studio_noticed || script->host->repeats)
+        return true;
+    script->studio_noticed = true;
+    char text[PATH_SIZE + 256];
+    (void)snprintf(text, sizeof text,
+                   "%s: the scene has no light, so that of a studio shows it; lights={...} replaces it",
+                   request->where);
+    sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
+    return true;
+}
+
+static bool gr_render(struct script_context *context, const struct script_value *given, struct script_result *result,
                       struct error *error) {
+    struct script_value args[RENDER_COUNT];
     (void)result;
+    memcpy(args, given, sizeof args);
     if (args[RENDER_VIEW].given && args[RENDER_TARGET].given)
         return error_set(error, ERROR_SCENE, "view and target exclude each other");
+    if (!complete(context, args, error))
+        return false;
     char where[PATH_SIZE + 32], title[96];
     sandbox_where(&context->sandbox, where, sizeof where);
     const char *call = arena_format(&context->sandbox.call, "%s%s", where, function_title(context->function, title));
@@ -393,6 +487,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         .frame = script_of(context)->animation.frame,
     };
     const struct transfer_function srgb = {TRANSFER_SRGB, 0};
+    struct scene_light lights[STUDIO_LIGHTS];
     struct camera fitted;
     if (context->lenient && !args[RENDER_EYE].given) {
         lenient_camera(request.root, &fitted);
@@ -420,7 +515,7 @@ static bool gr_render(struct script_context *context, const struct script_value 
         !apply_lens(args, &request.settings.lens, &request.camera, error) ||
         !apply_motion(args, &script_of(context)->animation.frame, script_of(context)->animation.shutter,
                       &request.settings, &request.camera, error) ||
-        !choose_sky(context, args, &request.sky, error))
+        !choose_sky(context, args, &request.sky, error) || !light_dark_picture(context, args, &request, lights, error))
         return false;
     struct changed_scene changed;
     if (!changes_begin(context, &request, &changed, error))

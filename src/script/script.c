@@ -216,6 +216,7 @@ static bool choose_order(struct script *script, struct error *error) {
     if (!order_detect(path, sandbox->options->library_folder, sandbox->path_policy, &finding, error))
         return false;
     script->only_named_pictures = finding.only_named_pictures;
+    script->several_pictures = finding.several_pictures;
     switch (sandbox->options->transform_order) {
     case SCRIPT_ORDER_NEW:
         scene->order = TRANSFORM_ORDER_NEW;
@@ -279,7 +280,7 @@ static void render_last_picture(struct script *script, bool failed) {
     struct node *root = lenient_root(c);
     if (!root)
         return;
-    lenient_picture_name(c, name, sizeof name);
+    context_picture_name(c, "-lenient.png", name, sizeof name);
     struct render_request request = {.where = c->sandbox.files.path,
                                      .scene = &c->scene,
                                      .root = root,

@@ -47,6 +47,7 @@ struct script_host {
     void *context;
     struct assets *assets;    /* meshes and images that outlive the script */
     struct settings settings; /* from the command line */
+    double width, height;     /* of --size; 0: those of the script */
     /* Renders at once; false = stop the script with this error (an ERROR_SCENE is raised as a script error at the line
      * of the call, other kinds end the script without being catchable by pcall). */
     bool (*render)(void *context, const struct render_request *request, struct error *error);

@@ -12,9 +12,11 @@ struct script {
     const struct script_host *host;
     struct arena *out; /* the caller's arena, for the traceback */
     const char *traceback;
-    struct error failure;     /* the message of a script error, made by the message handler */
-    bool only_named_pictures; /* struct order_finding */
-    uint32_t pictures;        /* that gr.render has made */
+    struct error failure;                       /* the message of a script error, made by the message handler */
+    bool only_named_pictures, several_pictures; /* struct order_finding */
+    bool studio_noticed;
+    uint32_t pictures; /* that gr.render has made */
+    uint32_t unnamed;  /* pictures without a file name so far */
     struct script_changes changes;
     struct script_animation animation;
 };

@@ -36,6 +36,19 @@ static const struct material plain_gray = {
     .phong = {.kd = {0.5, 0.5, 0.5}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
 };
 
+/* In the light of the studio. */
+static const struct material light_gray = {
+    .kind = MATERIAL_PHONG,
+    .depth = 1,
+    .name = "light gray",
+    .phong = {.kd = {0.85, 0.85, 0.85}, .ks = {0, 0, 0}, .shininess = 1, .ior = 1},
+};
+
+/* Of a shape without a material. */
+static const struct material *plain_of(const struct flattening *f) {
+    return f->scene->studio ? &light_gray : &plain_gray;
+}
+
 static bool same(const struct material_entry *a, const struct material_entry *b) {
     return a->material == b->material && a->texture == b->texture && a->bump == b->bump &&
            ((!a->texture && !a->bump) || a->shape == b->shape);
@@ -149,7 +162,7 @@ static bool add_set(struct flattening *f, const struct material_entry *entry, co
     struct material_table *table = f->materials;
     *alike = true;
     for (uint32_t i = 0; i < count; i++) {
-        const struct material *base = bases[i] ? bases[i] : &plain_gray;
+        const struct material *base = bases[i] ? bases[i] : plain_of(f);
         const struct material *set = raised(f, entry->bump, covered(f, entry->texture, base));
         const struct material *on = set ? material_on_layout(&table->mapping, set, layout, f->error) : NULL;
         if (!on)
@@ -191,7 +204,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     const struct texture_image *texture = node->texture;
     const struct bump *bump = node->bump;
     for (uint32_t i = 0; i < *count; i++) {
-        if (!bases[i])
+        if (!bases[i] && !f->scene->studio)
             warn_once(f, node,
                       by_slot ? "has faces without a material, which are shown in plain gray"
                               : "has no material and is shown in plain gray");
@@ -208,7 +221,7 @@ bool flatten_material(struct flattening *f, const struct node *node, const struc
     }
     if ((!f->materials || f->materials->count * 2 >= f->materials->capacity) && !grow(f))
         return false;
-    const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : &plain_gray;
+    const void *key = by_slot ? (const void *)node->slots : only ? (const void *)only : plain_of(f);
     struct material_entry wanted = {
         .material = key, .texture = texture, .bump = bump, .shape = node->shape.kind, .used = true};
     struct material_entry *entry = find(f->materials, &wanted);

@@ -405,7 +405,7 @@ TEST(annotations_have_the_fields_and_results_of_calls) {
     CHECK(file != NULL);
     if (!file)
         return;
-    const char *fields = strstr(file, "---@class gr.node.render.fields\n---@field file string");
+    const char *fields = strstr(file, "---@class gr.node.render.fields\n---@field file? string");
     CHECK(fields &&
           strstr(fields, "---@overload fun(self: gr.node, fields: gr.node.render.fields)\nfunction node:render("));
     CHECK(strstr(file, "---@return number[]\n---@return number[]\nfunction node:bounds()"));

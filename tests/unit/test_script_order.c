@@ -30,8 +30,12 @@ TEST(names_of_the_project_dialect_mean_new) {
 }
 
 TEST(the_text_shows_whether_all_pictures_are_named_and_without_a_background) {
-    static const char *const named[] = {"gr.render{node = n}", "gr.render({node = n})", "n:render{file = 'x.png'}",
-                                        "-- gr.render(n)\ngr.render {node = n, file = 'background = 1'}"};
+    static const char *const named[] = {"gr.render{node = n}",
+                                        "gr.render({node = n})",
+                                        "n:render{file = 'x.png'}",
+                                        "-- gr.render(n)\ngr.render {node = n, file = 'background = 1'}",
+                                        "gr.frames{count = 2, draw = draw}",
+                                        "gr.frames(2, draw) gr.render{node = n}"};
     static const char *const others[] = {"gr.render(n, 'x.png')",
                                          "gr.render{node = n} gr.render(n)",
                                          "local r = gr.render r{}",
@@ -40,6 +44,9 @@ TEST(the_text_shows_whether_all_pictures_are_named_and_without_a_background) {
                                          "gr.render_skybox{node = n} gr.render{node = n}",
                                          "n:render('x.png')",
                                          "g['render']{node = n}",
+                                         "gr.frames{count = 2, draw = function() return {background = {1, 1, 1}} end}",
+                                         "gr.frames(2, draw) gr.render(n)",
+                                         "frames{count = 2}",
                                          ""};
     for (size_t i = 0; i < sizeof named / sizeof *named; i++)
         if (!order_of(named[i]).only_named_pictures)
@@ -47,6 +54,29 @@ TEST(the_text_shows_whether_all_pictures_are_named_and_without_a_background) {
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (order_of(others[i]).only_named_pictures)
             test_fail(__FILE__, __LINE__, "%s: only named pictures", others[i]);
+}
+
+TEST(the_text_shows_whether_there_are_several_pictures) {
+    static const char *const several[] = {"gr.render{node = n} gr.render{node = m}",
+                                          "gr.render(n, 'x.png') n:render{}",
+                                          "for i = 1, 3 do gr.render{node = n} end",
+                                          "while f() do if g() then gr.render{node = n} end end",
+                                          "repeat gr.render{node = n} until true",
+                                          "for i = 1, 3 do local f = function() return 1 end gr.render{node = n} end"};
+    static const char *const one[] = {"gr.render{node = n}",
+                                      "gr.render({node = n})",
+                                      "for i = 1, 3 do n:add_child(m) end gr.render{node = n}",
+                                      "do gr.render{node = n} end",
+                                      "function f() gr.render{node = n} end f()",
+                                      "repeat x = x + 1 until x > 3 if x then gr.render{node = n} end",
+                                      "while f() do g() end do n:render{} end",
+                                      ""};
+    for (size_t i = 0; i < sizeof several / sizeof *several; i++)
+        if (!order_of(several[i]).several_pictures)
+            test_fail(__FILE__, __LINE__, "%s: not several pictures", several[i]);
+    for (size_t i = 0; i < sizeof one / sizeof *one; i++)
+        if (order_of(one[i]).several_pictures)
+            test_fail(__FILE__, __LINE__, "%s: several pictures", one[i]);
 }
 
 TEST(other_signs_of_the_new_order) {

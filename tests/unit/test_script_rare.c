@@ -154,7 +154,8 @@ TEST(a_change_that_fits_nothing_is_reported_once_for_all_pictures) {
     struct error error;
     static const char text[] =
         "local ball = gr.sphere('ball') gr.change_delete{name = 'nobody', serial = 7}\n"
-        "for i = 1, 3 do gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}} end\n";
+        "for i = 1, 3 do gr.render{node = ball, file = 'x.png', width = 4, height = 4, eye = {0, 0, 9}, lights = {}} "
+        "end\n";
     CHECK(listen_to_text(&listener, text, NULL, &error));
     CHECK_EQ_INT(listener.renders, 3);
     CHECK_EQ_INT(listener.messages, 1);
