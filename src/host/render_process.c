@@ -15,6 +15,7 @@
 #include "inspect/inspect.h"
 #include "output/picture_files.h"
 #include "output/progress.h"
+#include "render/first_look.h"
 #include "render/overlay.h"
 #include "render/render.h"
 #include "script/script.h"
@@ -206,6 +207,14 @@ static bool too_much_memory(const struct render_process *process, struct error *
                            size_words(script_picture_memory(options), size));
 }
 
+/* Of something that first_look has seen. */
+static void notice_of_picture(void *context, const char *text) {
+    const struct picture_work *work = context;
+    char line[2048];
+    (void)snprintf(line, sizeof line, "%.1400s: %s", work->request->where, text);
+    render_process_report_scene(work->process, LINE_NOTICE, line);
+}
+
 /* From the flattened scene to the finished film. */
 static bool make_picture_unlimited(struct picture_work *work, struct error *error) {
     struct render_process *process = work->process;
@@ -219,8 +228,11 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
         return false;
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
-    if (job->world)
+    if (job->world) {
         integrator_warn(job, render_process_warn, process);
+        if (work->request->frame.number <= 1) /* things come into view and light comes on in later ones */
+            first_look(job, &process->looked, notice_of_picture, work);
+    }
     if (is_asked(process->options)) {
         ok = answer_questions(work, error);
     } else if (!process->options->check) {
@@ -639,6 +651,7 @@ static int run_script(struct render_process *process, const char *path) {
     process->script = path;
     process->status = 0;
     process->warned_count = 0;
+    process->looked = 0;
     process->animates = false;
     if (repeats && process->options->window) {
         frame.number = 0;

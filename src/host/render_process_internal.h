@@ -40,6 +40,7 @@ struct render_process {
     uint64_t runs_before;            /* of the pool, before that */
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
+    unsigned looked; /* the notices of first_look that this script has caused */
 };
 
 /* A picture between the call of gr.render and the finished film. */
