@@ -447,6 +447,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     if (!need_pool(process, error) || !begin_picture(&work, &already, error))
         return false;
     process->passed_over = already;
+    process->frames_shown += already && work.asked.repeats; /* equal to the one before */
     if (already)
         return true;
     if (atomic_load(&control->progress_estimate.wanted))
@@ -454,9 +455,12 @@ static bool render_job_run(struct render_process *process, const struct render_r
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
     work.job.handed = &control->handed;
     const struct options *options = process->options;
+    effects_note(&work);
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     process->rendered = (struct digest){0};
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
+    if (ok && is_frame(&work))
+        effects_count_frame(&work);
     if (!early)
         clear_picture(&work);
     if (ok && !work.asked.check)
@@ -679,13 +683,15 @@ static int run_script(struct render_process *process, const char *path) {
 }
 
 static void run_scripts(struct render_process *process, int first) {
-    process->pictures = process->played = 0;
+    process->pictures = process->played = process->frames_shown = 0;
+    process->frames_differ = false;
     for (int i = first; i < process->options->script_count; i++) {
         int status = run_script(process, process->options->scripts[i]);
         process->services->script_ended(process->services->context, i, status);
         if (status == ERROR_USAGE || status == ERROR_CANCELLED)
             break;
     }
+    effects_note_frames(process);
 }
 
 /* Reads are reported so that no picture replaces what was read. Under --watch every one is, since a file may change. */

@@ -32,15 +32,26 @@ void render_process_report_scene(const struct render_process *process, enum line
 }
 
 /* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
-static void warn_once(struct render_process *process, const char *key, const char *text) {
-    static const char word[] = "warning: ";
+static bool is_first(struct render_process *process, const char *key) {
     uint64_t hash = hash_bytes(key, strlen(key), 0);
     for (int i = 0; i < process->warned_count; i++) {
         if (process->warned[i] == hash)
-            return;
+            return false;
     }
     if (process->warned_count < WARNINGS_LIMIT)
         process->warned[process->warned_count++] = hash;
+    return true;
+}
+
+void render_process_notice_once(struct render_process *process, const char *key, const char *text) {
+    if (is_first(process, key))
+        render_process_report_scene(process, LINE_NOTICE, text);
+}
+
+static void warn_once(struct render_process *process, const char *key, const char *text) {
+    static const char word[] = "warning: ";
+    if (!is_first(process, key))
+        return;
     bool has_word = strncmp(text, word, strlen(word)) == 0;
     char line[2048];
     (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);

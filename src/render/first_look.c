@@ -155,6 +155,42 @@ static void look_at_light(const struct look *look) {
                    : "there is no light, and the shapes are black: no lights, no ambient, no emission");
 }
 
+/* --- what has no effect --- */
+
+/* The name of an input that does nothing in this material, and what it needs; NULL: there is none. */
+static const char *lone_input(const struct material *material, const char **needs) {
+    const struct phong *numbers = &material->phong;
+    bool mirrors = numbers->reflect > 0 || material_texture(material, INPUT_REFLECT) || material->fresnel;
+    bool refracts = numbers->refract > 0 || material_texture(material, INPUT_REFRACT) || material->fresnel;
+    if (material->openpbr)
+        return NULL;
+    *needs = "refract";
+    if (numbers->has_ior && numbers->ior != 1 && !mirrors && !refracts)
+        return "ior";
+    if (vec3_max_abs(numbers->absorption) > 0 && !refracts)
+        return "absorption";
+    *needs = "reflect or refract";
+    return numbers->roughness > 0 && !mirrors && !refracts ? "roughness" : NULL;
+}
+
+static void look_at_materials(const struct look *look) {
+    const struct world *world = look->world;
+    bool focuses = false;
+    char text[NOTICE_SIZE];
+    for (uint32_t i = 0; i < world->material_count; i++) {
+        const struct material *material = &world->materials[i];
+        const char *needs, *input = lone_input(material, &needs);
+        focuses = focuses || material_specular(material) > 0;
+        if (!input)
+            continue;
+        (void)snprintf(text, sizeof text, "%s has no effect in a material without %s%s%.100s%s", input, needs,
+                       material->name ? " ('" : "", material->name ? material->name : "", material->name ? "')" : "");
+        give(look, LOOK_FIELD, text);
+    }
+    if (look->job->settings.caustics.photons > 0 && !focuses)
+        give(look, LOOK_CAUSTICS, "caustics have no effect: nothing in the scene mirrors or refracts light");
+}
+
 /* --- insides --- */
 
 static bool is_opaque_from(const struct world *world, uint32_t first, uint32_t slots) {
@@ -257,6 +293,7 @@ void first_look(const struct render_job *job, unsigned *noticed, world_warning *
     }
     for (uint32_t i = 0; i < world->primitive_count; i++)
         look.bounds = box_join(look.bounds, world->boxes[i]);
+    look_at_materials(&look);
     if (moves || look_at_view(&look)) {
         look_at_size(&look);
         look_at_light(&look);
