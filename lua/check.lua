@@ -24,6 +24,7 @@ local function shown(value)
     if type(value) == 'number' then return ('%.14g'):format(value) end
     if type(value) == 'string' then return ("'%s'"):format(#value > 40 and value:sub(1, 37) .. '...' or value) end
     if type(value) == 'boolean' then return tostring(value) end
+    if type(value) == 'userdata' then return 'a ' .. tostring(value):match '^%a+' end
     return 'a ' .. type(value)
 end
 

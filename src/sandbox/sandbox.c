@@ -60,13 +60,28 @@ struct sandbox *sandbox_enter(lua_State *L) {
 
 /* --- positions --- */
 
+bool sandbox_is_library(const struct sandbox *sandbox, const char *source) {
+    const char *library = sandbox->options->library_folder;
+    size_t length = library ? strlen(library) : 0;
+    return length > 0 && source[0] == '@' && strncmp(source + 1, library, length) == 0 && source[length + 1] == '/';
+}
+
 bool sandbox_find_frame(lua_State *L, lua_Debug *frame) {
-    for (int level = 0; lua_getstack(L, level, frame); level++) {
-        lua_getinfo(L, "l", frame);
-        if (frame->currentline > 0 && lua_getinfo(L, "S", frame))
+    const struct sandbox *sandbox = sandbox_of(L);
+    lua_Debug at;
+    bool found = false;
+    for (int level = 0; lua_getstack(L, level, &at); level++) {
+        lua_getinfo(L, "l", &at);
+        if (at.currentline <= 0 || !lua_getinfo(L, "S", &at))
+            continue;
+        bool of_scene = !sandbox_is_library(sandbox, at.source);
+        if (!found || of_scene)
+            *frame = at;
+        found = true;
+        if (of_scene)
             return true;
     }
-    return false;
+    return found;
 }
 
 const char *sandbox_frame_file(const lua_Debug *frame) {

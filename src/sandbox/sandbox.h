@@ -59,6 +59,7 @@ struct sandbox {
     char error_suffix[SUFFIX_SIZE];    /* at the end of errors: " (frame 7)", or "" */
     struct script_line *checked_lines; /* sandbox_is_new_line: CHECKED_LINES of them, in `keep` */
     char raised[1536];                 /* the last error of a C function, without its position */
+    char refused[512];                 /* why io.open returned nil the last time, or "" */
     bool unforgivable;                 /* --lenient would not continue after it */
     struct error fatal;
     bool ended; /* os.exit was called with success */
@@ -83,7 +84,8 @@ bool sandbox_is_over(const struct sandbox *sandbox);
 /* A C function that is not one of the table begins. */
 struct sandbox *sandbox_enter(lua_State *L);
 
-/* The nearest Lua function on the stack with a known line. */
+/* The nearest Lua function on the stack with a known line; one of the scene before those of our library. */
+bool sandbox_is_library(const struct sandbox *sandbox, const char *source);
 bool sandbox_find_frame(lua_State *L, lua_Debug *frame);
 const char *sandbox_frame_file(const lua_Debug *frame);
 /* "scene.lua:12: " of that function, or "scene.lua: ". */
