@@ -1,6 +1,8 @@
 /* The state of a call of gr. */
 #include "call/context.h"
 
+#include "math/elementary.h"
+
 #include <math.h>
 
 struct script_context *context_of(lua_State *L) {
@@ -78,6 +80,15 @@ void context_warn_of_bytes(struct script_context *context, const char *name, str
         context_warn_once(context, WARNED_BYTES,
                           "%s {%g, %g, %g} looks like bytes; colours are numbers from 0 to 1, as {%.3g, %.3g, %.3g}",
                           name, c.x, c.y, c.z, c.x / 255, c.y / 255, c.z / 255);
+}
+
+/* In twelfths of pi: exact, or with five digits of pi. Fractions with whole numbers of degrees do not exist. */
+void context_warn_of_radians(struct script_context *context, const char *name, double degrees) {
+    double twelfths = 12 * fabs(degrees) / PI, whole = round(twelfths);
+    if (whole >= 1 && whole <= 48 && fabs(twelfths - whole) < 2e-5)
+        context_warn_once(context, WARNED_RADIANS,
+                          "%s %.6g is %.3g pi: angles are in degrees, and math.deg(x) makes them", name, degrees,
+                          degrees / PI);
 }
 
 void *context_array(struct script_context *context, size_t count, size_t size) {

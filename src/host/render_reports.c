@@ -133,12 +133,17 @@ void render_process_report_samples(const struct picture_work *work) {
     const struct render_statistics *rays = &work->report.rays;
     char line[2 * NAME_LIMIT + 256], words[256], room[NAME_LIMIT];
     bool has_limit = settings->noise > 0 || settings->time_limit > 0;
-    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->asked.in_window ||
-        rays->pixels == 0)
+    if (!has_limit || work->asked.in_window || rays->pixels == 0 ||
+        (!integrator_traits(settings->integrator).progressive && rays->late_pixels == 0))
         return;
     double mean = (double)rays->samples / (double)rays->pixels;
     unsigned long long samples = rays->passes_samples;
-    if (!(settings->noise > 0))
+    if (rays->late_pixels > 0)
+        (void)snprintf(
+            words, sizeof words,
+            "%.2g %% of the pixels have fewer samples than they need: --time-limit ended the rest after %.1f s",
+            100 * (double)rays->late_pixels / (double)rays->pixels, rays->render_seconds);
+    else if (!(settings->noise > 0))
         (void)snprintf(words, sizeof words, "%llu sample%s per pixel in %.1f s (--spp %llu makes the same picture)",
                        samples, samples == 1 ? "" : "s", rays->render_seconds, samples);
     else if (!rays->noisy)

@@ -333,7 +333,7 @@ static const char *module_words(struct sandbox *sandbox, const struct names *nam
 
 static const char *field_words(struct sandbox *sandbox, const struct running *running, const char *field) {
     struct access access = {.field = field};
-    struct names names;
+    struct names names = {0};
     lua_State *L = running->L;
     bool is_global;
     if (!find_token(running, visit_access, &access))
@@ -360,7 +360,7 @@ static bool read_culprit(const char *message, const char *type, const char *kind
     (void)snprintf(begin, sizeof begin, " a %s value (%s '", type, kind);
     const char *at = strstr(message, begin);
     size_t length = at ? strcspn(at + strlen(begin), "'\n") : 0;
-    if (length == 0 || length >= NAME_SIZE)
+    if (length == 0 || length >= NAME_SIZE || strncmp(at + strlen(begin) + length, "');", 3) == 0) /* has a hint */
         return false;
     memcpy(name, at + strlen(begin), length);
     name[length] = '\0';

@@ -88,8 +88,12 @@ struct sandbox *sandbox_enter(lua_State *L);
 bool sandbox_is_library(const struct sandbox *sandbox, const char *source);
 bool sandbox_find_frame(lua_State *L, lua_Debug *frame);
 const char *sandbox_frame_file(const lua_Debug *frame);
-/* "scene.lua:12: " of that function, or "scene.lua: ". */
+/* "scene.lua:12: " of that function, with "module.function: " if it has called a function of our library, or
+ * "scene.lua: ". */
 void sandbox_where(const struct sandbox *sandbox, char *out, size_t size);
+/* The message of an error in our library with the position of the scene in front, and its own behind; others are the
+ * same. May push values. */
+const char *sandbox_relocate(lua_State *L, const char *message);
 /* False if the current line was checked before. It may also be true then, because only some lines are stored. */
 bool sandbox_is_new_line(struct sandbox *sandbox);
 

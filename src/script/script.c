@@ -133,13 +133,6 @@ static bool is_forgivable(const struct script_context *context, const char *mess
            strcmp(message + length - raised, sandbox->raised) == 0;
 }
 
-/* Whether the position at the start of a message is in a file of our library. */
-static bool is_in_library(const struct sandbox *sandbox, const char *message) {
-    char source[PATH_SIZE];
-    (void)snprintf(source, sizeof source, "@%.*s", (int)strcspn(message, ":"), message);
-    return sandbox_is_library(sandbox, source);
-}
-
 /* The message handler: writes the complete first line and the traceback while the stack still exists. */
 static int describe_error(lua_State *L) {
     struct script *script = script_of(context_of(L));
@@ -151,7 +144,7 @@ static int describe_error(lua_State *L) {
     sandbox_where(sandbox, where, sizeof where);
     const char *message;
     if (lua_type(L, 1) == LUA_TSTRING || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL)
-        message = luaL_tolstring(L, 1, NULL);
+        message = sandbox_relocate(L, luaL_tolstring(L, 1, NULL));
     else
         message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
     bool has_position;
@@ -160,17 +153,9 @@ static int describe_error(lua_State *L) {
         error_no_memory(&sandbox->fatal, "the script");
         return 1;
     }
-    /* Errors inside the library are those of the scene's line that called it. */
-    char in_library[PATH_SIZE + 32] = "";
-    size_t place = position_length(sandbox, message);
-    if (place > 2 && is_in_library(sandbox, message) && !is_in_library(sandbox, where)) {
-        (void)snprintf(in_library, sizeof in_library, " (in %.*s)", (int)place - 2, message);
-        message += place;
-        has_position = false;
-    }
     size_t first = strcspn(message, "\n");
-    error_set(&script->failure, ERROR_SCENE, "%s%.*s%s%s%s", has_position ? "" : where, (int)first, message,
-              hint_of_lua_error(L, message), in_library, sandbox->error_suffix);
+    error_set(&script->failure, ERROR_SCENE, "%s%.*s%s%s", has_position ? "" : where, (int)first, message,
+              hint_of_lua_error(L, message), sandbox->error_suffix);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
     if (strcmp(lua_tostring(L, -1), "stack traceback:\n\t[C]: in ?") == 0) { /* of a syntax error */

@@ -344,8 +344,8 @@ enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
       "Russian roulette may end a path after N scattering events.", EFFECT_PATH)                                       \
     X(NUMBER, double, time_limit, SAMPLES, 0, 0.001, 1e9, NO_WORDS, "--time-limit", "SECONDS", NULL, NULL, "none",     \
       RAYS,                                                                                                            \
-      "With integrator path, add samples to all pixels for SECONDS and print their number; --spp with this number "    \
-      "makes the same picture.")                                                                                       \
+      "End a picture after SECONDS. Integrator path adds samples to all pixels until then and prints their number; "   \
+      "--spp with this number makes the same picture. With whitted the rest has fewer samples, and a notice.")         \
     X(CHOICE, enum aa_pattern, aa_pattern, SAMPLES, AA_ROTATED, 0, 0, AA_PATTERNS, "--aa-pattern", NULL, NULL, NULL,   \
       NULL, RAYS,                                                                                                      \
       "Which pixels are marked, and where their samples are; rotated: marked by colours, surfaces and thin "           \
