@@ -6,6 +6,7 @@
 #include "material/openpbr.h"
 #include "render/camera.h"
 #include "render/render_internal.h"
+#include "scene/node.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,7 +33,7 @@ static void give(const struct look *look, enum first_look kind, const char *text
 
 /* --- shapes in view --- */
 
-/* The four planes through the edges of the picture and that of the eye; a point is in view if every product with
+/* That of the eye, and the four planes through the edges of the picture; a point is in view if every product with
  * `inwards`, from `origin`, is positive. */
 struct view_planes {
     struct vec3 origin[5], inwards[5];
@@ -55,11 +56,11 @@ static bool make_planes(const struct camera_frame *camera, struct view_planes *o
         const struct ray *a = &corner[i], *b = &corner[(i + 1) % 4];
         struct vec3 normal = vec3_cross(a->direction, vec3_sub(ray_at(b, 1), a->origin));
         bool points_in = vec3_dot(normal, vec3_sub(middle, a->origin)) > 0;
-        out->origin[i] = a->origin;
-        out->inwards[i] = points_in ? normal : vec3_negate(normal);
+        out->origin[i + 1] = a->origin;
+        out->inwards[i + 1] = points_in ? normal : vec3_negate(normal);
     }
-    out->origin[4] = camera->eye;
-    out->inwards[4] = camera->forward;
+    out->origin[0] = camera->eye;
+    out->inwards[0] = camera->forward;
     return true;
 }
 
@@ -88,10 +89,10 @@ static bool look_at_view(const struct look *look) {
     if (!is_bounded(all) || !make_planes(&look->camera, &planes))
         return true;
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        if (plane_before(&planes, &world->boxes[i]) < 0)
+        if (!box_is_empty(&world->boxes[i]) && plane_before(&planes, &world->boxes[i]) < 0)
             return true;
     }
-    bool behind = plane_before(&planes, all) == 4;
+    bool behind = plane_before(&planes, all) == 0;
     (void)snprintf(text, sizeof text,
                    "nothing is in view: the shapes lie between {%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}, %s",
                    all->min.x, all->min.y, all->min.z, all->max.x, all->max.y, all->max.z,
@@ -276,6 +277,14 @@ static void look_from_inside(struct look *look) {
     }
 }
 
+static void notice_empty(const struct look *look, const struct node *solid) {
+    char text[NOTICE_SIZE], place[256] = "";
+    if (solid->line > 0)
+        (void)snprintf(place, sizeof place, " (made at %.200s:%u)", solid->file, (unsigned)solid->line);
+    (void)snprintf(text, sizeof text, "'%.100s' is empty: nothing is left of its operands%s", solid->name, place);
+    give(look, LOOK_SOLID, text);
+}
+
 void first_look(const struct render_job *job, unsigned *noticed, world_warning *notice, void *context) {
     const struct world *world = job->world;
     struct look look = {job, world, .bounds = box_empty(), .noticed = noticed, .notice = notice, .context = context};
@@ -291,8 +300,11 @@ void first_look(const struct render_job *job, unsigned *noticed, world_warning *
                  "nothing is in view: the node has no shapes, neither itself nor below it (see node:add_child)");
         return;
     }
-    for (uint32_t i = 0; i < world->primitive_count; i++)
+    for (uint32_t i = 0; i < world->primitive_count; i++) {
         look.bounds = box_join(look.bounds, world->boxes[i]);
+        if (box_is_empty(&world->boxes[i]) && primitive_geometry(world, i)->csg)
+            notice_empty(&look, primitive_node(world, i));
+    }
     look_at_materials(&look);
     if (moves || look_at_view(&look)) {
         look_at_size(&look);

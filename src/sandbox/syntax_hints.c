@@ -39,7 +39,7 @@ static const struct habit {
     {NULL, NULL, "elif elsif", NULL, "; the word is elseif"},
     {NULL, "new", NULL, NULL, "; objects are made by calls, without 'new'"},
     {"')' expected", NAME, "=", NULL, "; named fields need braces, as in gr.sphere{@ = ...}"},
-    {"'}' expected", NULL, ":", NULL, "; a field is given by =, as in {@ = ...}"},
+    {"'}' expected", NULL, ":", NULL, "; a field is given by =, as in {@ = ...}, and blocks have no braces"},
     {"'}' expected", VALUE, NULL, NULL, "; a comma is missing after '@'"},
     {"')' expected", VALUE, "*token", NULL, "; a comma is missing after '@', or a bracket"},
     {NULL, ",", ",", NULL, "; there is one comma too many"},

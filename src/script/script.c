@@ -166,7 +166,8 @@ static int describe_error(lua_State *L) {
         lua_pushliteral(L, "\n--lenient gets over this error");
         lua_concat(L, 2);
     }
-    script->traceback = indent(script->out, lua_tostring(L, -1));
+    const char *below = lua_tostring(L, -1);
+    script->traceback = below[0] ? indent(script->out, below) : NULL;
     lua_settop(L, 1); /* load also calls this, if its text is nested too deeply, and returns the message */
     return 1;
 }
