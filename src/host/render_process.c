@@ -15,9 +15,9 @@
 #include "inspect/inspect.h"
 #include "output/picture_files.h"
 #include "output/progress.h"
-#include "render/first_look.h"
 #include "render/overlay.h"
 #include "render/render.h"
+#include "render/scene_check.h"
 #include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
@@ -207,7 +207,7 @@ static bool too_much_memory(const struct render_process *process, struct error *
                            size_words(script_picture_memory(options), size));
 }
 
-/* Of something that first_look has seen. */
+/* Of something that scene_check has seen. */
 static void notice_of_picture(void *context, const char *text) {
     const struct picture_work *work = context;
     char line[2048];
@@ -231,7 +231,7 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
     if (job->world) {
         integrator_warn(job, render_process_warn, process);
         if (work->request->frame.number <= 1) /* things come into view and light comes on in later ones */
-            first_look(job, &process->looked, notice_of_picture, work);
+            scene_check(job, &process->faults, notice_of_picture, work);
     }
     if (is_asked(process->options)) {
         ok = answer_questions(work, error);
@@ -655,7 +655,7 @@ static int run_script(struct render_process *process, const char *path) {
     process->script = path;
     process->status = 0;
     process->warned_count = 0;
-    process->looked = 0;
+    process->faults = 0;
     process->animates = false;
     if (repeats && process->options->window) {
         frame.number = 0;

@@ -44,7 +44,7 @@ struct render_process {
     struct digest first_frame; /* of the pixels of this run's first frame, and whether a later one differs */
     bool frames_differ;
     uint64_t frames_shown;
-    unsigned looked; /* the notices of first_look that this script has caused */
+    unsigned faults; /* the notices of scene_check that this script has caused */
 };
 
 /* A picture between the call of gr.render and the finished film. */

@@ -9,7 +9,7 @@
 #include "sandbox/libraries_internal.h"
 #include "sandbox/sandbox.h"
 #include "sandbox/suggestion.h"
-#include "sandbox/syntax_hints.h"
+#include "sandbox/syntax_hints_internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -114,7 +114,7 @@ void sandbox_where(const struct sandbox *sandbox, char *out, size_t size) {
 }
 
 /* Whether the message begins with "PATH:LINE: " of a file of the library; the length of that. */
-static size_t library_place(const struct sandbox *sandbox, const char *message) {
+static size_t library_position(const struct sandbox *sandbox, const char *message) {
     char source[PATH_SIZE + 1];
     size_t path = strcspn(message, ":");
     (void)snprintf(source, sizeof source, "@%.*s", (int)path, message);
@@ -126,17 +126,17 @@ static size_t library_place(const struct sandbox *sandbox, const char *message) 
 const char *sandbox_relocate(lua_State *L, const char *message) {
     struct sandbox *sandbox = sandbox_of(L);
     const char *full = files_unshorten(sandbox, message);
-    size_t place = full ? library_place(sandbox, full) : 0;
+    size_t length = full ? library_position(sandbox, full) : 0;
     char where[PATH_SIZE + 128];
-    if (place == 0)
+    if (length == 0)
         return message;
     sandbox->lua = L;
     sandbox_where(sandbox, where, sizeof where);
-    if (library_place(sandbox, where) > 0) /* the library is the scene */
+    if (library_position(sandbox, where) > 0) /* the library is the scene */
         return message;
     size_t first = strcspn(full, "\n");
-    return lua_pushfstring(L, "%s%s (in %s)%s", where, lua_pushlstring(L, full + place, first - place),
-                           lua_pushlstring(L, full, place - 2), full + first);
+    return lua_pushfstring(L, "%s%s (in %s)%s", where, lua_pushlstring(L, full + length, first - length),
+                           lua_pushlstring(L, full, length - 2), full + first);
 }
 
 bool sandbox_is_new_line(struct sandbox *sandbox) {

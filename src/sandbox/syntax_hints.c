@@ -1,6 +1,6 @@
 /* Habits from other languages, as a table: the words of Lua's message, the token where it stopped, its neighbours, and
  * the hint. The text is read again only when a message is printed. */
-#include "sandbox/syntax_hints.h"
+#include "sandbox/syntax_hints_internal.h"
 
 #include "base/file.h"
 #include "sandbox/files.h"

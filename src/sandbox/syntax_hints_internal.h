@@ -1,6 +1,6 @@
 /* What a syntax error of Lua usually means, from the tokens around its position. */
-#ifndef GRAY_SANDBOX_SYNTAX_HINTS_H
-#define GRAY_SANDBOX_SYNTAX_HINTS_H
+#ifndef GRAY_SANDBOX_SYNTAX_HINTS_INTERNAL_H
+#define GRAY_SANDBOX_SYNTAX_HINTS_INTERNAL_H
 
 struct sandbox;
 

@@ -1,6 +1,6 @@
-/* See first_look.h. It reads bounds and materials; of rays there are LOOK_SIDE x LOOK_SIDE, only if the eye is inside
+/* See scene_check.h. It reads bounds and materials; of rays there are GRID_SIDE x GRID_SIDE, only if the eye is inside
  * a solid. What it cannot decide by bounds (a lens, two eyes, fisheyes, shapes without end) gets no notice. */
-#include "render/first_look.h"
+#include "render/scene_check.h"
 
 #include "material/material.h"
 #include "material/openpbr.h"
@@ -11,9 +11,9 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { LOOK_SIDE = 5, LAMPS_LOOKED_AT = 64, NOTICE_SIZE = 512 };
+enum { GRID_SIDE = 5, LIGHTS_CHECKED = 64, NOTICE_SIZE = 512 };
 
-struct look {
+struct check {
     const struct render_job *job;
     const struct world *world;
     struct camera_frame camera;
@@ -24,11 +24,11 @@ struct look {
     void *context;
 };
 
-static void give(const struct look *look, enum first_look kind, const char *text) {
-    if (*look->noticed >> kind & 1)
+static void give(const struct check *check, enum scene_fault kind, const char *text) {
+    if (*check->noticed >> kind & 1)
         return;
-    *look->noticed |= 1u << kind;
-    look->notice(look->context, text);
+    *check->noticed |= 1u << kind;
+    check->notice(check->context, text);
 }
 
 /* --- shapes in view --- */
@@ -42,9 +42,9 @@ struct view_planes {
 /* False: the picture has no such planes. */
 static bool make_planes(const struct camera_frame *camera, struct view_planes *out) {
     const struct lens *lens = &camera->lens;
-    bool is_flat = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
+    bool is_planar = lens->projection == PROJECTION_PERSPECTIVE || lens->projection == PROJECTION_ORTHOGRAPHIC;
     struct ray corner[4];
-    if (!is_flat || lens->aperture > 0 || lens->stereo != STEREO_NONE)
+    if (!is_planar || lens->aperture > 0 || lens->stereo != STEREO_NONE)
         return false;
     for (int i = 0; i < 4; i++) {
         double x = i == 1 || i == 2 ? camera->width : 0, y = i >= 2 ? camera->height : 0;
@@ -81,12 +81,12 @@ static bool is_bounded(const struct box *box) {
 }
 
 /* Whether something is in view. */
-static bool look_at_view(const struct look *look) {
-    const struct world *world = look->world;
-    const struct box *all = &look->bounds;
+static bool check_view(const struct check *check) {
+    const struct world *world = check->world;
+    const struct box *all = &check->bounds;
     struct view_planes planes;
     char text[NOTICE_SIZE];
-    if (!is_bounded(all) || !make_planes(&look->camera, &planes))
+    if (!is_bounded(all) || !make_planes(&check->camera, &planes))
         return true;
     for (uint32_t i = 0; i < world->primitive_count; i++) {
         if (!box_is_empty(&world->boxes[i]) && plane_before(&planes, &world->boxes[i]) < 0)
@@ -97,32 +97,32 @@ static bool look_at_view(const struct look *look) {
                    "nothing is in view: the shapes lie between {%.4g, %.4g, %.4g} and {%.4g, %.4g, %.4g}, %s",
                    all->min.x, all->min.y, all->min.z, all->max.x, all->max.y, all->max.z,
                    behind ? "behind the eye (see eye and view)" : "outside of the picture (see eye, view and fov)");
-    give(look, LOOK_VIEW, text);
+    give(check, FAULT_VIEW, text);
     return false;
 }
 
-static void look_at_size(const struct look *look) {
-    const struct box *all = &look->bounds;
-    const struct camera_frame *camera = &look->camera;
-    bool is_flat = camera->lens.projection == PROJECTION_PERSPECTIVE;
+static void check_size(const struct check *check) {
+    const struct box *all = &check->bounds;
+    const struct camera_frame *camera = &check->camera;
+    bool is_planar = camera->lens.projection == PROJECTION_PERSPECTIVE;
     char text[NOTICE_SIZE];
     if (!is_bounded(all))
         return;
     double size = vec3_length(vec3_sub(all->max, all->min));
     double distance = vec3_length(vec3_sub(vec3_scale(vec3_add(all->min, all->max), 0.5), camera->eye));
-    double pixel = vec3_length(camera->right) * (is_flat ? distance : 1);
+    double pixel = vec3_length(camera->right) * (is_planar ? distance : 1);
     if (size >= pixel || size == 0)
         return;
     (void)snprintf(text, sizeof text,
                    "all shapes together are smaller than a pixel: %.3g units, %.4g units from the eye", size, distance);
-    give(look, LOOK_SIZE, text);
+    give(check, FAULT_SIZE, text);
 }
 
 /* --- light --- */
 
-static bool shows_without_light(const struct look *look) {
-    const struct render_job *job = look->job;
-    const struct world *world = look->world;
+static bool shows_without_light(const struct check *check) {
+    const struct render_job *job = check->job;
+    const struct world *world = check->world;
     bool paths = job->settings.integrator == INTEGRATOR_PATH;
     bool sky = !sky_is_black(&world->sky) && (!paths || job->background_lights);
     if (job->settings.style == STYLE_INK || job->fog || world->emission_bound > 0 || (paths && sky) ||
@@ -137,20 +137,20 @@ static bool shows_without_light(const struct look *look) {
     return false;
 }
 
-static void look_at_light(const struct look *look) {
-    const struct world *world = look->world;
-    bool paths = look->job->settings.integrator == INTEGRATOR_PATH;
-    if (shows_without_light(look))
+static void check_light(const struct check *check) {
+    const struct world *world = check->world;
+    bool paths = check->job->settings.integrator == INTEGRATOR_PATH;
+    if (shows_without_light(check))
         return;
     for (uint32_t i = 0; i < world->light_count; i++) {
         if (light_brightest(&world->lights[i]) > 0)
             return;
     }
     if (world->light_count > 0)
-        give(look, LOOK_LIGHT,
+        give(check, FAULT_LIGHT,
              "there is no light: every light is black, as a sun below the horizon is, and the shapes are too");
     else
-        give(look, LOOK_LIGHT,
+        give(check, FAULT_LIGHT,
              paths ? "there is no light, and the shapes are black: no lights, no sky or background that shines, no "
                      "emission"
                    : "there is no light, and the shapes are black: no lights, no ambient, no emission");
@@ -174,8 +174,8 @@ static const char *lone_input(const struct material *material, const char **need
     return numbers->roughness > 0 && !mirrors && !refracts ? "roughness" : NULL;
 }
 
-static void look_at_materials(const struct look *look) {
-    const struct world *world = look->world;
+static void check_materials(const struct check *check) {
+    const struct world *world = check->world;
     bool focuses = false;
     char text[NOTICE_SIZE];
     for (uint32_t i = 0; i < world->material_count; i++) {
@@ -186,10 +186,10 @@ static void look_at_materials(const struct look *look) {
             continue;
         (void)snprintf(text, sizeof text, "%s has no effect in a material without %s%s%.100s%s", input, needs,
                        material->name ? " ('" : "", material->name ? material->name : "", material->name ? "')" : "");
-        give(look, LOOK_FIELD, text);
+        give(check, FAULT_FIELD, text);
     }
-    if (look->job->settings.caustics.photons > 0 && !focuses)
-        give(look, LOOK_CAUSTICS, "caustics have no effect: nothing in the scene mirrors or refracts light");
+    if (check->job->settings.caustics.photons > 0 && !focuses)
+        give(check, FAULT_CAUSTICS, "caustics have no effect: nothing in the scene mirrors or refracts light");
 }
 
 /* --- insides --- */
@@ -211,31 +211,31 @@ static bool is_opaque(const struct world *world, uint32_t primitive) {
 }
 
 /* The innermost opaque solid that contains the point, or WORLD_NOTHING. */
-static uint32_t solid_around(struct look *look, struct vec3 point) {
+static uint32_t enclosing_solid(struct check *check, struct vec3 point) {
     const struct box region = {point, point};
-    uint32_t closed[WORLD_NESTING], around[WORLD_NESTING];
-    uint32_t count = world_closed_in(look->world, &region, closed, WORLD_NESTING);
+    uint32_t closed[WORLD_NESTING], enclosing[WORLD_NESTING];
+    uint32_t count = world_closed_in(check->world, &region, closed, WORLD_NESTING);
     if (count > WORLD_NESTING)
         return WORLD_NOTHING;
     const struct inside_query query = {point, 0, closed, count};
-    count = world_containing(look->world, &query, &look->scratch, around, WORLD_NESTING);
-    while (count > 0 && !is_opaque(look->world, around[count - 1]))
+    count = world_containing(check->world, &query, &check->scratch, enclosing, WORLD_NESTING);
+    while (count > 0 && !is_opaque(check->world, enclosing[count - 1]))
         count--;
-    return count > 0 ? around[count - 1] : WORLD_NOTHING;
+    return count > 0 ? enclosing[count - 1] : WORLD_NOTHING;
 }
 
 /* Whether rays all over the picture meet this solid first. */
-static bool fills_picture(struct look *look, uint32_t solid) {
-    const struct camera_frame *camera = &look->camera;
+static bool fills_picture(struct check *check, uint32_t solid) {
+    const struct camera_frame *camera = &check->camera;
     int met = 0;
-    for (int i = 0; i < LOOK_SIDE * LOOK_SIDE; i++) {
-        double x = (i % LOOK_SIDE + 0.5) / LOOK_SIDE, y = (i / LOOK_SIDE + 0.5) / LOOK_SIDE;
+    for (int i = 0; i < GRID_SIDE * GRID_SIDE; i++) {
+        double x = (i % GRID_SIDE + 0.5) / GRID_SIDE, y = (i / GRID_SIDE + 0.5) / GRID_SIDE;
         struct ray ray;
         struct crossing crossing;
         uint32_t primitive;
         if (!camera_ray_through(camera, x * camera->width, y * camera->height, (struct sample2){0.5, 0.5}, 0, &ray))
             continue;
-        if (!world_nearest_crossing(look->world, &ray, &look->scratch, &primitive, &crossing) || primitive != solid)
+        if (!world_nearest_crossing(check->world, &ray, &check->scratch, &primitive, &crossing) || primitive != solid)
             return false;
         met++;
     }
@@ -251,67 +251,67 @@ static bool is_room(const struct world *world, uint32_t solid) {
     return material->phong.two_sided || material->phong.unlit || vec3_max_abs(material_emission_bound(material)) > 0;
 }
 
-static void look_from_inside(struct look *look) {
-    const struct world *world = look->world;
+static void check_insides(struct check *check) {
+    const struct world *world = check->world;
     char text[NOTICE_SIZE];
-    uint32_t room = solid_around(look, look->camera.eye);
-    if (room != WORLD_NOTHING && !is_room(world, room) && fills_picture(look, room)) {
+    uint32_t room = enclosing_solid(check, check->camera.eye);
+    if (room != WORLD_NOTHING && !is_room(world, room) && fills_picture(check, room)) {
         (void)snprintf(text, sizeof text, "the eye is inside '%.100s', an opaque solid, and sees nothing else",
                        primitive_node(world, room)->name);
-        give(look, LOOK_EYE, text);
+        give(check, FAULT_EYE, text);
     }
-    for (uint32_t i = 0; i < world->light_count && i < LAMPS_LOOKED_AT; i++) {
+    for (uint32_t i = 0; i < world->light_count && i < LIGHTS_CHECKED; i++) {
         const struct light *light = &world->lights[i];
         struct light_target middle;
         if (light->lit || !light_middle(light, &middle) || middle.distant)
             continue;
-        uint32_t solid = solid_around(look, middle.at);
+        uint32_t solid = enclosing_solid(check, middle.at);
         if (solid == WORLD_NOTHING || solid == room)
             continue;
         (void)snprintf(
             text, sizeof text,
             "the light at {%.4g, %.4g, %.4g} is inside '%.100s', an opaque solid, and lights nothing outside",
             middle.at.x, middle.at.y, middle.at.z, primitive_node(world, solid)->name);
-        give(look, LOOK_LAMP, text);
+        give(check, FAULT_LIGHT_INSIDE, text);
         return;
     }
 }
 
-static void notice_empty(const struct look *look, const struct node *solid) {
-    char text[NOTICE_SIZE], place[256] = "";
+static void notice_empty(const struct check *check, const struct node *solid) {
+    char text[NOTICE_SIZE], position[256] = "";
     if (solid->line > 0)
-        (void)snprintf(place, sizeof place, " (made at %.200s:%u)", solid->file, (unsigned)solid->line);
-    (void)snprintf(text, sizeof text, "'%.100s' is empty: nothing is left of its operands%s", solid->name, place);
-    give(look, LOOK_SOLID, text);
+        (void)snprintf(position, sizeof position, " (made at %.200s:%u)", solid->file, (unsigned)solid->line);
+    (void)snprintf(text, sizeof text, "'%.100s' is empty: nothing is left of its operands%s", solid->name, position);
+    give(check, FAULT_SOLID, text);
 }
 
-void first_look(const struct render_job *job, unsigned *noticed, world_warning *notice, void *context) {
+void scene_check(const struct render_job *job, unsigned *noticed, world_warning *notice, void *context) {
     const struct world *world = job->world;
-    struct look look = {job, world, .bounds = box_empty(), .noticed = noticed, .notice = notice, .context = context};
+    struct check check = {job, world, .bounds = box_empty(), .noticed = noticed, .notice = notice, .context = context};
     char ignored[256];
     struct error error;
     /* A camera that moves, and a picture of the sky or the fog alone, may be what was meant. */
     bool moves = job->settings.motion.moves || job->fog;
-    if (!renderer_prepare_at(job, 0, &look.camera, ignored, &error))
+    if (!renderer_prepare_at(job, 0, &check.camera, ignored, &error))
         return;
     if (world->primitive_count == 0) {
         if (!job->fog && (world->sky.kind == SKY_CONSTANT || !job->background_lights))
-            give(&look, LOOK_EMPTY,
+            give(&check, FAULT_EMPTY,
                  "nothing is in view: the node has no shapes, neither itself nor below it (see node:add_child)");
         return;
     }
     for (uint32_t i = 0; i < world->primitive_count; i++) {
-        look.bounds = box_join(look.bounds, world->boxes[i]);
+        check.bounds = box_join(check.bounds, world->boxes[i]);
         if (box_is_empty(&world->boxes[i]) && primitive_geometry(world, i)->csg)
-            notice_empty(&look, primitive_node(world, i));
+            notice_empty(&check, primitive_node(world, i));
     }
-    look_at_materials(&look);
-    if (moves || look_at_view(&look)) {
-        look_at_size(&look);
-        look_at_light(&look);
-        if (world_scratch_init(&look.scratch, world)) {
-            look_from_inside(&look);
-            world_scratch_destroy(&look.scratch);
+    check_materials(&check);
+    if (moves || check_view(&check)) {
+        check_size(&check);
+        check_light(&check);
+        if (world_scratch_init(&check.scratch, world)) {
+            check_insides(&check);
+            world_scratch_destroy(&check.scratch);
         }
     }
 }
