@@ -18,14 +18,18 @@ local folder = debug.getinfo(1, 'S').source:match '^(.*[/\\])' or '@'
 local is_recorded = gr.is_recorded
 
 --- Describes the value of an argument in words.
-local function shown(value)
+---@return string
+function M.shown(value)
     if value == nil then return 'nothing' end
     if is_recorded(value) then return 'a number of the recorded function' end
     if type(value) == 'number' then return ('%.14g'):format(value) end
     if type(value) == 'string' then return ("'%s'"):format(#value > 40 and value:sub(1, 37) .. '...' or value) end
     if type(value) == 'boolean' then return tostring(value) end
+    if type(value) == 'userdata' then return 'a ' .. tostring(value):match '^%a+' end
     return 'a ' .. type(value)
 end
+
+local shown = M.shown
 
 --- The first position outside the library, counted from the caller of `error`.
 local function level_of_the_scene()

@@ -46,6 +46,7 @@ end
 ---@param list table[]  meshes
 ---@return table mesh
 function M.merge(list)
+    check.table('meshes.merge', 'list', list)
     local verts, normals, faces, face_normals = {}, {}, {}, {}
     local smooth = #list > 0 and list[1][2] ~= nil
     for _, mesh in ipairs(list) do
@@ -75,6 +76,7 @@ end
 ---@param m number[]  twelve numbers, row by row
 ---@return table mesh
 function M.map(mesh, m)
+    check.table('meshes.map', 'mesh', mesh)
     local a, b, c, d, e, f, g, h, i = m[1], m[2], m[3], m[5], m[6], m[7], m[9], m[10], m[11]
     local verts = {}
     for k, p in ipairs(mesh[1]) do
@@ -103,6 +105,7 @@ function M.translate(mesh, x, y, z) return M.map(mesh, { 1, 0, 0, x, 0, 1, 0, y,
 
 --- Scales a mesh about the origin.
 function M.scale(mesh, x, y, z)
+    check.table('meshes.scale', 'mesh', mesh)
     y, z = y or x, z or x
     return M.map(mesh, { x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0 })
 end
@@ -113,6 +116,7 @@ end
 ---@param degrees number
 ---@return table mesh
 function M.rotate(mesh, axis, degrees)
+    check.table('meshes.rotate', 'mesh', mesh)
     local c, s = cos(rad(degrees)), sin(rad(degrees))
     if axis == 'x' then return M.map(mesh, { 1, 0, 0, 0, 0, c, -s, 0, 0, s, c, 0 }) end
     if axis == 'y' then return M.map(mesh, { c, 0, s, 0, 0, 1, 0, 0, -s, 0, c, 0 }) end
@@ -123,6 +127,7 @@ end
 ---@param faces integer[][]
 ---@return integer[][]
 function M.turn(faces)
+    check.table('meshes.turn', 'faces', faces)
     local turned = {}
     for k, face in ipairs(faces) do
         local back, n = {}, #face
@@ -136,6 +141,7 @@ end
 ---@param mesh table
 ---@return table mesh
 function M.flip(mesh)
+    check.table('meshes.flip', 'mesh', mesh)
     local normals
     if mesh[2] then
         normals = {}
@@ -151,6 +157,8 @@ end
 ---@return number[][] verts
 ---@return integer[][] faces
 function M.weld(verts, faces, size)
+    check.table('meshes.weld', 'verts', verts)
+    check.table('meshes.weld', 'faces', faces)
     size = size or 1e-6
     local known, new_verts, number_of = {}, {}, {}
     for k, p in ipairs(verts) do
@@ -261,6 +269,8 @@ end
 ---@param crease number?  degrees; default: smooth everywhere
 ---@return table mesh
 function M.smooth(verts, faces, crease)
+    check.table('meshes.smooth', 'verts', verts)
+    check.table('meshes.smooth', 'faces', faces)
     if not crease then return smooth_everywhere(verts, faces) end
     local flat, around, angles, normals = {}, {}, {}, {}
     for k, face in ipairs(faces) do
@@ -325,6 +335,7 @@ end
 ---@return number[] low
 ---@return number[] high
 function M.bounds(verts)
+    check.table('meshes.bounds', 'verts', verts)
     local low, high = { math.huge, math.huge, math.huge }, { -math.huge, -math.huge, -math.huge }
     for _, p in ipairs(verts) do
         for k = 1, 3 do
@@ -340,6 +351,7 @@ end
 ---@param title string?  first comment line
 ---@return string
 function M.to_obj(mesh, title)
+    check.table('meshes.to_obj', 'mesh', mesh)
     local out = {}
     if title then out[1] = '# ' .. title end
     for _, p in ipairs(mesh[1]) do out[#out + 1] = ('v %.6g %.6g %.6g'):format(p[1], p[2], p[3]) end
@@ -363,6 +375,7 @@ end
 ---@return integer edges
 ---@return integer faces
 function M.euler(faces)
+    check.table('meshes.euler', 'faces', faces)
     check.list('meshes.euler', 'faces', faces, 0)
     local seen, edges, vertex_count, edge_count = {}, {}, 0, 0
     for _, face in ipairs(faces) do
@@ -382,6 +395,7 @@ end
 ---@param faces integer[][]
 ---@return boolean
 function M.is_closed(faces)
+    check.table('meshes.is_closed', 'faces', faces)
     check.list('meshes.is_closed', 'faces', faces, 0)
     local used, open = {}, 0
     for _, face in ipairs(faces) do
@@ -401,6 +415,8 @@ end
 ---@param faces integer[][]
 ---@return number
 function M.volume(verts, faces)
+    check.table('meshes.volume', 'verts', verts)
+    check.table('meshes.volume', 'faces', faces)
     check.points('meshes.volume', 'verts', verts, 3)
     check.faces('meshes.volume', 'faces', faces, #verts)
     local six, o = 0, verts[1]
@@ -421,6 +437,8 @@ end
 ---@param faces integer[][]
 ---@return number
 function M.area(verts, faces)
+    check.table('meshes.area', 'verts', verts)
+    check.table('meshes.area', 'faces', faces)
     check.points('meshes.area', 'verts', verts, 3)
     check.faces('meshes.area', 'faces', faces, #verts)
     local twice = 0

@@ -240,4 +240,17 @@ function M.map(map, t)
     return out
 end
 
+-- Every pattern is called with a point; only M.map takes none.
+for name, pattern in pairs(M) do
+    if type(pattern) == 'function' and name ~= 'map' then
+        M[name] = function(p, ...)
+            local kind = type(p)
+            if kind ~= 'table' and kind ~= 'userdata' or p[1] == nil then
+                check.fail('patterns.' .. name, ('p must be a point {x, y, z}, not %s'):format(kind == 'table' and 'a table without one' or check.shown(p)))
+            end
+            return pattern(p, ...)
+        end
+    end
+end
+
 return M

@@ -74,7 +74,6 @@ gr.render{
     ambient = {0.12, 0.12, 0.12},
     lights = {window, lamp},
     background = {0.05, 0.055, 0.065},
-    area_samples = 3,
     exposure = .7,
     filter = 'gaussian',
 }

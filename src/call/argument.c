@@ -544,6 +544,8 @@ static bool read_value(struct script_context *c, int index, const struct script_
     switch (p->kind) {
     case KIND_NUMBER:
         value->number = read_number(c, index, &argument_path);
+        if (p->unit && strcmp(p->unit, "degrees") == 0)
+            context_warn_of_radians(c, p->name, value->number);
         return true;
     case KIND_WHOLE:
         value->number = read_whole(c, index, &argument_path);

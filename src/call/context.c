@@ -1,6 +1,8 @@
 /* The state of a call of gr. */
 #include "call/context.h"
 
+#include "math/elementary.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -89,6 +91,15 @@ void context_picture_name(const struct script_context *context, const char *end,
     while (length > 1 && name[0] == '.') /* a picture has no hidden name */
         name++, length--;
     (void)snprintf(out, size, "%.*s%s", length, name, end);
+}
+
+/* In twelfths of pi: exact, or with five digits of pi. Fractions with whole numbers of degrees do not exist. */
+void context_warn_of_radians(struct script_context *context, const char *name, double degrees) {
+    double twelfths = 12 * fabs(degrees) / PI, whole = round(twelfths);
+    if (whole >= 1 && whole <= 48 && fabs(twelfths - whole) < 2e-5)
+        context_warn_once(context, WARNED_RADIANS,
+                          "%s %.6g is %.3g pi: angles are in degrees, and math.deg(x) makes them", name, degrees,
+                          degrees / PI);
 }
 
 void *context_array(struct script_context *context, size_t count, size_t size) {

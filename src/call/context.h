@@ -30,12 +30,14 @@ void context_begin_call(struct script_context *context, const struct script_func
 void context_keep_functions(lua_State *L);
 void context_push_function(lua_State *L, const char *name);
 
-enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8 };
+enum { WARNED_EXTRA = 1, WARNED_OTHER = 2, WARNED_FRACTION = 4, WARNED_BYTES = 8, WARNED_RADIANS = 16 };
 /* Warns once for each function and bit. */
 void context_warn_once(struct script_context *context, unsigned bit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Warns once for a function if the colour has numbers from 0 to 255. */
 void context_warn_of_bytes(struct script_context *context, const char *name, struct vec3 colour);
+/* Warns once for a function if a number of degrees is a multiple or a simple fraction of pi. */
+void context_warn_of_radians(struct script_context *context, const char *name, double degrees);
 /* Nodes that are created from now on have the current line. */
 void context_note_line(struct script_context *context);
 /* Of a picture that is named after the script: SCENE and this end. */

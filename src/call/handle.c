@@ -60,10 +60,23 @@ static int handle_text(lua_State *L) {
     return 1;
 }
 
+/* handle.NAME = value, and handle.NAME of a handle that is no node. */
+static int handle_field(lua_State *L) {
+    const struct handle *handle = handle_at(L, 1);
+    assert(handle); /* scripts cannot reach the metatable */
+    const char *type = type_names[handle->type], *name = luaL_tolstring(L, 2, NULL);
+    struct sandbox *sandbox = sandbox_enter(L);
+    if (lua_toboolean(L, lua_upvalueindex(1)))
+        sandbox_raise(sandbox, "the field %.100s of a %s cannot be read: objects of gr have no fields", name, type);
+    sandbox_raise(sandbox,
+                  "%.100s of a %s cannot be set: fields are given when it is made, as in gr.sphere{radius = 2}%s", name,
+                  type, handle->type == HANDLE_NODE ? ", and methods change a node, as in n:set_material(m)" : "");
+}
+
 void handles_open(lua_State *L) {
     struct script_context *context = context_of(L);
     for (int type = 0; type < HANDLE_TYPES; type++) {
-        lua_createtable(L, 0, 5);
+        lua_createtable(L, 0, 7);
         lua_pushstring(L, type_names[type]);
         lua_setfield(L, -2, "__name");
         lua_pushstring(L, type_names[type]); /* the result of getmetatable; setmetatable is refused */
@@ -72,6 +85,11 @@ void handles_open(lua_State *L) {
         lua_setfield(L, -2, WORDS_FIELD);
         lua_pushcfunction(L, handle_text);
         lua_setfield(L, -2, "__tostring");
+        for (int reads = type == HANDLE_NODE ? 0 : 1; reads >= 0; reads--) { /* nodes have methods */
+            lua_pushboolean(L, reads);
+            lua_pushcclosure(L, handle_field, 1);
+            lua_setfield(L, -2, reads ? "__index" : "__newindex");
+        }
         context->handles.metatables[type] = lua_topointer(L, -1);
         lua_rawsetp(L, LUA_REGISTRYINDEX, type_names[type]);
     }

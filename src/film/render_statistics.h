@@ -8,6 +8,7 @@
 struct render_statistics {
     uint64_t camera_rays, reflected_rays, refracted_rays, shadow_rays;
     uint64_t pixels, marked_pixels, samples;
+    uint64_t late_pixels; /* Whitted: the time limit was over, and they have fewer samples */
     uint64_t shape_tests, triangle_tests, box_tests, voxels, hierarchy_steps;
     uint64_t photons, photons_landed, photon_rays;
     uint64_t passes_samples; /* of each pixel where the samples came in passes, else 0 */

@@ -17,6 +17,7 @@
 #include "output/progress.h"
 #include "render/overlay.h"
 #include "render/render.h"
+#include "render/scene_check.h"
 #include "script/script.h"
 #include "session/text.h"
 #include "viewer/preview_session.h"
@@ -206,6 +207,14 @@ static bool too_much_memory(const struct render_process *process, struct error *
                            size_words(script_picture_memory(options), size));
 }
 
+/* Of something that scene_check has seen. */
+static void notice_of_picture(void *context, const char *text) {
+    const struct picture_work *work = context;
+    char line[2048];
+    (void)snprintf(line, sizeof line, "%.1400s: %s", work->request->where, text);
+    render_process_report_scene(work->process, LINE_NOTICE, line);
+}
+
 /* From the flattened scene to the finished film. */
 static bool make_picture_unlimited(struct picture_work *work, struct error *error) {
     struct render_process *process = work->process;
@@ -219,8 +228,11 @@ static bool make_picture_unlimited(struct picture_work *work, struct error *erro
         return false;
     bool ok = true;
     double built = progress_clock(), built_worked = progress_processor_clock();
-    if (job->world)
+    if (job->world) {
         integrator_warn(job, render_process_warn, process);
+        if (work->request->frame.number <= 1) /* things come into view and light comes on in later ones */
+            scene_check(job, &process->faults, notice_of_picture, work);
+    }
     if (is_asked(process->options)) {
         ok = answer_questions(work, error);
     } else if (!process->options->check) {
@@ -437,6 +449,7 @@ static bool render_job_run(struct render_process *process, const struct render_r
     if (!need_pool(process, error) || !begin_picture(&work, &already, error))
         return false;
     process->passed_over = already;
+    process->frames_shown += already && work.picture_request.repeats; /* equal to the one before */
     if (already)
         return true;
     if (atomic_load(&control->progress_estimate.wanted))
@@ -444,9 +457,12 @@ static bool render_job_run(struct render_process *process, const struct render_r
     work.job.handout = atomic_load(&control->handout) != HANDOUT_NONE ? &control->handout : NULL;
     work.job.handed = &control->handed;
     const struct options *options = process->options;
+    effects_note(&work);
     work.job.settings.passes = options->display && !options->checkpoint && !work.job.handout; /* of paths */
     process->rendered = (struct digest){0};
     bool ok = make_picture(&work, error), early = ok && is_written_early(&work);
+    if (ok && is_frame(&work))
+        effects_count_frame(&work);
     if (!early)
         clear_picture(&work);
     if (ok && !work.picture_request.check)
@@ -648,6 +664,7 @@ static int run_script(struct render_process *process, const char *path) {
     process->status = 0;
     process->warned_count = 0;
     memset(process->replaced, 0, sizeof process->replaced);
+    process->faults = 0;
     process->animates = false;
     if (repeats && process->options->window) {
         frame.number = 0;
@@ -676,13 +693,15 @@ static int run_script(struct render_process *process, const char *path) {
 }
 
 static void run_scripts(struct render_process *process, int first) {
-    process->pictures = process->played = 0;
+    process->pictures = process->played = process->frames_shown = 0;
+    process->frames_differ = false;
     for (int i = first; i < process->options->script_count; i++) {
         int status = run_script(process, process->options->scripts[i]);
         process->services->script_ended(process->services->context, i, status);
         if (status == ERROR_USAGE || status == ERROR_CANCELLED)
             break;
     }
+    effects_note_frames(process);
 }
 
 /* Reads are reported so that no picture replaces what was read. Under --watch every one is, since a file may change. */

@@ -47,6 +47,11 @@ struct render_process {
     uint64_t warned[WARNINGS_LIMIT]; /* hashes of the warnings about scenes that this script has caused */
     int warned_count;
     struct replaced_fields replaced[LIST_COUNT(SETTINGS_WITH_FIELD)]; /* by setting, of its option */
+    uint64_t vain[2]; /* options of this run without effect: the notice was printed; settings, and the other options */
+    struct digest first_frame; /* of the pixels of this run's first frame, and whether a later one differs */
+    bool frames_differ;
+    uint64_t frames_shown;
+    unsigned faults; /* the notices of scene_check that this script has caused */
 };
 
 /* A picture between the call of gr.render and the finished film. */
@@ -70,6 +75,13 @@ void render_process_report(const struct render_process *process, enum line_kind 
 void render_process_report_scene(const struct render_process *process, enum line_kind kind, const char *text);
 /* context: the render process. Each warning is printed once in a script. */
 void render_process_warn(void *context, const char *text);
+/* Of `text`, once in a script for each key; the line has its mark. */
+void render_process_notice_once(struct render_process *process, const char *key, const char *text);
+/* effects.c: notices about options and fields that have no effect on the picture. */
+void effects_note(struct picture_work *work);
+/* Counts a finished frame; at the end of a run a notice about an animation of one frame, or of equal ones. */
+void effects_count_frame(struct picture_work *work);
+void effects_note_frames(struct render_process *process);
 void render_process_warn_of_nan(struct render_process *process, const struct world *world);
 void render_process_fill_report(const struct picture_work *work, const struct film *film,
                                 struct picture_report *report);

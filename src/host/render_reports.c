@@ -34,15 +34,26 @@ void render_process_report_scene(const struct render_process *process, enum line
 }
 
 /* A script may render hundreds of frames of one scene; each warning about it is printed once, by the hash of `key`. */
-static void warn_once(struct render_process *process, const char *key, const char *text) {
-    static const char word[] = "warning: ";
+static bool is_first(struct render_process *process, const char *key) {
     uint64_t hash = hash_bytes(key, strlen(key), 0);
     for (int i = 0; i < process->warned_count; i++) {
         if (process->warned[i] == hash)
-            return;
+            return false;
     }
     if (process->warned_count < WARNINGS_LIMIT)
         process->warned[process->warned_count++] = hash;
+    return true;
+}
+
+void render_process_notice_once(struct render_process *process, const char *key, const char *text) {
+    if (is_first(process, key))
+        render_process_report_scene(process, LINE_NOTICE, text);
+}
+
+static void warn_once(struct render_process *process, const char *key, const char *text) {
+    static const char word[] = "warning: ";
+    if (!is_first(process, key))
+        return;
     bool has_word = strncmp(text, word, strlen(word)) == 0;
     char line[2048];
     (void)snprintf(line, sizeof line, "%s: %s%s", process->script, has_word ? "" : word, text);
@@ -158,12 +169,17 @@ void render_process_report_samples(const struct picture_work *work) {
     const struct render_statistics *rays = &work->report.rays;
     char line[2 * NAME_LIMIT + 256], words[256], room[NAME_LIMIT];
     bool has_limit = settings->noise > 0 || settings->time_limit > 0;
-    if (!has_limit || !integrator_traits(settings->integrator).progressive || work->picture_request.in_window ||
-        rays->pixels == 0)
+    if (!has_limit || work->picture_request.in_window || rays->pixels == 0 ||
+        (!integrator_traits(settings->integrator).progressive && rays->late_pixels == 0))
         return;
     double mean = (double)rays->samples / (double)rays->pixels;
     unsigned long long samples = rays->passes_samples;
-    if (!(settings->noise > 0))
+    if (rays->late_pixels > 0)
+        (void)snprintf(
+            words, sizeof words,
+            "%.2g %% of the pixels have fewer samples than they need: --time-limit ended the rest after %.1f s",
+            100 * (double)rays->late_pixels / (double)rays->pixels, rays->render_seconds);
+    else if (!(settings->noise > 0))
         (void)snprintf(words, sizeof words, "%llu sample%s per pixel in %.1f s (--spp %llu makes the same picture)",
                        samples, samples == 1 ? "" : "s", rays->render_seconds, samples);
     else if (!rays->noisy)

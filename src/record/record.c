@@ -11,6 +11,7 @@
 #include "record/record_bounds.h"
 #include "record/record_interval_internal.h"
 #include "record/symbol.h"
+#include "sandbox/hints.h"
 
 #include <assert.h>
 #include <float.h>
@@ -109,7 +110,11 @@ int record_add_position(lua_State *L) {
     if (!text) {
         lua_pushfstring(L, "the function raised %s", value_words(L, 1));
         text = lua_tostring(L, -1);
-    } else if (strstr(text, ":") && strspn(strstr(text, ":") + 1, "0123456789") > 0) {
+    }
+    text = sandbox_relocate(L, text);
+    const char *hint = hint_of_lua_error(L, text);
+    if (strstr(text, ":") && strspn(strstr(text, ":") + 1, "0123456789") > 0) {
+        lua_pushfstring(L, "%s%s", text, hint);
         return 1;
     }
     sandbox->lua = L;
@@ -128,6 +133,28 @@ static void name_function(lua_State *L, int function) {
         return;
     lua_pushfstring(L, "%s:%d: %s", where.short_src, where.linedefined, lua_tostring(L, -1));
     lua_replace(L, -2);
+}
+
+/* The error is on top. Functions of modules have other parameters than the function that is wanted. */
+static void advise_wrapper(lua_State *L, int function) {
+    lua_Debug where;
+    lua_pushvalue(L, function);
+    if (!lua_getinfo(L, ">S", &where) || !sandbox_is_library(sandbox_of(L), where.source) ||
+        lua_type(L, -1) != LUA_TSTRING)
+        return;
+    const char *module = strrchr(where.source, '/') + 1, *name = NULL;
+    lua_pushlstring(L, module, strcspn(module, "."));
+    module = lua_tostring(L, -1);
+    int top = lua_gettop(L);
+    if (lua_getfield(L, LUA_REGISTRYINDEX, LUA_LOADED_TABLE) == LUA_TTABLE && lua_getfield(L, -1, module) == LUA_TTABLE)
+        for (lua_pushnil(L); !name && lua_next(L, -2); lua_pop(L, 1))
+            name = lua_rawequal(L, -1, function) && lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : NULL;
+    if (name)
+        lua_pushfstring(L, "%s; write function(p) return %s.%s(p) end", lua_tostring(L, top - 1), module, name);
+    else
+        lua_pushvalue(L, top - 1);
+    lua_replace(L, top - 1);
+    lua_settop(L, top - 1);
 }
 
 /* Calls the function at `function` with the values from `first` on. Pushes its first result, or the error. */
@@ -149,6 +176,8 @@ static bool call_function(lua_State *L, int function, int first) {
         return false;
     }
     lua_remove(L, handler);
+    if (status != LUA_OK)
+        advise_wrapper(L, function);
     return status == LUA_OK;
 }
 

@@ -3,6 +3,7 @@
  * neighbours, samples the marked ones N x N times, and is final. */
 #include "render/whitted_internal.h"
 
+#include "base/clock.h"
 #include "base/mem.h"
 #include "math/elementary.h"
 #include "photon/photon_trace.h"
@@ -111,7 +112,7 @@ void whitted_destroy(struct whitted *whitted) {
 void whitted_add_statistics(const struct whitted *whitted, const struct renderer *renderer,
                             struct render_statistics *out) {
     for (int i = 0; whitted->workers && i < pool_workers(renderer->pool); i++)
-        out->marked_pixels += whitted->workers[i].marked;
+        out->marked_pixels += whitted->workers[i].marked, out->late_pixels += whitted->workers[i].late;
 }
 
 /* The first pass is kept: a viewer may show it, and the resampled pixels. */
@@ -424,6 +425,39 @@ static void sample_patch(const struct part *part, int64_t x0, int64_t y0) {
     }
 }
 
+/* --- when --time-limit is over --- */
+
+static bool is_late(const struct renderer *renderer) {
+    double limit = renderer->job->settings.time_limit;
+    return limit > 0 && clock_seconds(CLOCK_MONOTONIC) - renderer->begun >= limit;
+}
+
+/* Rows that the time did not suffice for: first samples without resampling if all of the tile has them, else one sample
+ * for each patch. */
+static void finish_late(struct part *part, const struct rectangle *rows, bool has_first) {
+    struct film *film = part->renderer->job->film;
+    struct batch *batch = &part->worker->batch;
+    for (int64_t y0 = rows->y0; y0 < rows->y1; y0 += PATCH) {
+        for (int64_t x0 = rows->x0; x0 < rows->x1; x0 += PATCH) {
+            int64_t x1 = x0 + PATCH < rows->x1 ? x0 + PATCH : rows->x1;
+            int64_t y1 = y0 + PATCH < rows->y1 ? y0 + PATCH : rows->y1;
+            batch->count = !has_first;
+            batch->positions[0] = renderer_first_sample(part->renderer, (x0 + x1) / 2, (y0 + y1) / 2);
+            if (!has_first)
+                renderer_sample_batch(part->renderer, part->worker);
+            for (int64_t i = 0; i < (x1 - x0) * (y1 - y0); i++) {
+                int64_t x = x0 + i % (x1 - x0), y = y0 + i / (x1 - x0);
+                size_t at = (size_t)(y - film->y0) * film->width + (size_t)(x - film->x0);
+                struct vec3 colour = has_first ? *first_at(part, x, y) : batch->colours[0];
+                store(film->pixels[at].rgb, colour);
+                store(&film->floats[at * film->record.floats], colour);
+                film->marked[at] = 0;
+            }
+            part->own->late += (uint64_t)((x1 - x0) * (y1 - y0));
+        }
+    }
+}
+
 /* For a viewer: the current first pass, and the pixels to be resampled. */
 static void show_refined(const struct part *part, const struct rectangle *tile) {
     struct film *film = part->renderer->job->film;
@@ -455,6 +489,10 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
         for (int64_t x = area.x0; x < area.x1; x += PATCH) {
             if (renderer_stopped(renderer, worker))
                 return false;
+            if (is_late(renderer)) {
+                finish_late(&part, tile, false);
+                return !renderer_stopped(renderer, worker);
+            }
             sample_patch(&part, x, y);
         }
         renderer_tile_goes_on(renderer, worker,
@@ -466,6 +504,10 @@ bool whitted_render(struct whitted *whitted, struct renderer *renderer, struct w
         return false;
     double before = part.has_first ? 0.5 : 0; /* the part of the work that the first pass is */
     for (int64_t y = tile->y0; y < tile->y1; y++) {
+        if (is_late(renderer)) {
+            finish_late(&part, &(struct rectangle){tile->x0, y, tile->x1, tile->y1}, part.has_first);
+            return !renderer_stopped(renderer, worker);
+        }
         for (int64_t x = tile->x0; x < tile->x1; x++) {
             if (renderer_stopped(renderer, worker))
                 return false;

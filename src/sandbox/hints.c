@@ -9,6 +9,7 @@
 #include "sandbox/libraries_internal.h"
 #include "sandbox/sandbox.h"
 #include "sandbox/suggestion.h"
+#include "sandbox/syntax_hints_internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +25,7 @@ struct running {
     size_t size;
 };
 
-static bool read_text(struct sandbox *sandbox, struct running *running, const char *path) {
+static bool read_text_up_to(struct sandbox *sandbox, struct running *running, const char *path, size_t limit) {
     struct file_bytes bytes;
     struct error error = {0};
     if (!path_policy_map(files_policy(sandbox, path), path, FILE_LIMIT, &bytes, &error))
@@ -35,11 +36,15 @@ static bool read_text(struct sandbox *sandbox, struct running *running, const ch
         from += from != NULL;
     }
     if (from) {
-        running->size = (size_t)(end - from) < TEXT_LIMIT ? (size_t)(end - from) : TEXT_LIMIT;
+        running->size = (size_t)(end - from) < limit ? (size_t)(end - from) : limit;
         running->text = arena_copy_text(&sandbox->call, from, running->size);
     }
     file_unmap(&bytes);
     return running->text != NULL;
+}
+
+static bool read_text(struct sandbox *sandbox, struct running *running, const char *path) {
+    return read_text_up_to(sandbox, running, path, TEXT_LIMIT);
 }
 
 /* Pushes the value of a local variable, an upvalue or a global; *is_global says which. */
@@ -94,14 +99,10 @@ static bool find_running(struct sandbox *sandbox, lua_State *L, struct running *
     *running = (struct running){.L = L};
     if (!lua_checkstack(L, 20))
         return false;
-    for (int level = 0; lua_getstack(L, level, &running->at); level++) {
-        lua_getinfo(L, "Sl", &running->at);
-        if (running->at.currentline <= 0)
-            continue;
-        const char *source = running->at.source;
-        return source[0] == '@' && has_usual_globals(running) && read_text(sandbox, running, source + 1);
-    }
-    return false;
+    if (!sandbox_find_frame(L, &running->at))
+        return false;
+    const char *source = running->at.source;
+    return source[0] == '@' && has_usual_globals(running) && read_text(sandbox, running, source + 1);
 }
 
 static bool is_nil_global(const struct running *running, const char *name) {
@@ -316,9 +317,23 @@ static bool visit_access(const struct running *running, const struct token *w, v
            copy_name(&w[1], access->table);
 }
 
+/* "; there is no meshes.load, meshes has convert, smooth ...": for tables with functions, as modules are. gr has many
+ * functions that modules do not have. */
+static const char *module_words(struct sandbox *sandbox, const struct names *names, const char *table,
+                                const char *field) {
+    enum { SHOWN = 16 };
+    char list[512] = "";
+    for (size_t i = 0, used = 0; i < names->count && i < SHOWN && used + NAME_SIZE < sizeof list; i++)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%.40s", i > 0 ? ", " : "", names->list[i]);
+    if (names->count == 0)
+        return "";
+    return arena_format(&sandbox->call, "; there is no %s.%s; %s has %s%s", table, field, table, list,
+                        names->count > SHOWN ? " ..." : "");
+}
+
 static const char *field_words(struct sandbox *sandbox, const struct running *running, const char *field) {
     struct access access = {.field = field};
-    struct names names;
+    struct names names = {0};
     lua_State *L = running->L;
     bool is_global;
     if (!find_token(running, visit_access, &access))
@@ -333,58 +348,163 @@ static const char *field_words(struct sandbox *sandbox, const struct running *ru
     }
     if (meant)
         words = arena_format(&sandbox->call, "; did you mean '%s.%s'?", access.table, meant);
+    else if (lua_istable(L, -1) && !words[0])
+        words = module_words(sandbox, &names, access.table, field);
     lua_pop(L, 1);
     return words ? words : "";
 }
 
-/* The name in "... a nil value (KIND 'NAME')". */
-static bool read_culprit(const char *message, const char *kind, char name[NAME_SIZE]) {
+/* The name in "... a TYPE value (KIND 'NAME')". */
+static bool read_culprit(const char *message, const char *type, const char *kind, char name[NAME_SIZE]) {
     char begin[40];
-    (void)snprintf(begin, sizeof begin, " a nil value (%s '", kind);
+    (void)snprintf(begin, sizeof begin, " a %s value (%s '", type, kind);
     const char *at = strstr(message, begin);
     size_t length = at ? strcspn(at + strlen(begin), "'\n") : 0;
-    if (length == 0 || length >= NAME_SIZE)
+    if (length == 0 || length >= NAME_SIZE || strncmp(at + strlen(begin) + length, "');", 3) == 0) /* has a hint */
         return false;
     memcpy(name, at + strlen(begin), length);
     name[length] = '\0';
     return true;
 }
 
-/* A variable that is nil and was set at the beginning of the file, as in `local execute = os.execute`. */
-static const char *alias_words(struct sandbox *sandbox, const struct running *running, const char *name) {
+/* Visits every `NAME = ...` of the file up to the running line with the five tokens after `=`; returns its words. */
+static const char *find_setting(struct sandbox *sandbox, const struct running *running, const char *name,
+                                const char *(*visit)(struct sandbox *, const struct token *)) {
     struct running file = {.L = running->L, .at = {.currentline = 1}};
-    struct token w[5] = {{0}};
-    char library[NAME_SIZE], field[NAME_SIZE];
-    if (sandbox->options->no_sandbox || !read_text(sandbox, &file, running->at.source + 1))
+    struct token w[7] = {{0}};
+    const char *words = "";
+    if (!read_text_up_to(sandbox, &file, running->at.source + 1, FILE_LIMIT))
         return "";
     struct lexer lexer = {file.text, file.text + file.size, 1};
     do {
-        for (int k = 0; k < 4; k++)
-            w[k] = w[k + 1];
-        w[4] = lexer_next(&lexer);
-        if (token_is(&w[0], TOKEN_NAME, name) && token_is_symbol(&w[1], '=') && token_is_symbol(&w[3], '.') &&
-            copy_name(&w[2], library) && copy_name(&w[4], field) && libraries_lack(library, field)) {
-            const char *words =
-                arena_format(&sandbox->call, "; the sandbox has no %s.%s (docs/security.md)", library, field);
-            return words ? words : "";
-        }
-    } while (w[4].kind != TOKEN_END && w[4].line <= running->at.currentline);
-    return "";
+        memmove(w, w + 1, 6 * sizeof *w);
+        w[6] = lexer_next(&lexer);
+        if (!token_is(&w[0], TOKEN_NAME, name) || !token_is_symbol(&w[1], '='))
+            continue;
+        const char *found = visit(sandbox, w + 2);
+        words = found ? found : words;
+    } while (w[0].kind != TOKEN_END || w[6].kind != TOKEN_END ? w[0].line <= running->at.currentline : false);
+    return words;
+}
+
+/* = LIBRARY.FIELD, which the sandbox does not have: `local execute = os.execute`. */
+static const char *visit_alias(struct sandbox *sandbox, const struct token *w) {
+    char library[NAME_SIZE], field[NAME_SIZE];
+    bool is_field = token_is_symbol(&w[1], '.') && copy_name(&w[0], library) && copy_name(&w[2], field);
+    if (!is_field || token_is_symbol(&w[3], '(') || sandbox->options->no_sandbox || !libraries_lack(library, field))
+        return NULL;
+    return arena_format(&sandbox->call, "; the sandbox has no %s.%s (docs/security.md)", library, field);
+}
+
+/* = io.open(...), which returned nil and a reason that the script did not read. */
+static const char *visit_open(struct sandbox *sandbox, const struct token *w) {
+    bool opens =
+        token_is(&w[0], TOKEN_NAME, "io") && token_is_symbol(&w[1], '.') && token_is(&w[2], TOKEN_NAME, "open");
+    if (!opens || !sandbox->refused[0])
+        return NULL;
+    return arena_format(&sandbox->call, "; io.open returned nil, because %s", sandbox->refused);
+}
+
+static const char *visit_nil_value(struct sandbox *sandbox, const struct token *w) {
+    const char *words = visit_alias(sandbox, w);
+    return words ? words : visit_open(sandbox, w);
+}
+
+/* = require 'MODULE', or require('MODULE'). */
+static const char *visit_require(struct sandbox *sandbox, const struct token *w) {
+    const struct token *module = token_is_symbol(&w[1], '(') ? &w[2] : &w[1];
+    if (!token_is(&w[0], TOKEN_NAME, "require") || module->kind != TOKEN_STRING || module->length > NAME_SIZE)
+        return NULL;
+    return arena_format(&sandbox->call, "; the module '%.*s' returns nothing: its last line must return its table",
+                        (int)module->length, module->text);
+}
+
+/* "; --dialect processing has a function size": the dialects of the library that set this global. */
+static const char *dialect_words(struct sandbox *sandbox, const char *name) {
+    const char *library = sandbox->options->library_folder;
+    struct path_policy_entry *entries;
+    char path[PATH_SIZE], found[128] = "";
+    size_t count = 0;
+    if (library && !sandbox->files.dialect && snprintf(path, sizeof path, "%s/dialects", library) < PATH_SIZE)
+        count = path_policy_list(sandbox->path_policy, path, 1000, &sandbox->call, &entries);
+    for (size_t i = 0; i < count; i++) {
+        struct running file = {.at = {.currentline = 1}};
+        struct token w[4] = {{0}};
+        bool sets = false;
+        if (snprintf(path, sizeof path, "%s/dialects/%s", library, entries[i].name) >= PATH_SIZE ||
+            !read_text_up_to(sandbox, &file, path, FILE_LIMIT))
+            continue;
+        struct lexer lexer = {file.text, file.text + file.size, 1};
+        do {
+            memmove(w, w + 1, 3 * sizeof *w);
+            w[3] = lexer_next(&lexer);
+            bool begins = w[1].line > w[0].line && w[1].text && (w[1].text == file.text || w[1].text[-1] == '\n');
+            sets = sets ||
+                   (begins && token_is(&w[1], TOKEN_NAME, "function") && token_is(&w[2], TOKEN_NAME, name) &&
+                    token_is_symbol(&w[3], '(')) ||
+                   (begins && token_is(&w[1], TOKEN_NAME, name) && token_is_symbol(&w[2], '='));
+        } while (!sets && w[3].kind != TOKEN_END);
+        size_t used = strlen(found);
+        if (sets)
+            (void)snprintf(found + used, sizeof found - used, "%s%.*s", used ? " or " : "",
+                           (int)strcspn(entries[i].name, "."), entries[i].name);
+    }
+    return found[0] ? arena_format(&sandbox->call, "; another program has '%s': --dialect %s", name, found) : "";
+}
+
+/* Of a global that is nil: gr has it, a dialect has it, or there is a similar name. */
+static const char *global_words(struct sandbox *sandbox, const struct running *running, const char *name) {
+    lua_State *L = running->L;
+    bool is_global;
+    push_variable(running, "gr", &is_global);
+    bool of_gr = lua_istable(L, -1);
+    if (of_gr) {
+        lua_pushstring(L, name);
+        of_gr = lua_rawget(L, -2) != LUA_TNIL;
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    const char *others = dialect_words(sandbox, name);
+    if (of_gr)
+        return arena_format(&sandbox->call, "; did you mean 'gr.%s'?%s%s", name, others && others[0] ? " (" : "",
+                            others && others[0] ? arena_format(&sandbox->call, "%s)", others + 2) : "");
+    if (others && others[0])
+        return others;
+    const char *meant = nearest_variable(sandbox, running, name);
+    return meant ? arena_format(&sandbox->call, "; did you mean '%s'?", meant) : "";
 }
 
 const char *hint_of_lua_error(lua_State *L, const char *message) {
     struct sandbox *sandbox = sandbox_of(L);
     struct running running;
     char name[NAME_SIZE];
-    bool field = read_culprit(message, "field", name), global = !field && read_culprit(message, "global", name);
-    bool local = !field && !global && (read_culprit(message, "local", name) || read_culprit(message, "upvalue", name));
-    if ((!field && !global && !local) || !find_running(sandbox, L, &running))
+    bool field = read_culprit(message, "nil", "field", name);
+    bool global = !field && read_culprit(message, "nil", "global", name);
+    bool local = !field && !global &&
+                 (read_culprit(message, "nil", "local", name) || read_culprit(message, "nil", "upvalue", name));
+    bool module =
+        !field && !global && !local &&
+        (read_culprit(message, "boolean", "local", name) || read_culprit(message, "boolean", "upvalue", name) ||
+         read_culprit(message, "boolean", "global", name));
+    if (!field && !global && !local && !module)
+        return hint_of_syntax(sandbox, message);
+    if (!find_running(sandbox, L, &running))
         return "";
-    if (local)
-        return alias_words(sandbox, &running, name);
-    if (field)
-        return field_words(sandbox, &running, name);
-    const char *meant = nearest_variable(sandbox, &running, name);
-    const char *words = meant ? arena_format(&sandbox->call, "; did you mean '%s'?", meant) : NULL;
+    const char *words = global   ? global_words(sandbox, &running, name)
+                        : local  ? find_setting(sandbox, &running, name, visit_nil_value)
+                        : module ? find_setting(sandbox, &running, name, visit_require)
+                                 : field_words(sandbox, &running, name);
     return words ? words : "";
+}
+
+/* :NAME, of a method. */
+static bool visit_method(const struct running *running, const struct token *w, void *wanted) {
+    (void)running;
+    return token_is_symbol(&w[0], ':') && token_is(&w[1], TOKEN_NAME, wanted);
+}
+
+bool hint_has_colon(struct sandbox *sandbox, const char *method) {
+    struct running running;
+    return find_running(sandbox, sandbox->lua, &running) &&
+           find_token(&running, visit_method, (void *)(uintptr_t)method);
 }

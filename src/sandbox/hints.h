@@ -3,6 +3,7 @@
 #define GRAY_SANDBOX_HINTS_H
 
 #include <lua.h>
+#include <stdbool.h>
 
 struct sandbox;
 
@@ -10,8 +11,10 @@ struct sandbox;
 const char *hint_of_nil(struct sandbox *sandbox);
 /* Raises an error if the running call has `name = VARIABLE` with an undefined global; once for each line. */
 void hint_check_field(struct sandbox *sandbox, const char *name);
-/* A hint for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is called while an error
- * is handled. */
+/* Whether the running call has a colon before the name of this method. */
+bool hint_has_colon(struct sandbox *sandbox, const char *method);
+/* A hint for a syntax error, for "attempt to call a nil value (field 'x')" and similar errors. Must not raise: it is
+ * called while an error is handled. */
 const char *hint_of_lua_error(lua_State *L, const char *message);
 
 #endif

@@ -60,13 +60,39 @@ struct sandbox *sandbox_enter(lua_State *L) {
 
 /* --- positions --- */
 
-bool sandbox_find_frame(lua_State *L, lua_Debug *frame) {
-    for (int level = 0; lua_getstack(L, level, frame); level++) {
-        lua_getinfo(L, "l", frame);
-        if (frame->currentline > 0 && lua_getinfo(L, "S", frame))
+bool sandbox_is_library(const struct sandbox *sandbox, const char *source) {
+    const char *library = sandbox->options->library_folder;
+    size_t length = library ? strlen(library) : 0;
+    return length > 0 && source[0] == '@' && strncmp(source + 1, library, length) == 0 && source[length + 1] == '/';
+}
+
+/* The frame of sandbox_find_frame; *entry is the function of the library that it called, if there is one. */
+static bool find_frame(lua_State *L, lua_Debug *frame, lua_Debug *entry, bool *has_entry) {
+    const struct sandbox *sandbox = sandbox_of(L);
+    lua_Debug at;
+    bool found = false;
+    *has_entry = false;
+    for (int level = 0; lua_getstack(L, level, &at); level++) {
+        lua_getinfo(L, "l", &at);
+        if (at.currentline <= 0 || !lua_getinfo(L, "S", &at))
+            continue;
+        bool of_scene = !sandbox_is_library(sandbox, at.source);
+        if (!found || of_scene)
+            *frame = at;
+        found = true;
+        if (of_scene)
             return true;
+        *entry = at;
+        *has_entry = true;
     }
-    return false;
+    *has_entry = false;
+    return found;
+}
+
+bool sandbox_find_frame(lua_State *L, lua_Debug *frame) {
+    lua_Debug entry;
+    bool has_entry;
+    return find_frame(L, frame, &entry, &has_entry);
 }
 
 const char *sandbox_frame_file(const lua_Debug *frame) {
@@ -74,11 +100,43 @@ const char *sandbox_frame_file(const lua_Debug *frame) {
 }
 
 void sandbox_where(const struct sandbox *sandbox, char *out, size_t size) {
-    lua_Debug frame;
-    if (sandbox_find_frame(sandbox->lua, &frame))
-        snprintf(out, size, "%s:%d: ", sandbox_frame_file(&frame), frame.currentline);
-    else
+    lua_Debug frame, entry;
+    bool has_entry;
+    if (!find_frame(sandbox->lua, &frame, &entry, &has_entry)) {
         snprintf(out, size, "%s: ", sandbox->files.path);
+        return;
+    }
+    int length = snprintf(out, size, "%s:%d: ", sandbox_frame_file(&frame), frame.currentline);
+    if (!has_entry || !lua_getinfo(sandbox->lua, "n", &entry) || !entry.name || (size_t)length >= size)
+        return;
+    const char *module = strrchr(entry.source, '/') + 1; /* below the folder of the library */
+    snprintf(out + length, size - (size_t)length, "%.*s.%.60s: ", (int)strcspn(module, "."), module, entry.name);
+}
+
+/* Whether the message begins with "PATH:LINE: " of a file of the library; the length of that. */
+static size_t library_position(const struct sandbox *sandbox, const char *message) {
+    char source[PATH_SIZE + 1];
+    size_t path = strcspn(message, ":");
+    (void)snprintf(source, sizeof source, "@%.*s", (int)path, message);
+    size_t digits = message[path] ? strspn(message + path + 1, "0123456789") : 0;
+    const char *end = message + path + 1 + digits;
+    return digits > 0 && strncmp(end, ": ", 2) == 0 && sandbox_is_library(sandbox, source) ? path + digits + 3 : 0;
+}
+
+const char *sandbox_relocate(lua_State *L, const char *message) {
+    struct sandbox *sandbox = sandbox_of(L);
+    const char *full = files_unshorten(sandbox, message);
+    size_t length = full ? library_position(sandbox, full) : 0;
+    char where[PATH_SIZE + 128];
+    if (length == 0)
+        return message;
+    sandbox->lua = L;
+    sandbox_where(sandbox, where, sizeof where);
+    if (library_position(sandbox, where) > 0) /* the library is the scene */
+        return message;
+    size_t first = strcspn(full, "\n");
+    return lua_pushfstring(L, "%s%s (in %s)%s", where, lua_pushlstring(L, full + length, first - length),
+                           lua_pushlstring(L, full, length - 2), full + first);
 }
 
 bool sandbox_is_new_line(struct sandbox *sandbox) {

@@ -59,6 +59,7 @@ struct sandbox {
     char error_suffix[SUFFIX_SIZE];    /* at the end of errors: " (frame 7)", or "" */
     struct script_line *checked_lines; /* sandbox_is_new_line: CHECKED_LINES of them, in `keep` */
     char raised[1536];                 /* the last error of a C function, without its position */
+    char refused[512];                 /* why io.open returned nil the last time, or "" */
     bool unforgivable;                 /* --lenient would not continue after it */
     struct error fatal;
     bool ended; /* os.exit was called with success */
@@ -83,11 +84,16 @@ bool sandbox_is_over(const struct sandbox *sandbox);
 /* A C function that is not one of the table begins. */
 struct sandbox *sandbox_enter(lua_State *L);
 
-/* The nearest Lua function on the stack with a known line. */
+/* The nearest Lua function on the stack with a known line; one of the scene before those of our library. */
+bool sandbox_is_library(const struct sandbox *sandbox, const char *source);
 bool sandbox_find_frame(lua_State *L, lua_Debug *frame);
 const char *sandbox_frame_file(const lua_Debug *frame);
-/* "scene.lua:12: " of that function, or "scene.lua: ". */
+/* "scene.lua:12: " of that function, with "module.function: " if it has called a function of our library, or
+ * "scene.lua: ". */
 void sandbox_where(const struct sandbox *sandbox, char *out, size_t size);
+/* The message of an error in our library with the position of the scene in front, and its own behind; others are the
+ * same. May push values. */
+const char *sandbox_relocate(lua_State *L, const char *message);
 /* False if the current line was checked before. It may also be true then, because only some lines are stored. */
 bool sandbox_is_new_line(struct sandbox *sandbox);
 

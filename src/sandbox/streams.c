@@ -79,6 +79,7 @@ static int open_stream(lua_State *L, const char *name, const char *mode) {
     int why = errno;
     lua_pushnil(L);
     push_failure(L, name, refusal(sandbox, name, write));
+    (void)snprintf(sandbox->refused, sizeof sandbox->refused, "%s", lua_tostring(L, -1));
     lua_pushinteger(L, why);
     return 3;
 }

@@ -74,7 +74,7 @@ struct node *scene_node(struct scene *scene, enum node_kind kind, const char *na
     node->serial = scene->node_count++;
     node->index = scene->node_total++;
     node->parent_from_node = transform_identity();
-    if (kind == NODE_GEOMETRY) {
+    if (kind == NODE_GEOMETRY || kind == NODE_CSG) {
         node->file = scene->file;
         node->line = scene->line;
     }

@@ -6,6 +6,7 @@
 #include "script/gr_lights_internal.h"
 #include "script/gr_materials_internal.h"
 #include "script/rows_internal.h"
+#include "script/script_internal.h"
 
 enum { SKY_INTENSITY, SKY_ROTATION, SKY_OWN };
 #define SKY_FIELDS                                                                                                     \
@@ -157,7 +158,8 @@ static bool gr_sky_function(struct script_context *context, const struct script_
 
 /* The unit direction to the sun, from a direction or from time and geographic position. `sun` points to the first of
  * the fields. */
-static bool find_sun(const struct script_value *sun, struct vec3 *out, struct error *error) {
+static bool find_sun(struct script_context *context, const struct script_value *sun, struct vec3 *out,
+                     struct error *error) {
     bool by_time = sun[SUN_HOUR].given || sun[SUN_DAY].given || sun[SUN_LATITUDE].given || sun[SUN_LONGITUDE].given ||
                    sun[SUN_ZONE].given || sun[SUN_YEAR].given;
     if (sun[SUN_DIRECTION].given && by_time)
@@ -174,6 +176,9 @@ static bool find_sun(const struct script_value *sun, struct vec3 *out, struct er
                                   .hour = sun[SUN_HOUR].given ? sun[SUN_HOUR].number : 12,
                                   .zone = sun[SUN_ZONE].number};
     *out = sky_sun(&time, sun[SUN_LATITUDE].given ? sun[SUN_LATITUDE].number : 45, sun[SUN_LONGITUDE].number);
+    /* Nights of an animation are meant. */
+    if (by_time && out->y < 0 && script_of(context)->animation.frame.number <= 1)
+        context_warn_once(context, WARNED_OTHER, "the sun is below the horizon at that time: it is night");
     return true;
 }
 
@@ -191,7 +196,7 @@ static bool gr_clear_sky(struct script_context *context, const struct script_val
                          struct error *error) {
     struct vec3 sun;
     struct sky sky;
-    if (!find_sun(&args[CLEAR_SUN], &sun, error))
+    if (!find_sun(context, &args[CLEAR_SUN], &sun, error))
         return false;
     sky_make_clear(sun, args[CLEAR_TURBIDITY].given ? args[CLEAR_TURBIDITY].number : 2.5,
                    args[CLEAR_GROUND].given ? args[CLEAR_GROUND].vector : vec3_all(0.15), &sky);
@@ -208,7 +213,7 @@ static const struct script_parameter sun_light_parameters[] = {
 static bool gr_sun_light(struct script_context *context, const struct script_value *args, struct script_result *result,
                          struct error *error) {
     struct script_value distant[DISTANT_COUNT];
-    if (!find_sun(&args[SUNLIGHT_SUN], &distant[DISTANT_DIRECTION].vector, error))
+    if (!find_sun(context, &args[SUNLIGHT_SUN], &distant[DISTANT_DIRECTION].vector, error))
         return false;
     for (int i = 0; i < DISTANT_DIRECTION; i++)
         distant[i] = args[i];

@@ -14,6 +14,15 @@ static const struct script_parameter child_parameters[] = {
     [CHILD_NODE] = {"node", KIND_NODE, 0, ANY, NULL, NULL, "The child; a node under several parents is an instance."},
 };
 
+/* Among the first ones: a long list is made by a loop, of different nodes. */
+static bool has_child(const struct node *parent, const struct node *child) {
+    enum { LOOKED_AT = 64 };
+    const struct node_child *at = parent->first_child;
+    for (int i = 0; at && i < LOOKED_AT && at->node != child; i++)
+        at = at->next;
+    return at && at->node == child;
+}
+
 static bool gr_add_child(struct script_context *context, const struct script_value *args, struct script_result *result,
                          struct error *error) {
     (void)result;
@@ -25,6 +34,9 @@ static bool gr_add_child(struct script_context *context, const struct script_val
                          parent == child ? "a node cannot be its own child"
                                          : "'%.200s' is below '%.200s': the nodes would form a cycle",
                          parent->name, child->name);
+    if (has_child(parent, child) && sandbox_is_new_line(&context->sandbox))
+        sandbox_warn(&context->sandbox, "'%.200s' is a child of '%.200s' already: it is there twice, at the same place",
+                     child->name, parent->name);
     return node_add_child(&context->scene, args[SELF].node, args[CHILD_NODE].node, error);
 }
 

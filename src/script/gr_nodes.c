@@ -299,6 +299,7 @@ static bool combine(struct script_context *context, enum node_csg operation, con
     for (uint32_t k = 0; k < known; k++)
         if (!check_operand(operands[k], error))
             return false;
+    context_note_line(context);
     return give(result, scene_combine(&context->scene, name, operation, operands, known, error));
 }
 

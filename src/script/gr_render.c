@@ -64,7 +64,8 @@ enum {
 #define PARAMETER_CAUSTICS(low, high, list) KIND_CAUSTICS, OPTIONAL, 0, 0, NULL
 #define PARAMETER_OF_SETTING(kind, type, member, change, initial, low, high, list, option, value, unit, field, ...)    \
     {field, PARAMETER_##kind(low, high, list), unit, option, FIRST_HELP(__VA_ARGS__)},
-#define FIRST_HELP(words, group, help) help
+#define FIRST_HELP(words, group, ...) HELP_OF(__VA_ARGS__, 0)
+#define HELP_OF(help, ...) help
 
 _Static_assert((int)RENDER_COUNT <= (int)PARAMETER_LIMIT, "no function has more parameters than gr.render");
 static const struct script_parameter render_parameters[] = {
@@ -240,6 +241,35 @@ static void apply_settings(const struct script_options *options, const struct sc
         settings->tone.srgb = true;
 }
 _Static_assert(LIST_COUNT(SETTINGS) <= 64, "every setting has a bit of a mask");
+
+/* A field that has no effect without another one gets a notice, once for each line. */
+static void note_lone_fields(struct script_context *context, const struct script_value *args) {
+    static const struct {
+        int field, needs;
+        int choice; /* that it must be; -1: any */
+    } pairs[] = {{RENDER_BLADES, RENDER_APERTURE, -1},
+                 {RENDER_BLADE_ANGLE, RENDER_BLADES, -1},
+                 {RENDER_EYE_DISTANCE, RENDER_STEREO, -1},
+                 {RENDER_SCREEN, RENDER_STEREO, -1},
+                 {RENDER_MIRROR, RENDER_SKY, -1},
+                 {RENDER_VIEW_HEIGHT, RENDER_PROJECTION, PROJECTION_ORTHOGRAPHIC},
+                 {RENDER_ANGLE, RENDER_PROJECTION, PROJECTION_FISHEYE}};
+    static const char *const projections[] = {PROJECTIONS(LIST_WORD)};
+    char where[PATH_SIZE + 32], text[PATH_SIZE + 256];
+    for (size_t i = 0; i < COUNT(pairs); i++) {
+        const struct script_value *needed = &args[pairs[i].needs];
+        bool has = needed->given && (pairs[i].choice < 0 || needed->choice == pairs[i].choice);
+        if (!args[pairs[i].field].given || has || !sandbox_is_new_line(&context->sandbox))
+            continue;
+        const char *word = pairs[i].choice < 0 ? NULL : projections[pairs[i].choice];
+        sandbox_where(&context->sandbox, where, sizeof where);
+        (void)snprintf(text, sizeof text, "%sgr.render: %s has no effect without %s%s%s%s", where,
+                       render_parameters[pairs[i].field].name, render_parameters[pairs[i].needs].name,
+                       word ? " = '" : "", word ? word : "", word ? "'" : "");
+        sandbox_message(&context->sandbox, SCRIPT_NOTICE, text);
+        return;
+    }
+}
 
 static bool apply_lens(const struct script_value *args, struct lens *lens, const struct camera *camera,
                        struct error *error) {
@@ -495,6 +525,9 @@ static bool gr_render(struct script_context *context, const struct script_value 
     }
     request.sky_chosen = args[RENDER_SKY].given || args[RENDER_BACKGROUND].given;
     apply_settings(context->sandbox.options, args, &request);
+    for (int i = 0; i < setting_field_count; i++)
+        request.fields |= (uint64_t)args[RENDER_FIRST_SETTING + i].given << i;
+    note_lone_fields(context, args);
     repair_view(context, args, &request);
     context_warn_of_bytes(context, "ambient", request.ambient);
     if (args[RENDER_BACKGROUND].given)

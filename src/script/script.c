@@ -144,7 +144,7 @@ static int describe_error(lua_State *L) {
     sandbox_where(sandbox, where, sizeof where);
     const char *message;
     if (lua_type(L, 1) == LUA_TSTRING || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL)
-        message = luaL_tolstring(L, 1, NULL);
+        message = sandbox_relocate(L, luaL_tolstring(L, 1, NULL));
     else
         message = lua_pushfstring(L, "the script raised %s", value_words(L, 1));
     bool has_position;
@@ -158,11 +158,16 @@ static int describe_error(lua_State *L) {
               hint_of_lua_error(L, message), sandbox->error_suffix);
     const char *rest = message + first + (message[first] == '\n');
     luaL_traceback(L, L, *rest ? rest : NULL, 1);
+    if (strcmp(lua_tostring(L, -1), "stack traceback:\n\t[C]: in ?") == 0) { /* of a syntax error */
+        lua_pushliteral(L, "");
+        lua_replace(L, -2);
+    }
     if (is_forgivable(&script->context, message)) {
         lua_pushliteral(L, "\n--lenient gets over this error");
         lua_concat(L, 2);
     }
-    script->traceback = indent(script->out, lua_tostring(L, -1));
+    const char *below = lua_tostring(L, -1);
+    script->traceback = below[0] ? indent(script->out, below) : NULL;
     lua_settop(L, 1); /* load also calls this, if its text is nested too deeply, and returns the message */
     return 1;
 }

@@ -31,6 +31,7 @@ struct render_request {
     bool sky_chosen;          /* not the default */
     struct settings settings; /* the host's settings, changed by the call's named fields */
     uint64_t replaced;        /* by setting, as bits: fields that have no effect because of an option */
+    uint64_t fields;          /* the settings that the call's fields set: a bit by the index of each */
     uint32_t added;           /* nodes that gr.change_add has added: those of others are numbered from here on */
     uint32_t owned;           /* the same of materials and gr.change_own */
     bool keep;                /* a picture that exists under this name is not replaced */

@@ -99,6 +99,11 @@ struct options {
     enum statistics_mode statistics;
 };
 
+struct setting;
+/* All options in one row: the settings, some of which have no option, and then the others. */
+int option_count(void);
+const struct setting *option_at(int index);
+
 /* False: error is ERROR_USAGE (or no memory) and its text names the option. */
 bool options_parse(struct options *options, int argc, char *const *argv, struct arena *arena, struct error *error);
 /* A hash of all options that can change a picture, or the number of pictures; names of written files, threads,

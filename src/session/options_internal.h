@@ -5,9 +5,6 @@
 #include "session/options.h"
 #include "settings/setting.h"
 
-/* All options in one row: the settings, some of which have no option, and then the others. */
-int option_count(void);
-const struct setting *option_at(int index);
 bool option_is_setting(const struct setting *option);
 /* The struct that has the value of the option: the settings, or the options. */
 void *option_base(const struct setting *option, struct options *options);

@@ -9,8 +9,9 @@
 #include <stddef.h>
 #include <string.h>
 
-#define FIELD(name) offsetof(struct options, name), sizeof(((struct options *)NULL)->name)
-#define NO_FIELD 0, 0
+/* The designator allows rows without the last column. */
+#define FIELD(name) .offset = offsetof(struct options, name), sizeof(((struct options *)NULL)->name)
+#define NO_FIELD .offset = 0, 0
 /* The first choice is the best set that the processor has. */
 #define ISA_CHOICES "auto" CPU_ISAS(LIST_BAR_WORD)
 #define SIZES 0x1p10, 0x1p50 /* 1 KiB to 1 PiB */
@@ -54,16 +55,18 @@ static const struct setting options_table[] = {
      "Render the frames 1 to N, or A to B, or every STEPth of these; gray runs a script without gr.frames once for "
      "each of them, with the gr.frame, gr.time and gr.clock of the frame."},
     {SETTING_NUMBER, CHANGES_SAMPLES, OPTION_GROUP_ANIMATION, "--fps", "X", "", NULL, FIELD(script.frames.rate), 0,
-     FRAME_RATE_MIN, FRAME_RATE_MAX, "the script's, or 30", "Frames per second."},
+     FRAME_RATE_MIN, FRAME_RATE_MAX, "the script's, or 30", "Frames per second.", EFFECT_FRAMES},
     {SETTING_FLAG, CHANGES_SAMPLES, OPTION_GROUP_ANIMATION, "--loop", NULL, "", NULL, FIELD(script.frames.loops), 0, 0,
-     0, NULL, "After the last frame comes the first: gr.clock stays below 1, and players repeat the file without end."},
+     0, NULL, "After the last frame comes the first: gr.clock stays below 1, and players repeat the file without end.",
+     EFFECT_FRAMES},
     {SETTING_WHOLE, CHANGES_SAMPLES, OPTION_GROUP_ANIMATION, "--turntable", "N", "", NULL,
      FIELD(script.frames.turntable), 0, 1, FRAMES_MAX, NULL,
      "Render every picture N times, from a camera that moves once around the scene; implies --loop."},
     {SETTING_CHOICE, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--palette", NULL, "all|frame", NULL, FIELD(frame_palettes),
      0, 0, 0, "all",
      "The 256 colours of a GIF file: one palette for all frames, so that parts without motion do not flicker, or one "
-     "for each frame."},
+     "for each frame.",
+     EFFECT_GIF},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--keep-frames", NULL, "", NULL, FIELD(keep_frames), 0, 0, 0,
      NULL, "Keep the frames of the animation FILE as PNG files in the folder FILE.frames."},
     {SETTING_FLAG, CHANGES_RUN, OPTION_GROUP_ANIMATION, "--contact-sheet", NULL, "", NULL, FIELD(contact_sheet), 0, 0,

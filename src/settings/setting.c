@@ -5,22 +5,23 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SETTING_ROW(kind, type, member, change, initial, low, high, list, option, value, unit, field, words, group,    \
-                    help)                                                                                              \
-    {SETTING_##kind,                                                                                                   \
-     CHANGES_##change,                                                                                                 \
-     OPTION_GROUP_##group,                                                                                             \
-     option,                                                                                                           \
-     value,                                                                                                            \
-     LIST_BARS(list),                                                                                                  \
-     field,                                                                                                            \
-     offsetof(struct settings, member),                                                                                \
-     sizeof(((struct settings *)NULL)->member),                                                                        \
-     (double)(initial),                                                                                                \
-     (double)(low),                                                                                                    \
-     (double)(high),                                                                                                   \
-     words,                                                                                                            \
-     help},
+/* `...`: the help, and the effect where it has a column. */
+#define SETTING_ROW(kind_, type, member, change, initial_, low_, high_, list, option_, value_, unit, field_, words_,   \
+                    group_, ...)                                                                                       \
+    {.kind = SETTING_##kind_,                                                                                          \
+     .changes = CHANGES_##change,                                                                                      \
+     .group = OPTION_GROUP_##group_,                                                                                   \
+     .option = option_,                                                                                                \
+     .value = value_,                                                                                                  \
+     .words = LIST_BARS(list),                                                                                         \
+     .field = field_,                                                                                                  \
+     .offset = offsetof(struct settings, member),                                                                      \
+     .size = sizeof(((struct settings *)NULL)->member),                                                                \
+     .initial = (double)(initial_),                                                                                    \
+     .low = (double)(low_),                                                                                            \
+     .high = (double)(high_),                                                                                          \
+     .initial_words = words_,                                                                                          \
+     __VA_ARGS__},
 
 const struct setting setting_table[] = {SETTINGS(SETTING_ROW)};
 const int setting_count = sizeof setting_table / sizeof *setting_table;

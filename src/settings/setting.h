@@ -44,6 +44,7 @@ struct setting {
     double initial, low, high;
     const char *initial_words; /* the default in words; NULL: made from `initial` */
     const char *help;          /* sentences */
+    enum setting_effect effect;
 };
 
 /* The rows of struct settings; those with a field come first. */

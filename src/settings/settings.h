@@ -219,13 +219,27 @@ enum option_group {
     OPTION_GROUP_NONE = OPTION_GROUP_COUNT
 };
 
+/* What a setting has effect with; one that the run or a call of gr.render gives in vain gets a notice
+ * (host/effects.c). In words, after "it is for". */
+#define SETTING_EFFECTS(X)                                                                                             \
+    X(EFFECT_ALWAYS, "")                                                                                               \
+    X(EFFECT_WHITTED, "integrator whitted")                                                                            \
+    X(EFFECT_PATH, "integrator path")                                                                                  \
+    X(EFFECT_TOON, "style toon")                                                                                       \
+    X(EFFECT_DISPLAY, "PNG files and animations; .pfm, .hdr and .exr have linear light")                               \
+    X(EFFECT_BYTES, "PNG files of 8 bits")                                                                             \
+    X(EFFECT_FRAMES, "animations, which --frames, --turntable or gr.frames make")                                      \
+    X(EFFECT_GIF, "GIF files")
+enum setting_effect { SETTING_EFFECTS(LIST_MEMBER) };
+
 /* The list of settings: a setting is written here, where it is used, in the documentation and in a test. From its row
  * come the member of struct settings, the option with its check and its help, the field of gr.render, the check of the
  * messages between the processes, and the keys of tile files. The columns:
  *
  *     kind (setting.h), type, member, what it changes, default, lowest and highest value, words of a choice,
  *     option with its other spellings (NULL: none), its value in the help, unit, field of gr.render (NULL: none),
- *     default in words (NULL: from the default), group of options, help: a sentence for the option and for the field
+ *     default in words (NULL: from the default), group of options, help: a sentence for the option and for the field,
+ *     what it has effect with (left out: everything)
  *
  * A default outside of the range means "not set". Members of struct tone and struct finish have lists of their own, and
  * so have settings with no field, and those with neither option nor field. */
@@ -234,39 +248,46 @@ enum option_group {
       NULL, "integrator", NULL, RAYS,                                                                                  \
       "The method: whitted has direct light, mirrors and glass; path also has indirect light from all surfaces.")      \
     X(WHOLE, int, samples, SAMPLES, 3, 1, 64, NO_WORDS, "-ss", "N", NULL, "samples", NULL, RAYS,                       \
-      "N x N samples for a marked pixel.")                                                                             \
+      "N x N samples for a marked pixel.", EFFECT_WHITTED)                                                             \
     X(FLAG, bool, full, SAMPLES, false, 0, 1, NO_WORDS, "-full", NULL, NULL, "full", NULL, RAYS,                       \
-      "N x N samples for every pixel, not only for marked ones.")                                                      \
+      "N x N samples for every pixel, not only for marked ones.", EFFECT_WHITTED)                                      \
     X(NUMBER, double, side_tolerance, SAMPLES, 0.005, 0, HUGE_VAL, NO_WORDS, "-side-tolerance", "X", NULL,             \
-      "side_tolerance", NULL, RAYS, "A pixel is marked when the squared RGB distance to a side neighbour exceeds X.")  \
+      "side_tolerance", NULL, RAYS, "A pixel is marked when the squared RGB distance to a side neighbour exceeds X.",  \
+      EFFECT_WHITTED)                                                                                                  \
     X(NUMBER, double, corner_tolerance, SAMPLES, 0.01, 0, HUGE_VAL, NO_WORDS, "-corner-tolerance", "X", NULL,          \
-      "corner_tolerance", NULL, RAYS, "The same for the corner neighbours.")                                           \
+      "corner_tolerance", NULL, RAYS, "The same for the corner neighbours.", EFFECT_WHITTED)                           \
     X(WHOLE, int, reflect_limit, SAMPLES, 2, 0, 1000, NO_WORDS, "-reflect-limit", "N", NULL, "reflect_limit", NULL,    \
-      RAYS, "How often a path may reflect.")                                                                           \
+      RAYS, "How often a path may reflect.", EFFECT_WHITTED)                                                           \
     X(WHOLE, int, refract_limit, SAMPLES, 4, 0, 1000, NO_WORDS, "-refract-limit", "N", NULL, "refract_limit", NULL,    \
-      RAYS, "How often a path may refract.")                                                                           \
+      RAYS, "How often a path may refract.", EFFECT_WHITTED)                                                           \
     X(FLAG, bool, use_tir, SAMPLES, false, 0, 1, NO_WORDS, "-use-tir", NULL, NULL, "use_tir", NULL, RAYS,              \
-      "At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.")  \
+      "At total internal reflection, add the refracted amount to the reflected one; without it, that light is lost.",  \
+      EFFECT_WHITTED)                                                                                                  \
     X(WHOLE, int, area_samples, SAMPLES, 4, 1, 64, NO_WORDS, "-al-samples|alsamples", "N", NULL, "area_samples", NULL, \
-      RAYS, "N x N shadow rays for each area light.")                                                                  \
+      RAYS, "N x N shadow rays for each area light.", EFFECT_WHITTED)                                                  \
     X(NUMBER, double, cutoff, SAMPLES, 0.0001, 0, 1, NO_WORDS, "--cutoff", "X", NULL, "cutoff", NULL, RAYS,            \
-      "Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.")                \
+      "Do not trace rays that can change a pixel by less than X, where white is 1; 0: trace all rays.",                \
+      EFFECT_WHITTED)                                                                                                  \
     X(WHOLE, int, path_samples, SAMPLES, 0, 1, PATH_SAMPLES_MAX, NO_WORDS, "--spp", "N", NULL, "spp", "64", RAYS,      \
-      "N samples for a pixel, with integrator path.")                                                                  \
+      "N samples for a pixel, with integrator path.", EFFECT_PATH)                                                     \
     X(WHOLE, int, max_depth, SAMPLES, 16, 0, DEPTH_MAX, NO_WORDS, "--max-depth", "N", NULL, "max_depth", NULL, RAYS,   \
-      "A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.")            \
+      "A path is scattered at most N times: 0 shows emission only, 1 direct light, 2 one indirect bounce.",            \
+      EFFECT_PATH)                                                                                                     \
     X(NUMBER, double, noise, SAMPLES, 0, 1e-6, 10, NO_WORDS, "--noise", "X", NULL, "noise", "all samples", RAYS,       \
       "With integrator path, a tile of 32 x 32 pixels gets samples (at least 16, at most --spp) until its relative "   \
-      "standard error is X.")                                                                                          \
+      "standard error is X.",                                                                                          \
+      EFFECT_PATH)                                                                                                     \
     X(NUMBER, double, clamp, SAMPLES, 0, 0, HUGE_VAL, NO_WORDS, "--clamp", "X", NULL, "clamp", NULL, RAYS,             \
       "With integrator path, no component of a sample is larger than X, 0: no limit; less noise, but the picture "     \
-      "becomes darker than it should be (bias).")                                                                      \
+      "becomes darker than it should be (bias).",                                                                      \
+      EFFECT_PATH)                                                                                                     \
     X(CHOICE, enum filter_kind, filter, SAMPLES, FILTER_BOX, 0, 0, FILTERS, "--filter", NULL, NULL, "filter", NULL,    \
       RAYS, "Reconstruction filter of a pixel.")                                                                       \
     X(DENOISE, enum denoiser, denoise, FINISH, DENOISER_AUTO, 0, 0, DENOISERS, "--denoise", "gray", NULL, "denoise",   \
       NULL, RAYS,                                                                                                      \
       "Remove noise, with integrator path. Without a word gray does; oidn: by the program oidnDenoise of Open Image "  \
-      "Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.")      \
+      "Denoise, which must be on PATH; none: do not, even if a scene requests it; auto: if a scene requests it.",      \
+      EFFECT_PATH)                                                                                                     \
     X(SEED, uint64_t, seed, SAMPLES, 0, 0, 0x1p53 - 1, NO_WORDS, "--seed", "N", NULL, "seed", NULL, RAYS,              \
       "Seed of all random numbers; the option also seeds math.random in scripts.")                                     \
     X(CHOICE, enum accel_kind, accel, RUN, ACCEL_AUTO, 0, 0, ACCEL_KINDS, "--accel", NULL, NULL, "accel", NULL,        \
@@ -276,25 +297,27 @@ enum option_group {
       "linear: decode colour pictures from sRGB and encode PNG files as sRGB; classic: use all numbers unchanged; "    \
       "auto: linear with integrator path.")                                                                            \
     X(FLAG, bool, deep, FINISH, false, 0, 1, NO_WORDS, "--deep", NULL, NULL, "deep", NULL, SIZE_AND_COLOUR,            \
-      "16 bits per channel in PNG files.")                                                                             \
+      "16 bits per channel in PNG files.", EFFECT_DISPLAY)                                                             \
     X(CHOICE, enum style, style, SAMPLES, STYLE_NONE, 0, 0, STYLES, "--style", NULL, NULL, "style", NULL, FINISH,      \
       "Pictures that look like drawings, with integrator whitted; ink: lines on white paper; toon: a few levels of "   \
-      "light; gooch: cool to warm colours.")                                                                           \
+      "light; gooch: cool to warm colours.",                                                                           \
+      EFFECT_WHITTED)                                                                                                  \
     X(NUMBER, double, line_width, SAMPLES, -1, 0, LINE_WIDTH_MAX, NO_WORDS, "--line-width", "PIXELS", "pixels",        \
       "line_width", "2 with a style, else 0", FINISH, "Width of the lines where objects, normals and depths change.")  \
     X(WHOLE, int, toon_steps, SAMPLES, 3, 1, TOON_STEPS_MAX, NO_WORDS, "--toon-steps", "N", NULL, "toon_steps", NULL,  \
-      FINISH, "Number of levels of light of style toon, not counting shadow.")                                         \
+      FINISH, "Number of levels of light of style toon, not counting shadow.", EFFECT_TOON)                            \
     X(CHOICE, enum specular_kind, specular, SAMPLES, SPECULAR_PHONG, 0, 0, SPECULAR_KINDS, "--specular", NULL, NULL,   \
       "specular", NULL, OTHER_PROGRAMS, "Formula of the highlight.")
 #define SETTINGS_OF_TONE(X)                                                                                            \
     X(NUMBER, double, tone.exposure, FINISH, 0, -100, 100, NO_WORDS, "--exposure", "STOPS", "stops", "exposure", NULL, \
-      SIZE_AND_COLOUR, "Multiply light by 2^STOPS when a PNG file is written.")                                        \
+      SIZE_AND_COLOUR, "Multiply light by 2^STOPS when a PNG file is written.", EFFECT_DISPLAY)                        \
     X(TONE, enum tone_curve, tone.curve, FINISH, TONE_NONE, 0, 0, TONE_CURVES, "--tone", NULL, NULL, "tone", NULL,     \
       SIZE_AND_COLOUR,                                                                                                 \
       "Tone curve that maps bright light into the range of a PNG file; a field may also be a function f(x) of the "    \
-      "light x from 0 on, the same for red, green and blue.")                                                          \
+      "light x from 0 on, the same for red, green and blue.",                                                          \
+      EFFECT_DISPLAY)                                                                                                  \
     X(FLAG, bool, tone.srgb, FINISH, false, 0, 1, NO_WORDS, "--srgb", NULL, NULL, "srgb", NULL, SIZE_AND_COLOUR,       \
-      "Encode PNG files with the sRGB transfer function; without it, values are linear.")
+      "Encode PNG files with the sRGB transfer function; without it, values are linear.", EFFECT_DISPLAY)
 #define SETTINGS_OF_FINISH(X)                                                                                          \
     X(NUMBER, double, finish.bloom, FINISH, 0, 0, 1, NO_WORDS, "--bloom", "X", NULL, "bloom", NULL, FINISH,            \
       "Spread light above white to the pixels around it, with the weight X.")                                          \
@@ -303,11 +326,12 @@ enum option_group {
     X(FLAG, bool, finish.gray, FINISH, false, 0, 1, NO_WORDS, "--gray", NULL, NULL, "gray", NULL, FINISH,              \
       "A gray picture: the luminance.")                                                                                \
     X(FLAG, bool, finish.edges, FINISH, false, 0, 1, NO_WORDS, "--edges", NULL, NULL, "edges", NULL, FINISH,           \
-      "A picture of the edges of the picture, white on black (Sobel); PNG files only.")                                \
+      "A picture of the edges of the picture, white on black (Sobel); PNG files only.", EFFECT_DISPLAY)                \
     X(FLAG, bool, finish.fxaa, FINISH, false, 0, 1, NO_WORDS, "--fxaa", NULL, NULL, "fxaa", NULL, FINISH,              \
-      "Smooth the edges of the finished picture (FXAA); PNG files only.")                                              \
+      "Smooth the edges of the finished picture (FXAA); PNG files only.", EFFECT_DISPLAY)                              \
     X(CHOICE, enum dither, finish.dither, FINISH, DITHER_NONE, 0, 0, DITHERS, "--dither", NULL, NULL, "dither", NULL,  \
-      FINISH, "Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.")
+      FINISH, "Round to 8 bits by a pattern, which removes bands: ordered, or blue noise; PNG files of 8 bits only.",  \
+      EFFECT_BYTES)
 #define SETTINGS_OF_CAUSTICS(X)                                                                                        \
     X(CAUSTICS, int, caustics.photons, SAMPLES, 0, 0, PHOTONS_MAX, NO_WORDS, "--caustics", "N", NULL, "caustics",      \
       NULL, RAYS,                                                                                                      \
@@ -316,21 +340,22 @@ enum option_group {
 /* Without a field. */
 #define SETTINGS_OF_RUNS(X)                                                                                            \
     X(WHOLE, int, roulette_depth, SAMPLES, 2, 0, DEPTH_MAX, NO_WORDS, "--roulette-depth", "N", NULL, NULL, NULL, RAYS, \
-      "Russian roulette may end a path after N scattering events.")                                                    \
+      "Russian roulette may end a path after N scattering events.", EFFECT_PATH)                                       \
     X(NUMBER, double, time_limit, SAMPLES, 0, 0.001, 1e9, NO_WORDS, "--time-limit", "SECONDS", NULL, NULL, "none",     \
       RAYS,                                                                                                            \
-      "With integrator path, add samples to all pixels for SECONDS and print their number; --spp with this number "    \
-      "makes the same picture.")                                                                                       \
+      "End a picture after SECONDS. Integrator path adds samples to all pixels until then and prints their number; "   \
+      "--spp with this number makes the same picture. With whitted the rest has fewer samples, and a notice.")         \
     X(CHOICE, enum aa_pattern, aa_pattern, SAMPLES, AA_ROTATED, 0, 0, AA_PATTERNS, "--aa-pattern", NULL, NULL, NULL,   \
       NULL, RAYS,                                                                                                      \
       "Which pixels are marked, and where their samples are; rotated: marked by colours, surfaces and thin "           \
-      "primitives, samples on a rotated grid; grid: marked by colours only, samples at the centres of N x N cells.")   \
+      "primitives, samples on a rotated grid; grid: marked by colours only, samples at the centres of N x N cells.",   \
+      EFFECT_WHITTED)                                                                                                  \
     X(CHOICE, bool, view_is_target, SAMPLES, false, 0, 0, VIEW_MEANINGS, "--view", NULL, NULL, NULL, NULL,             \
       OTHER_PROGRAMS, "Meaning of the view argument: a direction, or a point to look at.")                             \
     X(CHOICE, bool, pixel_corner, SAMPLES, false, 0, 0, PIXEL_POSITIONS, "--pixel-sample", NULL, NULL, NULL, NULL,     \
       OTHER_PROGRAMS, "Position of the first sample of a pixel.")                                                      \
     X(CHOICE, bool, ambient_plain, SAMPLES, false, 0, 0, AMBIENT_MEANINGS, "--ambient", NULL, NULL, NULL, NULL,        \
-      OTHER_PROGRAMS, "Multiply ambient light by kd, or add it unchanged.")                                            \
+      OTHER_PROGRAMS, "Multiply ambient light by kd, or add it unchanged.", EFFECT_WHITTED)                            \
     X(CHOICE, enum tile_order, tile_order, RUN, TILE_ORDER_SPREAD, 0, 0, TILE_ORDERS, "--tile-order", NULL, NULL,      \
       NULL, NULL, EXECUTION,                                                                                           \
       "Order in which tiles are rendered (in a window always from the centre); the picture is the same.")              \

@@ -1,2 +1,2 @@
--- expect: SCRIPT:2: unexpected symbol near '='
+-- expect: SCRIPT:2: unexpected symbol near '='; = gives a value, == compares two
 local a = = 1

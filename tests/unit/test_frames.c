@@ -133,7 +133,7 @@ TEST(errors_before_and_after_the_frames_of_an_animation_name_no_frame) {
 TEST(a_script_that_renders_some_frames_is_not_reported_to_render_nothing) {
     struct test_result result = test_gray_scene(PLAIN "gr.render(show)\n", "--frames 2-3 scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
-    CHECK_TEXT(result.err, "");
+    CHECK(!strstr(result.err, "no picture was rendered"));
     free(result.out);
     free(result.err);
     result = test_gray_scene("local x\n", "--frames 2-3 scene.lua", NULL);
@@ -147,7 +147,7 @@ TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_
                                         PLAIN "for i = 1, 2 do gr.frames{count = 3, draw = function() return show end} "
                                               "end\n"};
     for (int i = 0; i < 2; i++) {
-        struct test_result result = test_gray_scene(texts[i], "--frames 3 -o x.##.png scene.lua", NULL);
+        struct test_result result = test_gray_scene(texts[i], "-q --frames 3 -o x.##.png scene.lua", NULL);
         CHECK_EQ_INT(result.status, 2);
         CHECK(
             strstr(result.err,
@@ -157,11 +157,11 @@ TEST(a_second_picture_of_a_frame_does_not_replace_the_first_under_a_name_of_the_
         free(result.err);
     }
     /* Scripts choose names of their own, and frames of a turntable are counted. */
-    struct test_result result = test_gray_scene(texts[0], "--frames 2 scene.lua", NULL);
+    struct test_result result = test_gray_scene(texts[0], "-q --frames 2 scene.lua", NULL);
     CHECK_TEXT(result.err, "");
     free(result.out);
     free(result.err);
-    result = test_gray_scene(texts[0], "--turntable 2 -o x.##.png scene.lua", NULL);
+    result = test_gray_scene(texts[0], "-q --turntable 2 -o x.##.png scene.lua", NULL);
     CHECK_EQ_INT(result.status, 0);
     free(result.out);
     free(result.err);

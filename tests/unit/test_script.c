@@ -304,7 +304,8 @@ TEST(long_paths_are_traced_in_full) {
         test_write_text(path, text);
         CHECK(!listen_to(&listener, path, NULL, &error, NULL));
         (void)snprintf(expected, sizeof expected, "%s:3: %s", path,
-                       k == 0 ? "attempt to index a nil value (local 't')" : "unexpected symbol near '='");
+                       k == 0 ? "attempt to index a nil value (local 't')"
+                              : "unexpected symbol near '='; = gives a value, == compares two");
         CHECK_TEXT(error.text, expected);
         strcpy(text, "\n\nlocal x = = 1\n");
     }
