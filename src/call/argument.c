@@ -3,12 +3,12 @@
  * NUMBER_LIMIT are errors here. */
 #include "call/argument.h"
 
+#include "base/suggestion.h"
 #include "base/unreachable.h"
 #include "call/display_colour.h"
 #include "math/range.h"
 #include "record/record.h"
 #include "sandbox/hints.h"
-#include "sandbox/suggestion.h"
 #include "settings/settings.h"
 
 #include <assert.h>

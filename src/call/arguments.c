@@ -1,9 +1,9 @@
 /* The arguments of every gr function as the table of functions describes them. */
 #include "call/arguments.h"
 
+#include "base/suggestion.h"
 #include "call/argument.h"
 #include "sandbox/hints.h"
-#include "sandbox/suggestion.h"
 
 #include <string.h>
 

@@ -8,12 +8,12 @@
 #include "compat/lenient.h"
 
 #include "base/hash.h"
+#include "base/suggestion.h"
 #include "call/argument.h"
 #include "call/arguments.h"
 #include "compat/lenient_handles.h"
 #include "compat/lenient_picture.h"
 #include "compat/lenient_values_internal.h"
-#include "sandbox/suggestion.h"
 
 #include <lauxlib.h>
 #include <stdarg.h>

@@ -5,8 +5,8 @@
 #include "sandbox/files.h"
 
 #include "base/file.h"
+#include "base/suggestion.h"
 #include "sandbox/sandbox.h"
-#include "sandbox/suggestion.h"
 
 #include <assert.h>
 #include <lauxlib.h>

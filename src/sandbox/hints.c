@@ -5,10 +5,10 @@
 #include "sandbox/hints.h"
 
 #include "base/file.h"
+#include "base/suggestion.h"
 #include "sandbox/lexer.h"
 #include "sandbox/libraries_internal.h"
 #include "sandbox/sandbox.h"
-#include "sandbox/suggestion.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,13 +3,13 @@
  * --lenient ghosts. */
 #include "script/dispatch_internal.h"
 
+#include "base/suggestion.h"
 #include "base/version.h"
 #include "call/arguments.h"
 #include "compat/lenient.h"
 #include "compat/lenient_handles.h"
 #include "formats/font.h"
 #include "record/record.h"
-#include "sandbox/suggestion.h"
 #include "script/gr_frames_internal.h"
 #include "script/table_internal.h"
 

@@ -1,7 +1,7 @@
 /* "Did you mean": the optimal string alignment form of the Damerau-Levenshtein distance (insert, delete, replace, swap
  * of neighbours), letters compared without case. A suggestion is made when at most a third of the word, and at least
  * one letter, has to change. Words longer than WORD_LIMIT are ignored. */
-#include "sandbox/suggestion.h"
+#include "base/suggestion.h"
 
 #include <stdbool.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* "Did you mean": the nearest of some words, if it is near enough. */
-#ifndef GRAY_SANDBOX_SUGGESTION_H
-#define GRAY_SANDBOX_SUGGESTION_H
+#ifndef GRAY_BASE_SUGGESTION_H
+#define GRAY_BASE_SUGGESTION_H
 
 #include <stddef.h>
 
