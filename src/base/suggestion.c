@@ -49,4 +49,17 @@ void suggest_offer(struct suggestion *suggestion, const char *candidate) {
         suggestion->distance = d;
         suggestion->best = candidate;
     }
+    bool contains = strstr(suggestion->word, candidate) || strstr(candidate, suggestion->word);
+    for (size_t rank = contains ? d / 3 : d, i = 0; i < SUGGESTIONS_NEAR; i++) {
+        if (suggestion->near[i] && suggestion->near_distance[i] <= rank)
+            continue;
+        const char *moved = suggestion->near[i];
+        size_t moved_rank = suggestion->near_distance[i];
+        suggestion->near[i] = candidate;
+        suggestion->near_distance[i] = rank;
+        if (!moved)
+            break;
+        candidate = moved;
+        rank = moved_rank;
+    }
 }

@@ -4,10 +4,16 @@
 
 #include <stddef.h>
 
-/* The nearest of the words by Damerau-Levenshtein distance if the distance is small enough, else `best` is NULL. */
+enum { SUGGESTIONS_NEAR = 3 };
+
+/* The nearest of the words by Damerau-Levenshtein distance if the distance is small enough, else `best` is NULL.
+ * `near`: the nearest ones at any distance, for lists; NULL after the last one. Words that contain one another count as
+ * near. */
 struct suggestion {
     const char *word, *best;
     size_t distance;
+    const char *near[SUGGESTIONS_NEAR];
+    size_t near_distance[SUGGESTIONS_NEAR];
 };
 void suggest_begin(struct suggestion *suggestion, const char *word);
 void suggest_offer(struct suggestion *suggestion, const char *candidate);

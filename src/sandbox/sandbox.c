@@ -81,14 +81,14 @@ void sandbox_where(const struct sandbox *sandbox, char *out, size_t size) {
         snprintf(out, size, "%s: ", sandbox->files.path);
 }
 
-bool sandbox_is_new_line(struct sandbox *sandbox) {
+bool sandbox_is_new_line(struct sandbox *sandbox, const void *key) {
     lua_Debug frame;
     if (!sandbox_find_frame(sandbox->lua, &frame))
         return true;
-    const struct script_line line = {frame.source, frame.currentline};
-    uint64_t hash = hash_bytes(&line.source, sizeof line.source, (uint64_t)line.number);
+    const struct script_line line = {frame.source, key, frame.currentline};
+    uint64_t hash = hash_bytes(&line, offsetof(struct script_line, number), (uint64_t)line.number);
     struct script_line *slot = &sandbox->checked_lines[hash % CHECKED_LINES];
-    bool is_new = slot->source != line.source || slot->number != line.number;
+    bool is_new = slot->source != line.source || slot->key != line.key || slot->number != line.number;
     *slot = line;
     return is_new;
 }
