@@ -354,7 +354,7 @@ static bool begin_picture(struct picture_work *work, bool *already, struct error
         return false;
     asked->x0 = area.x0, asked->y0 = area.y0, asked->width = area.width, asked->height = area.height;
     if (warning[0] != '\0')
-        render_process_warn(process, warning);
+        render_process_warn_at(process, work->request->where, warning);
     asked->shown = (struct film_rectangle){asked->x0, asked->y0, asked->x0 + asked->width, asked->y0 + asked->height};
     uint32_t rim = path_film_parts(asked->record) & PATH_PART_FEATURES ? DENOISE_RIM : 0;
     add_rim(asked, rim + finish_rim(&job->settings.finish, asked->full_height));

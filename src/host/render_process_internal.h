@@ -63,6 +63,8 @@ void render_process_report(const struct render_process *process, enum line_kind 
 void render_process_report_scene(const struct render_process *process, enum line_kind kind, const char *text);
 /* context: the render process. Each warning is printed once in a script. */
 void render_process_warn(void *context, const char *text);
+/* The same about a picture; where: of its request. */
+void render_process_warn_at(struct render_process *process, const char *where, const char *text);
 void render_process_warn_of_nan(struct render_process *process, const struct world *world);
 void render_process_fill_report(const struct picture_work *work, const struct film *film,
                                 struct picture_report *report);
